@@ -1,0 +1,1 @@
+//! State problems for the nonsmooth framework.

@@ -1,0 +1,192 @@
+//! The admissible set: a box and two-sided linear rows.
+//!
+//! ```text
+//! U = { x : lower ≤ x ≤ upper,  row_lower ≤ A x ≤ row_upper }                                        method.md (1.1)
+//! ```
+//! Equal sides make an equality; ±∞ leaves a side open.
+
+use crate::{InputError, Matrix, Vector};
+
+/// A polyhedron given by bounds and two-sided rows.
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Polyhedron {
+    lower: Vector,
+    upper: Vector,
+    rows: Matrix,
+    row_lower: Vector,
+    row_upper: Vector,
+}
+
+impl Polyhedron {
+    /// The whole space of `dimension` variables.
+    pub fn unbounded(dimension: usize) -> Self {
+        Self {
+            lower: Vector::from_element(dimension, f64::NEG_INFINITY),
+            upper: Vector::from_element(dimension, f64::INFINITY),
+            rows: Matrix::zeros(0, dimension),
+            row_lower: Vector::zeros(0),
+            row_upper: Vector::zeros(0),
+        }
+    }
+
+    /// The box lower ≤ x ≤ upper; infinite entries leave a side open, equal entries fix a variable.
+    ///
+    /// # Errors
+    /// [`InputError`] on sizes that differ, NaN, or a lower bound above its upper bound.
+    pub fn boxed(lower: Vector, upper: Vector) -> Result<Self, InputError> {
+        check_intervals("variable", &lower, &upper)?;
+        Ok(Self { rows: Matrix::zeros(0, lower.len()), lower, upper, ..Self::unbounded(0) })
+    }
+
+    /// Adds the rows `row_lower ≤ A x ≤ row_upper`, with A of shape rows × dimension, to those already there.
+    ///
+    /// # Errors
+    /// [`InputError`] on sizes that differ, entries that are not finite, or an empty interval.
+    pub fn with_rows(mut self, rows: &Matrix, row_lower: &Vector, row_upper: &Vector) -> Result<Self, InputError> {
+        let expected = self.dimension();
+        if rows.ncols() != expected {
+            return Err(InputError::Dimension { what: "constraint row", expected, found: rows.ncols() });
+        }
+        if rows.nrows() != row_lower.len() {
+            return Err(InputError::Dimension {
+                what: "row_lower",
+                expected: rows.nrows(),
+                found: row_lower.len(),
+            });
+        }
+        if let Some(index) = crate::linalg::first_non_finite(rows.as_slice()) {
+            return Err(InputError::NotFinite { what: "constraint rows", index, value: rows.as_slice()[index] });
+        }
+        check_intervals("row", row_lower, row_upper)?;
+        let old = self.rows.nrows();
+        self.rows = self.rows.resize_vertically(old + rows.nrows(), 0.0);
+        self.rows.rows_mut(old, rows.nrows()).copy_from(rows);
+        self.row_lower = stack(&self.row_lower, row_lower);
+        self.row_upper = stack(&self.row_upper, row_upper);
+        Ok(self)
+    }
+
+    /// Number of variables.
+    pub fn dimension(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// Lower bounds, −∞ where open.
+    pub fn lower(&self) -> &Vector {
+        &self.lower
+    }
+
+    /// Upper bounds, +∞ where open.
+    pub fn upper(&self) -> &Vector {
+        &self.upper
+    }
+
+    /// The matrix A, rows × dimension.
+    pub fn rows(&self) -> &Matrix {
+        &self.rows
+    }
+
+    /// Lower sides of the rows.
+    pub fn row_lower(&self) -> &Vector {
+        &self.row_lower
+    }
+
+    /// Upper sides of the rows.
+    pub fn row_upper(&self) -> &Vector {
+        &self.row_upper
+    }
+
+    /// Whether the set is the whole space.
+    pub fn is_unbounded(&self) -> bool {
+        self.rows.nrows() == 0
+            && self.lower.iter().all(|side| *side == f64::NEG_INFINITY)
+            && self.upper.iter().all(|side| *side == f64::INFINITY)
+    }
+
+    /// Largest violation of any side at x, relative to the size of that side's bound and of its terms
+    /// (max(|bound|, Σⱼ|aⱼxⱼ|), so it does not depend on units); 0 for an admissible point.
+    pub fn violation(&self, x: &Vector) -> f64 {
+        let mut worst: f64 = 0.0;
+        for i in 0..self.dimension() {
+            worst = worst.max(side_violation(x[i], self.lower[i], self.upper[i], x[i].abs()));
+        }
+        for (i, row) in self.rows.row_iter().enumerate() {
+            let (mut value, mut scale) = (0.0, 0.0);
+            for (a, x) in row.iter().zip(x.iter()) {
+                value += a * x;
+                scale += (a * x).abs();
+            }
+            worst = worst.max(side_violation(value, self.row_lower[i], self.row_upper[i], scale));
+        }
+        worst
+    }
+
+    /// x with every entry moved into its box.
+    pub fn clamp_to_box(&self, x: &Vector) -> Vector {
+        Vector::from_fn(x.len(), |i, _| x[i].max(self.lower[i]).min(self.upper[i]))
+    }
+}
+
+fn stack(a: &Vector, b: &Vector) -> Vector {
+    Vector::from_iterator(a.len() + b.len(), a.iter().chain(b.iter()).copied())
+}
+
+/// Violation of lower ≤ value ≤ upper relative to the violated bound and the terms that make up the value.
+fn side_violation(value: f64, lower: f64, upper: f64, scale: f64) -> f64 {
+    if value.is_nan() {
+        return f64::INFINITY;
+    }
+    let relative = |excess: f64, bound: f64| {
+        if excess > 0.0 { excess / bound.abs().max(scale).max(f64::MIN_POSITIVE) } else { 0.0 }
+    };
+    relative(lower - value, lower).max(relative(value - upper, upper))
+}
+
+fn check_intervals(what: &'static str, lower: &Vector, upper: &Vector) -> Result<(), InputError> {
+    if lower.len() != upper.len() {
+        return Err(InputError::Dimension { what: "upper bounds", expected: lower.len(), found: upper.len() });
+    }
+    for (index, (&lower, &upper)) in lower.iter().zip(upper.iter()).enumerate() {
+        for value in [lower, upper] {
+            if value.is_nan() {
+                return Err(InputError::NotFinite { what: "bounds", index, value });
+            }
+        }
+        if lower > upper || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
+            return Err(InputError::EmptyInterval { what, index, lower, upper });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle() -> Polyhedron {
+        let rows = Matrix::from_row_slice(1, 2, &[1.0, 1.0]);
+        let side = |value| Vector::from_element(1, value);
+        Polyhedron::boxed(Vector::zeros(2), Vector::from_element(2, 10.0))
+            .and_then(|set| set.with_rows(&rows, &side(f64::NEG_INFINITY), &side(1.0)))
+            .expect("valid set")
+    }
+
+    #[test]
+    fn violation_is_zero_inside_and_relative_outside() {
+        assert_eq!(triangle().violation(&Vector::from_vec(vec![0.25, 0.75])), 0.0);
+        let outside = triangle().violation(&Vector::from_vec(vec![1.0, 1.0]));
+        assert!((outside - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn empty_interval_is_refused_with_its_position() {
+        let error = Polyhedron::boxed(Vector::from_vec(vec![0.0, 2.0]), Vector::from_vec(vec![1.0, 1.0]));
+        assert_eq!(error, Err(InputError::EmptyInterval { what: "variable", index: 1, lower: 2.0, upper: 1.0 }));
+    }
+
+    #[test]
+    fn nan_bound_is_refused() {
+        let error = Polyhedron::boxed(Vector::from_vec(vec![f64::NAN]), Vector::zeros(1));
+        assert!(matches!(error, Err(InputError::NotFinite { index: 0, .. })));
+    }
+}

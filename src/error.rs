@@ -1,0 +1,97 @@
+//! Error types of the framework: what, where, the value found, what is allowed.
+
+use thiserror::Error;
+
+/// Input that cannot be worked with; nothing has been computed yet.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum InputError {
+    /// A vector or matrix has the wrong size.
+    #[error("{what} has {found} entries, expected {expected}")]
+    Dimension {
+        /// What was measured.
+        what: &'static str,
+        /// The size it must have.
+        expected: usize,
+        /// The size it has.
+        found: usize,
+    },
+    /// An entry is NaN or infinite.
+    #[error("{what}: entry {index} is {value}, expected a finite number")]
+    NotFinite {
+        /// What holds the entry.
+        what: &'static str,
+        /// Position of the entry.
+        index: usize,
+        /// The offending value.
+        value: f64,
+    },
+    /// A lower bound lies above its upper bound.
+    #[error("{what} {index}: lower bound {lower} exceeds upper bound {upper}")]
+    EmptyInterval {
+        /// `variable` or `row`.
+        what: &'static str,
+        /// Position of the interval.
+        index: usize,
+        /// Lower bound found.
+        lower: f64,
+        /// Upper bound found.
+        upper: f64,
+    },
+    /// A setting is outside its admissible range.
+    #[error("{setting} = {value} is not allowed; allowed: {allowed}")]
+    OutOfRange {
+        /// Name of the setting.
+        setting: &'static str,
+        /// Value found, as text.
+        value: String,
+        /// Admissible values, as text.
+        allowed: &'static str,
+    },
+}
+
+/// Why an oracle (state solver, coderivative, objective) has no answer at a point.
+///
+/// The engine treats every variant as "shorten the step"; the run ends only when failures repeat, and then with the best
+/// point and the whole history in the report.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum OracleError {
+    /// The point lies outside the domain of the objective (an inverted element, a negative argument of a logarithm).
+    #[error("outside the domain: {reason}")]
+    OutsideDomain {
+        /// What left the domain, where, and by how much.
+        reason: String,
+    },
+    /// An iterative solver did not reach the accuracy asked for.
+    #[error("{solver} did not converge: residual {residual:.3e} after {iterations} iterations")]
+    NotConverged {
+        /// Name of the solver.
+        solver: &'static str,
+        /// Relative residual reached.
+        residual: f64,
+        /// Iterations spent.
+        iterations: usize,
+    },
+    /// Value or subgradient is not finite.
+    #[error("{what} is not finite")]
+    NotFinite {
+        /// `value`, or the name of the vector.
+        what: &'static str,
+    },
+    /// The user's code panicked; the payload's text is kept.
+    #[error("the objective panicked: {message}")]
+    Panicked {
+        /// Text of the panic.
+        message: String,
+    },
+    /// Any other failure of the problem behind the oracle.
+    #[error("{0}")]
+    Failed(#[source] Box<dyn std::error::Error + Send + Sync>),
+}
+
+impl From<InputError> for OracleError {
+    fn from(error: InputError) -> Self {
+        Self::Failed(Box::new(error))
+    }
+}

@@ -1,0 +1,12 @@
+//! Vector and matrix types of the public interface.
+
+/// Dense column vector of `f64`: controls, subgradients, multipliers.
+pub type Vector = nalgebra::DVector<f64>;
+
+/// Dense column-major matrix of `f64`: constraint rows, metrics.
+pub type Matrix = nalgebra::DMatrix<f64>;
+
+/// Index of the first entry that is not finite, if there is one.
+pub fn first_non_finite(values: &[f64]) -> Option<usize> {
+    values.iter().position(|value| !value.is_finite())
+}

@@ -1,0 +1,65 @@
+//! What a user implements: state solver, coderivative, cost.
+//!
+//! ```text
+//! Θ(α) = J(α, S(α)),     ξ = ∇₁J(α, y) + D*S(α)(∇₂J(α, y)),     y = S(α)                       method.md (1.1), (1.2)
+//! ```
+
+use crate::{Accuracy, OracleError, Vector};
+
+/// A parametrised, possibly nonsmooth equilibrium y = S(α); method.md (1.1).
+pub trait StateSolver {
+    /// The solution at one control with all that its coderivative needs (factors, contact status). May be heavy.
+    type State;
+    /// Light restart data (multipliers, active sets); `()` if there is none.
+    type WarmStart;
+
+    /// Number of controls d.
+    fn control_dimension(&self) -> usize;
+
+    /// S(α) for `control_dimension()` finite controls, to the relative accuracy asked for.
+    ///
+    /// # Errors
+    /// An [`OracleError`] when the control is outside the domain of S or the solver does not converge.
+    fn solve(
+        &self,
+        control: &Vector,
+        start: Option<&Self::WarmStart>,
+        accuracy: Accuracy,
+    ) -> Result<Self::State, OracleError>;
+
+    /// The light part of a state that restarts a solve nearby.
+    fn warm_start(&self, state: &Self::State) -> Self::WarmStart;
+
+    /// Estimate of ‖y − S(α)‖ for the state returned, in the norm dual to that of `CostGradient::state`; 0 means exact.
+    fn state_error(&self, _state: &Self::State) -> f64 {
+        0.0
+    }
+}
+
+/// The derivative information of a [`StateSolver`]: one element of its coderivative; method.md (1.2).
+pub trait Coderivative: StateSolver {
+    /// One element of D*S(α)(y*), `control_dimension()` entries; `direction` is y*, a dual of the state in the layout
+    /// that the solver's documentation states.
+    ///
+    /// # Errors
+    /// An [`OracleError`] when the adjoint system cannot be solved.
+    fn coderivative(&self, control: &Vector, state: &Self::State, direction: &Vector) -> Result<Vector, OracleError>;
+}
+
+/// A continuously differentiable J(α, y) (or, at the user's choice, one with a subgradient in its place).
+pub trait Cost<State: ?Sized> {
+    /// J(α, y).
+    fn value(&self, control: &Vector, state: &State) -> f64;
+
+    /// (∇₁J, ∇₂J) at (α, y).
+    fn gradient(&self, control: &Vector, state: &State) -> CostGradient;
+}
+
+/// The two partial gradients of a [`Cost`].
+#[derive(Debug, Clone)]
+pub struct CostGradient {
+    /// ∇₁J(α, y), `control_dimension()` entries.
+    pub control: Vector,
+    /// ∇₂J(α, y), in the layout of the state solver's dual.
+    pub state: Vector,
+}

@@ -1,0 +1,68 @@
+//! Θ = J∘(I, S) and its subgradient by the chain rule; method.md (1.1), (1.2).
+
+use crate::linalg::first_non_finite;
+use crate::{Answer, Coderivative, Cost, Evaluation, InputError, NonsmoothObjective, OracleError, Request, Vector};
+
+/// The objective Θ(α) = J(α, S(α)) of a state solver with coderivative and a cost.
+#[derive(Debug, Clone)]
+pub struct ReducedObjective<S, J> {
+    solver: S,
+    cost: J,
+}
+
+impl<S, J> ReducedObjective<S, J> {
+    /// Composes a state solver and a cost.
+    pub fn new(solver: S, cost: J) -> Self {
+        Self { solver, cost }
+    }
+
+    /// The state solver.
+    pub fn solver(&self) -> &S {
+        &self.solver
+    }
+
+    /// The cost.
+    pub fn cost(&self) -> &J {
+        &self.cost
+    }
+}
+
+impl<S: Coderivative, J: Cost<S::State>> ReducedObjective<S, J> {
+    /// Θ and one subgradient at a state already found.
+    ///
+    /// # Errors
+    /// Whatever the coderivative reports, and [`OracleError::NotFinite`].
+    pub fn differentiate(&self, control: &Vector, state: &S::State) -> Result<Evaluation<S::WarmStart>, OracleError> {
+        let value = self.cost.value(control, state);
+        if !value.is_finite() {
+            return Err(OracleError::NotFinite { what: "value" });
+        }
+        let gradient = self.cost.gradient(control, state);
+        let error_bound = match self.solver.state_error(state) {
+            0.0 => 0.0,
+            error => gradient.state.norm() * error,
+        };
+        let subgradient = gradient.control + self.solver.coderivative(control, state, &gradient.state)?;
+        if first_non_finite(subgradient.as_slice()).is_some() {
+            return Err(OracleError::NotFinite { what: "subgradient" });
+        }
+        Ok(Evaluation { value, subgradient, error_bound, warm_start: self.solver.warm_start(state) })
+    }
+}
+
+impl<S: Coderivative, J: Cost<S::State>> NonsmoothObjective for ReducedObjective<S, J> {
+    type WarmStart = S::WarmStart;
+
+    fn dimension(&self) -> usize {
+        self.solver.control_dimension()
+    }
+
+    fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
+        let (expected, found) = (self.dimension(), request.point.len());
+        if expected != found {
+            return Err(InputError::Dimension { what: "control", expected, found }.into());
+        }
+        let state = self.solver.solve(request.point, request.warm_start, request.accuracy)?;
+        Ok(Answer::Accurate(self.differentiate(request.point, &state)?))
+    }
+}
