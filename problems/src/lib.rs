@@ -1,1 +1,12 @@
 //! State problems for the nonsmooth framework.
+
+pub mod contact;
+pub mod elasticity;
+pub mod error;
+pub mod linear;
+pub mod mesh;
+pub mod scalar;
+pub mod scene;
+pub mod shape;
+pub mod shape_load;
+pub mod tfeti;

@@ -1,0 +1,23 @@
+//! Unilateral contact with Coulomb friction: boundary, law, state.
+
+pub mod law;
+pub mod modes;
+
+mod boundary;
+pub mod certificate;
+mod state;
+
+pub use boundary::{ContactBoundary, ContactPoint};
+pub use certificate::{Kink, Residuals, StatusCounts};
+pub use state::{ContactForces, Work};
+
+/// What a contact node does; method.md (3.2), (3.3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum ContactStatus {
+    /// No contact: λ_N = 0.
+    Open,
+    /// Closed, |λ_T| < 𝓕λ_N, no tangential jump.
+    Stick,
+    /// Closed, |λ_T| = 𝓕λ_N.
+    Slip,
+}

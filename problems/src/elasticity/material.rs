@@ -1,0 +1,47 @@
+//! Isotropic linear elasticity: σ = λ tr(ε) I + 2 μ ε.
+
+use crate::error::SceneError;
+
+/// Young's modulus and Poisson's ratio of an isotropic material.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Material {
+    young_modulus: f64,
+    poisson_ratio: f64,
+}
+
+impl Material {
+    /// Young's modulus E in MPa, Poisson's ratio ν.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] unless E > 0 and −1 < ν < 0.5.
+    pub fn new(young_modulus: f64, poisson_ratio: f64) -> Result<Self, SceneError> {
+        if !(young_modulus > 0.0 && young_modulus.is_finite()) {
+            return Err(SceneError::out_of_range("Young's modulus", young_modulus, "a finite number > 0 (MPa)"));
+        }
+        if !(poisson_ratio > -1.0 && poisson_ratio < 0.5) {
+            return Err(SceneError::out_of_range("Poisson's ratio", poisson_ratio, "−1 < ν < 0.5"));
+        }
+        Ok(Self { young_modulus, poisson_ratio })
+    }
+
+    /// Young's modulus E in MPa.
+    pub fn young_modulus(&self) -> f64 {
+        self.young_modulus
+    }
+
+    /// Poisson's ratio ν.
+    pub fn poisson_ratio(&self) -> f64 {
+        self.poisson_ratio
+    }
+
+    /// Lamé's λ in MPa.
+    pub fn lame_lambda(&self) -> f64 {
+        let nu = self.poisson_ratio;
+        self.young_modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    }
+
+    /// Shear modulus μ in MPa.
+    pub fn shear_modulus(&self) -> f64 {
+        self.young_modulus / (2.0 * (1.0 + self.poisson_ratio))
+    }
+}

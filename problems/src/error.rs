@@ -1,0 +1,118 @@
+//! What can be wrong with a scene, and why a contact problem has no answer.
+
+use thiserror::Error;
+
+/// Input that describes no scene we can compute. Every variant names the field, the value and what is allowed.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// A field is outside its range.
+    #[error("{field} = {value} is not allowed; allowed: {allowed}")]
+    OutOfRange {
+        /// Name of the field or option.
+        field: String,
+        /// Value found.
+        value: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// A list has the wrong length.
+    #[error("{what}: {found} numbers found, {expected} expected")]
+    WrongCount {
+        /// Name of the list.
+        what: String,
+        /// Length it must have.
+        expected: usize,
+        /// Length it has.
+        found: usize,
+    },
+    /// Controls outside the admissible set.
+    #[error("controls lie outside the admissible set: {constraint} = {value}, allowed: {allowed}")]
+    NotAdmissible {
+        /// The violated constraint.
+        constraint: String,
+        /// Value of its expression.
+        value: f64,
+        /// Admissible interval.
+        allowed: String,
+    },
+    /// A file cannot be read or written, or does not hold what it should.
+    #[error("{path}: {reason}")]
+    File {
+        /// Path as given by the user.
+        path: String,
+        /// What went wrong.
+        reason: String,
+    },
+    /// The admissible set is contradictory.
+    #[error("admissible set: {0}")]
+    Set(#[from] nonsmooth::InputError),
+}
+
+impl SceneError {
+    /// A field outside its range.
+    pub fn out_of_range(field: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Self {
+        Self::OutOfRange { field: field.into(), value: value.to_string(), allowed: allowed.into() }
+    }
+}
+
+/// Why a contact problem was not solved.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ContactError {
+    /// An element has no positive volume: the surface folds or touches the bottom.
+    #[error("body {body}: element ({i}, {j}, {k}) is inverted: det = {determinant:.6e}, allowed: > 0")]
+    InvertedElement {
+        /// 1 for the lower, 2 for the upper body.
+        body: usize,
+        /// Position along x₁.
+        i: usize,
+        /// Position along x₂.
+        j: usize,
+        /// Position along x₃.
+        k: usize,
+        /// Smallest Jacobian determinant times Gauss weight, mm³.
+        determinant: f64,
+    },
+    /// The load has a resultant along a motion that nothing holds.
+    #[error(
+        "no equilibrium: the load has the resultant {resultant:.6e} along {direction}, \
+         which neither supports nor contact can carry (allowed: at most {allowed:.3e})"
+    )]
+    NoEquilibrium {
+        /// The motion, in words.
+        direction: String,
+        /// Its generalised force (N for translations, N·mm/mm for scaled rotations).
+        resultant: f64,
+        /// Largest resultant that counts as zero.
+        allowed: f64,
+    },
+    /// A factorisation met a matrix that is not positive definite, or its residual check failed.
+    #[error("{what}: {reason}")]
+    Factorization {
+        /// Which matrix.
+        what: String,
+        /// What went wrong.
+        reason: String,
+    },
+    /// An iteration ended above its tolerance.
+    #[error("{solver} stopped at relative residual {residual:.3e} (asked for {tolerance:.1e}) after {iterations} iterations")]
+    NotConverged {
+        /// Name of the iteration.
+        solver: &'static str,
+        /// Relative residual reached.
+        residual: f64,
+        /// Tolerance asked for.
+        tolerance: f64,
+        /// Iterations spent.
+        iterations: usize,
+        /// Relative residual after every iteration.
+        history: Vec<f64>,
+    },
+    /// A result is not finite.
+    #[error("{what} is not finite")]
+    NotFinite {
+        /// Which quantity.
+        what: &'static str,
+    },
+}

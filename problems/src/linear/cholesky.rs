@@ -1,0 +1,178 @@
+//! Sparse Cholesky factorisation A = L Lᵀ by faer: one symbolic analysis for all matrices of a pattern.
+
+use crate::error::ContactError;
+use crate::linear::symmetric::LowerPattern;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::perm::Perm;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky, supernodal,
+};
+use faer::sparse::linalg::SupernodalThreshold;
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, Mat, MatMut, Par, Side};
+use std::sync::Arc;
+
+/// Elimination order and fill of one pattern.
+#[derive(Debug)]
+pub struct SymbolicFactor {
+    pattern: Arc<LowerPattern>,
+    symbolic: SymbolicCholesky<usize>,
+    order: Vec<usize>,
+}
+
+/// The factor of one matrix.
+#[derive(Debug)]
+pub struct NumericFactor {
+    symbolic: Arc<SymbolicFactor>,
+    values: Vec<f64>,
+}
+
+impl SymbolicFactor {
+    /// Analyses a pattern for the elimination order `order[new] = old`, a permutation of all indices.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when the analysis fails (out of memory, index overflow).
+    pub fn new(pattern: Arc<LowerPattern>, order: Vec<usize>) -> Result<Self, ContactError> {
+        let n = pattern.dimension();
+        let mut inverse = vec![0; n];
+        for (new, &old) in order.iter().enumerate() {
+            inverse[old] = new;
+        }
+        let permutation = Perm::new_checked(order.clone().into_boxed_slice(), inverse.into_boxed_slice(), n);
+        let parameters = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let symbolic = factorize_symbolic_cholesky(
+            pattern_ref(&pattern),
+            Side::Lower,
+            SymmetricOrdering::Custom(permutation.as_ref()),
+            parameters,
+        )
+        .map_err(|error| failure("symbolic factorisation", format!("{error:?}")))?;
+        Ok(Self { pattern, symbolic, order })
+    }
+
+    /// Number of stored values of a factor.
+    pub fn value_count(&self) -> usize {
+        self.symbolic.len_val()
+    }
+
+    /// Factors the matrix with these lower values.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when the matrix is not positive definite.
+    pub fn factorize(self: &Arc<Self>, values: &[f64], threads: Par) -> Result<NumericFactor, ContactError> {
+        let mut factor = vec![0.0; self.symbolic.len_val()];
+        let mut memory =
+            MemBuffer::new(self.symbolic.factorize_numeric_llt_scratch::<f64>(threads, Default::default()));
+        self.symbolic
+            .factorize_numeric_llt(
+                &mut factor,
+                SparseColMatRef::new(pattern_ref(&self.pattern), values),
+                Side::Lower,
+                Default::default(),
+                threads,
+                MemStack::new(&mut memory),
+                Default::default(),
+            )
+            .map_err(|error| failure("Cholesky factorisation", format!("{error:?}: not positive definite")))?;
+        Ok(NumericFactor { symbolic: Arc::clone(self), values: factor })
+    }
+}
+
+impl NumericFactor {
+    /// Solves A x = b in place for `columns` right-hand sides stored one after the other.
+    pub fn solve_in_place(&self, b: &mut [f64], columns: usize, threads: Par) {
+        let symbolic = &self.symbolic.symbolic;
+        let rows = self.symbolic.pattern.dimension();
+        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(columns, threads));
+        LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(b, rows, columns),
+            threads,
+            MemStack::new(&mut memory),
+        );
+    }
+
+    /// L₂₂ of the trailing `size` indices of the elimination order: L₂₂L₂₂ᵀ is their Schur complement. Row and column p
+    /// belong to index `order[n − size + p]`.
+    pub fn trailing_block(&self, size: usize) -> Result<Mat<f64>, ContactError> {
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.symbolic.raw() else {
+            return Err(failure("Schur complement", "the factor is not supernodal".into()));
+        };
+        let first = self.symbolic.pattern.dimension() - size;
+        let factor = supernodal::SupernodalLltRef::<usize, f64>::new(symbolic, &self.values);
+        let mut block = Mat::<f64>::zeros(size, size);
+        for index in 0..symbolic.n_supernodes() {
+            let (begin, end) = (symbolic.supernode_begin()[index], symbolic.supernode_end()[index]);
+            if end <= first {
+                continue;
+            }
+            let supernode = factor.supernode(index);
+            let (values, pattern) = (supernode.val(), supernode.pattern());
+            for column in begin.max(first)..end {
+                for row in column..end {
+                    block[(row - first, column - first)] = values[(row - begin, column - begin)];
+                }
+                for (offset, &row) in pattern.iter().enumerate() {
+                    block[(row - first, column - first)] = values[(end - begin + offset, column - begin)];
+                }
+            }
+        }
+        Ok(block)
+    }
+
+    /// The elimination order, `order[new] = old`.
+    pub fn order(&self) -> &[usize] {
+        &self.symbolic.order
+    }
+}
+
+fn pattern_ref(pattern: &LowerPattern) -> SymbolicSparseColMatRef<'_, usize> {
+    let n = pattern.dimension();
+    SymbolicSparseColMatRef::new_checked(n, n, pattern.starts(), None, pattern.rows())
+}
+
+fn failure(what: &str, reason: String) -> ContactError {
+    ContactError::Factorization { what: what.into(), reason }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The 1D Laplacian with 7 unknowns.
+    fn laplacian() -> (Arc<LowerPattern>, Vec<f64>) {
+        let columns = (0..7).map(|i| if i < 6 { vec![i + 1] } else { vec![] }).collect();
+        let pattern = Arc::new(LowerPattern::from_columns(columns));
+        let values = (0..7).flat_map(|i| if i < 6 { vec![2.0, -1.0] } else { vec![2.0] }).collect();
+        (pattern, values)
+    }
+
+    #[test]
+    fn solves_and_yields_the_schur_complement() {
+        let (pattern, values) = laplacian();
+        let order = vec![0, 1, 2, 4, 5, 6, 3];
+        let symbolic = Arc::new(SymbolicFactor::new(Arc::clone(&pattern), order).expect("symbolic"));
+        let factor = symbolic.factorize(&values, Par::Seq).expect("numeric");
+        let mut x = vec![1.0; 7];
+        factor.solve_in_place(&mut x, 1, Par::Seq);
+        for (i, x) in x.iter().enumerate() {
+            let node = i as f64 + 1.0;
+            assert!((x - node * (8.0 - node) / 2.0).abs() < 1e-13);
+        }
+        // Schur complement of the middle node: 2 − 2·(3/4) = 1/2.
+        let block = factor.trailing_block(1).expect("supernodal");
+        assert!((block[(0, 0)] * block[(0, 0)] - 0.5).abs() < 1e-14);
+    }
+
+    #[test]
+    fn indefinite_matrix_is_refused() {
+        let (pattern, mut values) = laplacian();
+        values[0] = -1.0;
+        let symbolic = Arc::new(SymbolicFactor::new(pattern, (0..7).collect()).expect("symbolic"));
+        assert!(matches!(symbolic.factorize(&values, Par::Seq), Err(ContactError::Factorization { .. })));
+    }
+}

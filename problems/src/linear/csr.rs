@@ -1,0 +1,85 @@
+//! Sparse rows: y_r = Σ values·x[columns].
+
+use rayon::prelude::*;
+
+/// A sparse matrix by rows.
+#[derive(Debug, Clone, Default)]
+pub struct Csr {
+    starts: Vec<usize>,
+    columns: Vec<u32>,
+    values: Vec<f64>,
+    column_count: usize,
+}
+
+/// Below this many rows one thread is faster than two.
+const PARALLEL_ROWS: usize = 4096;
+
+impl Csr {
+    /// A matrix with `column_count` columns from its rows of (column, value).
+    pub fn from_rows(column_count: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Self {
+        let mut matrix = Self { starts: vec![0], column_count, ..Self::default() };
+        for row in rows {
+            for (column, value) in row {
+                debug_assert!(column < column_count);
+                matrix.columns.push(u32::try_from(column).expect("invariant: fewer than 2³² dofs"));
+                matrix.values.push(value);
+            }
+            matrix.starts.push(matrix.columns.len());
+        }
+        matrix
+    }
+
+    /// Number of rows.
+    pub fn row_count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of columns.
+    pub fn column_count(&self) -> usize {
+        self.column_count
+    }
+
+    /// Entries (column, value) of a row.
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let range = self.starts[row]..self.starts[row + 1];
+        self.columns[range.clone()].iter().zip(&self.values[range]).map(|(&column, &value)| (column as usize, value))
+    }
+
+    /// The transposed matrix.
+    pub fn transpose(&self) -> Self {
+        let mut rows = vec![Vec::new(); self.column_count];
+        for row in 0..self.row_count() {
+            for (column, value) in self.row(row) {
+                rows[column].push((row, value));
+            }
+        }
+        Self::from_rows(self.row_count(), rows)
+    }
+
+    /// y = A x.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        debug_assert_eq!((x.len(), y.len()), (self.column_count, self.row_count()));
+        let entry = |(row, y): (usize, &mut f64)| *y = self.row(row).map(|(column, value)| value * x[column]).sum();
+        if y.len() < PARALLEL_ROWS {
+            y.iter_mut().enumerate().for_each(entry);
+        } else {
+            y.par_iter_mut().enumerate().with_min_len(PARALLEL_ROWS / 4).for_each(entry);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn transpose_satisfies_the_adjoint_identity() {
+        let a = Csr::from_rows(3, vec![vec![(0, 1.0), (2, -2.0)], vec![(1, 3.0)]]);
+        let (x, y) = ([1.0, 2.0, 3.0], [4.0, 5.0]);
+        let (mut ax, mut aty) = ([0.0; 2], [0.0; 3]);
+        a.multiply(&x, &mut ax);
+        a.transpose().multiply(&y, &mut aty);
+        assert_eq!(ax, [-5.0, 6.0]);
+        assert_eq!(ax[0] * y[0] + ax[1] * y[1], x.iter().zip(&aty).map(|(x, a)| x * a).sum::<f64>());
+    }
+}

@@ -1,0 +1,79 @@
+//! Dense LU factorisation with partial pivoting, by faer.
+
+use faer::linalg::solvers::{PartialPivLu, SolveCore};
+use faer::{Conj, Mat, MatMut, Par};
+
+/// Factors P A = L U of a square matrix.
+#[derive(Debug)]
+pub struct DenseLu {
+    factors: PartialPivLu<f64>,
+    pivot_ratio: f64,
+}
+
+impl DenseLu {
+    /// Factors a square matrix; a singular one gives a `pivot_ratio` near 0.
+    pub fn new(matrix: &Mat<f64>) -> Self {
+        faer::set_global_parallelism(Par::Seq);
+        let factors = matrix.partial_piv_lu();
+        let upper = factors.U();
+        let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
+        for i in 0..upper.nrows() {
+            let pivot = upper[(i, i)].abs();
+            smallest = if pivot.is_nan() { 0.0 } else { smallest.min(pivot) };
+            largest = largest.max(pivot);
+        }
+        let pivot_ratio = if largest > 0.0 { smallest / largest } else { 0.0 };
+        Self { factors, pivot_ratio: if matrix.nrows() == 0 { 1.0 } else { pivot_ratio } }
+    }
+
+    /// Smallest pivot over largest pivot: a cheap sign of singularity.
+    pub fn pivot_ratio(&self) -> f64 {
+        self.pivot_ratio
+    }
+
+    /// Solves A x = b in place.
+    pub fn solve_in_place(&self, b: &mut [f64]) {
+        let rows = b.len();
+        self.factors.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(b, rows, 1));
+    }
+
+    /// Solves Aᵀ x = b in place.
+    pub fn solve_transpose_in_place(&self, b: &mut [f64]) {
+        let rows = b.len();
+        self.factors.solve_transpose_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(b, rows, 1));
+    }
+}
+
+/// y = A x for a dense column-major matrix.
+pub fn multiply(matrix: &Mat<f64>, x: &[f64]) -> Vec<f64> {
+    let mut y = vec![0.0; matrix.nrows()];
+    for (column, &x) in x.iter().enumerate() {
+        for (y, a) in y.iter_mut().zip(matrix.col(column).iter()) {
+            *y += a * x;
+        }
+    }
+    y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_with_the_matrix_and_its_transpose() {
+        let a = Mat::from_fn(3, 3, |i, j| [[0.0, 2.0, 1.0], [4.0, 1.0, 0.0], [1.0, 0.0, 3.0]][i][j]);
+        let lu = DenseLu::new(&a);
+        let mut x = vec![7.0, 6.0, 10.0];
+        lu.solve_in_place(&mut x);
+        assert!(x.iter().zip([1.0, 2.0, 3.0]).all(|(x, y)| (x - y).abs() < 1e-14), "{x:?}");
+        let mut x = vec![11.0, 4.0, 10.0];
+        lu.solve_transpose_in_place(&mut x);
+        assert!(x.iter().zip([1.0, 2.0, 3.0]).all(|(x, y)| (x - y).abs() < 1e-14), "{x:?}");
+    }
+
+    #[test]
+    fn singular_matrix_shows_in_the_pivot_ratio() {
+        let a = Mat::from_fn(2, 2, |_, j| 1.0 + j as f64);
+        assert!(DenseLu::new(&a).pivot_ratio() < 1e-15);
+    }
+}

@@ -1,0 +1,106 @@
+//! Lower triangles of symmetric sparse matrices that share one pattern.
+
+use std::sync::Arc;
+
+/// Pattern of a lower triangle by columns; rows ascend within a column and start with the diagonal.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct LowerPattern {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+}
+
+impl LowerPattern {
+    /// From the set of rows > column of every column (any order, duplicates allowed); the diagonal is added.
+    pub fn from_columns(mut columns: Vec<Vec<usize>>) -> Self {
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        for (column, entries) in columns.iter_mut().enumerate() {
+            entries.push(column);
+            entries.retain(|&row| row >= column);
+            entries.sort_unstable();
+            entries.dedup();
+            rows.extend_from_slice(entries);
+            starts.push(rows.len());
+        }
+        Self { starts, rows }
+    }
+
+    /// Number of rows and columns.
+    pub fn dimension(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of stored entries.
+    pub fn entry_count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Column starts, `dimension() + 1` entries.
+    pub fn starts(&self) -> &[usize] {
+        &self.starts
+    }
+
+    /// Row of every entry.
+    pub fn rows(&self) -> &[usize] {
+        &self.rows
+    }
+
+    /// Position of the entry (row, column) with row ≥ column.
+    pub fn position(&self, row: usize, column: usize) -> Option<usize> {
+        let range = self.starts[column]..self.starts[column + 1];
+        self.rows[range.clone()].binary_search(&row).ok().map(|offset| range.start + offset)
+    }
+
+    /// y = A x for the symmetric matrix with these lower values.
+    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for (column, &entry) in x.iter().enumerate() {
+            let range = self.starts[column]..self.starts[column + 1];
+            let mut sum = values[range.start] * entry;
+            for position in range.start + 1..range.end {
+                let row = self.rows[position];
+                y[row] += values[position] * entry;
+                sum += values[position] * x[row];
+            }
+            y[column] += sum;
+        }
+    }
+}
+
+/// A principal submatrix: its pattern and where each of its values sits in the full matrix.
+#[derive(Debug, Clone)]
+pub struct Submatrix {
+    /// Kept indices, ascending.
+    pub kept: Vec<usize>,
+    /// Pattern over the kept indices.
+    pub pattern: Arc<LowerPattern>,
+    /// Position in the full value array of every value of the submatrix.
+    pub positions: Vec<usize>,
+}
+
+impl Submatrix {
+    /// The rows and columns of `full` whose index is marked.
+    pub fn new(full: &LowerPattern, marked: &[bool]) -> Self {
+        let kept: Vec<usize> = (0..full.dimension()).filter(|&index| marked[index]).collect();
+        let mut new_index = vec![usize::MAX; full.dimension()];
+        for (new, &old) in kept.iter().enumerate() {
+            new_index[old] = new;
+        }
+        let (mut starts, mut rows, mut positions) = (vec![0], Vec::new(), Vec::new());
+        for &column in &kept {
+            for position in full.starts[column]..full.starts[column + 1] {
+                let row = full.rows[position];
+                if marked[row] {
+                    rows.push(new_index[row]);
+                    positions.push(position);
+                }
+            }
+            starts.push(rows.len());
+        }
+        Self { kept, pattern: Arc::new(LowerPattern { starts, rows }), positions }
+    }
+
+    /// Values of the submatrix.
+    pub fn gather(&self, full_values: &[f64]) -> Vec<f64> {
+        self.positions.iter().map(|&position| full_values[position]).collect()
+    }
+}

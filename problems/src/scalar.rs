@@ -1,0 +1,149 @@
+//! Numbers of the element kernels: `f64` for work, [`Dual`] for exact derivatives.
+//!
+//! ```text
+//! Dual = a + b·ε, ε² = 0:   f(a + ε) = f(a) + f′(a)·ε
+//! ```
+
+use num_traits::{One, Zero};
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A field element with square root, enough for shape functions, splines and projections.
+pub trait Scalar:
+    Zero
+    + One
+    + Neg<Output = Self>
+    + Sub<Output = Self>
+    + Div<Output = Self>
+    + AddAssign
+    + SubAssign
+    + Copy
+    + Debug
+    + Send
+    + Sync
+{
+    /// The constant `value`.
+    fn constant(value: f64) -> Self;
+    /// The real part.
+    fn value(self) -> f64;
+    /// Square root; the argument is positive.
+    fn sqrt(self) -> Self;
+}
+
+impl Scalar for f64 {
+    fn constant(value: f64) -> Self {
+        value
+    }
+    fn value(self) -> f64 {
+        self
+    }
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+}
+
+/// Value and one directional derivative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dual {
+    /// Real part.
+    pub value: f64,
+    /// Coefficient of ε.
+    pub derivative: f64,
+}
+
+impl Dual {
+    /// `value + derivative·ε`.
+    pub fn new(value: f64, derivative: f64) -> Self {
+        Self { value, derivative }
+    }
+}
+
+impl Add for Dual {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self::new(self.value + other.value, self.derivative + other.derivative)
+    }
+}
+
+impl Sub for Dual {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self::new(self.value - other.value, self.derivative - other.derivative)
+    }
+}
+
+impl Mul for Dual {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self::new(self.value * other.value, self.derivative * other.value + self.value * other.derivative)
+    }
+}
+
+impl Div for Dual {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let value = self.value / other.value;
+        Self::new(value, (self.derivative - value * other.derivative) / other.value)
+    }
+}
+
+impl Neg for Dual {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::new(-self.value, -self.derivative)
+    }
+}
+
+impl AddAssign for Dual {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Dual {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl Zero for Dual {
+    fn zero() -> Self {
+        Self::new(0.0, 0.0)
+    }
+    fn is_zero(&self) -> bool {
+        self.value == 0.0 && self.derivative == 0.0
+    }
+}
+
+impl One for Dual {
+    fn one() -> Self {
+        Self::new(1.0, 0.0)
+    }
+}
+
+impl Scalar for Dual {
+    fn constant(value: f64) -> Self {
+        Self::new(value, 0.0)
+    }
+    fn value(self) -> f64 {
+        self.value
+    }
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        Self::new(root, self.derivative / (2.0 * root))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivative_of_a_composed_expression() {
+        // f(x) = √x·(x − 1)/(x + 2) at x = 4: f = 1, f′ = [(1/4)·3 + 2]/6 − 6/36 = 7/24.
+        let x = Dual::new(4.0, 1.0);
+        let f = x.sqrt() * (x - Dual::one()) / (x + Dual::constant(2.0));
+        assert!((f.value - 1.0).abs() < 1e-15);
+        assert!((f.derivative - 7.0 / 24.0).abs() < 1e-15);
+    }
+}

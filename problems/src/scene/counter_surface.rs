@@ -1,0 +1,45 @@
+//! F²(x₁, x₂): the obstacle, or the lower surface of the upper body.
+
+use serde::{Deserialize, Serialize};
+
+/// Analytic surfaces of the paper and a plane.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum CounterSurface {
+    /// `base + first·sin(2πx₁/period) + second·cos(2πx₂/period)`, paper (5.3).
+    Waves {
+        /// Mean height, mm.
+        base: f64,
+        /// Amplitude along x₁, mm.
+        first: f64,
+        /// Amplitude along x₂, mm.
+        second: f64,
+        /// Wave length, mm.
+        period: f64,
+    },
+    /// `apex + R − √(R² − x₁² − x₂²)`: a sphere that touches the height `apex` over the corner (0, 0).
+    Sphere {
+        /// Height of the lowest point, mm.
+        apex: f64,
+        /// Radius R, mm.
+        radius: f64,
+    },
+    /// A horizontal plane.
+    Plane {
+        /// Its height, mm.
+        height: f64,
+    },
+}
+
+impl CounterSurface {
+    /// Height at (x₁, x₂), mm; NaN outside a sphere.
+    pub fn height(&self, x1: f64, x2: f64) -> f64 {
+        match *self {
+            Self::Waves { base, first, second, period } => {
+                let angle = 2.0 * std::f64::consts::PI / period;
+                first * (angle * x1).sin() + second * (angle * x2).cos() + base
+            }
+            Self::Sphere { apex, radius } => apex + radius - (radius * radius - x1 * x1 - x2 * x2).sqrt(),
+            Self::Plane { height } => height,
+        }
+    }
+}

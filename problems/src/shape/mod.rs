@@ -1,0 +1,9 @@
+//! The shape of the contact boundary: splines, control heights, admissible set.
+
+pub mod bspline;
+
+mod admissible;
+mod surface;
+
+pub use admissible::{AdmissibleSet, ShapeBounds};
+pub use surface::{HeightMap, SplineKind, SplineSurface};

@@ -1,0 +1,27 @@
+//! Total FETI: torn bodies, dual operator, natural coarse space, preconditioners.
+//!
+//! ```text
+//! F = B K⁺ Bᵀ,  G = Rᵀ Bᵀ,  d = B K⁺ f − g,  e = Rᵀ f,      u = K⁺(f − Bᵀλ) + R a                    method.md (4.1), (4.2)
+//! ```
+
+mod adjoint;
+mod coarse;
+mod constraints;
+mod dual_operator;
+mod factors;
+mod local_pattern;
+mod model;
+mod newton;
+mod preconditioner;
+mod reduced;
+mod rigid_modes;
+
+pub use adjoint::TornAdjoint;
+pub use coarse::{CoarseProblem, CoarseSpace};
+pub use constraints::Constraints;
+pub use dual_operator::DualOperator;
+pub use factors::SubdomainFactors;
+pub use model::{TornModel, TornSystem};
+pub use newton::{Iterate, NewtonSettings, TornContact, TornSolution};
+pub use preconditioner::{Preconditioner, PreconditionerKind};
+pub use reduced::ReducedRows;

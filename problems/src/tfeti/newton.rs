@@ -1,0 +1,340 @@
+//! Semismooth Newton for Coulomb friction on top of TFETI.
+//!
+//! ```text
+//! residual:  (c (B_E u − c_E),  λ − Π(λ + c (B u − g))),     B u − g = d − Fλ + Gᵀa,     G λ = e in every iterate
+//! ```
+//! Every step solves the system of [`ReducedRows`] by projected GMRES, as accurately as the outer residual deserves
+//! (Eisenstat–Walker). One product with F gives the particular part, one each Krylov vector; F is linear, so that step
+//! lengths and the new residual are free.
+
+use crate::contact::ContactBoundary;
+use crate::contact::certificate::projection_residual;
+use crate::contact::law::Linearization;
+use crate::error::ContactError;
+use crate::linear::gmres::{Combination, gmres};
+use crate::linear::vector::{add_scaled, norm};
+use crate::tfeti::coarse::{CoarseProblem, CoarseSpace};
+use crate::tfeti::{DualOperator, Preconditioner, ReducedRows};
+
+/// Everything the iteration works with, for one shape.
+#[derive(Debug)]
+pub struct TornContact<'a> {
+    /// F.
+    pub operator: &'a DualOperator<'a>,
+    /// G and e.
+    pub space: &'a CoarseSpace,
+    /// Preconditioner of F.
+    pub preconditioner: &'a Preconditioner<'a>,
+    /// Contact nodes.
+    pub boundary: &'a ContactBoundary,
+    /// d = B K⁺ f − g over all rows.
+    pub constant: Vec<f64>,
+    /// c, N/mm.
+    pub stiffness: f64,
+    /// Force that residuals are relative to, N.
+    pub load: f64,
+}
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonSettings {
+    /// Relative residual aimed at.
+    pub tolerance: f64,
+    /// Relative residual that is accepted when rounding stops all progress.
+    pub acceptable: f64,
+    /// Newton steps allowed.
+    pub max_steps: usize,
+    /// Krylov iterations allowed per Newton step.
+    pub max_krylov: usize,
+}
+
+impl NewtonSettings {
+    /// Settings for a relative residual; 0 asks for all that rounding allows.
+    pub fn to(tolerance: f64) -> Self {
+        Self { tolerance: tolerance.max(1e-13), acceptable: tolerance.max(1e-9), max_steps: 60, max_krylov: 400 }
+    }
+}
+
+/// Multipliers with their image under F, and what follows from them.
+#[derive(Debug, Clone)]
+pub struct Iterate {
+    /// λ over all rows (scaled rows).
+    pub multipliers: Vec<f64>,
+    /// F λ.
+    pub image: Vec<f64>,
+    /// Rigid amplitudes a.
+    pub amplitudes: Vec<f64>,
+    /// w = B u − g over all rows.
+    pub jumps: Vec<f64>,
+}
+
+/// The result of a Newton run.
+#[derive(Debug, Clone)]
+pub struct TornSolution {
+    /// The last iterate.
+    pub iterate: Iterate,
+    /// Derivative selected at the solution.
+    pub linearizations: Vec<Linearization>,
+    /// Relative residual.
+    pub residual: f64,
+    /// Newton steps.
+    pub steps: usize,
+}
+
+impl TornContact<'_> {
+    /// Solves from given multipliers of a similar problem, or from the bonded problem.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] with the residual history, [`ContactError::NotFinite`],
+    /// [`ContactError::NoEquilibrium`] when an active set leaves a motion free.
+    pub fn solve(&self, start: Option<&[f64]>, settings: &NewtonSettings) -> Result<TornSolution, ContactError> {
+        let mut iterate = match start {
+            Some(multipliers) => self.restart(multipliers)?,
+            None => self.bonded()?,
+        };
+        let mut residual = self.residual(&iterate);
+        let mut history = vec![residual];
+        let mut forcing = FIRST_FORCING;
+        while residual > settings.tolerance && history.len() <= settings.max_steps {
+            let candidate = self.step(&iterate, forcing.max(0.3 * settings.tolerance / residual), residual, settings)?;
+            let (next, length) = self.search(iterate, candidate, residual);
+            iterate = next;
+            let previous = residual;
+            residual = self.residual(&iterate);
+            if !residual.is_finite() {
+                return Err(ContactError::NotFinite { what: "contact residual" });
+            }
+            history.push(residual);
+            forcing = eisenstat_walker(residual, previous, length);
+            if residual <= settings.acceptable && residual > 0.5 * previous && length == 1.0 {
+                break;
+            }
+        }
+        if residual > settings.acceptable {
+            return Err(ContactError::NotConverged {
+                solver: "semismooth Newton on TFETI",
+                residual,
+                tolerance: settings.tolerance,
+                iterations: history.len() - 1,
+                history,
+            });
+        }
+        let linearizations = self.linearize(&iterate);
+        Ok(TornSolution { iterate, linearizations, residual, steps: history.len() - 1 })
+    }
+
+    /// |(c w_E, λ − Π(λ + c w))|₂ over the load.
+    pub fn residual(&self, iterate: &Iterate) -> f64 {
+        let equality = self.operator.model.constraints.equality_count;
+        let glued = self.stiffness * norm(&iterate.jumps[..equality]);
+        let law = projection_residual(
+            self.boundary,
+            &iterate.multipliers[equality..],
+            &iterate.jumps[equality..],
+            self.stiffness,
+        );
+        glued.hypot(norm(&law)) / self.load
+    }
+
+    /// The projection arguments x = λ + c w of all contact rows.
+    pub fn arguments(&self, iterate: &Iterate) -> Vec<f64> {
+        let equality = self.operator.model.constraints.equality_count;
+        let pairs = iterate.multipliers[equality..].iter().zip(&iterate.jumps[equality..]);
+        pairs.map(|(force, jump)| force + self.stiffness * jump).collect()
+    }
+
+    fn linearize(&self, iterate: &Iterate) -> Vec<Linearization> {
+        let arguments = self.arguments(iterate);
+        let points = self.boundary.points.iter();
+        points
+            .map(|point| {
+                Linearization::at(&arguments[point.start..point.start + point.row_count()], self.boundary.friction)
+            })
+            .collect()
+    }
+
+    /// Row structure for given derivatives.
+    pub fn reduced(&self, linearizations: Vec<Linearization>) -> ReducedRows<'_> {
+        let equality = self.operator.model.constraints.equality_count;
+        ReducedRows::new(self.boundary, equality, linearizations, self.stiffness)
+    }
+
+    /// All contact rows glued, solved roughly: the start that Newton converges from.
+    fn bonded(&self) -> Result<Iterate, ContactError> {
+        let rows = self.reduced(vec![Linearization::Stick; self.boundary.points.len()]);
+        let zero = vec![0.0; self.operator.model.constraints.row_count()];
+        let (iterate, _) = self.linear_solve(&rows, &zero, |start| BONDED_REDUCTION * start, BONDED_KRYLOV)?;
+        Ok(iterate)
+    }
+
+    /// Multipliers of a similar problem, corrected to the new resultants; amplitudes by least squares on the held rows.
+    fn restart(&self, multipliers: &[f64]) -> Result<Iterate, ContactError> {
+        let equality = self.operator.model.constraints.equality_count;
+        let guess = |held_slip: bool| -> Vec<Linearization> {
+            let points = self.boundary.points.iter();
+            points
+                .map(|point| {
+                    let rows = equality + point.start..equality + point.start + point.row_count();
+                    held_by_forces(&multipliers[rows], self.boundary.friction, held_slip)
+                })
+                .collect()
+        };
+        let held = self.reduced(guess(true));
+        let coarse = self.coarse(&held, false)?;
+        let mut unknowns = held.initial(multipliers);
+        coarse.enforce(&mut unknowns, &self.space.resultants);
+        let multipliers = held.expand(&unknowns, false);
+        let image = self.operator.apply(&multipliers);
+        let rows = self.reduced(guess(false));
+        let coarse = self.coarse(&rows, false)?;
+        let rest: Vec<f64> = self.constant.iter().zip(&image).map(|(d, image)| d - image).collect();
+        let amplitudes = coarse.amplitudes(&rows.restrict(&rest, false));
+        Ok(self.iterate(multipliers, image, amplitudes))
+    }
+
+    fn iterate(&self, multipliers: Vec<f64>, image: Vec<f64>, amplitudes: Vec<f64>) -> Iterate {
+        let mut jumps = self.space.jumps(&amplitudes);
+        for ((jump, d), image) in jumps.iter_mut().zip(&self.constant).zip(&image) {
+            *jump += d - image;
+        }
+        Iterate { multipliers, image, amplitudes, jumps }
+    }
+
+    /// The coarse problem of an active set; refused if a rigid motion is left free.
+    pub fn coarse<'b>(&'b self, rows: &'b ReducedRows<'b>, coulomb: bool) -> Result<CoarseProblem<'b>, ContactError> {
+        let coarse = CoarseProblem::new(self.space, rows, coulomb && self.boundary.has_friction());
+        if coarse.pivot_ratio() < SINGULAR {
+            return Err(ContactError::NoEquilibrium {
+                direction: "a rigid motion that the current contact nodes do not hold".into(),
+                resultant: norm(&self.space.resultants),
+                allowed: 0.0,
+            });
+        }
+        Ok(coarse)
+    }
+
+    /// One Newton candidate.
+    fn step(
+        &self,
+        iterate: &Iterate,
+        forcing: f64,
+        residual: f64,
+        settings: &NewtonSettings,
+    ) -> Result<Iterate, ContactError> {
+        let rows = self.reduced(self.linearize(iterate));
+        let target = forcing * residual * self.load / self.stiffness;
+        let (candidate, _) = self.linear_solve(&rows, &iterate.multipliers, |_| target, settings.max_krylov)?;
+        Ok(candidate)
+    }
+
+    /// Solves the reduced system for an active set, starting from given multipliers; returns the iterate and the Krylov
+    /// iterations.
+    fn linear_solve(
+        &self,
+        rows: &ReducedRows<'_>,
+        start: &[f64],
+        target: impl Fn(f64) -> f64,
+        max_krylov: usize,
+    ) -> Result<(Iterate, usize), ContactError> {
+        let coarse = self.coarse(rows, true)?;
+        let mut unknowns = rows.initial(start);
+        coarse.enforce(&mut unknowns, &self.space.resultants);
+        let mut image = self.operator.apply(&rows.expand(&unknowns, true));
+        let rest: Vec<f64> = self.constant.iter().zip(&image).map(|(d, image)| d - image).collect();
+        let mut residual = rows.restrict(&rest, false);
+        rows.add_compliance(&unknowns, &mut residual, -1.0);
+        let mut projected = residual.clone();
+        coarse.project(&mut projected);
+        let krylov: Combination<Vec<f64>> = gmres(
+            &projected,
+            target(norm(&projected)),
+            max_krylov,
+            |v| self.precondition(rows, v, |z| coarse.project(z)),
+            |z| {
+                let product = self.operator.apply(&rows.expand(z, true));
+                let mut reduced = rows.restrict(&product, false);
+                rows.add_compliance(z, &mut reduced, 1.0);
+                coarse.project(&mut reduced);
+                (reduced, product)
+            },
+        );
+        for ((coefficient, direction), product) in
+            krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
+        {
+            add_scaled(&mut unknowns, *coefficient, direction);
+            add_scaled(&mut image, *coefficient, product);
+        }
+        let rest: Vec<f64> = self.constant.iter().zip(&image).map(|(d, image)| d - image).collect();
+        let mut residual = rows.restrict(&rest, false);
+        rows.add_compliance(&unknowns, &mut residual, -1.0);
+        let amplitudes = coarse.amplitudes(&residual);
+        let iterate = self.iterate(rows.expand(&unknowns, true), image, amplitudes);
+        Ok((iterate, krylov.directions.len()))
+    }
+
+    /// Projected preconditioner: P (Qᵀ M Q + Z) v.
+    pub fn precondition(&self, rows: &ReducedRows<'_>, v: &[f64], project: impl Fn(&mut [f64])) -> Vec<f64> {
+        let mut z = rows.restrict(&self.preconditioner.apply(&rows.expand(v, false)), false);
+        rows.add_spring(v, &mut z);
+        project(&mut z);
+        z
+    }
+
+    /// Halves the step until the residual falls; takes the full step when no length helps (a change of many statuses).
+    fn search(&self, from: Iterate, to: Iterate, residual: f64) -> (Iterate, f64) {
+        let mut length = 1.0;
+        for _halving in 0..MAX_HALVINGS {
+            let trial = if length == 1.0 { to.clone() } else { between(&from, &to, length) };
+            if self.residual(&trial) <= (1.0 - SUFFICIENT_DECREASE * length) * residual {
+                return (trial, length);
+            }
+            length *= 0.5;
+        }
+        (to, 1.0)
+    }
+}
+
+/// Relative reduction of the bonded start.
+const BONDED_REDUCTION: f64 = 0.1;
+/// Krylov iterations of the bonded start.
+const BONDED_KRYLOV: usize = 200;
+/// First forcing term.
+const FIRST_FORCING: f64 = 0.1;
+/// Forcing after a shortened step.
+const SHORTENED_FORCING: f64 = 0.01;
+/// Pivot ratio of a coarse matrix that counts as singular.
+const SINGULAR: f64 = 1e-13;
+/// Step halvings.
+const MAX_HALVINGS: usize = 6;
+/// Decrease asked of a step.
+const SUFFICIENT_DECREASE: f64 = 1e-4;
+
+/// Forcing term of the next step.
+fn eisenstat_walker(residual: f64, previous: f64, length: f64) -> f64 {
+    let forcing = FIRST_FORCING.min((0.5 * (residual / previous).powf(1.5)).max(1e-4));
+    if length < 1.0 { forcing.min(SHORTENED_FORCING) } else { forcing }
+}
+
+/// The derivative that given forces suggest: open without force, slip on the cone, else stick.
+fn held_by_forces(forces: &[f64], friction: f64, held_slip: bool) -> Linearization {
+    if forces[0] <= 0.0 {
+        return Linearization::Open;
+    }
+    let traction = crate::contact::law::tangential_norm(forces);
+    if held_slip || forces.len() == 1 || traction < (1.0 - 1e-9) * friction * forces[0] {
+        return Linearization::Stick;
+    }
+    let second = if forces.len() > 2 { forces[2] / traction } else { 0.0 };
+    Linearization::Slip { direction: [forces[1] / traction, second], ratio: 0.0 }
+}
+
+/// (1 − t)·from + t·to in every part.
+fn between(from: &Iterate, to: &Iterate, t: f64) -> Iterate {
+    let mix = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + t * (b - a)).collect();
+    Iterate {
+        multipliers: mix(&from.multipliers, &to.multipliers),
+        image: mix(&from.image, &to.image),
+        amplitudes: mix(&from.amplitudes, &to.amplitudes),
+        jumps: mix(&from.jumps, &to.jumps),
+    }
+}
