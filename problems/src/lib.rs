@@ -9,4 +9,5 @@ pub mod scalar;
 pub mod scene;
 pub mod shape;
 pub mod shape_load;
+pub mod shape_sensitivity;
 pub mod tfeti;

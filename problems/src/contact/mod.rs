@@ -5,10 +5,12 @@ pub mod modes;
 
 mod boundary;
 pub mod certificate;
+mod problem;
 mod state;
 
 pub use boundary::{ContactBoundary, ContactPoint};
 pub use certificate::{Kink, Residuals, StatusCounts};
+pub use problem::ContactProblem;
 pub use state::{ContactForces, Work};
 
 /// What a contact node does; method.md (3.2), (3.3).

@@ -15,6 +15,7 @@ mod newton;
 mod preconditioner;
 mod reduced;
 mod rigid_modes;
+mod solver;
 
 pub use adjoint::TornAdjoint;
 pub use coarse::{CoarseProblem, CoarseSpace};
@@ -25,3 +26,4 @@ pub use model::{TornModel, TornSystem};
 pub use newton::{Iterate, NewtonSettings, TornContact, TornSolution};
 pub use preconditioner::{Preconditioner, PreconditionerKind};
 pub use reduced::ReducedRows;
+pub use solver::{TornSolver, TornState};

@@ -1,0 +1,271 @@
+//! From a shape to its contact state and coderivative by TFETI: what the framework's traits need.
+
+use crate::contact::certificate::law_residuals;
+use crate::contact::law::Linearization;
+use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, Work};
+use crate::error::ContactError;
+use crate::linear::vector::norm;
+use crate::mesh::Block;
+use crate::shape_sensitivity::column_sensitivities;
+use crate::tfeti::{
+    CoarseSpace, DualOperator, NewtonSettings, Preconditioner, PreconditionerKind, TornContact, TornModel,
+    TornSolution, TornSystem,
+};
+use rayon::prelude::*;
+
+/// The TFETI solver of one scene.
+#[derive(Debug)]
+pub struct TornSolver {
+    model: TornModel,
+    preconditioner: PreconditionerKind,
+}
+
+/// A solved shape with all that its coderivative needs.
+#[derive(Debug)]
+pub struct TornState {
+    blocks: Vec<Block>,
+    system: TornSystem,
+    space: CoarseSpace,
+    solution: TornSolution,
+    displacement: Vec<f64>,
+    stiffness: f64,
+    load: f64,
+}
+
+/// c relative to the assembled diagonal of the contact nodes: the Schur complement's diagonal is about half of it.
+const STIFFNESS_SHARE: f64 = 0.5;
+
+impl TornSolver {
+    /// Tears the scene.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when a symbolic analysis fails.
+    pub fn new(problem: &ContactProblem, preconditioner: PreconditionerKind) -> Result<Self, ContactError> {
+        Ok(Self { model: TornModel::new(&problem.scene, &problem.boundary, preconditioner)?, preconditioner })
+    }
+
+    /// The torn model.
+    pub fn model(&self) -> &TornModel {
+        &self.model
+    }
+
+    /// Solves one shape to a relative residual.
+    ///
+    /// # Errors
+    /// [`ContactError`]: inverted elements, no equilibrium, no convergence.
+    pub fn solve(
+        &self,
+        problem: &ContactProblem,
+        controls: &[f64],
+        start: Option<&[f64]>,
+        tolerance: f64,
+    ) -> Result<(TornState, ContactForces, Work), ContactError> {
+        let blocks = problem.blocks(controls)?;
+        let rigid = problem.rigid_scene(&blocks);
+        let grounded = rigid.analyse(&problem.boundary)?;
+        let system = self.model.factorize(&blocks)?;
+        let amplitudes: Vec<Vec<f64>> = grounded
+            .iter()
+            .map(|motion| self.model.amplitudes(&system, &blocks, motion, rigid.centre, rigid.length))
+            .collect();
+        let gaps = problem.gaps(&blocks[0]);
+        let stiffness = STIFFNESS_SHARE * self.contact_stiffness(problem, &system);
+        let penetration: f64 = gaps.iter().map(|gap| (-gap).max(0.0)).sum();
+        let load = rigid.total_load() + stiffness * penetration;
+        let operator = DualOperator::new(&self.model, &system);
+        let space = CoarseSpace::new(&operator, &amplitudes);
+        let (solution, displacement, residuals) = {
+            let preconditioner = Preconditioner::new(&operator, self.preconditioner, stiffness);
+            let contact = TornContact {
+                constant: self.constant(&operator, problem, &gaps),
+                operator: &operator,
+                space: &space,
+                preconditioner: &preconditioner,
+                boundary: &problem.boundary,
+                stiffness,
+                load: if load > 0.0 { load } else { 1.0 },
+            };
+            let solution = contact.solve(start, &NewtonSettings::to(tolerance))?;
+            let iterate = &solution.iterate;
+            let displacement = operator.displacement(&iterate.multipliers, &iterate.amplitudes, true);
+            let residuals = self.certify(problem, &contact, &solution);
+            (solution, displacement, residuals)
+        };
+        let work = Work {
+            newton_steps: solution.steps,
+            dual_operator_applications: operator.applications(),
+            adjoint_applications: 0,
+            factorizations: system.factorizations,
+        };
+        let state = TornState { blocks, space, solution, displacement, stiffness, load, system };
+        let forces = self.forces(problem, &state, residuals);
+        Ok((state, forces, work))
+    }
+
+    /// d = B K⁺ f − g.
+    fn constant(&self, operator: &DualOperator<'_>, problem: &ContactProblem, gaps: &[f64]) -> Vec<f64> {
+        let mut constant = operator.gather(&operator.loaded_displacement());
+        let constraints = &self.model.constraints;
+        let points = problem.boundary.points.iter().zip(&constraints.normalisation);
+        for ((point, nu), gap) in points.zip(gaps) {
+            constant[constraints.equality_count + point.start] -= gap / nu;
+        }
+        constant
+    }
+
+    /// Mean over the contact nodes of the stiffness diagonals of the bodies in series, N/mm.
+    fn contact_stiffness(&self, problem: &ContactProblem, system: &TornSystem) -> f64 {
+        let size = self.model.pattern.pattern.dimension();
+        let starts = self.model.pattern.pattern.starts();
+        let constraints = &self.model.constraints;
+        let mut sum = 0.0;
+        for point in &problem.boundary.points {
+            let mut diagonal = [0.0; 2];
+            for (dof, _) in constraints.rows.row(constraints.equality_count + point.start) {
+                let subdomain = dof / size;
+                diagonal[self.model.subdomains[subdomain].body] +=
+                    system.factors[subdomain].stiffness[starts[dof % size]];
+            }
+            sum += if problem.scene.upper.is_some() {
+                1.0 / (1.0 / diagonal[0] + 1.0 / diagonal[1])
+            } else {
+                diagonal[0]
+            };
+        }
+        sum / problem.boundary.points.len() as f64
+    }
+
+    /// Recomputes the residuals from the multipliers with a fresh product F λ.
+    fn certify(&self, problem: &ContactProblem, contact: &TornContact<'_>, solution: &TornSolution) -> Residuals {
+        let equality = self.model.constraints.equality_count;
+        let iterate = &solution.iterate;
+        let (forces, jumps) = self.physical(problem, &iterate.multipliers[equality..], &iterate.jumps[equality..]);
+        let resultant = contact.space.resultant(&iterate.multipliers);
+        let defect: Vec<f64> = resultant.iter().zip(&contact.space.resultants).map(|(g, e)| g - e).collect();
+        Residuals {
+            equilibrium: norm(&defect) / contact.load,
+            newton: solution.residual,
+            ..law_residuals(&problem.boundary, &forces, &jumps, contact.stiffness, contact.load)
+        }
+    }
+
+    /// Physical forces and jumps from scaled rows.
+    fn physical(&self, problem: &ContactProblem, multipliers: &[f64], jumps: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (mut forces, mut gaps) = (multipliers.to_vec(), jumps.to_vec());
+        for (point, nu) in problem.boundary.points.iter().zip(&self.model.constraints.normalisation) {
+            for row in point.start..point.start + point.row_count() {
+                forces[row] /= nu;
+                gaps[row] *= nu;
+            }
+        }
+        (forces, gaps)
+    }
+
+    fn forces(&self, problem: &ContactProblem, state: &TornState, residuals: Residuals) -> ContactForces {
+        let equality = self.model.constraints.equality_count;
+        let iterate = &state.solution.iterate;
+        let (forces, jumps) = self.physical(problem, &iterate.multipliers[equality..], &iterate.jumps[equality..]);
+        let status = problem.boundary.points.iter().zip(&state.solution.linearizations);
+        let status = status.map(|(point, linearization)| linearization.status(point)).collect();
+        let arguments: Vec<f64> = iterate.multipliers[equality..]
+            .iter()
+            .zip(&iterate.jumps[equality..])
+            .map(|(force, jump)| force + state.stiffness * jump)
+            .collect();
+        let kink = Kink::of(&problem.boundary, &arguments);
+        ContactForces::unpack(&problem.boundary, &forces, &jumps, status, residuals, kink)
+    }
+
+    /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed physical rows; returns them with the products
+    /// with F that the adjoint took.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] from the adjoint.
+    pub fn sensitivities(
+        &self,
+        problem: &ContactProblem,
+        state: &TornState,
+        direction: &[f64],
+        tolerance: f64,
+    ) -> Result<(Vec<f64>, usize), ContactError> {
+        let operator = DualOperator::new(&self.model, &state.system);
+        let preconditioner = Preconditioner::new(&operator, self.preconditioner, state.stiffness);
+        let contact = TornContact {
+            constant: Vec::new(),
+            operator: &operator,
+            space: &state.space,
+            preconditioner: &preconditioner,
+            boundary: &problem.boundary,
+            stiffness: state.stiffness,
+            load: state.load,
+        };
+        let constraints = &self.model.constraints;
+        let equality = constraints.equality_count;
+        let mut scaled = vec![0.0; constraints.row_count()];
+        for (point, nu) in problem.boundary.points.iter().zip(&constraints.normalisation) {
+            for row in point.start..point.start + point.row_count() {
+                scaled[equality + row] = direction[row] / nu;
+            }
+        }
+        let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, tolerance)?;
+        let mut heights = vec![0.0; problem.grid.column_count()];
+        for part in self.element_sensitivities(problem, state, &adjoint.displacement) {
+            for (column, value) in part {
+                heights[column] += value;
+            }
+        }
+        // The gap F² − F_α falls as the surface rises.
+        for ((height, point), nu) in heights.iter_mut().zip(&problem.boundary.points).zip(&constraints.normalisation) {
+            *height -= adjoint.multipliers[equality + point.start] / nu;
+        }
+        Ok((heights, operator.applications()))
+    }
+
+    /// Element sums per subdomain of the lower body, in order.
+    fn element_sensitivities(
+        &self,
+        problem: &ContactProblem,
+        state: &TornState,
+        adjoint: &[f64],
+    ) -> Vec<Vec<(usize, f64)>> {
+        let lower = &problem.scene.lower;
+        self.model
+            .subdomains
+            .par_iter()
+            .filter(|subdomain| subdomain.body == 0)
+            .map(|subdomain| {
+                let dofs = subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count();
+                column_sensitivities(
+                    &state.blocks[0],
+                    &subdomain.place,
+                    &lower.material,
+                    &lower.loads,
+                    &state.displacement[dofs.clone()],
+                    &adjoint[dofs],
+                )
+            })
+            .collect()
+    }
+}
+
+impl TornState {
+    /// λ over all rows, to start a similar problem from.
+    pub fn multipliers(&self) -> &[f64] {
+        &self.solution.iterate.multipliers
+    }
+
+    /// Displacements over torn dofs, mm.
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// Derivatives selected at the contact nodes.
+    pub fn linearizations(&self) -> &[Linearization] {
+        &self.solution.linearizations
+    }
+
+    /// Force that residuals are relative to, N.
+    pub fn load(&self) -> f64 {
+        self.load
+    }
+}
