@@ -9,7 +9,8 @@
 //! ```
 //!
 //! The gradient is a Clarke subgradient wherever every kinked term enters increasingly (regular functions, calculus with
-//! equality), which holds for every problem of the collection.
+//! equality), which holds for every problem of the collection but one: negative distances, where two points coincide,
+//! have the subgradient zero that is chosen here.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
