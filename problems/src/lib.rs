@@ -1,6 +1,9 @@
 //! State problems for the nonsmooth framework.
 
 pub mod contact;
+pub mod contact_shape;
+pub mod cost;
+pub mod direct;
 pub mod elasticity;
 pub mod error;
 pub mod linear;

@@ -22,6 +22,7 @@ pub use coarse::{CoarseProblem, CoarseSpace};
 pub use constraints::Constraints;
 pub use dual_operator::DualOperator;
 pub use factors::SubdomainFactors;
+pub use local_pattern::LocalPattern;
 pub use model::{TornModel, TornSystem};
 pub use newton::{Iterate, NewtonSettings, TornContact, TornSolution};
 pub use preconditioner::{Preconditioner, PreconditionerKind};
