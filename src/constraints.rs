@@ -48,11 +48,7 @@ impl Polyhedron {
             return Err(InputError::Dimension { what: "constraint row", expected, found: rows.ncols() });
         }
         if rows.nrows() != row_lower.len() {
-            return Err(InputError::Dimension {
-                what: "row_lower",
-                expected: rows.nrows(),
-                found: row_lower.len(),
-            });
+            return Err(InputError::Dimension { what: "row_lower", expected: rows.nrows(), found: row_lower.len() });
         }
         if let Some(index) = crate::linalg::first_non_finite(rows.as_slice()) {
             return Err(InputError::NotFinite { what: "constraint rows", index, value: rows.as_slice()[index] });
@@ -106,15 +102,21 @@ impl Polyhedron {
     /// Largest violation of any side at x, relative to the size of that side's bound and of its terms
     /// (max(|bound|, Σⱼ|aⱼxⱼ|), so it does not depend on units); 0 for an admissible point.
     pub fn violation(&self, x: &Vector) -> f64 {
+        self.violation_near(x, x)
+    }
+
+    /// [`violation`](Self::violation) with the terms measured at a second point where they are larger: next to a
+    /// reference of ordinary size, a point whose entries cancel to zero is not judged by its rounding errors.
+    pub fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
         let mut worst: f64 = 0.0;
         for i in 0..self.dimension() {
-            worst = worst.max(side_violation(x[i], self.lower[i], self.upper[i], x[i].abs()));
+            worst = worst.max(side_violation(x[i], self.lower[i], self.upper[i], x[i].abs().max(reference[i].abs())));
         }
         for (i, row) in self.rows.row_iter().enumerate() {
             let (mut value, mut scale) = (0.0, 0.0);
-            for (a, x) in row.iter().zip(x.iter()) {
+            for (a, (x, y)) in row.iter().zip(x.iter().zip(reference.iter())) {
                 value += a * x;
-                scale += (a * x).abs();
+                scale += (a * x).abs().max((a * y).abs());
             }
             worst = worst.max(side_violation(value, self.row_lower[i], self.row_upper[i], scale));
         }
