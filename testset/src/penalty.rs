@@ -1,0 +1,195 @@
+//! Smooth programs with their nonlinear constraints as exact penalties ρ max(0, c₁, c₂, …).
+
+use std::sync::Arc;
+
+use crate::dual::Dual;
+use crate::functions::Function;
+use crate::table::Record;
+
+/// f + ρ max(0, c₁, c₂, …) as the maximum of f and all f + ρ cᵢ.
+fn penalized(objective: Dual, weight: f64, constraints: impl IntoIterator<Item = Dual>) -> Dual {
+    let pieces: Vec<Dual> = constraints.into_iter().map(|c| &objective + weight * c).collect();
+    Dual::max([objective].into_iter().chain(pieces))
+}
+
+/// Rosen and Suzuki.
+pub fn rosen_suzuki(x: &[Dual]) -> Dual {
+    let [a, b, c, d] = [&x[0], &x[1], &x[2], &x[3]];
+    let squares = [a.square(), b.square(), c.square(), d.square()];
+    let weighted = |w: [f64; 4]| Dual::combination(w.into_iter().zip(&squares));
+    let linear = |w: [f64; 4]| Dual::combination(w.into_iter().zip(x));
+    penalized(
+        weighted([1.0, 1.0, 2.0, 1.0]) + linear([-5.0, -5.0, -21.0, 7.0]),
+        10.0,
+        [
+            weighted([1.0, 1.0, 1.0, 1.0]) + linear([1.0, -1.0, 1.0, -1.0]) - 8.0,
+            weighted([1.0, 2.0, 1.0, 2.0]) + linear([-1.0, 0.0, 0.0, -1.0]) - 10.0,
+            weighted([1.0, 1.0, 1.0, 0.0]) + linear([2.0, -1.0, 0.0, -1.0]) - 5.0,
+        ],
+    )
+}
+
+/// Data of Colville's first problem: Σ dⱼ xⱼ³ + xᵀ C x + eᵀ x subject to A x ≥ b.
+pub struct Colville {
+    a: Vec<Vec<f64>>,
+    b: Vec<f64>,
+    c: Vec<Vec<f64>>,
+    d: Vec<f64>,
+    e: Vec<f64>,
+}
+
+impl Colville {
+    /// The data of the record.
+    pub fn new(record: &Record) -> Self {
+        let (a, c) = (record.matrix("a"), record.matrix("c"));
+        Self { a, b: record.vector("b"), c, d: record.vector("d"), e: record.vector("e") }
+    }
+
+    fn cubic(&self, x: &[Dual]) -> Dual {
+        let cubes: Vec<Dual> = x.iter().map(|x| x.powi(3)).collect();
+        dot(&self.d, &cubes)
+    }
+
+    fn quadratic(&self, x: &[Dual]) -> Dual {
+        Dual::sum(self.c.iter().zip(x).map(|(row, x_i)| x_i * dot(row, x)))
+    }
+}
+
+/// Colville's first problem with weight 50 on the largest violation.
+pub fn colville(data: Colville) -> Function {
+    Arc::new(move |x| {
+        let objective = data.cubic(x) + data.quadratic(x) + dot(&data.e, x);
+        penalized(objective, 50.0, data.a.iter().zip(&data.b).map(|(row, &b)| b - dot(row, x)))
+    })
+}
+
+/// The dual of Colville's first problem with weight 100 on the sum of the violations; x = (y, w).
+pub fn shell_dual(data: Colville) -> Function {
+    Arc::new(move |x| {
+        let (y, w) = x.split_at(data.d.len());
+        let objective = 2.0 * data.cubic(y).abs() + data.quadratic(y) - dot(&data.b, w);
+        let stationarity = (0..y.len()).map(|j| {
+            let multipliers = Dual::combination(data.a.iter().zip(w).map(|(row, w)| (row[j], w)));
+            let quadratic = 2.0 * Dual::combination(data.c.iter().zip(y).map(|(row, y)| (row[j], y)));
+            (multipliers - quadratic - 3.0 * data.d[j] * y[j].square() - data.e[j]).positive_part()
+        });
+        let signs = x.iter().map(|x| (-x).positive_part());
+        objective + 100.0 * Dual::sum(stationarity.chain(signs))
+    })
+}
+
+/// Wong's first problem (Hock and Schittkowski 100), weight 10.
+pub fn wong1(x: &[Dual]) -> Dual {
+    let objective = (&x[0] - 10.0).square()
+        + 5.0 * (&x[1] - 12.0).square()
+        + x[2].powi(4)
+        + 3.0 * (&x[3] - 11.0).square()
+        + 10.0 * x[4].powi(6)
+        + 7.0 * x[5].square()
+        + x[6].powi(4)
+        - 4.0 * &x[5] * &x[6]
+        - 10.0 * &x[5]
+        - 8.0 * &x[6];
+    let constraints = [
+        2.0 * x[0].square() + 3.0 * x[1].powi(4) + &x[2] + 4.0 * x[3].square() + 5.0 * &x[4] - 127.0,
+        7.0 * &x[0] + 3.0 * &x[1] + 10.0 * x[2].square() + &x[3] - &x[4] - 282.0,
+        23.0 * &x[0] + x[1].square() + 6.0 * x[5].square() - 8.0 * &x[6] - 196.0,
+        4.0 * x[0].square() + x[1].square() - 3.0 * &x[0] * &x[1] + 2.0 * x[2].square() + 5.0 * &x[5] - 11.0 * &x[6],
+    ];
+    penalized(objective, 10.0, constraints)
+}
+
+/// Wong's third problem with all seventeen constraints, weight 10.
+pub fn wong3(x: &[Dual]) -> Dual {
+    let linear = [
+        4.0 * &x[0] + 5.0 * &x[1] - 3.0 * &x[6] + 9.0 * &x[7] - 105.0,
+        10.0 * &x[0] - 8.0 * &x[1] - 17.0 * &x[6] + 2.0 * &x[7],
+        -8.0 * &x[0] + 2.0 * &x[1] + 5.0 * &x[8] - 2.0 * &x[9] - 12.0,
+        &x[0] + &x[1] + 4.0 * &x[10] - 21.0 * &x[11],
+    ];
+    penalized(wong3_objective(x), 10.0, wong3_constraints(x).into_iter().chain(linear))
+}
+
+/// Wong's third problem with its thirteen nonlinear constraints penalized.
+pub fn wong3_linear(x: &[Dual]) -> Dual {
+    penalized(wong3_objective(x), 10.0, wong3_constraints(x))
+}
+
+fn wong3_objective(x: &[Dual]) -> Dual {
+    let centred = [
+        (2, 1.0, 10.0),
+        (3, 4.0, 5.0),
+        (4, 1.0, 3.0),
+        (5, 2.0, 1.0),
+        (6, 5.0, 0.0),
+        (7, 7.0, 11.0),
+        (8, 2.0, 10.0),
+        (9, 1.0, 7.0),
+        (10, 1.0, 9.0),
+        (11, 10.0, 1.0),
+        (12, 5.0, 7.0),
+        (13, 4.0, 14.0),
+        (14, 27.0, 1.0),
+        (16, 1.0, 2.0),
+        (17, 13.0, 2.0),
+        (18, 1.0, 3.0),
+        (19, 1.0, 0.0),
+    ];
+    let coupled = x[0].square() + x[1].square() + &x[0] * &x[1] - 14.0 * &x[0] - 16.0 * &x[1];
+    let squares = centred.map(|(i, weight, centre)| weight * (&x[i] - centre).square());
+    Dual::sum(squares) + coupled + x[15].powi(4) + 95.0
+}
+
+fn wong3_constraints(x: &[Dual]) -> [Dual; 13] {
+    let [a, b] = [&x[0], &x[1]];
+    [
+        3.0 * (a - 2.0).square() + 4.0 * (b - 3.0).square() + 2.0 * x[2].square() - 7.0 * &x[3] - 120.0,
+        5.0 * a.square() + 8.0 * b + (&x[2] - 6.0).square() - 2.0 * &x[3] - 40.0,
+        0.5 * (a - 8.0).square() + 2.0 * (b - 4.0).square() + 3.0 * x[4].square() - &x[5] - 30.0,
+        a.square() + 2.0 * (b - 2.0).square() - 2.0 * a * b + 14.0 * &x[4] - 6.0 * &x[5],
+        -3.0 * a + 6.0 * b + 12.0 * (&x[8] - 8.0).square() - 7.0 * &x[9],
+        a.square() + 15.0 * &x[10] - 8.0 * &x[11] - 28.0,
+        4.0 * a + 9.0 * b + 5.0 * x[12].square() - 9.0 * &x[13] - 87.0,
+        3.0 * a + 4.0 * b + 3.0 * (&x[12] - 6.0).square() - 14.0 * &x[13] - 10.0,
+        14.0 * a.square() + 35.0 * &x[14] - 79.0 * &x[15] - 92.0,
+        15.0 * b.square() + 11.0 * &x[14] - 61.0 * &x[15] - 54.0,
+        5.0 * a.square() + 2.0 * b + 9.0 * x[16].powi(4) - &x[17] - 68.0,
+        a.square() - b + 19.0 * &x[18] - 20.0 * &x[19] + 19.0,
+        7.0 * a.square() + 5.0 * b.square() + x[18].square() - 30.0 * &x[19],
+    ]
+}
+
+/// Alkylation process (Hock and Schittkowski 114), weight 500; an equation is a pair of inequalities.
+pub fn hs114(x: &[Dual]) -> Dual {
+    let tolerance = 0.99;
+    let objective = 5.04 * &x[0] + 0.035 * &x[1] + 10.0 * &x[2] + 3.36 * &x[4] - 0.063 * &x[3] * &x[6];
+    let yield_ = 1.12 * &x[0] + &x[0] * &x[7] * (0.13167 - 0.00667 * &x[7]);
+    let octane = 57.425 + &x[7] * (1.098 - 0.038 * &x[7]) + 0.325 * &x[5];
+    let strength = 98_000.0 * &x[2] / (&x[3] * &x[8] + 1000.0 * &x[2]) - &x[5];
+    let ratio = (&x[1] + &x[4]) / &x[0] - &x[7];
+    let constraints = [
+        &yield_ - &x[3] / tolerance,
+        tolerance * &x[3] - &yield_,
+        &octane - &x[6] / tolerance,
+        tolerance * &x[6] - &octane,
+        strength.clone(),
+        -strength,
+        ratio.clone(),
+        -ratio,
+    ];
+    penalized(objective, 500.0, constraints)
+}
+
+/// Dembo's fifth problem, heat exchangers in geometric form (Hock and Schittkowski 106), weight 10⁵.
+pub fn dembo5(x: &[Dual]) -> Dual {
+    let constraints = [
+        (100.0 + (833.332_52 * &x[3] - 83_333.333) / &x[0]) / &x[5] - 1.0,
+        (&x[3] + 1250.0 * (&x[4] - &x[3]) / &x[1]) / &x[6] - 1.0,
+        (&x[4] + (1.25e6 - 2500.0 * &x[4]) / &x[2]) / &x[7] - 1.0,
+    ];
+    penalized(&x[0] + &x[1] + &x[2], 1e5, constraints)
+}
+
+fn dot(weights: &[f64], x: &[Dual]) -> Dual {
+    Dual::combination(weights.iter().copied().zip(x))
+}
