@@ -13,7 +13,6 @@
 mod builder;
 mod config;
 mod cut;
-mod interim_qp;
 mod model;
 mod norm;
 mod oracle;

@@ -3,7 +3,6 @@
 use super::builder::BundleTrust;
 use super::config::{AccuracyPolicy, Convexity};
 use super::cut::Cut;
-use super::interim_qp::EpigraphQpSolver;
 use super::model::Model;
 use super::oracle::{Outcome, evaluate};
 use super::snapshot::Snapshot;
@@ -11,6 +10,7 @@ use super::start::{admissible_start, first_evaluation};
 use super::state::State;
 use super::subproblem::{self, Proposal, SubproblemError};
 use super::weight::{self, Comparison};
+use crate::qp::EpigraphQpSolver;
 use crate::report::{Certificate, IterationRecord, Report, StepKind, Termination};
 use crate::{
     Accuracy, Answer, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request,
@@ -102,6 +102,8 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
 
     fn advance(&mut self) -> ControlFlow<Termination> {
         self.check_limits()?;
+        // A resumed run has no memory of earlier subproblems; neither has this one, so both go the same way bit by bit.
+        self.solver.forget();
         let proposal = self.propose()?;
         if self.center_is_too_coarse(&proposal) {
             return self.refine_center(&proposal);
@@ -166,8 +168,12 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
 
     pub(super) fn try_subproblem(&mut self) -> Result<Proposal, SubproblemError> {
         let model = Model::new(&mut self.state, &self.method.config);
-        self.state.counts.qp_solves += 1;
-        let proposal = subproblem::solve(&mut self.solver, &self.set, &self.state, &model)?;
+        let before = self.solver.counts();
+        let solved = subproblem::solve(&mut self.solver, &self.set, &self.state, &model);
+        let after = self.solver.counts();
+        self.state.counts.qp_solves += after.solves - before.solves;
+        self.state.counts.qp_fallbacks += after.fallbacks - before.fallbacks;
+        let proposal = solved?;
         self.state.bundle.set_multipliers(&proposal.cut_multipliers);
         self.proposal = Some(proposal.clone());
         Ok(proposal)

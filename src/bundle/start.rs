@@ -1,11 +1,11 @@
 //! The first evaluation: admissible start, norm, first weight.
 
 use super::cut::{Bundle, Cut};
-use super::interim_qp::project;
 use super::norm::ScaledNorm;
 use super::oracle::{Outcome, evaluate};
 use super::state::State;
 use crate::linalg::first_non_finite;
+use crate::qp::{QpError, project};
 use crate::report::{Counts, IterationRecord, StepKind};
 use crate::{
     BundleTrustConfig, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request,
@@ -26,7 +26,10 @@ pub(super) fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -
     if before <= super::subproblem::FEASIBILITY {
         return Ok(set.clamp_to_box(&x0));
     }
-    let projected = project(set, &x0).map_err(|_| OptimizeError::Infeasible { violation: before })?;
+    let projected = project(set, &x0).map_err(|error| match error {
+        QpError::Infeasible { violation } => OptimizeError::Infeasible { violation },
+        _ => OptimizeError::Infeasible { violation: before },
+    })?;
     let violation = set.violation_near(&projected, &x0);
     if violation <= 1e-9 { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }

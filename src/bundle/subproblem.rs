@@ -6,9 +6,9 @@
 //! ẽ = −v − u‖d‖² = Σ λ_i a_i + slack of the active constraints ≥ 0      aggregate error
 //! ```
 
-use super::interim_qp::{EpigraphQp, EpigraphQpSolver, Metric, QpError, QpSolution, project};
 use super::model::Model;
 use super::state::State;
+use crate::qp::{EpigraphQp, EpigraphQpSolver, Metric, QpError, QpSolution, project};
 use crate::{Polyhedron, Vector};
 
 /// A trial point and what the model says about it.
@@ -35,7 +35,6 @@ pub(crate) struct Proposal {
     pub weight: f64,
     /// Relative violation of the set at the trial point.
     pub violation: f64,
-    pub kkt_residual: f64,
 }
 
 /// Trial points violate the set by at most this much, relative to each side.
@@ -94,12 +93,11 @@ fn interpret(solution: QpSolution, state: &State, model: &Model) -> Proposal {
         aggregate_error: (predicted_decrease - state.weight * squared).max(0.0),
         cut_error,
         cut_multipliers: solution.cut_multipliers,
-        row_multipliers: solution.row_multipliers,
-        bound_multipliers: solution.bound_multipliers,
+        row_multipliers: Vector::from_vec(solution.row_multipliers),
+        bound_multipliers: Vector::from_vec(solution.bound_multipliers),
         convexification: model.convexification,
         weight: state.weight,
         violation: 0.0,
-        kkt_residual: solution.kkt_residual,
     }
 }
 
