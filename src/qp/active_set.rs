@@ -54,6 +54,7 @@ impl WorkingSet<'_> {
         } else {
             self.hold_best_cut();
         }
+        self.place_step();
         self.pivots = 0;
     }
 

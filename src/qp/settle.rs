@@ -1,10 +1,12 @@
 //! Moves the multipliers to the equality solution of the working set, dropping members that would change sign.
 //!
 //! ```text
-//! A d − s v = b,  sᵀ λ = 1,  d = −H⁻¹ Aᵀ λ        (A: active normals, b: the sides they are held at)
-//! correction:  (Ã Ãᵀ) δλ + s δ = −ρ,  sᵀ δλ = σ,  δv = δ + c² σ,     ρ = b − A d + s v,  σ = 1 − sᵀ λ
+//! H d + Nᵀ λ = 0,  N d − s v = b,  sᵀ λ = 1          (N: active normals, b: the sides they are held at)
+//! residuals   r = −(H d + Nᵀ λ),  ρ = b − N d + s v,  σ = 1 − sᵀ λ
+//! correction  q = H⁻¹ r,  (Ã Ãᵀ) δλ + s δ = N q − ρ,  sᵀ δλ = σ,  δv = δ + c² σ,  δd = q − H⁻¹ Nᵀ δλ
 //! ```
-//! The residuals ρ, σ are formed from the data of the QP at the current multipliers, so every pass refines the one before.
+//! The residuals are formed from the data of the QP at the current (d, v, λ), so every pass refines the one before. The step
+//! d is a variable of its own, not a function of λ: with a small H the rounding of λ alone would move it by eps |g| / H.
 //! The ratio test makes each pass an ascent of the dual objective: multipliers that are dual feasible stay so.
 
 use crate::Vector;
@@ -16,13 +18,28 @@ use super::working_set::{Active, Member, Place, Side, WorkingSet};
 struct Correction {
     general: Vec<f64>,
     fixed: Vec<f64>,
+    step: Vector,
     epigraph: f64,
+}
+
+/// Residuals of the equality system at the current point.
+struct Residuals {
+    /// q = H⁻¹ r; for fixed coordinates the way to their bounds.
+    step: Vector,
+    /// ρ.
+    sides: Vec<f64>,
+    /// σ.
+    deficit: f64,
+    /// Largest of ρ and σ relative to its terms.
+    size: f64,
 }
 
 /// Relative residual at which refinement stops.
 const REFINED: f64 = 4e-16;
 /// Passes spent on refinement after the last drop.
 const REFINEMENT_PASSES: usize = 5;
+/// Residual of a stationarity equation, relative to its terms, that is rounding.
+const ROUNDING: f64 = 2e-15;
 
 impl WorkingSet<'_> {
     /// Moves to the equality solution; on return all multipliers have their right sign.
@@ -30,17 +47,15 @@ impl WorkingSet<'_> {
         let mut full_passes = 0;
         let mut previous = f64::INFINITY;
         loop {
-            let sum = self.gradient_sum();
-            self.place_step(&sum);
-            let (residuals, deficit, size) = self.residuals();
-            let stalled = size > 0.5 * previous || full_passes >= REFINEMENT_PASSES;
-            if full_passes > 0 && (size <= REFINED || stalled) {
+            let residuals = self.residuals();
+            let stalled = residuals.size > 0.5 * previous || full_passes >= REFINEMENT_PASSES;
+            if full_passes > 0 && (residuals.size <= REFINED || stalled) {
                 break;
             }
             if full_passes > 0 {
-                previous = size;
+                previous = residuals.size;
             }
-            let correction = self.correction(&sum, residuals, deficit);
+            let correction = self.correction(residuals);
             match self.first_block(&correction) {
                 Some((length, place)) => {
                     self.advance(&correction, length);
@@ -56,13 +71,15 @@ impl WorkingSet<'_> {
         }
     }
 
-    /// Σ λ · normal over the columns, in the variables d.
-    fn gradient_sum(&self) -> Vector {
-        let mut sum = Vector::zeros(self.qp.dimension());
+    /// Sets d to the minimiser that belongs to the multipliers of the columns, v to 0.
+    pub(super) fn place_step(&mut self) {
+        let mut step = Vector::zeros(self.qp.dimension());
         for active in &self.general {
-            self.add_gradient(sum.as_mut_slice(), active.multiplier, active.member);
+            self.add_gradient(step.as_mut_slice(), active.multiplier, active.member);
         }
-        sum
+        self.coordinates.minimiser(&mut step);
+        self.step = step;
+        self.epigraph = 0.0;
     }
 
     fn add_gradient(&self, sum: &mut [f64], factor: f64, member: Member) {
@@ -73,61 +90,89 @@ impl WorkingSet<'_> {
         }
     }
 
-    /// d of the current multipliers; fixed coordinates at their bounds.
-    fn place_step(&mut self, sum: &Vector) {
-        self.step.copy_from(sum);
-        self.coordinates.minimiser(&mut self.step);
-        for k in 0..self.fixed.len() {
-            if let Some(active) = self.fixed[k] {
-                self.step[k] = self.held_value(&active);
+    fn residuals(&self) -> Residuals {
+        let mut worst = 0.0_f64;
+        let one = |active: &Active| {
+            let held = self.held_value(active);
+            let residual = held - self.value(active.member);
+            if residual != 0.0 {
+                worst = worst.max(residual.abs() / self.terms(active.member, held));
+            }
+            residual
+        };
+        let sides = self.general.iter().map(one).collect();
+        let deficit = 1.0 - self.cut_sum();
+        Residuals { step: self.step_residual(), sides, deficit, size: worst.max(deficit.abs()) }
+    }
+
+    /// q: what the stationarity equations ask of d. Entries of r that are rounding count as zero.
+    fn step_residual(&self) -> Vector {
+        let mut sum = self.qp.metric.apply(&self.step);
+        let mut terms = sum.abs();
+        for active in &self.general {
+            self.add_gradient(sum.as_mut_slice(), active.multiplier, active.member);
+            match (active.member, self.gradient(active.member)) {
+                (_, Some(gradient)) => add_scaled_terms(terms.as_mut_slice(), active.multiplier, gradient),
+                (Member::Bound(k), None) => terms[k] += active.multiplier.abs(),
+                (_, None) => {}
             }
         }
+        for (sum, terms) in sum.iter_mut().zip(&terms) {
+            if sum.abs() <= ROUNDING * terms {
+                *sum = 0.0;
+            }
+        }
+        self.coordinates.minimiser(&mut sum);
+        for (k, fixed) in self.fixed.iter().enumerate() {
+            if let Some(active) = fixed {
+                sum[k] = self.held_value(active) - self.step[k];
+            }
+        }
+        sum
     }
 
-    /// ρ, σ, and the largest of them relative to its terms.
-    fn residuals(&self) -> (Vec<f64>, f64, f64) {
-        let mut worst = 0.0_f64;
-        let residuals = self
-            .general
-            .iter()
-            .map(|active| {
-                let held = self.held_value(active);
-                let residual = held - self.value(active.member);
-                if residual != 0.0 {
-                    worst = worst.max(residual.abs() / self.terms(active.member, held));
-                }
-                residual
-            })
-            .collect();
-        let deficit = 1.0 - self.cut_sum();
-        (residuals, deficit, worst.max(deficit.abs()))
-    }
-
-    fn correction(&self, sum: &Vector, residuals: Vec<f64>, deficit: f64) -> Correction {
+    fn correction(&self, residuals: Residuals) -> Correction {
         let n = self.qp.dimension();
+        let Residuals { mut step, sides: mut general, deficit, .. } = residuals;
+        for (entry, active) in general.iter_mut().zip(&self.general) {
+            *entry -= match (active.member, self.gradient(active.member)) {
+                (_, Some(gradient)) => dot(gradient, step.as_slice()),
+                (Member::Bound(k), None) => step[k],
+                (_, None) => 0.0,
+            };
+        }
         let mut cut_row = self.factor.orthogonal_row(n);
         cut_row.iter_mut().for_each(|entry| *entry /= self.cut_entry);
-        let mut general = residuals;
         self.factor.solve_transposed(&mut general);
         let shift = -(deficit + dot(&cut_row, &general)) / dot(&cut_row, &cut_row);
         general.iter_mut().zip(&cut_row).for_each(|(y, h)| *y = -*y - h * shift);
         self.factor.solve(&mut general);
-        let fixed = self.fixed_correction(sum, &general);
-        Correction { general, fixed, epigraph: shift + self.cut_entry * self.cut_entry * deficit }
+        let mut reply = Vector::zeros(n);
+        for (active, change) in self.general.iter().zip(&general) {
+            self.add_gradient(reply.as_mut_slice(), *change, active.member);
+        }
+        self.coordinates.minimiser(&mut reply);
+        for (k, reply) in reply.iter().enumerate() {
+            if self.fixed[k].is_none() {
+                step[k] += reply;
+            }
+        }
+        let fixed = self.fixed_correction(&general);
+        Correction { general, fixed, step, epigraph: shift + self.cut_entry * self.cut_entry * deficit }
     }
 
     /// Changes of the multipliers of fixed coordinates, from their stationarity equations.
-    fn fixed_correction(&self, sum: &Vector, general: &[f64]) -> Vec<f64> {
+    fn fixed_correction(&self, general: &[f64]) -> Vec<f64> {
         if self.fixed.iter().all(Option::is_none) {
             return Vec::new();
         }
-        let mut target = sum.clone();
+        let mut target = Vector::zeros(self.qp.dimension());
         for (active, change) in self.general.iter().zip(general) {
-            self.add_gradient(target.as_mut_slice(), *change, active.member);
+            self.add_gradient(target.as_mut_slice(), active.multiplier + change, active.member);
         }
         let one = |(k, fixed): (usize, &Option<Active>)| {
             fixed.as_ref().map_or(0.0, |active| {
-                -(self.qp.metric.diagonal_entry(k) * self.step[k] + target[k]) - active.multiplier
+                -(self.qp.metric.diagonal_entry(k) * self.held_value(active) + target[k]) - active.multiplier
             })
         };
         self.fixed.iter().enumerate().map(one).collect()
@@ -163,6 +208,7 @@ impl WorkingSet<'_> {
                 active.multiplier += length * change;
             }
         }
+        self.step.axpy(length, &correction.step, 1.0);
         self.epigraph += length * correction.epigraph;
     }
 }
@@ -176,4 +222,11 @@ fn block_length(active: &Active, change: f64) -> Option<f64> {
     };
     let (start, change) = (sign * active.multiplier, sign * change);
     (start + change < 0.0).then(|| (start / -change).clamp(0.0, 1.0))
+}
+
+/// y += |factor · x|.
+fn add_scaled_terms(y: &mut [f64], factor: f64, x: &[f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += (factor * x).abs();
+    }
 }
