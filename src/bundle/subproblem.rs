@@ -61,14 +61,15 @@ pub(crate) fn solve(
     let weight = state.weight;
     let diagonal = state.norm.weights() * weight;
     let at_center = set.rows() * &state.center;
+    let terms = set.rows().abs() * state.center.abs();
     let solution = solver.solve(&EpigraphQp {
         metric: Metric::Diagonal(&diagonal),
         slopes: &model.slopes,
         offsets: &model.offsets,
         cut_ids: &model.ids,
         rows: set.rows(),
-        row_lower: &(set.row_lower() - &at_center),
-        row_upper: &(set.row_upper() - &at_center),
+        row_lower: &slack(set.row_lower(), &at_center, &terms, f64::min),
+        row_upper: &slack(set.row_upper(), &at_center, &terms, f64::max),
         lower: &(set.lower() - &state.center),
         upper: &(set.upper() - &state.center),
     })?;
@@ -77,6 +78,14 @@ pub(crate) fn solve(
         return Err(SubproblemError::NotFinite);
     }
     make_feasible(proposal, set, state)
+}
+
+/// Sides of the rows as seen from the center; what is rounding of the center counts as zero, so that d = 0 is admissible.
+fn slack(side: &Vector, at_center: &Vector, terms: &Vector, outward: fn(f64, f64) -> f64) -> Vector {
+    Vector::from_fn(side.len(), |i, _| {
+        let slack = side[i] - at_center[i];
+        if slack.is_finite() && slack.abs() <= FEASIBILITY * terms[i].max(side[i].abs()) { 0.0 } else { outward(slack, 0.0) }
+    })
 }
 
 fn interpret(solution: QpSolution, state: &State, model: &Model) -> Proposal {
