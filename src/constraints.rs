@@ -9,12 +9,56 @@ use crate::{InputError, Matrix, Vector};
 
 /// A polyhedron given by bounds and two-sided rows.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "Stored", into = "Stored")]
 pub struct Polyhedron {
     lower: Vector,
     upper: Vector,
     rows: Matrix,
     row_lower: Vector,
     row_upper: Vector,
+}
+
+/// A polyhedron in a file: open sides are `null`, because text formats have no infinity.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Stored {
+    lower: Vec<Option<f64>>,
+    upper: Vec<Option<f64>>,
+    rows: Vec<Vec<f64>>,
+    row_lower: Vec<Option<f64>>,
+    row_upper: Vec<Option<f64>>,
+}
+
+impl From<Polyhedron> for Stored {
+    fn from(set: Polyhedron) -> Self {
+        let sides = |side: &Vector| side.iter().map(|value| value.is_finite().then_some(*value)).collect();
+        Self {
+            lower: sides(&set.lower),
+            upper: sides(&set.upper),
+            rows: set.rows.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            row_lower: sides(&set.row_lower),
+            row_upper: sides(&set.row_upper),
+        }
+    }
+}
+
+impl TryFrom<Stored> for Polyhedron {
+    type Error = InputError;
+
+    fn try_from(stored: Stored) -> Result<Self, InputError> {
+        let sides = |side: &[Option<f64>], open: f64| {
+            Vector::from_iterator(side.len(), side.iter().map(|value| value.unwrap_or(open)))
+        };
+        let dimension = stored.lower.len();
+        if let Some(row) = stored.rows.iter().find(|row| row.len() != dimension) {
+            return Err(InputError::Dimension { what: "constraint row", expected: dimension, found: row.len() });
+        }
+        let rows = Matrix::from_fn(stored.rows.len(), dimension, |i, j| stored.rows[i][j]);
+        Self::boxed(sides(&stored.lower, f64::NEG_INFINITY), sides(&stored.upper, f64::INFINITY))?.with_rows(
+            &rows,
+            &sides(&stored.row_lower, f64::NEG_INFINITY),
+            &sides(&stored.row_upper, f64::INFINITY),
+        )
+    }
 }
 
 impl Polyhedron {

@@ -6,6 +6,7 @@
 
 pub mod bundle;
 pub mod constraints;
+pub mod counted;
 pub mod error;
 pub mod linalg;
 pub mod objective;
@@ -13,6 +14,7 @@ pub mod problem;
 pub mod qp;
 pub mod reduced;
 pub mod report;
+pub mod verify;
 
 mod accuracy;
 
@@ -22,6 +24,7 @@ pub use bundle::{
     VariableScaling,
 };
 pub use constraints::Polyhedron;
+pub use counted::Counted;
 pub use error::{InputError, OptimizeError, OracleError};
 pub use linalg::{Matrix, Vector};
 pub use objective::{Answer, Evaluation, FnObjective, NonsmoothObjective, Request};

@@ -13,6 +13,8 @@
 mod builder;
 mod config;
 mod cut;
+mod finish;
+mod judge;
 mod model;
 mod norm;
 mod oracle;

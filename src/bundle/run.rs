@@ -1,20 +1,17 @@
 //! A run in the making: one evaluation per step.
 
 use super::builder::BundleTrust;
-use super::config::{AccuracyPolicy, Convexity};
-use super::cut::Cut;
+use super::config::AccuracyPolicy;
 use super::model::Model;
 use super::oracle::{Outcome, evaluate};
 use super::snapshot::Snapshot;
 use super::start::{admissible_start, first_evaluation};
 use super::state::State;
 use super::subproblem::{self, Proposal, SubproblemError};
-use super::weight::{self, Comparison};
 use crate::qp::EpigraphQpSolver;
-use crate::report::{Certificate, IterationRecord, Report, StepKind, Termination};
+use crate::report::{IterationRecord, StepKind, Termination};
 use crate::{
-    Accuracy, Answer, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request,
-    Vector,
+    Accuracy, Answer, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector,
 };
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
@@ -36,13 +33,13 @@ use std::time::Instant;
 pub struct Run<'r, 'o, O: NonsmoothObjective> {
     pub(super) method: &'r mut BundleTrust<'o>,
     objective: &'r O,
-    set: Polyhedron,
+    pub(super) set: Polyhedron,
     pub(super) state: State,
-    warm_start: Option<O::WarmStart>,
+    pub(super) warm_start: Option<O::WarmStart>,
     solver: EpigraphQpSolver,
     /// The last subproblem's answer, as long as center and bundle are those it was solved for.
     pub(super) proposal: Option<Proposal>,
-    termination: Option<Termination>,
+    pub(super) termination: Option<Termination>,
     clock: Instant,
 }
 
@@ -154,7 +151,7 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
 
     /// Solves the subproblem; where it fails, shorter steps are tried before the run ends.
     pub(super) fn solve_subproblem(&mut self) -> ControlFlow<Termination, Proposal> {
-        let mut last = SubproblemError::NotFinite;
+        let mut last = SubproblemError::Unusable;
         for _ in 0..4 {
             match self.try_subproblem() {
                 Ok(proposal) => return Continue(proposal),
@@ -232,136 +229,8 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         Continue(())
     }
 
-    /// Serious or null: updates weight, bundle and center.
-    fn judge(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<O::WarmStart>) {
-        let may_be_serious = matches!(answer, Answer::Accurate(_));
-        let evaluation = answer.into_evaluation();
-        let value = evaluation.value;
-        let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
-        let serious = may_be_serious && comparison.is_serious(&self.method.config);
-        self.state.failures = 0;
-        self.watch_noise(&proposal, &evaluation);
-        let kind = if serious {
-            weight::after_serious(&mut self.state, &self.method.config, &comparison);
-            if -comparison.change > self.tolerance() {
-                self.state.restarts = 0;
-            }
-            self.state.counts.serious += 1;
-            StepKind::Serious
-        } else {
-            weight::after_null(&mut self.state, &self.method.config, &proposal, &comparison);
-            self.state.counts.null += 1;
-            if may_be_serious { StepKind::Null } else { StepKind::NoDescent }
-        };
-        self.add_cut(proposal.trial.clone(), &evaluation);
-        if serious {
-            self.move_center(proposal.trial.clone(), evaluation, accuracy);
-        }
-        self.record(kind, &proposal, accuracy, Some(value), None);
-    }
-
-    /// Values that jump although the points almost coincide, and cuts above the values of a convex function, are noise.
-    fn watch_noise(&mut self, proposal: &Proposal, evaluation: &Evaluation<O::WarmStart>) {
-        let state = &mut self.state;
-        let change = evaluation.value - state.center_value;
-        let promised = evaluation.error_bound + state.center_error_bound() + state.rounding();
-        if proposal.step_length <= 1e-4 * state.length_scale() {
-            let slopes = state.bundle.cuts().iter().map(|cut| state.norm.dual_length(&cut.subgradient));
-            let steepest = slopes.fold(state.norm.dual_length(&evaluation.subgradient), f64::max);
-            if change.abs() > 4.0 * steepest * proposal.step_length + 8.0 * promised {
-                state.noise = state.noise.max(change.abs());
-            }
-        }
-        if self.method.config.convexity == Convexity::Convex {
-            let error = evaluation.subgradient.dot(&proposal.step) - change;
-            if error < -8.0 * promised {
-                state.noise = state.noise.max(-error);
-            }
-        }
-    }
-
-    fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>) {
-        let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + 15).min(150));
-        let state = &mut self.state;
-        state.bundle.make_room(size, state.center_id);
-        state.bundle.push(Cut {
-            id: state.next_id,
-            point,
-            value: evaluation.value,
-            subgradient: evaluation.subgradient.clone(),
-            error_bound: evaluation.error_bound,
-            multiplier: 0.0,
-            idle: 0,
-        });
-        state.next_id += 1;
-        self.proposal = None;
-    }
-
-    /// Makes the newest cut the center.
-    fn move_center(&mut self, point: Vector, evaluation: Evaluation<O::WarmStart>, accuracy: Accuracy) {
-        self.state.center = point;
-        self.state.center_value = evaluation.value;
-        self.state.center_id = self.state.next_id - 1;
-        self.state.center_accuracy = accuracy.tolerance();
-        self.warm_start = Some(evaluation.warm_start);
-    }
-
-    fn record(
-        &mut self,
-        kind: StepKind,
-        proposal: &Proposal,
-        accuracy: Accuracy,
-        value: Option<f64>,
-        failure: Option<String>,
-    ) {
-        let record = IterationRecord {
-            evaluation: self.state.counts.evaluations,
-            kind,
-            value,
-            center_value: self.state.center_value,
-            predicted_decrease: proposal.predicted_decrease,
-            aggregate_norm: proposal.aggregate_norm,
-            aggregate_error: proposal.aggregate_error,
-            weight: proposal.weight,
-            step_length: proposal.step_length,
-            violation: proposal.violation,
-            cuts: self.state.bundle.cuts().len(),
-            convexification: proposal.convexification,
-            accuracy: accuracy.tolerance(),
-            failure,
-            seconds: self.seconds(),
-        };
-        self.state.history.push(record);
-    }
-
-    /// Observers, stopping rules, checkpoint, divergence.
-    fn after_evaluation(&mut self) -> ControlFlow<Termination> {
-        let Some(record) = self.state.history.last().cloned() else { return Continue(()) };
-        if let (StepKind::Start | StepKind::Serious, Some(file)) = (record.kind, &self.method.checkpoint) {
-            if let Err(error) = self.snapshot().write(file) {
-                self.state.warnings.push(format!("checkpoint not written: {error}"));
-            }
-        }
-        let mut stop = false;
-        for observer in &mut self.method.observers {
-            stop |= observer.observe(&record).is_break();
-        }
-        if stop {
-            return Break(Termination::StoppedByObserver);
-        }
-        if let Some(rule) = self.method.stop.as_ref().and_then(|rule| rule.holds(&self.state.history)) {
-            return Break(Termination::StopRule { rule });
-        }
-        let first_promise = self.state.first_weight * self.state.first_step * self.state.first_step;
-        let limit = 1e12 * (self.state.start_value.abs() + first_promise);
-        if self.state.start_value - self.state.center_value > limit {
-            return Break(Termination::UnboundedBelow);
-        }
-        Continue(())
-    }
-
     /// Seconds since the start, those before a resume included.
-    fn seconds(&self) -> f64 {
+    pub(super) fn seconds(&self) -> f64 {
         self.state.seconds_before + self.clock.elapsed().as_secs_f64()
     }
 
@@ -385,46 +254,5 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         let mut state = self.state.clone();
         state.seconds_before = self.seconds();
         Snapshot::new(self.set.clone(), state)
-    }
-
-    /// Ends the run; the reason is `StoppedByObserver` if it had not ended by itself.
-    pub fn finish(mut self) -> Report {
-        if self.proposal.is_none() {
-            let _solved = self.try_subproblem();
-        }
-        let certificate = self.certificate();
-        let seconds = self.seconds();
-        let state = self.state;
-        Report {
-            solution: state.center,
-            value: state.center_value,
-            start_value: state.start_value,
-            termination: self.termination.unwrap_or(Termination::StoppedByObserver),
-            certificate,
-            counts: state.counts,
-            largest_violation: state.history.iter().map(|record| record.violation).fold(0.0, f64::max),
-            history: state.history,
-            warnings: state.warnings,
-            seconds,
-        }
-    }
-
-    fn certificate(&self) -> Option<Certificate> {
-        let proposal = self.proposal.as_ref()?;
-        Some(Certificate {
-            point: self.state.center.clone(),
-            value: self.state.center_value,
-            aggregate_norm: proposal.aggregate_norm,
-            aggregate_error: proposal.aggregate_error,
-            predicted_decrease: proposal.predicted_decrease,
-            weight: proposal.weight,
-            convexification: proposal.convexification,
-            norm: self.state.norm.clone(),
-            cuts: self.state.bundle.cuts().to_vec(),
-            row_multipliers: proposal.row_multipliers.clone(),
-            bound_multipliers: proposal.bound_multipliers.clone(),
-            active_radius: self.active_radius(proposal),
-            noise: self.noise_level(),
-        })
     }
 }

@@ -47,8 +47,8 @@ pub(crate) enum SubproblemError {
     Qp(#[from] QpError),
     #[error("its solution violates the constraints by {violation:.1e} and cannot be repaired")]
     Infeasible { violation: f64 },
-    #[error("its solution is not finite")]
-    NotFinite,
+    #[error("its solution is not finite or contradicts itself")]
+    Unusable,
 }
 
 /// Solves the subproblem at the state's weight.
@@ -74,8 +74,10 @@ pub(crate) fn solve(
         upper: &(set.upper() - &state.center),
     })?;
     let proposal = interpret(solution, state, model);
-    if !(proposal.predicted_decrease.is_finite() && proposal.step_length.is_finite()) {
-        return Err(SubproblemError::NotFinite);
+    // Every solution has −v ≥ u‖d‖²; one that promises less is not a solution.
+    let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
+    if !(proposal.predicted_decrease >= least && proposal.step_length.is_finite()) {
+        return Err(SubproblemError::Unusable);
     }
     make_feasible(proposal, set, state)
 }
@@ -84,7 +86,11 @@ pub(crate) fn solve(
 fn slack(side: &Vector, at_center: &Vector, terms: &Vector, outward: fn(f64, f64) -> f64) -> Vector {
     Vector::from_fn(side.len(), |i, _| {
         let slack = side[i] - at_center[i];
-        if slack.is_finite() && slack.abs() <= FEASIBILITY * terms[i].max(side[i].abs()) { 0.0 } else { outward(slack, 0.0) }
+        if slack.is_finite() && slack.abs() <= FEASIBILITY * terms[i].max(side[i].abs()) {
+            0.0
+        } else {
+            outward(slack, 0.0)
+        }
     })
 }
 
