@@ -48,11 +48,7 @@ impl Polyhedron {
             return Err(InputError::Dimension { what: "constraint row", expected, found: rows.ncols() });
         }
         if rows.nrows() != row_lower.len() {
-            return Err(InputError::Dimension {
-                what: "row_lower",
-                expected: rows.nrows(),
-                found: row_lower.len(),
-            });
+            return Err(InputError::Dimension { what: "row_lower", expected: rows.nrows(), found: row_lower.len() });
         }
         if let Some(index) = crate::linalg::first_non_finite(rows.as_slice()) {
             return Err(InputError::NotFinite { what: "constraint rows", index, value: rows.as_slice()[index] });

@@ -146,7 +146,8 @@ impl WorkingSet<'_> {
         for (rate, normal) in columns.iter().zip(self.factor.columns()) {
             add_scaled(&mut total, *rate, normal);
         }
-        let coordinates = (0..self.fixed.len()).map(|k| if self.fixed[k].is_some() { -total[k] } else { 0.0 }).collect();
+        let coordinates =
+            (0..self.fixed.len()).map(|k| if self.fixed[k].is_some() { -total[k] } else { 0.0 }).collect();
         ExchangeRates { columns, coordinates }
     }
 

@@ -62,9 +62,8 @@ fn solve_scaled(qp: &EpigraphQp<'_>, weights: &Vector, length: f64) -> Result<(I
     let bounds: Vec<f64> = sides.iter().map(|side| side.bound).collect();
     let cones: [SupportedConeT<f64>; 2] = [ZeroConeT(equalities), NonnegativeConeT(sides.len() - equalities)];
     let quadratic = scaled_metric(qp, weights);
-    let mut solver =
-        DefaultSolver::new(&quadratic, &linear, &side_matrix(&sides, n + 1), &bounds, &cones, settings())
-            .map_err(|_| QpError::NotSolved { kkt_residual: f64::INFINITY })?;
+    let mut solver = DefaultSolver::new(&quadratic, &linear, &side_matrix(&sides, n + 1), &bounds, &cones, settings())
+        .map_err(|_| QpError::NotSolved { kkt_residual: f64::INFINITY })?;
     solver.solve();
     let found = &solver.solution;
     if matches!(found.status, SolverStatus::PrimalInfeasible) {

@@ -23,8 +23,10 @@ impl WorkingSet<'_> {
         let mut worst: Option<Violation> = None;
         let mut consider = |member: Member, value: f64, norm: f64| {
             let (lower, upper) = self.interval(member);
-            let (excess, side) = if value > upper { (value - upper, Side::Upper) } else { (lower - value, Side::Lower) };
-            if excess <= 0.0 || worst.is_some_and(|worst| excess <= worst.distance * norm) || skipped.contains(&member) {
+            let (excess, side) =
+                if value > upper { (value - upper, Side::Upper) } else { (lower - value, Side::Lower) };
+            if excess <= 0.0 || worst.is_some_and(|worst| excess <= worst.distance * norm) || skipped.contains(&member)
+            {
                 return;
             }
             let bound = if side == Side::Upper { upper } else { lower };

@@ -186,7 +186,8 @@ pub(super) fn assemble(
     for (k, entry) in step.iter_mut().enumerate() {
         *entry = entry.max(qp.lower[k]).min(qp.upper[k]);
     }
-    let values = qp.slopes.iter().zip(qp.offsets).map(|(slope, offset)| dot(slope.as_slice(), step.as_slice()) - offset);
+    let values =
+        qp.slopes.iter().zip(qp.offsets).map(|(slope, offset)| dot(slope.as_slice(), step.as_slice()) - offset);
     let epigraph = values.fold(f64::NEG_INFINITY, f64::max);
     let mut solution = QpSolution {
         step,
