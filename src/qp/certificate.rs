@@ -2,10 +2,11 @@
 //!
 //! ```text
 //! stationarity      max_i |r_i| / √H_ii  over  max_i t_i / √H_ii,   r = H d + Σ π g + Aᵀ μ + ν,  t = Σ |terms of r|
-//! primal            excess over a side / max(|side|, Σ |terms|)
+//! primal            excess over a side / (|side| + Σ |terms| + 1e-10 |a| ℓ),   ℓ = |d| + max_j |g_j|, norms of the metric
 //! dual              |Σ π − 1|,  −π_j,  multipliers of open or wrong sides relative to t
 //! complementarity   (relative size of the multiplier) · (relative slack)
 //! ```
+//! The share 1e-10 |a| ℓ gives a side a size where all its terms vanish, as at d = 0: ℓ is the length of the unconstrained step.
 //! Every part is a quotient of like quantities, so the residual does not depend on the units of values and variables.
 
 use crate::Vector;
@@ -19,10 +20,38 @@ use super::problem::{EpigraphQp, Metric, QpSolution};
 pub fn kkt_residual(qp: &EpigraphQp<'_>, solution: &QpSolution) -> f64 {
     let stationarity = Stationarity::new(qp, solution);
     let mut worst = stationarity.residual;
-    raise(&mut worst, cut_residual(qp, solution));
-    raise(&mut worst, row_residual(qp, solution, &stationarity));
-    raise(&mut worst, bound_residual(qp, solution, &stationarity));
+    let floor = SizeFloor::new(qp, &solution.step);
+    raise(&mut worst, cut_residual(qp, solution, &floor));
+    raise(&mut worst, row_residual(qp, solution, &stationarity, &floor));
+    raise(&mut worst, bound_residual(qp, solution, &stationarity, &floor));
     worst
+}
+
+/// Share of |a| ℓ in the size of a side.
+pub(super) const LENGTH_SHARE: f64 = 1e-10;
+
+/// The part 1e-10 |a| ℓ of a side's size.
+struct SizeFloor {
+    weights: Vec<f64>,
+    share: f64,
+}
+
+impl SizeFloor {
+    fn new(qp: &EpigraphQp<'_>, step: &Vector) -> Self {
+        let weights: Vec<f64> = (0..qp.dimension()).map(|i| qp.metric.diagonal_entry(i).sqrt().recip()).collect();
+        let step_length = step.iter().zip(&weights).map(|(d, w)| (d / w).powi(2)).sum::<f64>().sqrt();
+        let floor = Self { weights, share: LENGTH_SHARE };
+        let steepest = qp.slopes.iter().map(|slope| floor.norm(slope.iter())).fold(0.0, f64::max);
+        Self { share: LENGTH_SHARE * (step_length + steepest), ..floor }
+    }
+
+    fn norm<'b>(&self, normal: impl Iterator<Item = &'b f64>) -> f64 {
+        normal.zip(&self.weights).map(|(a, w)| (a * w).powi(2)).sum::<f64>().sqrt()
+    }
+
+    fn of<'b>(&self, normal: impl Iterator<Item = &'b f64>) -> f64 {
+        self.share * self.norm(normal)
+    }
 }
 
 /// Maximum that turns NaN into +∞.
@@ -85,13 +114,13 @@ fn metric_terms(qp: &EpigraphQp<'_>, step: &Vector) -> Vector {
     }
 }
 
-fn cut_residual(qp: &EpigraphQp<'_>, solution: &QpSolution) -> f64 {
+fn cut_residual(qp: &EpigraphQp<'_>, solution: &QpSolution, floor: &SizeFloor) -> f64 {
     let mut worst = 0.0;
     let mut sum = -1.0;
     for ((slope, &offset), &pi) in qp.slopes.iter().zip(qp.offsets).zip(&solution.cut_multipliers) {
         let (value, terms) = value_and_terms(slope.iter(), &solution.step);
         let gap = value - offset - solution.epigraph;
-        let size = terms + offset.abs() + solution.epigraph.abs();
+        let size = terms + offset.abs() + solution.epigraph.abs() + floor.of(slope.iter());
         raise(&mut worst, ratio(gap.max(0.0), size));
         raise(&mut worst, pi.abs().min(1.0) * ratio((-gap).max(0.0), size));
         raise(&mut worst, -pi);
@@ -101,31 +130,35 @@ fn cut_residual(qp: &EpigraphQp<'_>, solution: &QpSolution) -> f64 {
     worst
 }
 
-fn row_residual(qp: &EpigraphQp<'_>, solution: &QpSolution, stationarity: &Stationarity) -> f64 {
+fn row_residual(qp: &EpigraphQp<'_>, solution: &QpSolution, stationarity: &Stationarity, floor: &SizeFloor) -> f64 {
     let mut worst = 0.0;
     for (i, &mu) in solution.row_multipliers.iter().enumerate() {
         let row = qp.rows.row(i);
         let (value, terms) = value_and_terms(row.iter(), &solution.step);
         let norm = row.iter().zip(&stationarity.weights).map(|(a, w)| (a * w).abs()).fold(0.0, f64::max);
         let share = stationarity.share(mu, norm);
-        raise(&mut worst, interval_residual(value, terms, qp.row_lower[i], qp.row_upper[i], mu, share));
+        raise(
+            &mut worst,
+            interval_residual(value, terms + floor.of(row.iter()), qp.row_lower[i], qp.row_upper[i], mu, share),
+        );
     }
     worst
 }
 
-fn bound_residual(qp: &EpigraphQp<'_>, solution: &QpSolution, stationarity: &Stationarity) -> f64 {
+fn bound_residual(qp: &EpigraphQp<'_>, solution: &QpSolution, stationarity: &Stationarity, floor: &SizeFloor) -> f64 {
     let mut worst = 0.0;
     for (i, &nu) in solution.bound_multipliers.iter().enumerate() {
         let value = solution.step[i];
         let share = stationarity.share(nu, stationarity.weights[i]);
-        raise(&mut worst, interval_residual(value, value.abs(), qp.lower[i], qp.upper[i], nu, share));
+        let terms = value.abs() + floor.share * stationarity.weights[i];
+        raise(&mut worst, interval_residual(value, terms, qp.lower[i], qp.upper[i], nu, share));
     }
     worst
 }
 
 /// Excess over either side, and complementarity with the side the multiplier names.
 fn interval_residual(value: f64, terms: f64, lower: f64, upper: f64, multiplier: f64, share: f64) -> f64 {
-    let excess = |gap: f64, side: f64| ratio(gap.max(0.0), terms.max(side.abs()));
+    let excess = |gap: f64, side: f64| ratio(gap.max(0.0), terms + side.abs());
     let primal = excess(value - upper, upper).max(excess(lower - value, lower));
     if value.is_nan() || multiplier.is_nan() {
         return f64::INFINITY;

@@ -47,6 +47,7 @@ impl WorkingSet<'_> {
         let mut full_passes = 0;
         let mut previous = f64::INFINITY;
         loop {
+            self.measure();
             let residuals = self.residuals();
             let stalled = residuals.size > 0.5 * previous || full_passes >= REFINEMENT_PASSES;
             if full_passes > 0 && (residuals.size <= REFINED || stalled) {

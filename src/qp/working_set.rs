@@ -9,6 +9,7 @@
 
 use crate::Vector;
 
+use super::certificate::LENGTH_SHARE;
 use super::coordinates::Coordinates;
 use super::factor::{Factor, Split};
 use super::kernels::{dot, dot_terms};
@@ -52,7 +53,7 @@ pub(super) struct WorkingSet<'a> {
     pub(super) coordinates: &'a Coordinates,
     /// Rows of A, one after the other.
     rows: Vec<f64>,
-    /// Norms of the normals (cuts, then rows) in the metric's coordinates; for a dense metric those of its diagonal.
+    /// Norms of the normals, cuts then rows.
     pub(super) norms: Vec<f64>,
     /// The extra entry c of a cut's column.
     pub(super) cut_entry: f64,
@@ -65,6 +66,10 @@ pub(super) struct WorkingSet<'a> {
     /// v of the current working set.
     pub(super) epigraph: f64,
     pub(super) pivots: usize,
+    /// Norm of the steepest cut: the length of the unconstrained step.
+    steepest: f64,
+    /// ℓ = |d| + steepest.
+    reach: f64,
 }
 
 impl<'a> WorkingSet<'a> {
@@ -81,6 +86,7 @@ impl<'a> WorkingSet<'a> {
             super::kernels::norm(&scaled)
         };
         let mut norms: Vec<f64> = qp.slopes.iter().map(|slope| scaled_norm(slope.as_slice())).collect();
+        let steepest = norms.iter().copied().fold(0.0, f64::max);
         let cut_entry = median_of_positive(&norms).unwrap_or(1.0);
         if n > 0 {
             norms.extend(rows.chunks_exact(n).map(scaled_norm));
@@ -100,6 +106,8 @@ impl<'a> WorkingSet<'a> {
             step: Vector::zeros(n),
             epigraph: 0.0,
             pivots: 0,
+            steepest,
+            reach: steepest,
         }
     }
 
@@ -152,7 +160,21 @@ impl<'a> WorkingSet<'a> {
             _ => self.gradient(member).map_or(0.0, |gradient| dot_terms(gradient, self.step.as_slice())),
         };
         let epigraph = if matches!(member, Member::Cut(_)) { self.epigraph.abs() } else { 0.0 };
-        terms + epigraph + side.abs()
+        terms + epigraph + side.abs() + LENGTH_SHARE * self.norm(member) * self.reach
+    }
+
+    /// Norm of a normal in the metric's coordinates; for a dense metric in those of its diagonal.
+    pub(super) fn norm(&self, member: Member) -> f64 {
+        match member {
+            Member::Bound(k) => self.qp.metric.diagonal_entry(k).sqrt().recip(),
+            _ => self.norms[self.index(member)],
+        }
+    }
+
+    /// Updates the length ℓ of the problem to the current step.
+    pub(super) fn measure(&mut self) {
+        let square = |(k, d): (usize, &f64)| d * d * self.qp.metric.diagonal_entry(k);
+        self.reach = self.steepest + self.step.iter().enumerate().map(square).sum::<f64>().sqrt();
     }
 
     /// The value an active member is held at.
