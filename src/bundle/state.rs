@@ -1,6 +1,6 @@
 //! Everything a run carries from step to step; what a snapshot stores.
 
-use super::cut::{Bundle, Cut};
+use super::cut::{Bundle, Cut, IDLE};
 use super::norm::ScaledNorm;
 use crate::report::{Counts, IterationRecord};
 use crate::{BundleTrustConfig, Vector};
@@ -48,9 +48,9 @@ impl State {
         config.objective_scale.unwrap_or_else(automatic)
     }
 
-    /// Rounding level of the errors in the model: what differences of the values stored cannot resolve.
+    /// Rounding level of the model: what differences of the values behind its active cuts cannot resolve.
     pub(crate) fn rounding(&self) -> f64 {
-        let cuts = self.bundle.cuts().iter();
+        let cuts = self.bundle.cuts().iter().filter(|cut| cut.multiplier > IDLE);
         let sizes =
             cuts.map(|cut| cut.value.abs().max(self.norm.dual_length(&cut.subgradient) * self.norm.length(&cut.point)));
         8.0 * f64::EPSILON * sizes.fold(self.center_value.abs(), f64::max)
