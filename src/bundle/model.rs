@@ -19,7 +19,14 @@ pub(crate) struct Model {
     pub ids: Vec<u64>,
     /// The curvature c added to make the model convex.
     pub convexification: f64,
+    /// θ_i ≤ 1: share of the cut itself in what the subproblem sees; the rest is the center's cut.
+    shares: Vec<f64>,
+    /// Position of the center's cut.
+    center: Option<usize>,
 }
+
+/// A cut this much steeper than the median drowns the others in rounding and is mixed with the center's cut.
+const STEEPEST: f64 = 1e7;
 
 impl Model {
     /// Builds the model at the center.
@@ -32,7 +39,9 @@ impl Model {
             Convexity::Unknown => convexification(state, config, &errors, &distances),
             Convexity::Convex => 0.0,
         };
-        let mut model = Self { slopes: vec![], offsets: vec![], ids: vec![], convexification: c };
+        let center = state.bundle.cuts().iter().position(|cut| cut.id == state.center_id);
+        let mut model =
+            Self { slopes: vec![], offsets: vec![], ids: vec![], convexification: c, shares: vec![], center };
         for (cut, (&error, &distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(&distances)) {
             let offset = (error + c * distance).max(error.abs());
             let tilt = state.norm.lower_index(&(&state.center - &cut.point));
@@ -41,7 +50,37 @@ impl Model {
             model.ids.push(cut.id);
         }
         state.nonconvex |= c > 0.0;
+        model.soften(state);
         model
+    }
+
+    /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut: still below the model, and with the same
+    /// intersection with the center's cut.
+    fn soften(&mut self, state: &State) {
+        self.shares = vec![1.0; self.slopes.len()];
+        let Some(center) = self.center else { return };
+        let norms: Vec<f64> = self.slopes.iter().map(|slope| state.norm.dual_length(slope)).collect();
+        let mut sorted = norms.clone();
+        sorted.sort_by(f64::total_cmp);
+        let limit = STEEPEST * sorted[sorted.len() / 2].max(norms[center]);
+        let base = self.slopes[center].clone();
+        for (i, norm) in norms.iter().enumerate().filter(|(_, norm)| **norm > limit && limit > 0.0) {
+            let share = limit / norm;
+            self.slopes[i] = &self.slopes[i] * share + &base * (1.0 - share);
+            self.offsets[i] = share * self.offsets[i] + (1.0 - share) * self.offsets[center];
+            self.shares[i] = share;
+        }
+    }
+
+    /// Multipliers of the cuts themselves from those of the subproblem.
+    pub(crate) fn distribute(&self, multipliers: &mut [f64]) {
+        let Some(center) = self.center else { return };
+        let mut moved = 0.0;
+        for (multiplier, share) in multipliers.iter_mut().zip(&self.shares) {
+            moved += *multiplier * (1.0 - share);
+            *multiplier *= share;
+        }
+        multipliers[center] += moved;
     }
 }
 

@@ -94,11 +94,12 @@ fn slack(side: &Vector, at_center: &Vector, terms: &Vector, outward: fn(f64, f64
     })
 }
 
-fn interpret(solution: QpSolution, state: &State, model: &Model) -> Proposal {
+fn interpret(mut solution: QpSolution, state: &State, model: &Model) -> Proposal {
     let step = solution.step;
     let squared = state.norm.squared(&step);
     let predicted_decrease = (-solution.epigraph).max(0.0);
     let cut_error: f64 = solution.cut_multipliers.iter().zip(&model.offsets).map(|(l, a)| l * a).sum();
+    model.distribute(&mut solution.cut_multipliers);
     Proposal {
         trial: &state.center + &step,
         step_length: squared.sqrt(),
