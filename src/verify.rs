@@ -127,7 +127,7 @@ fn check_input(dimension: usize, x: &Vector, direction: &Direction, steps: &[f64
     }
 }
 
-/// Entries in (−1, 1) from a multiplicative congruential sequence with an output mix ([Steele2014], splitmix).
+/// Entries in (−1, 1) from a multiplicative congruential sequence with an output mix (\[Steele2014\], splitmix).
 fn seeded(dimension: usize, seed: u64) -> Vector {
     let mut state = seed;
     Vector::from_fn(dimension, |_, _| {

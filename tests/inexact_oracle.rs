@@ -90,7 +90,8 @@ fn accuracy_on_demand_costs_less_and_ends_as_well() {
         theta.cost.get()
     };
     let (tight, demand) = (run(AccuracyPolicy::Tightest), run(AccuracyPolicy::ON_DEMAND));
-    assert!(demand < 0.7 * tight, "{demand} against {tight}");
+    // The cost is the number of digits: the last digits are bought in both runs, the first ones in one only.
+    assert!(demand < 0.8 * tight, "{demand} against {tight}");
 }
 
 /// Answers with half the excess over the target wherever the point is no descent.
@@ -105,7 +106,8 @@ impl NonsmoothObjective for Lazy {
 
     fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
         let (value, subgradient) = exact(request.point);
-        let evaluation = |value| Evaluation { value, subgradient: subgradient.clone(), error_bound: 0.0, warm_start: () };
+        let evaluation =
+            |value| Evaluation { value, subgradient: subgradient.clone(), error_bound: 0.0, warm_start: () };
         Ok(match request.descent_target {
             Some(target) if value > target => Answer::NoDescent(evaluation(target + 0.5 * (value - target))),
             _ => Answer::Accurate(evaluation(value)),

@@ -62,8 +62,10 @@ fn checkpoint_file_is_replaced_and_resumes() {
 
 #[test]
 fn checkpoint_that_cannot_be_written_is_a_warning() {
-    let report =
-        method(&Polyhedron::unbounded(2)).checkpoint("/nonexistent/dir/x.json").minimize(&cb3(), v(&[2.0, 2.0])).unwrap();
+    let report = method(&Polyhedron::unbounded(2))
+        .checkpoint("/nonexistent/dir/x.json")
+        .minimize(&cb3(), v(&[2.0, 2.0]))
+        .unwrap();
     assert!(!report.warnings.is_empty());
     assert!(report.value < 2.001);
 }

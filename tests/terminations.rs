@@ -5,8 +5,8 @@ mod common;
 
 use common::{cb3, crescent, distance_1, minimize, v};
 use nonsmooth::{
-    Answer, BundleTrust, BundleTrustConfig, Evaluation, FnObjective, IterationRecord, NonsmoothObjective, OptimizeError,
-    OracleError, Request, StepKind, StopRule, TablePrinter, Termination, Vector,
+    Answer, BundleTrust, BundleTrustConfig, Evaluation, FnObjective, IterationRecord, NonsmoothObjective,
+    OptimizeError, OracleError, Request, StepKind, StopRule, TablePrinter, Termination, Vector,
 };
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -47,9 +47,8 @@ fn time_limit() {
         std::thread::sleep(std::time::Duration::from_millis(5));
         (x[0].abs().sqrt(), v(&[0.5 * x[0].signum() / x[0].abs().sqrt()]))
     });
-    let report = method(BundleTrustConfig { max_seconds: Some(0.01), ..Default::default() })
-        .minimize(&slow, v(&[3.0]))
-        .unwrap();
+    let report =
+        method(BundleTrustConfig { max_seconds: Some(0.01), ..Default::default() }).minimize(&slow, v(&[3.0])).unwrap();
     assert_eq!(report.termination, Termination::TimeLimit);
 }
 
@@ -57,17 +56,18 @@ fn time_limit() {
 fn observer_and_table() {
     let mut table = Vec::new();
     let report = method(BundleTrustConfig::default());
-    let report = {
-        let _unused = report;
-        BundleTrust::new(BundleTrustConfig::default())
-            .unwrap()
-            .observer(TablePrinter::new(&mut table))
-            .observer(|record: &IterationRecord| {
-                if record.kind == StepKind::Serious { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            })
-            .minimize(&cb3(), v(&[2.0, 2.0]))
-            .unwrap()
-    };
+    let report =
+        {
+            let _unused = report;
+            BundleTrust::new(BundleTrustConfig::default())
+                .unwrap()
+                .observer(TablePrinter::new(&mut table))
+                .observer(|record: &IterationRecord| {
+                    if record.kind == StepKind::Serious { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                })
+                .minimize(&cb3(), v(&[2.0, 2.0]))
+                .unwrap()
+        };
     assert_eq!(report.termination, Termination::StoppedByObserver);
     assert_eq!(report.counts.serious, 1);
     let table = String::from_utf8(table).unwrap();

@@ -38,10 +38,10 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// Observers, stopping rules, checkpoint, divergence.
     pub(super) fn after_evaluation(&mut self) -> ControlFlow<Termination> {
         let Some(record) = self.state.history.last().cloned() else { return Continue(()) };
-        if let (StepKind::Start | StepKind::Serious, Some(file)) = (record.kind, &self.method.checkpoint) {
-            if let Err(error) = self.snapshot().write(file) {
-                self.state.warnings.push(format!("checkpoint not written: {error}"));
-            }
+        if let (StepKind::Start | StepKind::Serious, Some(file)) = (record.kind, &self.method.checkpoint)
+            && let Err(error) = self.snapshot().write(file)
+        {
+            self.state.warnings.push(format!("checkpoint not written: {error}"));
         }
         let mut stop = false;
         for observer in &mut self.method.observers {
@@ -88,6 +88,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         Some(Certificate {
             point: self.state.center.clone(),
             value: self.state.center_value,
+            error_bound: self.state.center_error_bound(),
             aggregate_norm: proposal.aggregate_norm,
             aggregate_error: proposal.aggregate_error,
             predicted_decrease: proposal.predicted_decrease,

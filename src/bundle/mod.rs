@@ -8,7 +8,7 @@
 //! 5  enough decrease: y becomes the center (serious step), else the cut improves the model (null step)      run.rs
 //! 6  next weight u = 1/t from the observed curvature, within a finite floor and ceiling                   weight.rs
 //! ```
-//! References: [SchrammZowe1992] for model, trust parameter t and the tests SS/NS; [Kiwiel1990] for the weight.
+//! References: \[SchrammZowe1992\] for model, trust parameter t and the tests SS/NS; \[Kiwiel1990\] for the weight.
 
 mod builder;
 mod config;

@@ -5,7 +5,7 @@
 //! c = max( quantile of −E_ij/‖y_i − y_j‖² over concave pairs,  −e_i/‖p_i‖² )
 //! ```
 //! c = 0 as long as no pair of cuts proves Θ nonconvex: then this is the plain model of a convex function.
-//! References: [SchrammZowe1992] (bundle-trust), [HareSagastizabal2010] (tilted cuts).
+//! References: \[SchrammZowe1992\] (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
 
 use super::config::Convexity;
 use super::state::State;
@@ -43,7 +43,9 @@ impl Model {
         let mut model =
             Self { slopes: vec![], offsets: vec![], ids: vec![], convexification: c, shares: vec![], center };
         for (cut, (&error, &distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(&distances)) {
-            let offset = (error + c * distance).max(error.abs());
+            // A value that may be too high by its promised error must not put the cut above Θ.
+            let promised = if cut.id == state.center_id { 0.0 } else { cut.error_bound + state.center_error_bound() };
+            let offset = (error + c * distance).max(error.abs()) + promised;
             let tilt = state.norm.lower_index(&(&state.center - &cut.point));
             model.slopes.push(if c > 0.0 { &cut.subgradient - tilt * (2.0 * c) } else { cut.subgradient.clone() });
             model.offsets.push(offset);

@@ -16,6 +16,9 @@ use crate::{
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
 
+/// A center that is evaluated again is asked for this share of the accuracy that would just do.
+const REFINEMENT: f64 = 0.1;
+
 /// A run of [`BundleTrust`], driven by hand.
 ///
 /// ```
@@ -185,15 +188,17 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         Accuracy::relative(tolerance).unwrap_or(Accuracy::TIGHTEST)
     }
 
-    /// Whether the center's promised error hides the predicted decrease although the oracle was not asked for more.
-    fn center_is_too_coarse(&self, proposal: &Proposal) -> bool {
-        let AccuracyPolicy::OnDemand { tightest, factor, .. } = self.method.config.accuracy else { return false };
-        self.state.center_accuracy > tightest && self.state.center_error_bound() > factor * proposal.predicted_decrease
+    /// Whether the center's promised error hides the predicted decrease and a better value can be asked for.
+    pub(super) fn center_is_too_coarse(&self, proposal: &Proposal) -> bool {
+        let AccuracyPolicy::OnDemand { factor, .. } = self.method.config.accuracy else { return false };
+        let wanted = self.wanted_accuracy(REFINEMENT * proposal.predicted_decrease).tolerance();
+        self.state.center_error_bound() > factor * proposal.predicted_decrease
+            && wanted < 0.5 * self.state.center_accuracy
     }
 
     /// Evaluates the center again, ten times more accurately than the predicted decrease asks for.
     fn refine_center(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
-        let accuracy = self.wanted_accuracy(0.1 * proposal.predicted_decrease);
+        let accuracy = self.wanted_accuracy(REFINEMENT * proposal.predicted_decrease);
         let center = self.state.center.clone();
         self.state.center_accuracy = accuracy.tolerance();
         let (value, failure) = match self.ask(&center, accuracy, None) {

@@ -3,6 +3,7 @@
 //! A small predicted decrease at a large weight is not stationarity (a flat valley), and one that rests on cuts far from
 //! the center is none either (a nonconvex function): both are checked before a run ends.
 
+use super::config::AccuracyPolicy;
 use super::run::Run;
 use super::subproblem::Proposal;
 use crate::NonsmoothObjective;
@@ -21,7 +22,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     pub(super) fn propose(&mut self) -> ControlFlow<Termination, Proposal> {
         loop {
             let proposal = self.solve_subproblem()?;
-            if proposal.predicted_decrease > self.small() {
+            if proposal.predicted_decrease > self.small() || self.center_is_too_coarse(&proposal) {
                 return Continue(proposal);
             }
             let kept = self.state.weight;
@@ -47,10 +48,21 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         config.tolerance * self.state.value_scale(config) + self.state.rounding()
     }
 
-    /// Noise seen in the values, or promised for the center and the active cuts.
+    /// Noise seen in the values, or promised by the oracle and not to be improved by asking for more.
     pub(super) fn noise_level(&self) -> f64 {
-        let active = self.state.bundle.cuts().iter().filter(|cut| cut.multiplier > ACTIVE);
-        active.map(|cut| cut.error_bound).fold(self.state.noise.max(self.state.center_error_bound()), f64::max)
+        let center = self.state.center_error_bound();
+        let promised = match self.method.config.accuracy {
+            AccuracyPolicy::Tightest => {
+                let active = self.state.bundle.cuts().iter().filter(|cut| cut.multiplier > ACTIVE);
+                center + active.map(|cut| cut.error_bound).fold(0.0, f64::max)
+            }
+            AccuracyPolicy::OnDemand { tightest, .. } => {
+                let asked = self.state.center_accuracy;
+                let refused = center > 2.0 * asked * self.state.center_value.abs();
+                if asked <= 2.0 * tightest || refused { center } else { 0.0 }
+            }
+        };
+        self.state.noise.max(promised)
     }
 
     /// Lowers the weight, without evaluations, until the step is long enough to tell or the decrease is not small.

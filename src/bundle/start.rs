@@ -1,5 +1,6 @@
 //! The first evaluation: admissible start, norm, first weight.
 
+use super::config::AccuracyPolicy;
 use super::cut::{Bundle, Cut};
 use super::norm::ScaledNorm;
 use super::oracle::{Outcome, evaluate};
@@ -8,8 +9,8 @@ use crate::linalg::first_non_finite;
 use crate::qp::{QpError, project};
 use crate::report::{Counts, IterationRecord, StepKind};
 use crate::{
-    BundleTrustConfig, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request,
-    Vector,
+    Accuracy, BundleTrustConfig, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron,
+    Request, Vector,
 };
 
 /// Checks sizes, and moves the start into the admissible set.
@@ -42,7 +43,11 @@ pub(super) fn first_evaluation<O: NonsmoothObjective>(
     start: Vector,
 ) -> Result<(State, O::WarmStart), OptimizeError> {
     let norm = ScaledNorm::new(&config.scaling, set)?;
-    let request = Request::tight(&start);
+    let accuracy = match config.accuracy {
+        AccuracyPolicy::OnDemand { coarsest, .. } => Accuracy::relative(coarsest)?,
+        AccuracyPolicy::Tightest => Accuracy::TIGHTEST,
+    };
+    let request = Request { point: &start, warm_start: None, accuracy, descent_target: None };
     let evaluation = match evaluate(objective, &request) {
         Outcome::Answer(answer) => answer.into_evaluation(),
         Outcome::MinusInfinity => return Err(OptimizeError::Oracle(OracleError::NotFinite { what: "value" })),
@@ -68,7 +73,7 @@ pub(super) fn first_evaluation<O: NonsmoothObjective>(
         streak: 0,
         variation: None,
         restarts: 0,
-        center_accuracy: 0.0,
+        center_accuracy: accuracy.tolerance(),
         nonconvex: false,
         noise: 0.0,
         failures: 0,
@@ -95,7 +100,7 @@ fn first_record(state: &State, set: &Polyhedron, slope: f64) -> IterationRecord 
         violation: set.violation(&state.start),
         cuts: 1,
         convexification: 0.0,
-        accuracy: 0.0,
+        accuracy: state.center_accuracy,
         failure: None,
         seconds: 0.0,
     }

@@ -6,7 +6,7 @@
 //! serious:  u ← max(u_int, u/8)   if the weight is not fresh and Θ(y) − Θ(x̂) ≤ m_R v;   u/2 after three in a row
 //! null:     u ← min(u_int, 10u)   if the new error exceeds max(ε_v, 2|v|) after three in a row
 //! ```
-//! Reference: [Kiwiel1990] (proximity control); SS/NS tests: [SchrammZowe1992].
+//! Reference: \[Kiwiel1990\] (proximity control); SS/NS tests: \[SchrammZowe1992\].
 
 use super::state::State;
 use super::subproblem::Proposal;

@@ -17,6 +17,8 @@ pub struct Certificate {
     pub point: Vector,
     /// Θ(x̂).
     pub value: f64,
+    /// Error that the oracle promised for the value.
+    pub error_bound: f64,
     /// ‖z̃‖* of the aggregate subgradient, constraints included, in the dual of `norm`.
     pub aggregate_norm: f64,
     /// ẽ ≥ 0, in units of Θ.
@@ -97,7 +99,8 @@ impl Certificate {
             let offset = &self.point - &cut.point;
             let linear = cut.linearization_error(&self.point, self.value);
             let convexified = linear + self.convexification * self.norm.squared(&offset);
-            error += cut.multiplier * convexified.max(linear.abs());
+            let promised = if cut.point == self.point { 0.0 } else { cut.error_bound + self.error_bound };
+            error += cut.multiplier * (convexified.max(linear.abs()) + promised);
             let tilt = self.norm.lower_index(&offset) * (2.0 * self.convexification);
             aggregate += (&cut.subgradient - tilt) * cut.multiplier;
             total += cut.multiplier;
