@@ -111,7 +111,7 @@ pub const STEPS: [f64; 8] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8];
 fn check_input(dimension: usize, x: &Vector, direction: &Direction, steps: &[f64]) -> Result<Vector, InputError> {
     let direction = match direction {
         Direction::Given(direction) => direction.clone(),
-        Direction::Seeded(seed) => seeded(dimension, *seed),
+        Direction::Seeded(seed) => seeded_direction(dimension, *seed),
     };
     for (what, vector) in [("point", x), ("direction", &direction)] {
         if vector.len() != dimension {
@@ -127,8 +127,8 @@ fn check_input(dimension: usize, x: &Vector, direction: &Direction, steps: &[f64
     }
 }
 
-/// Entries in (−1, 1) from a multiplicative congruential sequence with an output mix (\[Steele2014\], splitmix).
-fn seeded(dimension: usize, seed: u64) -> Vector {
+/// A reproducible pseudo-random direction, the one behind [`Direction::Seeded`]: entries in (−1, 1) from a multiplicative congruential sequence with an output mix (\[Steele2014\], splitmix).
+pub fn seeded_direction(dimension: usize, seed: u64) -> Vector {
     let mut state = seed;
     Vector::from_fn(dimension, |_, _| {
         state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);

@@ -87,6 +87,14 @@ pub enum ContactError {
         /// Largest resultant that counts as zero.
         allowed: f64,
     },
+    /// The contact nodes that are closed at some iteration hold the bodies no longer.
+    #[error("the closed contact nodes leave a rigid motion free (pivot ratio {pivot_ratio:.1e}); the resultant is {resultant:.3e}")]
+    Unheld {
+        /// Smallest over largest pivot of the coarse matrix.
+        pivot_ratio: f64,
+        /// Norm of the resultants of the loads, N.
+        resultant: f64,
+    },
     /// A factorisation met a matrix that is not positive definite, or its residual check failed.
     #[error("{what}: {reason}")]
     Factorization {

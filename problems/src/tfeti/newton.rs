@@ -86,7 +86,7 @@ impl TornContact<'_> {
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] with the residual history, [`ContactError::NotFinite`],
-    /// [`ContactError::NoEquilibrium`] when an active set leaves a motion free.
+    /// [`ContactError::Unheld`] when an active set leaves a motion free.
     pub fn solve(&self, start: Option<&[f64]>, settings: &NewtonSettings) -> Result<TornSolution, ContactError> {
         let mut iterate = match start {
             Some(multipliers) => self.restart(multipliers)?,
@@ -204,10 +204,9 @@ impl TornContact<'_> {
     pub fn coarse<'b>(&'b self, rows: &'b ReducedRows<'b>, coulomb: bool) -> Result<CoarseProblem<'b>, ContactError> {
         let coarse = CoarseProblem::new(self.space, rows, coulomb && self.boundary.has_friction());
         if coarse.pivot_ratio() < SINGULAR {
-            return Err(ContactError::NoEquilibrium {
-                direction: "a rigid motion that the current contact nodes do not hold".into(),
+            return Err(ContactError::Unheld {
+                pivot_ratio: coarse.pivot_ratio(),
                 resultant: norm(&self.space.resultants),
-                allowed: 0.0,
             });
         }
         Ok(coarse)

@@ -1,0 +1,7 @@
+//! `hertz3d`: contact shape optimization of the paper's Example 5.2; see `--help`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    problems::cli::run(problems::scene::hertz())
+}

@@ -1,0 +1,7 @@
+//! `signorini3d`: contact shape optimization of the paper's Example 5.1; see `--help`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    problems::cli::run(problems::scene::signorini())
+}

@@ -1,0 +1,106 @@
+//! `evaluate`: objective, subgradient and certificates at one shape.
+
+use crate::cli::output::{self, Folder};
+use crate::cli::{Arguments, ContactObjective, Failure, controls};
+use crate::contact::{Kink, Residuals, StatusCounts};
+use crate::contact_shape::ContactState;
+use nonsmooth::{Accuracy, StateSolver};
+use serde::Serialize;
+use std::fmt;
+use std::time::Instant;
+
+/// What `evaluate` reports; the keys of its JSON.
+#[derive(Debug, Serialize)]
+struct Evaluated {
+    objective: f64,
+    subgradient: Vec<f64>,
+    peak_pressure: f64,
+    total_normal_force: f64,
+    status: StatusCounts,
+    kink: Kink,
+    residuals: Residuals,
+    work: crate::contact::Work,
+    seconds: Seconds,
+    left_out: Vec<&'static str>,
+}
+
+#[derive(Debug, Serialize)]
+struct Seconds {
+    state: f64,
+    subgradient: f64,
+}
+
+pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String, Failure> {
+    let folder = Folder::prepare(arguments.out.as_deref())?;
+    let shape = objective.solver();
+    let control = controls::load(shape, arguments.controls.as_deref())?;
+    let clock = Instant::now();
+    let state = shape.solve(&control, None, Accuracy::TIGHTEST)?;
+    let state_seconds = clock.elapsed().as_secs_f64();
+    let clock = Instant::now();
+    let evaluation = objective.differentiate(&control, &state)?;
+    let subgradient_seconds = clock.elapsed().as_secs_f64();
+    let result = Evaluated {
+        objective: evaluation.value,
+        subgradient: evaluation.subgradient.as_slice().to_vec(),
+        peak_pressure: output::peak_pressure(objective, &state),
+        total_normal_force: state.forces.total_normal_force(),
+        status: state.forces.counts(),
+        kink: state.forces.kink,
+        residuals: state.forces.residuals,
+        work: state.work(),
+        seconds: Seconds { state: state_seconds, subgradient: subgradient_seconds },
+        left_out: shape.left_out(),
+    };
+    let json = output::json(&result)?;
+    if let Some(folder) = folder {
+        folder.write("evaluation.json", &json)?;
+        folder.write("pressure.csv", &pressure_table(objective, &state))?;
+    }
+    Ok(if arguments.json { json } else { result.to_string() })
+}
+
+/// Contact nodes as lines of a CSV table.
+pub fn pressure_table(objective: &ContactObjective, state: &ContactState) -> String {
+    let problem = objective.solver().problem();
+    let mut table = String::from("x1,x2,pressure,traction_1,traction_2,opening,status\n");
+    let pressures = objective.cost().pressures(state);
+    for (index, (point, pressure)) in problem.boundary.points.iter().zip(pressures).enumerate() {
+        let [x1, x2] = problem.grid.position(point.position[0], point.position[1]);
+        let traction = state.forces.tangential.get(index).map_or([0.0; 2], |force| force.map(|f| f / point.area));
+        let (opening, status) = (state.forces.opening[index], state.forces.status[index]);
+        table += &format!("{x1},{x2},{pressure},{},{},{opening},{status:?}\n", traction[0], traction[1]);
+    }
+    table
+}
+
+impl fmt::Display for Evaluated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let norm = self.subgradient.iter().map(|x| x * x).sum::<f64>().sqrt();
+        writeln!(f, "objective            {:.10e}", self.objective)?;
+        writeln!(f, "|subgradient|        {norm:.6e} ({} controls)", self.subgradient.len())?;
+        writeln!(f, "peak pressure        {:.6} MPa", self.peak_pressure)?;
+        writeln!(f, "total normal force   {:.10e} N", self.total_normal_force)?;
+        let status = &self.status;
+        writeln!(f, "contact nodes        {} open, {} stick, {} slip", status.open, status.stick, status.slip)?;
+        writeln!(
+            f,
+            "nearest kink         relative margin {:.1e}, {} nodes weakly active",
+            self.kink.smallest_margin, self.kink.weakly_active
+        )?;
+        let r = &self.residuals;
+        writeln!(
+            f,
+            "relative residuals   equilibrium {:.1e}, complementarity {:.1e}, friction cone {:.1e}, dissipation {:.1e}",
+            r.equilibrium, r.complementarity, r.friction_cone, r.dissipation
+        )?;
+        let work = &self.work;
+        writeln!(
+            f,
+            "work                 {} Newton steps, {} products with the dual operator ({} for the adjoint), {} factorisations",
+            work.newton_steps, work.dual_operator_applications, work.adjoint_applications, work.factorizations
+        )?;
+        writeln!(f, "seconds              state {:.3}, subgradient {:.3}", self.seconds.state, self.seconds.subgradient)?;
+        writeln!(f, "left out             {}", self.left_out.join("; "))
+    }
+}

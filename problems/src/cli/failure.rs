@@ -1,0 +1,77 @@
+//! Why a binary fails, and with which exit status.
+
+use crate::error::{ContactError, SceneError};
+use nonsmooth::verify::VerifyError;
+use nonsmooth::{InputError, OptimizeError, OracleError};
+use std::process::ExitCode;
+use thiserror::Error;
+
+/// A failed command.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Failure {
+    /// Bad input: exit status 2.
+    #[error("{0}")]
+    Input(String),
+    /// The computation failed: exit status 1.
+    #[error("{0}")]
+    Computation(String),
+}
+
+impl Failure {
+    /// 2 for bad input, 1 for a failed computation.
+    pub fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::Input(_) => ExitCode::from(2),
+            Self::Computation(_) => ExitCode::from(1),
+        }
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<OracleError> for Failure {
+    fn from(error: OracleError) -> Self {
+        let text = error.to_string();
+        match error {
+            OracleError::OutsideDomain { .. } => Self::Input(text),
+            OracleError::Failed(source)
+                if source.is::<InputError>()
+                    || matches!(source.downcast_ref(), Some(ContactError::NoEquilibrium { .. })) =>
+            {
+                Self::Input(text)
+            }
+            _ => Self::Computation(text),
+        }
+    }
+}
+
+impl From<OptimizeError> for Failure {
+    fn from(error: OptimizeError) -> Self {
+        match error {
+            OptimizeError::Oracle(source) => source.into(),
+            OptimizeError::Input(_) | OptimizeError::Infeasible { .. } => Self::Input(error.to_string()),
+            _ => Self::Computation(error.to_string()),
+        }
+    }
+}
+
+impl From<VerifyError> for Failure {
+    fn from(error: VerifyError) -> Self {
+        match error {
+            VerifyError::Input(error) => error.into(),
+            VerifyError::Oracle(error) => error.into(),
+            _ => Self::Computation(error.to_string()),
+        }
+    }
+}
