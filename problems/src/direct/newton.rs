@@ -50,6 +50,8 @@ pub struct CondensedSolution {
     pub steps: usize,
 }
 
+/// Tightest relative residual aimed at: below it rounding decides.
+const TIGHTEST: f64 = 1e-12;
 /// Newton steps allowed.
 const MAX_STEPS: usize = 60;
 /// Step halvings allowed.
@@ -74,7 +76,7 @@ impl CondensedContact<'_> {
     /// # Errors
     /// [`ContactError::NotConverged`] with the history, [`ContactError::NotFinite`].
     pub fn solve(&self, start: Option<&[f64]>, tolerance: f64) -> Result<CondensedSolution, ContactError> {
-        let tolerance = tolerance.max(1e-13);
+        let tolerance = tolerance.max(TIGHTEST);
         let mut u = match start {
             Some(u) if u.len() == self.size() * self.bodies.len() => u.to_vec(),
             _ => self.newton_candidate(

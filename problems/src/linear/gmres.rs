@@ -21,7 +21,11 @@ pub struct Combination<P> {
     pub residual: f64,
 }
 
-/// Minimises |r − A x| over growing Krylov spaces until the norm falls to `target` or `max_iterations` is reached.
+/// Iterations in which the residual must at least halve; otherwise rounding has stopped the iteration.
+const STALL_WINDOW: usize = 40;
+
+/// Minimises |r − A x| over growing Krylov spaces until the norm falls to `target`, `max_iterations` is reached, or the norm
+/// stalls; the caller judges the residual.
 ///
 /// `precondition(v)` returns z = M v; `apply(z)` returns (A z, payload).
 pub fn gmres<P>(
@@ -39,6 +43,7 @@ pub fn gmres<P>(
     }
     let mut basis = vec![residual.iter().map(|r| r / start).collect::<Vec<f64>>()];
     let mut triangle = Triangle::new(start);
+    let mut history = vec![start];
     while result.residual > target && result.directions.len() < max_iterations {
         let direction = precondition(&basis[basis.len() - 1]);
         let (mut image, payload) = apply(&direction);
@@ -54,9 +59,11 @@ pub fn gmres<P>(
         }
         let length = norm(&image);
         result.residual = triangle.append(column, length);
+        history.push(result.residual);
         // A vanishing new vector means the solution is exact in this space; NaN ends the loop as well.
         let scale = triangle.last_column_norm();
-        if !(length > 1e-14 * scale) {
+        let stalled = history.len() > STALL_WINDOW && result.residual > 0.5 * history[history.len() - 1 - STALL_WINDOW];
+        if !(length > 1e-14 * scale) || stalled {
             break;
         }
         image.iter_mut().for_each(|entry| *entry /= length);

@@ -51,7 +51,7 @@ pub struct NewtonSettings {
 impl NewtonSettings {
     /// Settings for a relative residual; 0 asks for all that rounding allows.
     pub fn to(tolerance: f64) -> Self {
-        Self { tolerance: tolerance.max(1e-13), acceptable: tolerance.max(1e-9), max_steps: 60, max_krylov: 400 }
+        Self { tolerance: tolerance.max(TIGHTEST), acceptable: tolerance.max(1e-9), max_steps: 60, max_krylov: 400 }
     }
 }
 
@@ -293,6 +293,8 @@ impl TornContact<'_> {
     }
 }
 
+/// Tightest relative residual aimed at: below it rounding decides.
+const TIGHTEST: f64 = 1e-12;
 /// Relative reduction of the bonded start.
 const BONDED_REDUCTION: f64 = 0.1;
 /// Krylov iterations of the bonded start.
