@@ -81,8 +81,20 @@ impl Reference {
 fn quadratic(qp: &EpigraphQp<'_>) -> CscMatrix<f64> {
     let n = qp.dimension();
     let entry = |i: usize, j: usize| match qp.metric {
-        Metric::ScaledIdentity(weight) => if i == j { weight } else { 0.0 },
-        Metric::Diagonal(diagonal) => if i == j { diagonal[i] } else { 0.0 },
+        Metric::ScaledIdentity(weight) => {
+            if i == j {
+                weight
+            } else {
+                0.0
+            }
+        }
+        Metric::Diagonal(diagonal) => {
+            if i == j {
+                diagonal[i]
+            } else {
+                0.0
+            }
+        }
         Metric::Dense(matrix) => matrix[(i, j)],
     };
     let mut columns: Vec<Vec<(usize, f64)>> =
