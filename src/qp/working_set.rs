@@ -9,7 +9,7 @@
 
 use crate::Vector;
 
-use super::certificate::LENGTH_SHARE;
+use super::certificate::{LENGTH_SHARE, SIDE_SHARE, largest_side};
 use super::coordinates::Coordinates;
 use super::factor::{Factor, Split};
 use super::kernels::{dot, dot_terms};
@@ -70,6 +70,8 @@ pub(super) struct WorkingSet<'a> {
     steepest: f64,
     /// ℓ = |d| + steepest.
     reach: f64,
+    /// b: largest distance |side| / |a| of the rows and bounds.
+    largest_side: f64,
     /// Smallest size of an active cut: one v serves them all, so an error of one is an error of each.
     pub(super) smallest_cut_size: f64,
 }
@@ -98,6 +100,7 @@ impl<'a> WorkingSet<'a> {
         Self {
             qp,
             coordinates,
+            largest_side: largest_side(qp, &norms[m..], &weights),
             rows,
             norms,
             cut_entry,
@@ -168,7 +171,9 @@ impl<'a> WorkingSet<'a> {
 
     /// Size of a side: its terms, and a share of its normal where they vanish.
     pub(super) fn size(&self, member: Member, side: f64) -> f64 {
-        self.terms(member, side) + LENGTH_SHARE * self.norm(member) * self.reach
+        let largest_side = if matches!(member, Member::Cut(_)) { 0.0 } else { self.largest_side };
+        let floor = LENGTH_SHARE * self.reach + SIDE_SHARE * largest_side;
+        self.terms(member, side) + floor * self.norm(member)
     }
 
     /// Norm of a normal in the metric's coordinates; for a dense metric in those of its diagonal.
