@@ -126,7 +126,15 @@ impl EpigraphQpSolver {
         mut best: Option<Attempt>,
     ) -> Result<Attempt, QpError> {
         self.counts.fallbacks += 1;
-        let answer = interior_point::solve(qp)?;
+        let answer = match (interior_point::solve(qp), best) {
+            (Ok(answer), known) => {
+                best = known;
+                answer
+            }
+            // A contradiction in the rounding of the sides is no contradiction.
+            (Err(_), Some(known)) if known.solution.kkt_residual <= REQUIRED => return Ok(known),
+            (Err(error), _) => return Err(error),
+        };
         let polished = run_active_set(qp, coordinates, &answer.actives);
         self.counts.pivots += polished.solution.pivots;
         keep_better(&mut best, polished);
