@@ -126,7 +126,15 @@ impl EpigraphQpSolver {
         mut best: Option<Attempt>,
     ) -> Result<Attempt, QpError> {
         self.counts.fallbacks += 1;
-        let answer = interior_point::solve(qp)?;
+        let answer = match (interior_point::solve(qp), best) {
+            (Ok(answer), known) => {
+                best = known;
+                answer
+            }
+            // A contradiction in the rounding of the sides is no contradiction.
+            (Err(_), Some(known)) if known.outcome == Outcome::Solved => return Ok(known),
+            (Err(error), _) => return Err(error),
+        };
         let polished = run_active_set(qp, coordinates, &answer.actives);
         self.counts.pivots += polished.solution.pivots;
         keep_better(&mut best, polished);
@@ -175,17 +183,26 @@ fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, warm: &[Active
     Attempt { outcome, solution, actives }
 }
 
-/// Completes a step and its multipliers to an answer with certificate.
+/// Completes a step and its multipliers to an answer with certificate; the step is moved into the box unless the certificate
+/// suffers (with a large H the rounding of a bound may weigh more than the whole step).
 pub(super) fn assemble(
     qp: &EpigraphQp<'_>,
-    mut step: Vector,
+    step: Vector,
     actives: &[Active],
     pivots: usize,
     method: QpMethod,
 ) -> QpSolution {
-    for (k, entry) in step.iter_mut().enumerate() {
-        *entry = entry.max(qp.lower[k]).min(qp.upper[k]);
+    let clamped = Vector::from_fn(step.len(), |k, _| step[k].max(qp.lower[k]).min(qp.upper[k]));
+    let unchanged = clamped == step;
+    let inside = complete(qp, clamped, actives, pivots, method);
+    if unchanged || inside.kkt_residual <= WANTED {
+        return inside;
     }
+    let outside = complete(qp, step, actives, pivots, method);
+    if outside.kkt_residual < inside.kkt_residual { outside } else { inside }
+}
+
+fn complete(qp: &EpigraphQp<'_>, step: Vector, actives: &[Active], pivots: usize, method: QpMethod) -> QpSolution {
     let values =
         qp.slopes.iter().zip(qp.offsets).map(|(slope, offset)| dot(slope.as_slice(), step.as_slice()) - offset);
     let epigraph = values.fold(f64::NEG_INFINITY, f64::max);
@@ -208,4 +225,38 @@ pub(super) fn assemble(
     }
     solution.kkt_residual = kkt_residual(qp, &solution);
     solution
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Metric;
+    use super::*;
+    use crate::Matrix;
+
+    #[test]
+    fn the_fallback_is_polished_to_the_accuracy_of_the_active_set_method() {
+        let n = 6;
+        let slopes: Vec<Vector> =
+            (0..9).map(|j| Vector::from_fn(n, |i, _| (0.3 + (i * i + 1) as f64 * j as f64).sin())).collect();
+        let (lower, upper) = (Vector::from_element(n, -0.2), Vector::from_element(n, 0.1));
+        let qp = EpigraphQp {
+            metric: Metric::ScaledIdentity(0.5),
+            slopes: &slopes,
+            offsets: &[0.0; 9],
+            cut_ids: &[0, 1, 2, 3, 4, 5, 6, 7, 8],
+            rows: &Matrix::zeros(0, n),
+            row_lower: &Vector::zeros(0),
+            row_upper: &Vector::zeros(0),
+            lower: &lower,
+            upper: &upper,
+        };
+        let mut solver = EpigraphQpSolver::new();
+        let expected = solver.solve(&qp).expect("feasible");
+        let coordinates = solver.coordinates.factorise(qp.metric, n).expect("positive");
+        let attempt = solver.fall_back(&qp, &coordinates, None).expect("feasible");
+        assert_eq!(solver.counts().fallbacks, 1);
+        assert_eq!(attempt.solution.method, QpMethod::ActiveSet);
+        assert!(attempt.solution.kkt_residual <= 1e-14);
+        assert!((attempt.solution.step - expected.step).norm() <= 1e-14);
+    }
 }
