@@ -71,7 +71,7 @@ pub enum ContactError {
         j: usize,
         /// Position along x₃.
         k: usize,
-        /// Smallest Jacobian determinant times Gauss weight, mm³.
+        /// Smallest Jacobian determinant (over the unit cube), mm³.
         determinant: f64,
     },
     /// The load has a resultant along a motion that nothing holds.

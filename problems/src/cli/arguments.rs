@@ -173,7 +173,11 @@ impl Arguments {
 /// The divisor of the mesh that leaves closest to six bricks per subdomain and edge.
 fn default_subdomains(mesh: usize) -> usize {
     let divisors = (1..=mesh).filter(|count| mesh.is_multiple_of(*count));
-    divisors.min_by_key(|count| (mesh / count).abs_diff(6)).unwrap_or(1)
+    let distance = |count: &usize| {
+        let bricks = (mesh / count) as f64 / 6.0;
+        bricks.max(1.0 / bricks)
+    };
+    divisors.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(1)
 }
 
 fn parse_surface(text: &str) -> Result<SplineKind, String> {

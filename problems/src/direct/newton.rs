@@ -29,7 +29,7 @@ pub struct CondensedContact<'a> {
     pub stiffness: f64,
     /// Force that residuals are relative to, N.
     pub load: f64,
-    /// Motions of the contact dofs that nothing holds, to be grounded on the lower body.
+    /// Motions of the contact dofs of all bodies that nothing holds, to be grounded.
     pub grounded: Vec<Vec<f64>>,
 }
 

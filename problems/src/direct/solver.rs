@@ -188,13 +188,15 @@ fn contact_stiffness(lower: &CondensedBody, upper: Option<&CondensedBody>) -> f6
     sum / count as f64
 }
 
-/// A motion of the scene on the contact dofs of the lower body, normalised.
+/// A motion of the scene on the contact dofs of all bodies, normalised.
 fn contact_motion(rigid: &modes::RigidScene, motion: &modes::Motion) -> Vec<f64> {
-    let mut values = Vec::with_capacity(3 * rigid.contact.len());
-    for [lower, _] in &rigid.contact {
-        let basis = modes::motions(*lower, rigid.centre, rigid.length);
-        for component in 0..3 {
-            values.push(basis.iter().zip(motion).map(|(b, c)| b[component] * c).sum());
+    let mut values = Vec::with_capacity(3 * rigid.bodies * rigid.contact.len());
+    for (body, coefficients) in motion.chunks_exact(modes::MOTIONS).enumerate() {
+        for points in &rigid.contact {
+            let basis = modes::motions(points[body], rigid.centre, rigid.length);
+            for component in 0..3 {
+                values.push(basis.iter().zip(coefficients).map(|(b, c)| b[component] * c).sum());
+            }
         }
     }
     let length = crate::linear::vector::norm(&values);

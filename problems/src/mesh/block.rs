@@ -4,7 +4,7 @@
 //! x₁ = i·a/n₁,  x₂ = j·b/n₂,  x₃ = lower_ij + (upper_ij − lower_ij)·k/n₃                              method.md section 2
 //! ```
 
-use crate::elasticity::hex8::{self, Nodes};
+use crate::elasticity::hex8::Nodes;
 use crate::error::ContactError;
 
 /// Topology and plan of a block: numbers of bricks and the size of its base.
@@ -110,24 +110,26 @@ impl Block {
         [x1, x2, self.lower[column] + (self.upper[column] - self.lower[column]) * share]
     }
 
-    /// Coordinates of the eight nodes of brick (i, j, k), in the order of [`hex8`].
+    /// Coordinates of the eight nodes of brick (i, j, k), in the order of [`crate::elasticity::hex8`].
     pub fn brick(&self, [i, j, k]: [usize; 3]) -> Nodes<f64> {
         std::array::from_fn(|a| self.coordinates([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]))
     }
 
     /// Refuses a block with an inverted or flat brick. `body` is its number in messages (1 lower, 2 upper).
     ///
+    /// Columns are vertical over a uniform grid, so det(∂x/∂ξ) of a brick interpolates h₁h₂·(height of the column)/n₃ between
+    /// its four columns: it is positive everywhere exactly if all columns have positive height.
+    ///
     /// # Errors
-    /// [`ContactError::InvertedElement`] naming the first such brick.
+    /// [`ContactError::InvertedElement`] naming a brick at the first such column.
     pub fn check_orientation(&self, body: usize) -> Result<(), ContactError> {
-        // All bricks of a column are the same up to a vertical stretch, so the lowest one decides.
-        for i in 0..self.grid.cells[0] {
-            for j in 0..self.grid.cells[1] {
-                let points = hex8::gauss_points(&self.brick([i, j, 0]));
-                let determinant = points.iter().map(|point| point.volume).fold(f64::INFINITY, f64::min);
-                if !(determinant > 0.0 && determinant.is_finite()) {
-                    return Err(ContactError::InvertedElement { body, i, j, k: 0, determinant });
-                }
+        let [n1, n2, n3] = self.grid.cells;
+        let base = self.grid.size[0] / n1 as f64 * self.grid.size[1] / n2 as f64;
+        for (i, j) in self.grid.columns() {
+            let column = self.grid.column(i, j);
+            let determinant = base * (self.upper[column] - self.lower[column]) / n3 as f64;
+            if !(determinant > 0.0 && determinant.is_finite()) {
+                return Err(ContactError::InvertedElement { body, i: i.min(n1 - 1), j: j.min(n2 - 1), k: 0, determinant });
             }
         }
         Ok(())
