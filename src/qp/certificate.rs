@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! stationarity      max_i |r_i| / √H_ii  over  max_i t_i / √H_ii,   r = H d + Σ π g + Aᵀ μ + ν,  t = Σ |terms of r|
-//! primal            excess over a side / (|side| + Σ |terms| + 1e-10 |a| ℓ),   ℓ = |d| + max_j |g_j|, norms of the metric
+//! primal            excess over a side / (|side| + Σ |terms| + |a| (1e-10 ℓ + 1e-3 b))
 //! dual              |Σ π − 1|,  −π_j,  multipliers of open or wrong sides relative to t
 //! complementarity   (relative size of the multiplier) · (relative slack)
 //! ```
-//! The share 1e-10 |a| ℓ gives a side a size where all its terms vanish, as at d = 0: ℓ is the length of the unconstrained step.
+//! ℓ = |d| + max_j |g_j| in the norms of the metric, the length of the unconstrained step, gives a side a size where all its terms
+//! vanish, as at d = 0. b is the largest distance |side| / |a| of any row or bound (0 for cuts): sides are differences, and at
+//! an active row of the center what is left of them is rounding of that size.
 //! Every part is a quotient of like quantities, so the residual does not depend on the units of values and variables.
 
 use crate::Vector;
@@ -29,28 +31,40 @@ pub fn kkt_residual(qp: &EpigraphQp<'_>, solution: &QpSolution) -> f64 {
 
 /// Share of |a| ℓ in the size of a side.
 pub(super) const LENGTH_SHARE: f64 = 1e-10;
+/// Share of |a| b in the size of a row's or a bound's side.
+pub(super) const SIDE_SHARE: f64 = 1e-3;
 
-/// The part 1e-10 |a| ℓ of a side's size.
+/// b: the largest distance |side| / |a| among rows and bounds. Sides are differences in the caller's hands (side − A x̂), so
+/// each carries the rounding of the largest. Numbers from 1e15 on stand for open sides.
+pub(super) fn largest_side(qp: &EpigraphQp<'_>, row_norms: &[f64], weights: &[f64]) -> f64 {
+    let rows = qp.row_lower.iter().zip(qp.row_upper).zip(row_norms);
+    let bounds = qp.lower.iter().zip(qp.upper).zip(weights);
+    let distances = rows.chain(bounds).flat_map(|((&lower, &upper), &norm)| [(lower, norm), (upper, norm)]);
+    let finite = distances.filter(|(side, norm)| side.abs() < 1e15 && *norm > 0.0);
+    finite.map(|(side, norm)| side.abs() / norm).fold(0.0, f64::max)
+}
+
+/// The part of a side's size that does not vanish with its terms.
 struct SizeFloor {
     weights: Vec<f64>,
-    share: f64,
+    cut_share: f64,
+    side_share: f64,
 }
 
 impl SizeFloor {
     fn new(qp: &EpigraphQp<'_>, step: &Vector) -> Self {
         let weights: Vec<f64> = (0..qp.dimension()).map(|i| qp.metric.diagonal_entry(i).sqrt().recip()).collect();
         let step_length = step.iter().zip(&weights).map(|(d, w)| (d / w).powi(2)).sum::<f64>().sqrt();
-        let floor = Self { weights, share: LENGTH_SHARE };
+        let mut floor = Self { weights, cut_share: 0.0, side_share: 0.0 };
         let steepest = qp.slopes.iter().map(|slope| floor.norm(slope.iter())).fold(0.0, f64::max);
-        Self { share: LENGTH_SHARE * (step_length + steepest), ..floor }
+        let row_norms: Vec<f64> = qp.rows.row_iter().map(|row| floor.norm(row.iter())).collect();
+        floor.cut_share = LENGTH_SHARE * (step_length + steepest);
+        floor.side_share = floor.cut_share + SIDE_SHARE * largest_side(qp, &row_norms, &floor.weights);
+        floor
     }
 
     fn norm<'b>(&self, normal: impl Iterator<Item = &'b f64>) -> f64 {
         normal.zip(&self.weights).map(|(a, w)| (a * w).powi(2)).sum::<f64>().sqrt()
-    }
-
-    fn of<'b>(&self, normal: impl Iterator<Item = &'b f64>) -> f64 {
-        self.share * self.norm(normal)
     }
 }
 
@@ -120,7 +134,7 @@ fn cut_residual(qp: &EpigraphQp<'_>, solution: &QpSolution, floor: &SizeFloor) -
     for ((slope, &offset), &pi) in qp.slopes.iter().zip(qp.offsets).zip(&solution.cut_multipliers) {
         let (value, terms) = value_and_terms(slope.iter(), &solution.step);
         let gap = value - offset - solution.epigraph;
-        let size = terms + offset.abs() + solution.epigraph.abs() + floor.of(slope.iter());
+        let size = terms + offset.abs() + solution.epigraph.abs() + floor.cut_share * floor.norm(slope.iter());
         raise(&mut worst, ratio(gap.max(0.0), size));
         raise(&mut worst, pi.abs().min(1.0) * ratio((-gap).max(0.0), size));
         raise(&mut worst, -pi);
@@ -139,7 +153,14 @@ fn row_residual(qp: &EpigraphQp<'_>, solution: &QpSolution, stationarity: &Stati
         let share = stationarity.share(mu, norm);
         raise(
             &mut worst,
-            interval_residual(value, terms + floor.of(row.iter()), qp.row_lower[i], qp.row_upper[i], mu, share),
+            interval_residual(
+                value,
+                terms + floor.side_share * floor.norm(row.iter()),
+                qp.row_lower[i],
+                qp.row_upper[i],
+                mu,
+                share,
+            ),
         );
     }
     worst
@@ -150,7 +171,7 @@ fn bound_residual(qp: &EpigraphQp<'_>, solution: &QpSolution, stationarity: &Sta
     for (i, &nu) in solution.bound_multipliers.iter().enumerate() {
         let value = solution.step[i];
         let share = stationarity.share(nu, stationarity.weights[i]);
-        let terms = value.abs() + floor.share * stationarity.weights[i];
+        let terms = value.abs() + floor.side_share * floor.weights[i];
         raise(&mut worst, interval_residual(value, terms, qp.lower[i], qp.upper[i], nu, share));
     }
     worst

@@ -14,7 +14,12 @@ use super::problem::Metric;
 #[derive(Debug, Clone)]
 pub(super) enum Coordinates {
     /// L = diag(√H_ii): bounds of single variables stay bounds of single coordinates.
-    Axes(Vec<f64>),
+    Axes {
+        /// √H_ii.
+        lengths: Vec<f64>,
+        /// H_ii.
+        diagonal: Vec<f64>,
+    },
     /// Dense lower triangular L.
     Dense(Box<Cholesky<f64, Dyn>>),
 }
@@ -28,10 +33,8 @@ pub(super) struct CoordinatesCache {
 impl CoordinatesCache {
     pub(super) fn factorise(&mut self, metric: Metric<'_>, dimension: usize) -> Result<Coordinates, InputError> {
         let matrix = match metric {
-            Metric::ScaledIdentity(weight) => return Ok(Coordinates::Axes(vec![weight.sqrt(); dimension])),
-            Metric::Diagonal(diagonal) => {
-                return Ok(Coordinates::Axes(diagonal.iter().map(|entry| entry.sqrt()).collect()));
-            }
+            Metric::ScaledIdentity(weight) => return Ok(Coordinates::axes(vec![weight; dimension])),
+            Metric::Diagonal(diagonal) => return Ok(Coordinates::axes(diagonal.as_slice().to_vec())),
             Metric::Dense(matrix) => matrix,
         };
         if let Some((known, coordinates)) = &self.matrix
@@ -51,11 +54,15 @@ impl CoordinatesCache {
 }
 
 impl Coordinates {
+    fn axes(diagonal: Vec<f64>) -> Self {
+        Self::Axes { lengths: diagonal.iter().map(|entry| entry.sqrt()).collect(), diagonal }
+    }
+
     /// L⁻¹ g, with room for one more entry.
     pub(super) fn normal(&self, gradient: &[f64]) -> Vec<f64> {
         let mut normal = Vec::with_capacity(gradient.len() + 1);
         match self {
-            Self::Axes(lengths) => normal.extend(gradient.iter().zip(lengths).map(|(g, l)| g / l)),
+            Self::Axes { lengths, .. } => normal.extend(gradient.iter().zip(lengths).map(|(g, l)| g / l)),
             Self::Dense(factor) => {
                 let mut solved = Vector::from_column_slice(gradient);
                 factor.l_dirty().solve_lower_triangular_mut(&mut solved);
@@ -68,7 +75,7 @@ impl Coordinates {
     /// Replaces a sum of gradients by d = −H⁻¹ sum.
     pub(super) fn minimiser(&self, sum: &mut Vector) {
         match self {
-            Self::Axes(lengths) => sum.iter_mut().zip(lengths).for_each(|(s, l)| *s = -*s / (l * l)),
+            Self::Axes { diagonal, .. } => sum.iter_mut().zip(diagonal).for_each(|(s, h)| *s = -*s / h),
             Self::Dense(factor) => {
                 factor.solve_mut(sum);
                 sum.neg_mut();
@@ -79,7 +86,7 @@ impl Coordinates {
     /// √H_ii if coordinate i is variable i up to scale.
     pub(super) fn axis_length(&self, index: usize) -> Option<f64> {
         match self {
-            Self::Axes(lengths) => Some(lengths[index]),
+            Self::Axes { lengths, .. } => Some(lengths[index]),
             Self::Dense(_) => None,
         }
     }

@@ -176,3 +176,53 @@ fn compressed(height: usize, columns: &[Vec<(usize, f64)>]) -> CscMatrix<f64> {
     }
     CscMatrix::new(height, columns.len(), starts, indices, values)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{EpigraphQpSolver, Metric};
+    use super::*;
+
+    /// Twelve variables, nine cuts, an equality, two-sided rows, a box; in units far from one.
+    fn with_example(check: impl Fn(&EpigraphQp<'_>)) {
+        let (n, unit) = (12, 1e-5);
+        let wave = |i: usize, j: usize| ((3 * i + 1) as f64 * (0.7 * j as f64 + 0.3)).sin();
+        let slopes: Vec<Vector> = (0..9).map(|j| Vector::from_fn(n, |i, _| 1e4 * wave(i, j))).collect();
+        let offsets: Vec<f64> = (0..9).map(|j| 1e4 * unit * 0.1 * j as f64).collect();
+        let ids: Vec<u64> = (0..9).collect();
+        let rows = Matrix::from_fn(4, n, |i, j| wave(i + 20, j));
+        let side = |value: f64| Vector::from_fn(4, |i, _| if i == 0 { 0.2 * unit } else { value * unit });
+        let bound = Vector::from_element(n, unit);
+        let qp = EpigraphQp {
+            metric: Metric::ScaledIdentity(1e8),
+            slopes: &slopes,
+            offsets: &offsets,
+            cut_ids: &ids,
+            rows: &rows,
+            row_lower: &side(-0.3),
+            row_upper: &side(0.3),
+            lower: &(-&bound),
+            upper: &bound,
+        };
+        check(&qp);
+    }
+
+    #[test]
+    fn both_methods_agree() {
+        with_example(|qp| {
+            let own = EpigraphQpSolver::new().solve(qp).expect("feasible");
+            let interior = solve(qp).expect("feasible").solution;
+            // Without a polish: tolerance 1e-13 of the objective, about its root in the step.
+            assert!(interior.kkt_residual <= 1e-7, "{:e}", interior.kkt_residual);
+            assert!((&own.step - &interior.step).norm() <= 1e-6 * own.step.norm());
+        });
+    }
+
+    #[test]
+    fn an_empty_set_is_recognised() {
+        with_example(|qp| {
+            let (low, high) = (qp.row_lower.add_scalar(1.0), qp.row_upper.add_scalar(1.0));
+            let empty = EpigraphQp { row_lower: &low, row_upper: &high, ..*qp };
+            assert!(matches!(solve(&empty), Err(QpError::Infeasible { violation }) if violation > 0.1));
+        });
+    }
+}

@@ -6,6 +6,9 @@ use super::working_set::{Member, Side, WorkingSet};
 /// Excess relative to its terms below which a side counts as satisfied.
 const SATISFIED: f64 = 2e-14;
 
+/// Excess relative to its terms that cannot be told from rounding.
+const ROUNDING: f64 = 2e-15;
+
 /// A violated side.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Violation {
@@ -30,8 +33,11 @@ impl WorkingSet<'_> {
                 return;
             }
             let bound = if side == Side::Upper { upper } else { lower };
-            let relative = excess / self.terms(member, bound);
-            if relative > SATISFIED && !self.is_held(member) {
+            let own_size = self.size(member, bound);
+            let size = if matches!(member, Member::Cut(_)) { own_size.min(self.smallest_cut_size) } else { own_size };
+            let satisfied = (SATISFIED * size).max(ROUNDING * self.terms(member, bound));
+            let relative = excess / own_size;
+            if excess > satisfied && !self.is_held(member) {
                 let side = if lower == upper { Side::Both } else { side };
                 worst = Some(Violation { member, side, relative, distance: excess / norm });
             }

@@ -31,9 +31,30 @@ pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
         return Err(crate::InputError::NotFinite { what: "point", index, value: x[index] }.into());
     }
     let clamped = set.clamp_to_box(x);
-    if set.violation(&clamped) == 0.0 && clamped == *x {
+    if clamped == *x && set.violation(x) == 0.0 {
         return Ok(clamped);
     }
+    let mut nearest = set.clamp_to_box(&(x + shortest_step(set, x)?));
+    // The rounding of a step is relative to its length: a second, tiny step lands closer.
+    for _ in 0..REFINEMENTS {
+        let violation = set.violation(&nearest);
+        if violation <= f64::EPSILON {
+            break;
+        }
+        let candidate = set.clamp_to_box(&(&nearest + shortest_step(set, &nearest)?));
+        if set.violation(&candidate) >= violation {
+            break;
+        }
+        nearest = candidate;
+    }
+    Ok(nearest)
+}
+
+/// Steps taken after the first, at most.
+const REFINEMENTS: usize = 2;
+
+/// The shortest d with x + d in the set.
+fn shortest_step(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
     let shift = set.rows() * x;
     let qp = EpigraphQp {
         metric: Metric::ScaledIdentity(1.0),
@@ -46,6 +67,5 @@ pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
         lower: &(set.lower() - x),
         upper: &(set.upper() - x),
     };
-    let solution = EpigraphQpSolver::new().solve(&qp)?;
-    Ok(set.clamp_to_box(&(x + solution.step)))
+    Ok(EpigraphQpSolver::new().solve(&qp)?.step)
 }

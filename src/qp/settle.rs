@@ -92,18 +92,18 @@ impl WorkingSet<'_> {
     }
 
     fn residuals(&self) -> Residuals {
-        let mut worst = 0.0_f64;
-        let one = |active: &Active| {
-            let held = self.held_value(active);
-            let residual = held - self.value(active.member);
-            if residual != 0.0 {
-                worst = worst.max(residual.abs() / self.terms(active.member, held));
-            }
-            residual
-        };
-        let sides = self.general.iter().map(one).collect();
+        let sides: Vec<f64> =
+            self.general.iter().map(|active| self.held_value(active) - self.value(active.member)).collect();
         let deficit = 1.0 - self.cut_sum();
-        Residuals { step: self.step_residual(), sides, deficit, size: worst.max(deficit.abs()) }
+        let mut worst = if deficit.abs() > 4.0 * f64::EPSILON { deficit.abs() } else { 0.0 };
+        for (active, residual) in self.general.iter().zip(&sides).filter(|(_, residual)| **residual != 0.0) {
+            let size = match active.member {
+                Member::Cut(_) => self.smallest_cut_size,
+                _ => self.size(active.member, self.held_value(active)),
+            };
+            worst = worst.max(residual.abs() / size);
+        }
+        Residuals { step: self.step_residual(), sides, deficit, size: worst }
     }
 
     /// q: what the stationarity equations ask of d. Entries of r that are rounding count as zero.

@@ -209,3 +209,37 @@ pub(super) fn assemble(
     solution.kkt_residual = kkt_residual(qp, &solution);
     solution
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Metric;
+    use super::*;
+    use crate::Matrix;
+
+    #[test]
+    fn the_fallback_is_polished_to_the_accuracy_of_the_active_set_method() {
+        let n = 6;
+        let slopes: Vec<Vector> =
+            (0..9).map(|j| Vector::from_fn(n, |i, _| (0.3 + (i * i + 1) as f64 * j as f64).sin())).collect();
+        let (lower, upper) = (Vector::from_element(n, -0.2), Vector::from_element(n, 0.1));
+        let qp = EpigraphQp {
+            metric: Metric::ScaledIdentity(0.5),
+            slopes: &slopes,
+            offsets: &[0.0; 9],
+            cut_ids: &[0, 1, 2, 3, 4, 5, 6, 7, 8],
+            rows: &Matrix::zeros(0, n),
+            row_lower: &Vector::zeros(0),
+            row_upper: &Vector::zeros(0),
+            lower: &lower,
+            upper: &upper,
+        };
+        let mut solver = EpigraphQpSolver::new();
+        let expected = solver.solve(&qp).expect("feasible");
+        let coordinates = solver.coordinates.factorise(qp.metric, n).expect("positive");
+        let attempt = solver.fall_back(&qp, &coordinates, None).expect("feasible");
+        assert_eq!(solver.counts().fallbacks, 1);
+        assert_eq!(attempt.solution.method, QpMethod::ActiveSet);
+        assert!(attempt.solution.kkt_residual <= 1e-14);
+        assert!((attempt.solution.step - expected.step).norm() <= 1e-14);
+    }
+}

@@ -9,7 +9,7 @@
 
 use crate::Vector;
 
-use super::certificate::LENGTH_SHARE;
+use super::certificate::{LENGTH_SHARE, SIDE_SHARE, largest_side};
 use super::coordinates::Coordinates;
 use super::factor::{Factor, Split};
 use super::kernels::{dot, dot_terms};
@@ -70,6 +70,10 @@ pub(super) struct WorkingSet<'a> {
     steepest: f64,
     /// ℓ = |d| + steepest.
     reach: f64,
+    /// b: largest distance |side| / |a| of the rows and bounds.
+    largest_side: f64,
+    /// Smallest size of an active cut: one v serves them all, so an error of one is an error of each.
+    pub(super) smallest_cut_size: f64,
 }
 
 impl<'a> WorkingSet<'a> {
@@ -96,6 +100,7 @@ impl<'a> WorkingSet<'a> {
         Self {
             qp,
             coordinates,
+            largest_side: largest_side(qp, &norms[m..], &weights),
             rows,
             norms,
             cut_entry,
@@ -108,6 +113,7 @@ impl<'a> WorkingSet<'a> {
             pivots: 0,
             steepest,
             reach: steepest,
+            smallest_cut_size: f64::INFINITY,
         }
     }
 
@@ -160,7 +166,14 @@ impl<'a> WorkingSet<'a> {
             _ => self.gradient(member).map_or(0.0, |gradient| dot_terms(gradient, self.step.as_slice())),
         };
         let epigraph = if matches!(member, Member::Cut(_)) { self.epigraph.abs() } else { 0.0 };
-        terms + epigraph + side.abs() + LENGTH_SHARE * self.norm(member) * self.reach
+        terms + epigraph + side.abs()
+    }
+
+    /// Size of a side: its terms, and a share of its normal where they vanish.
+    pub(super) fn size(&self, member: Member, side: f64) -> f64 {
+        let largest_side = if matches!(member, Member::Cut(_)) { 0.0 } else { self.largest_side };
+        let floor = LENGTH_SHARE * self.reach + SIDE_SHARE * largest_side;
+        self.terms(member, side) + floor * self.norm(member)
     }
 
     /// Norm of a normal in the metric's coordinates; for a dense metric in those of its diagonal.
@@ -171,10 +184,13 @@ impl<'a> WorkingSet<'a> {
         }
     }
 
-    /// Updates the length ℓ of the problem to the current step.
+    /// Updates the sizes against which residuals are measured to the current step.
     pub(super) fn measure(&mut self) {
         let square = |(k, d): (usize, &f64)| d * d * self.qp.metric.diagonal_entry(k);
         self.reach = self.steepest + self.step.iter().enumerate().map(square).sum::<f64>().sqrt();
+        let cuts = self.general.iter().filter(|active| matches!(active.member, Member::Cut(_)));
+        let sizes = cuts.map(|active| self.size(active.member, self.held_value(active)));
+        self.smallest_cut_size = sizes.fold(f64::INFINITY, f64::min);
     }
 
     /// The value an active member is held at.

@@ -197,3 +197,76 @@ fn random_box(numbers: &mut Numbers, inside: &Vector) -> (Vector, Vector) {
     }
     (lower, upper)
 }
+
+/// Sizes of a synthetic bundle run.
+#[derive(Clone, Copy, Debug)]
+pub struct BundleSequence {
+    pub dimension: usize,
+    /// Quadratic pieces of the function.
+    pub pieces: usize,
+    /// Capacity of the bundle.
+    pub cuts: usize,
+    pub rows: usize,
+    pub solves: usize,
+}
+
+/// max_k ½ c_k |x − z_k|² + b_kᵀ x.
+struct MaxOfQuadratics(Vec<(f64, Vector, Vector)>);
+
+impl MaxOfQuadratics {
+    fn value_and_subgradient(&self, x: &Vector) -> (f64, Vector) {
+        let one = |(c, z, b): &(f64, Vector, Vector)| (0.5 * c * (x - z).norm_squared() + b.dot(x), (x - z) * *c + b);
+        let all = self.0.iter().map(one);
+        all.max_by(|a, b| a.0.total_cmp(&b.0)).expect("at least one piece")
+    }
+}
+
+impl BundleSequence {
+    /// The QPs of a proximal bundle loop with weight control.
+    pub fn record(&self, seed: u64) -> Vec<OwnedQp> {
+        let mut numbers = Numbers(seed);
+        let n = self.dimension;
+        let pieces = (0..self.pieces).map(|_| (numbers.unit(), numbers.vector(n), numbers.vector(n)));
+        let function = MaxOfQuadratics(pieces.collect());
+        let mut rows = Matrix::zeros(self.rows, n);
+        for i in 0..self.rows {
+            (0..3).for_each(|_| rows[(i, numbers.below(n))] = numbers.signed());
+        }
+        let (low, high) = (Vector::from_element(self.rows, -0.3), Vector::from_element(self.rows, 0.3));
+        let mut center = Vector::zeros(n);
+        let (mut value, slope) = function.value_and_subgradient(&center);
+        let mut weight = slope.norm();
+        let mut bundle: Vec<(u64, Vector, f64, Vector)> = vec![(0, center.clone(), value, slope)];
+        let (mut record, mut solver) = (Vec::new(), nonsmooth::qp::EpigraphQpSolver::new());
+        for solve in 0..self.solves {
+            let shift = &rows * &center;
+            let qp = OwnedQp {
+                metric: OwnedMetric::ScaledIdentity(weight),
+                slopes: bundle.iter().map(|cut| cut.3.clone()).collect(),
+                offsets: bundle.iter().map(|cut| (value - cut.2 - cut.3.dot(&(&center - &cut.1))).max(0.0)).collect(),
+                cut_ids: bundle.iter().map(|cut| cut.0).collect(),
+                rows: rows.clone(),
+                row_lower: &low - &shift,
+                row_upper: &high - &shift,
+                lower: Vector::from_element(n, -0.5) - &center,
+                upper: Vector::from_element(n, 0.5) - &center,
+            };
+            let solution = solver.solve(&qp.view()).expect("the center is admissible");
+            record.push(qp);
+            let trial = &center + &solution.step;
+            let (trial_value, slope) = function.value_and_subgradient(&trial);
+            if bundle.len() >= self.cuts {
+                let unused = (0..bundle.len()).find(|&j| solution.cut_multipliers[j] == 0.0).unwrap_or(0);
+                bundle.remove(unused);
+            }
+            bundle.push((solve as u64 + 1, trial.clone(), trial_value, slope));
+            if trial_value - value <= 0.1 * solution.epigraph {
+                (center, value) = (trial, trial_value);
+                weight *= if numbers.below(2) == 0 { 0.4 } else { 1.0 };
+            } else if numbers.below(6) == 0 {
+                weight *= 2.0;
+            }
+        }
+        record
+    }
+}
