@@ -54,6 +54,7 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
     let clock = Instant::now();
     let config = BundleTrustConfig {
         max_evaluations: arguments.max_evaluations.unwrap_or(DEFAULT_EVALUATIONS),
+        first_step: first_step(objective, &start),
         ..BundleTrustConfig::default()
     };
     let report = BundleTrust::new(config)?
@@ -75,6 +76,15 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
         folder.write("pressure_optimal.csv", &evaluate::pressure_table(objective, &optimal))?;
     }
     Ok(if arguments.json { json } else { page(&report, objective, peaks) })
+}
+
+/// A third of the mean distance between the starting surface and its counterpart: the length on which contact changes.
+fn first_step(objective: &ContactObjective, start: &Vector) -> Option<f64> {
+    let problem = objective.solver().problem();
+    let block = problem.lower_block(start.as_slice()).ok()?;
+    let gaps = problem.gaps(&block);
+    let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (3 * gaps.len()) as f64;
+    (length > 0.0).then_some(length)
 }
 
 fn summary<'a>(report: &'a Report, objective: &ContactObjective, peaks: [f64; 2], seconds: f64) -> Optimized<'a> {
