@@ -9,12 +9,56 @@ use crate::{InputError, Matrix, Vector};
 
 /// A polyhedron given by bounds and two-sided rows.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "Stored", into = "Stored")]
 pub struct Polyhedron {
     lower: Vector,
     upper: Vector,
     rows: Matrix,
     row_lower: Vector,
     row_upper: Vector,
+}
+
+/// A polyhedron in a file: open sides are `null`, because text formats have no infinity.
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Stored {
+    lower: Vec<Option<f64>>,
+    upper: Vec<Option<f64>>,
+    rows: Vec<Vec<f64>>,
+    row_lower: Vec<Option<f64>>,
+    row_upper: Vec<Option<f64>>,
+}
+
+impl From<Polyhedron> for Stored {
+    fn from(set: Polyhedron) -> Self {
+        let sides = |side: &Vector| side.iter().map(|value| value.is_finite().then_some(*value)).collect();
+        Self {
+            lower: sides(&set.lower),
+            upper: sides(&set.upper),
+            rows: set.rows.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            row_lower: sides(&set.row_lower),
+            row_upper: sides(&set.row_upper),
+        }
+    }
+}
+
+impl TryFrom<Stored> for Polyhedron {
+    type Error = InputError;
+
+    fn try_from(stored: Stored) -> Result<Self, InputError> {
+        let sides = |side: &[Option<f64>], open: f64| {
+            Vector::from_iterator(side.len(), side.iter().map(|value| value.unwrap_or(open)))
+        };
+        let dimension = stored.lower.len();
+        if let Some(row) = stored.rows.iter().find(|row| row.len() != dimension) {
+            return Err(InputError::Dimension { what: "constraint row", expected: dimension, found: row.len() });
+        }
+        let rows = Matrix::from_fn(stored.rows.len(), dimension, |i, j| stored.rows[i][j]);
+        Self::boxed(sides(&stored.lower, f64::NEG_INFINITY), sides(&stored.upper, f64::INFINITY))?.with_rows(
+            &rows,
+            &sides(&stored.row_lower, f64::NEG_INFINITY),
+            &sides(&stored.row_upper, f64::INFINITY),
+        )
+    }
 }
 
 impl Polyhedron {
@@ -48,11 +92,7 @@ impl Polyhedron {
             return Err(InputError::Dimension { what: "constraint row", expected, found: rows.ncols() });
         }
         if rows.nrows() != row_lower.len() {
-            return Err(InputError::Dimension {
-                what: "row_lower",
-                expected: rows.nrows(),
-                found: row_lower.len(),
-            });
+            return Err(InputError::Dimension { what: "row_lower", expected: rows.nrows(), found: row_lower.len() });
         }
         if let Some(index) = crate::linalg::first_non_finite(rows.as_slice()) {
             return Err(InputError::NotFinite { what: "constraint rows", index, value: rows.as_slice()[index] });
@@ -106,15 +146,21 @@ impl Polyhedron {
     /// Largest violation of any side at x, relative to the size of that side's bound and of its terms
     /// (max(|bound|, Σⱼ|aⱼxⱼ|), so it does not depend on units); 0 for an admissible point.
     pub fn violation(&self, x: &Vector) -> f64 {
+        self.violation_near(x, x)
+    }
+
+    /// [`violation`](Self::violation) with the terms measured at a second point where they are larger: next to a
+    /// reference of ordinary size, a point whose entries cancel to zero is not judged by its rounding errors.
+    pub fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
         let mut worst: f64 = 0.0;
         for i in 0..self.dimension() {
-            worst = worst.max(side_violation(x[i], self.lower[i], self.upper[i], x[i].abs()));
+            worst = worst.max(side_violation(x[i], self.lower[i], self.upper[i], x[i].abs().max(reference[i].abs())));
         }
         for (i, row) in self.rows.row_iter().enumerate() {
             let (mut value, mut scale) = (0.0, 0.0);
-            for (a, x) in row.iter().zip(x.iter()) {
+            for (a, (x, y)) in row.iter().zip(x.iter().zip(reference.iter())) {
                 value += a * x;
-                scale += (a * x).abs();
+                scale += (a * x).abs().max((a * y).abs());
             }
             worst = worst.max(side_violation(value, self.row_lower[i], self.row_upper[i], scale));
         }

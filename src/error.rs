@@ -95,3 +95,24 @@ impl From<InputError> for OracleError {
         Self::Failed(Box::new(error))
     }
 }
+
+/// Why a run could not begin. Everything that happens after the first evaluation ends in a report instead.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum OptimizeError {
+    /// Sizes or numbers that cannot be worked with.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// The admissible set is empty.
+    #[error("the admissible set is empty: the constraints contradict each other by {violation:.3e} (relative)")]
+    Infeasible {
+        /// Relative violation that remains.
+        violation: f64,
+    },
+    /// The first evaluation failed; there is no point to return.
+    #[error("the first evaluation failed: {0}")]
+    Oracle(#[source] OracleError),
+    /// A snapshot was taken with other constraints.
+    #[error("the constraints differ from those of the snapshot; start a new run from its center instead")]
+    ChangedConstraints,
+}

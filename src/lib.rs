@@ -4,20 +4,33 @@
 //! minimise Θ(α) = J(α, S(α))  over  α ∈ U,      ξ = ∇₁J + D*S(α)(∇₂J) ∈ ∂Θ(α)              method.md (1.1), (1.2)
 //! ```
 
+pub mod bundle;
 pub mod constraints;
+pub mod counted;
 pub mod error;
 pub mod linalg;
 pub mod objective;
 pub mod problem;
 pub mod qp;
 pub mod reduced;
+pub mod report;
+pub mod verify;
 
 mod accuracy;
 
 pub use accuracy::Accuracy;
+pub use bundle::{
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run, ScaledNorm, Snapshot, SnapshotError,
+    VariableScaling,
+};
 pub use constraints::Polyhedron;
-pub use error::{InputError, OracleError};
+pub use counted::Counted;
+pub use error::{InputError, OptimizeError, OracleError};
 pub use linalg::{Matrix, Vector};
 pub use objective::{Answer, Evaluation, FnObjective, NonsmoothObjective, Request};
 pub use problem::{Coderivative, Cost, CostGradient, StateSolver};
 pub use reduced::ReducedObjective;
+pub use report::{
+    Certificate, CertificateCheck, Counts, IterationRecord, Observer, Report, StepKind, StopRule, TablePrinter,
+    Termination,
+};

@@ -7,3 +7,24 @@
 //!                   lower ≤ d ≤ upper           (multipliers ν, signed likewise)
 //! KKT:              H d + Σ π_j g_j + Aᵀ μ + ν = 0
 //! ```
+//! [`EpigraphQpSolver`] is a warm-started dual active-set method; what it cannot finish goes to an interior-point method
+//! and comes back to it for a polish. Every answer carries its [`kkt_residual`], computed from the data alone.
+//! [`project`] is the Euclidean projection onto a polyhedron, a special case.
+
+mod active_set;
+mod certificate;
+mod coordinates;
+mod factor;
+mod interior_point;
+mod kernels;
+mod pricing;
+mod problem;
+mod projection;
+mod settle;
+mod solver;
+mod working_set;
+
+pub use certificate::kkt_residual;
+pub use problem::{EpigraphQp, Metric, QpCounts, QpError, QpMethod, QpSolution};
+pub use projection::project;
+pub use solver::EpigraphQpSolver;

@@ -1,0 +1,176 @@
+//! Runs the collection of test problems with one setting and prints evaluations beside the best peers.
+//!
+//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--budget-factor F]`
+
+use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
+use serde::Serialize;
+use std::cell::RefCell;
+use testset::{Family, Problem};
+
+const LEVELS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
+
+/// What one problem needed.
+#[derive(Serialize)]
+struct Row {
+    name: String,
+    dimension: usize,
+    constrained: bool,
+    /// Evaluations to each of the levels.
+    evaluations: [Option<usize>; 4],
+    mpbngc: Option<usize>,
+    best_peer: Option<usize>,
+    best_peer_name: String,
+    all_peers_solve: bool,
+    infeasible: usize,
+    total: usize,
+    final_gap: f64,
+    termination: String,
+    stationary: bool,
+    aborted: bool,
+}
+
+#[derive(Serialize)]
+struct Summary {
+    scale: f64,
+    solved_unconstrained: (usize, usize),
+    solved_constrained: (usize, usize),
+    geometric_mean_to_mpbngc: f64,
+    compared: usize,
+    common_sum: usize,
+    common_unsolved: usize,
+    infeasible: usize,
+    aborted: usize,
+    false_stops: usize,
+}
+
+fn main() {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let value = |flag: &str| args.iter().position(|arg| arg == flag).and_then(|i| args.get(i + 1)).cloned();
+    let scale: f64 = value("--scale").and_then(|text| text.parse().ok()).unwrap_or(1.0);
+    let only = value("--only");
+    let problems = testset::all().into_iter().filter(|problem| only.as_ref().is_none_or(|name| *name == problem.name));
+    let rows: Vec<Row> = problems.map(|problem| run(&problem, scale)).collect();
+    let summary = summarize(&rows, scale);
+    if args.iter().any(|arg| arg == "--json") {
+        let text = serde_json::to_string_pretty(&serde_json::json!({ "summary": summary, "problems": rows }));
+        println!("{}", text.expect("plain numbers serialize"));
+    } else {
+        rows.iter().for_each(print_row);
+        print_summary(&summary);
+    }
+}
+
+/// Minimises f(x/scale) from scale·x0 and reads the counts off the sequence of evaluations.
+fn run(problem: &Problem, scale: f64) -> Row {
+    let log: RefCell<Vec<(f64, bool)>> = RefCell::new(vec![]);
+    let theta = FnObjective::new(problem.dimension, |x: &Vector| {
+        let original = x / scale;
+        let (value, gradient) = problem.evaluate(original.as_slice());
+        let feasible = problem.violation(original.as_slice()) <= 1e-8;
+        log.borrow_mut().push((value, feasible));
+        (value, Vector::from_vec(gradient) / scale)
+    });
+    let budget = if problem.dimension >= 50 { 3000 } else { 2000 };
+    let config = BundleTrustConfig { max_evaluations: budget, ..BundleTrustConfig::default() };
+    let report = BundleTrust::new(config)
+        .expect("the default is valid")
+        .constraints(constraints(problem, scale))
+        .minimize(&theta, Vector::from_vec(problem.start.clone()) * scale);
+    row(problem, &log.borrow(), report.ok())
+}
+
+fn constraints(problem: &Problem, scale: f64) -> Polyhedron {
+    let vector = |values: &[f64]| Vector::from_column_slice(values) * scale;
+    let rows = Matrix::from_fn(problem.rows.len(), problem.dimension, |i, j| problem.rows[i][j]);
+    Polyhedron::boxed(vector(&problem.lower), vector(&problem.upper))
+        .and_then(|set| set.with_rows(&rows, &vector(&problem.row_lower), &vector(&problem.row_upper)))
+        .expect("the table is valid")
+}
+
+fn row(problem: &Problem, log: &[(f64, bool)], report: Option<Report>) -> Row {
+    let size = 1.0 + problem.optimal_value.abs();
+    let lowest = log.iter().filter(|entry| entry.1).map(|entry| entry.0).fold(f64::INFINITY, f64::min);
+    let diverged = lowest < problem.optimal_value - 1e-6 * size;
+    let hit = |level: f64| {
+        let reached = |entry: &(f64, bool)| entry.1 && entry.0 - problem.optimal_value <= level * size;
+        log.iter().position(reached).map(|index| index + 1).filter(|_| !diverged)
+    };
+    let solved = problem.peers.iter().filter_map(|(name, count)| count.map(|count| (count, name.clone())));
+    let best = solved.min();
+    Row {
+        name: problem.name.clone(),
+        dimension: problem.dimension,
+        constrained: problem.family == Family::LinearlyConstrained,
+        evaluations: LEVELS.map(hit),
+        mpbngc: problem.peers.get("mpbngc").copied().flatten(),
+        best_peer: best.as_ref().map(|best| best.0),
+        best_peer_name: best.map(|best| best.1).unwrap_or_default(),
+        all_peers_solve: problem.peers.values().all(Option::is_some),
+        infeasible: log.iter().filter(|entry| !entry.1).count(),
+        total: log.len(),
+        final_gap: (lowest - problem.optimal_value) / size,
+        stationary: report.as_ref().is_some_and(|report| report.termination.is_stationary()),
+        aborted: report.is_none(),
+        termination: report.map_or_else(|| "error".to_owned(), |report| report.termination.to_string()),
+    }
+}
+
+fn summarize(rows: &[Row], scale: f64) -> Summary {
+    let count = |constrained: bool| {
+        let family = || rows.iter().filter(move |row| row.constrained == constrained);
+        (family().filter(|row| row.evaluations[2].is_some()).count(), family().count())
+    };
+    let pairs: Vec<f64> =
+        rows.iter().filter_map(|row| Some((row.evaluations[2]? as f64 / row.mpbngc? as f64).ln())).collect();
+    let common = || rows.iter().filter(|row| row.all_peers_solve);
+    Summary {
+        scale,
+        solved_unconstrained: count(false),
+        solved_constrained: count(true),
+        geometric_mean_to_mpbngc: (pairs.iter().sum::<f64>() / pairs.len().max(1) as f64).exp(),
+        compared: pairs.len(),
+        common_sum: common().filter_map(|row| row.evaluations[2]).sum(),
+        common_unsolved: common().filter(|row| row.evaluations[2].is_none()).count(),
+        infeasible: rows.iter().map(|row| row.infeasible).sum(),
+        aborted: rows.iter().filter(|row| row.aborted).count(),
+        false_stops: rows.iter().filter(|row| row.stationary && row.evaluations[2].is_none()).count(),
+    }
+}
+
+fn print_row(row: &Row) {
+    let text = |count: Option<usize>| count.map_or_else(|| "-".to_owned(), |count| count.to_string());
+    println!(
+        "{:<18} {:>3} | {:>5} {:>5} {:>5} {:>5} | mpbngc {:>5} best {:>5} {:<9} | total {:>5} gap {:>9.1e} {}{}",
+        row.name,
+        row.dimension,
+        text(row.evaluations[0]),
+        text(row.evaluations[1]),
+        text(row.evaluations[2]),
+        text(row.evaluations[3]),
+        text(row.mpbngc),
+        text(row.best_peer),
+        row.best_peer_name,
+        row.total,
+        row.final_gap,
+        if row.infeasible > 0 { "INFEASIBLE " } else { "" },
+        row.termination
+    );
+}
+
+fn print_summary(summary: &Summary) {
+    println!(
+        "solved {}/{} unconstrained, {}/{} constrained; geometric mean to MPBNGC {:.3} over {}; common sum {} ({} unsolved); \
+         infeasible evaluations {}; aborted {}; stationary but not solved {}",
+        summary.solved_unconstrained.0,
+        summary.solved_unconstrained.1,
+        summary.solved_constrained.0,
+        summary.solved_constrained.1,
+        summary.geometric_mean_to_mpbngc,
+        summary.compared,
+        summary.common_sum,
+        summary.common_unsolved,
+        summary.infeasible,
+        summary.aborted,
+        summary.false_stops
+    );
+}

@@ -1,0 +1,158 @@
+//! The entry point: configuration, admissible set, observers, and the ways to run.
+
+use super::run::Run;
+use super::snapshot::Snapshot;
+use crate::report::{Observer, Report, StopRule};
+use crate::{BundleTrustConfig, InputError, NonsmoothObjective, OptimizeError, Polyhedron, Vector};
+use std::path::PathBuf;
+
+/// The bundle-trust method with its settings.
+///
+/// ```
+/// use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Polyhedron, Vector};
+/// // |x₁| + 2x₂² over x₁ ≥ 1
+/// let theta = FnObjective::new(2, |x: &Vector| {
+///     (x[0].abs() + 2.0 * x[1] * x[1], Vector::from_vec(vec![x[0].signum(), 4.0 * x[1]]))
+/// });
+/// let set = Polyhedron::boxed(Vector::from_vec(vec![1.0, f64::NEG_INFINITY]), Vector::from_element(2, f64::INFINITY))?;
+/// let report = BundleTrust::new(BundleTrustConfig::default())?
+///     .constraints(set)
+///     .minimize(&theta, Vector::from_vec(vec![3.0, 2.0]))?;
+/// assert!((report.value - 1.0).abs() < 1e-6);
+/// assert!(report.termination.is_stationary());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct BundleTrust<'o> {
+    pub(super) config: BundleTrustConfig,
+    pub(super) constraints: Option<Polyhedron>,
+    pub(super) observers: Vec<Box<dyn Observer + 'o>>,
+    pub(super) stop: Option<StopRule>,
+    pub(super) checkpoint: Option<PathBuf>,
+}
+
+impl std::fmt::Debug for BundleTrust<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("BundleTrust")
+            .field("config", &self.config)
+            .field("constraints", &self.constraints)
+            .field("observers", &self.observers.len())
+            .field("stop", &self.stop)
+            .field("checkpoint", &self.checkpoint)
+            .finish()
+    }
+}
+
+impl<'o> BundleTrust<'o> {
+    /// The method with validated settings, without constraints and observers.
+    ///
+    /// # Errors
+    /// [`InputError::OutOfRange`] naming the first setting that is not admissible.
+    pub fn new(config: BundleTrustConfig) -> Result<Self, InputError> {
+        config.validate()?;
+        Ok(Self { config, constraints: None, observers: vec![], stop: None, checkpoint: None })
+    }
+
+    /// The admissible set; the whole space if never called.
+    #[must_use]
+    pub fn constraints(mut self, set: Polyhedron) -> Self {
+        self.constraints = Some(set);
+        self
+    }
+
+    /// Adds an observer.
+    #[must_use]
+    pub fn observer(mut self, observer: impl Observer + 'o) -> Self {
+        self.observers.push(Box::new(observer));
+        self
+    }
+
+    /// Adds a stopping rule; one of the rules added has to hold.
+    #[must_use]
+    pub fn stop_when(mut self, rule: StopRule) -> Self {
+        self.stop = Some(match self.stop.take() {
+            Some(first) => first | rule,
+            None => rule,
+        });
+        self
+    }
+
+    /// Writes a snapshot to this file after every serious step, replacing it atomically. A failed write is a warning in
+    /// the report.
+    #[must_use]
+    pub fn checkpoint(mut self, file: impl Into<PathBuf>) -> Self {
+        self.checkpoint = Some(file.into());
+        self
+    }
+
+    /// The settings.
+    pub fn config(&self) -> &BundleTrustConfig {
+        &self.config
+    }
+
+    /// Minimises the objective from a start that need not be admissible.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start). Everything that happens later ends in a [`Report`].
+    pub fn minimize<O: NonsmoothObjective>(&mut self, objective: &O, x0: Vector) -> Result<Report, OptimizeError> {
+        let mut run = self.start(objective, x0)?;
+        while run.step().is_continue() {}
+        Ok(run.finish())
+    }
+
+    /// Projects the start on the admissible set and evaluates it.
+    ///
+    /// # Errors
+    /// [`OptimizeError::Input`] on sizes and numbers, [`OptimizeError::Infeasible`] if the set is empty,
+    /// [`OptimizeError::Oracle`] if the first evaluation fails.
+    pub fn start<'r, O: NonsmoothObjective>(
+        &'r mut self,
+        objective: &'r O,
+        x0: Vector,
+    ) -> Result<Run<'r, 'o, O>, OptimizeError> {
+        Run::start(self, objective, x0)
+    }
+
+    /// Continues the run of a snapshot without evaluating anything: with the same settings and a deterministic oracle it
+    /// ends at the same iterates, bit by bit, as the uninterrupted run. The constraints are those of the snapshot unless
+    /// this method has its own, which must then be equal; limits may be raised.
+    ///
+    /// # Errors
+    /// [`OptimizeError::Input`] if sizes or constraints differ.
+    pub fn resume<'r, O: NonsmoothObjective>(
+        &'r mut self,
+        objective: &'r O,
+        from: Snapshot,
+    ) -> Result<Run<'r, 'o, O>, OptimizeError> {
+        Run::resume(self, objective, from)
+    }
+
+    /// Resumes a snapshot and runs to the end.
+    ///
+    /// # Errors
+    /// As [`resume`](Self::resume).
+    pub fn continue_from<O: NonsmoothObjective>(
+        &mut self,
+        objective: &O,
+        from: Snapshot,
+    ) -> Result<Report, OptimizeError> {
+        let mut run = self.resume(objective, from)?;
+        while run.step().is_continue() {}
+        Ok(run.finish())
+    }
+
+    /// Starts a new run of a changed problem from the center of a snapshot, with the step length it had reached. Values
+    /// and cuts of the old problem are not used.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
+    pub fn warm_start<'r, O: NonsmoothObjective>(
+        &'r mut self,
+        objective: &'r O,
+        from: &Snapshot,
+    ) -> Result<Run<'r, 'o, O>, OptimizeError> {
+        if let Some(length) = from.last_step_length() {
+            self.config.first_step = Some(length);
+        }
+        Run::start(self, objective, from.center().clone())
+    }
+}

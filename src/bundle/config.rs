@@ -1,0 +1,193 @@
+//! Settings of the bundle-trust method: meaning, default, admissible range, effect.
+
+use crate::{InputError, Vector};
+use serde::{Deserialize, Serialize};
+
+/// What is known about the convexity of Θ on the admissible set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Convexity {
+    /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex.
+    #[default]
+    Unknown,
+    /// Θ is convex. Linearization errors below zero are noise of the oracle and end in a noise limit.
+    Convex,
+}
+
+/// In which units the distance of two points is measured, ‖d‖² = Σ (dᵢ/Dᵢ)².
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum VariableScaling {
+    /// Dᵢ proportional to the width of the box if every variable has a finite one, otherwise Dᵢ = 1.
+    #[default]
+    FromBox,
+    /// Dᵢ = 1.
+    Unit,
+    /// Given typical sizes Dᵢ > 0 of the variables.
+    Typical(Vector),
+}
+
+/// Which accuracy the engine asks of the oracle.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AccuracyPolicy {
+    /// Always as accurate as the oracle can.
+    #[default]
+    Tightest,
+    /// τ = clip(factor · |predicted decrease| / |Θ|, tightest, coarsest); the center is evaluated again when its promised
+    /// error exceeds what the predicted decrease allows.
+    OnDemand {
+        /// Tightest accuracy ever asked, 0 ≤ tightest ≤ coarsest.
+        tightest: f64,
+        /// Coarsest accuracy ever asked, < 1.
+        coarsest: f64,
+        /// Share of the predicted decrease that the error may have, in (0, 1).
+        factor: f64,
+    },
+}
+
+impl AccuracyPolicy {
+    /// Accuracy on demand with the usual numbers: between 1e-12 and 1e-2, a tenth of the predicted decrease.
+    pub const ON_DEMAND: Self = Self::OnDemand { tightest: 1e-12, coarsest: 1e-2, factor: 0.1 };
+}
+
+/// Settings of [`BundleTrust`](crate::BundleTrust). The defaults are one setting for all problems.
+///
+/// ```
+/// use nonsmooth::BundleTrustConfig;
+/// let config = BundleTrustConfig { max_evaluations: 200, ..Default::default() };
+/// assert!(config.validate().is_ok());
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BundleTrustConfig {
+    /// Predicted decrease, relative to the size of Θ, that counts as small. Default 1e-7; in (0, 1). Larger stops
+    /// earlier; the value reached is usually ten times better than this.
+    pub tolerance: f64,
+    /// The size of Θ that `tolerance` refers to, in units of Θ. Default none: |Θ| at the center, and at least 1e-5 of the
+    /// decrease since the start. Positive. Larger stops earlier.
+    pub objective_scale: Option<f64>,
+    /// Largest number of evaluations, failed ones included. Default 2000; ≥ 1.
+    pub max_evaluations: usize,
+    /// Largest number of steps. Default 100 000; ≥ 1.
+    pub max_iterations: usize,
+    /// Largest time in seconds. Default none. Positive.
+    pub max_seconds: Option<f64>,
+    /// Length of the first step in scaled variables. Default none: the engine chooses. Positive. A typical change of the
+    /// variables is the best value; too small costs some evaluations, too large costs one or two.
+    pub first_step: Option<f64>,
+    /// What is known about convexity. Default unknown.
+    pub convexity: Convexity,
+    /// Units of the variables. Default from the box.
+    pub scaling: VariableScaling,
+    /// Accuracy asked of the oracle. Default always the tightest; an oracle that ignores the request is not affected.
+    pub accuracy: AccuracyPolicy,
+    /// Largest number of cuts. Default none: n + 15, at most 150. ≥ 2. A large bundle remembers cuts that mislead a
+    /// nonconvex run; a small one forgets kinks.
+    pub bundle_size: Option<usize>,
+    /// Share m_S of the predicted decrease that makes a step serious. Default 0.05; in (0, 0.5).
+    pub serious_fraction: f64,
+    /// Share m_R of the predicted decrease that lets the weight fall at once. Default 0.5; in [m_S, 1).
+    pub good_fraction: f64,
+    /// Largest factor by which the weight u = 1/t falls after one serious step. Default 8; > 1.
+    pub weight_decrease: f64,
+    /// Largest factor by which the weight rises after one null step. Default 10; > 1.
+    pub weight_increase: f64,
+    /// Range of the weight relative to its first value: u stays within [first/range, first·range]. Default 1e10; > 1. This
+    /// is the finite floor and ceiling of the trust parameter t.
+    pub weight_range: f64,
+    /// Quantile of the curvatures that pairs of cuts prove, used to make the model convex. Default 0.8; in [0, 1].
+    pub curvature_quantile: f64,
+    /// Steps without evaluation in which a small predicted decrease is tried again with a tenth of the weight. Default
+    /// 12; ≥ 0.
+    pub attenuation_steps: usize,
+    /// Restarts with a local bundle before a small predicted decrease far from the cuts is believed. Default 5; ≥ 0.
+    pub max_restarts: usize,
+    /// Part of the radius of the active cuts that a restart keeps. Default 0.1; in (0, 1).
+    pub restart_radius: f64,
+    /// Failed evaluations in a row after which the run ends. Default 10; ≥ 1.
+    pub max_failures: usize,
+}
+
+impl Default for BundleTrustConfig {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-7,
+            objective_scale: None,
+            max_evaluations: 2000,
+            max_iterations: 100_000,
+            max_seconds: None,
+            first_step: None,
+            convexity: Convexity::Unknown,
+            scaling: VariableScaling::FromBox,
+            accuracy: AccuracyPolicy::Tightest,
+            bundle_size: None,
+            serious_fraction: 0.05,
+            good_fraction: 0.5,
+            weight_decrease: 8.0,
+            weight_increase: 10.0,
+            weight_range: 1e10,
+            curvature_quantile: 0.8,
+            attenuation_steps: 12,
+            max_restarts: 5,
+            restart_radius: 0.1,
+            max_failures: 10,
+        }
+    }
+}
+
+impl BundleTrustConfig {
+    /// Checks every field against its range.
+    ///
+    /// # Errors
+    /// [`InputError::OutOfRange`] naming the first field that is not admissible.
+    pub fn validate(&self) -> Result<(), InputError> {
+        let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
+        check("tolerance", self.tolerance, "0 < x < 1", self.tolerance > 0.0 && self.tolerance < 1.0)?;
+        check("objective_scale", self.objective_scale, "> 0", positive(self.objective_scale))?;
+        check("max_evaluations", self.max_evaluations, "≥ 1", self.max_evaluations >= 1)?;
+        check("max_iterations", self.max_iterations, "≥ 1", self.max_iterations >= 1)?;
+        check("max_seconds", self.max_seconds, "> 0", positive(self.max_seconds))?;
+        check("first_step", self.first_step, "> 0", positive(self.first_step))?;
+        check("bundle_size", self.bundle_size, "≥ 2", self.bundle_size.is_none_or(|size| size >= 2))?;
+        let serious = self.serious_fraction > 0.0 && self.serious_fraction < 0.5;
+        check("serious_fraction", self.serious_fraction, "0 < x < 0.5", serious)?;
+        let good = self.good_fraction >= self.serious_fraction && self.good_fraction < 1.0;
+        check("good_fraction", self.good_fraction, "serious_fraction ≤ x < 1", good)?;
+        for (setting, value) in [
+            ("weight_decrease", self.weight_decrease),
+            ("weight_increase", self.weight_increase),
+            ("weight_range", self.weight_range),
+        ] {
+            check(setting, value, "> 1, finite", value > 1.0 && value.is_finite())?;
+        }
+        let quantile = (0.0..=1.0).contains(&self.curvature_quantile);
+        check("curvature_quantile", self.curvature_quantile, "0 ≤ x ≤ 1", quantile)?;
+        let radius = self.restart_radius > 0.0 && self.restart_radius < 1.0;
+        check("restart_radius", self.restart_radius, "0 < x < 1", radius)?;
+        check("max_failures", self.max_failures, "≥ 1", self.max_failures >= 1)?;
+        self.validate_policies()
+    }
+
+    fn validate_policies(&self) -> Result<(), InputError> {
+        if let AccuracyPolicy::OnDemand { tightest, coarsest, factor } = self.accuracy {
+            let ordered = tightest >= 0.0 && tightest <= coarsest && coarsest < 1.0;
+            check("accuracy.coarsest", coarsest, "0 ≤ tightest ≤ coarsest < 1", ordered)?;
+            check("accuracy.factor", factor, "0 < x < 1", factor > 0.0 && factor < 1.0)?;
+        }
+        if let VariableScaling::Typical(sizes) = &self.scaling {
+            let valid = sizes.iter().all(|size| *size > 0.0 && size.is_finite());
+            check("scaling.typical", sizes.as_slice(), "> 0, finite", valid)?;
+        }
+        Ok(())
+    }
+}
+
+fn check(
+    setting: &'static str,
+    value: impl std::fmt::Debug,
+    allowed: &'static str,
+    valid: bool,
+) -> Result<(), InputError> {
+    if valid { Ok(()) } else { Err(InputError::OutOfRange { setting, value: format!("{value:?}"), allowed }) }
+}

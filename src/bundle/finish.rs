@@ -1,0 +1,105 @@
+//! Records, observers, and the report at the end.
+
+use super::run::Run;
+use super::subproblem::Proposal;
+use crate::report::{Certificate, IterationRecord, Report, StepKind, Termination};
+use crate::{Accuracy, NonsmoothObjective};
+use std::ops::ControlFlow::{self, Break, Continue};
+
+impl<O: NonsmoothObjective> Run<'_, '_, O> {
+    pub(super) fn record(
+        &mut self,
+        kind: StepKind,
+        proposal: &Proposal,
+        accuracy: Accuracy,
+        value: Option<f64>,
+        failure: Option<String>,
+    ) {
+        let record = IterationRecord {
+            evaluation: self.state.counts.evaluations,
+            kind,
+            value,
+            center_value: self.state.center_value,
+            predicted_decrease: proposal.predicted_decrease,
+            aggregate_norm: proposal.aggregate_norm,
+            aggregate_error: proposal.aggregate_error,
+            weight: proposal.weight,
+            step_length: proposal.step_length,
+            violation: proposal.violation,
+            cuts: self.state.bundle.cuts().len(),
+            convexification: proposal.convexification,
+            accuracy: accuracy.tolerance(),
+            failure,
+            seconds: self.seconds(),
+        };
+        self.state.history.push(record);
+    }
+
+    /// Observers, stopping rules, checkpoint, divergence.
+    pub(super) fn after_evaluation(&mut self) -> ControlFlow<Termination> {
+        let Some(record) = self.state.history.last().cloned() else { return Continue(()) };
+        if let (StepKind::Start | StepKind::Serious, Some(file)) = (record.kind, &self.method.checkpoint)
+            && let Err(error) = self.snapshot().write(file)
+        {
+            self.state.warnings.push(format!("checkpoint not written: {error}"));
+        }
+        let mut stop = false;
+        for observer in &mut self.method.observers {
+            stop |= observer.observe(&record).is_break();
+        }
+        if stop {
+            return Break(Termination::StoppedByObserver);
+        }
+        if let Some(rule) = self.method.stop.as_ref().and_then(|rule| rule.holds(&self.state.history)) {
+            return Break(Termination::StopRule { rule });
+        }
+        let first_promise = self.state.first_weight * self.state.first_step * self.state.first_step;
+        let limit = 1e12 * (self.state.start_value.abs() + first_promise);
+        if self.state.start_value - self.state.center_value > limit {
+            return Break(Termination::UnboundedBelow);
+        }
+        Continue(())
+    }
+
+    /// Ends the run; the reason is `StoppedByObserver` if it had not ended by itself.
+    pub fn finish(mut self) -> Report {
+        if self.proposal.is_none() {
+            let _solved = self.try_subproblem();
+        }
+        let certificate = self.certificate();
+        let seconds = self.seconds();
+        let state = self.state;
+        Report {
+            solution: state.center,
+            value: state.center_value,
+            start_value: state.start_value,
+            termination: self.termination.unwrap_or(Termination::StoppedByObserver),
+            certificate,
+            counts: state.counts,
+            largest_violation: state.history.iter().map(|record| record.violation).fold(0.0, f64::max),
+            history: state.history,
+            warnings: state.warnings,
+            seconds,
+        }
+    }
+
+    fn certificate(&self) -> Option<Certificate> {
+        let proposal = self.proposal.as_ref()?;
+        Some(Certificate {
+            point: self.state.center.clone(),
+            value: self.state.center_value,
+            error_bound: self.state.center_error_bound(),
+            aggregate_norm: proposal.aggregate_norm,
+            aggregate_error: proposal.aggregate_error,
+            predicted_decrease: proposal.predicted_decrease,
+            weight: proposal.weight,
+            convexification: proposal.convexification,
+            norm: self.state.norm.clone(),
+            cuts: self.state.bundle.cuts().to_vec(),
+            row_multipliers: proposal.row_multipliers.clone(),
+            bound_multipliers: proposal.bound_multipliers.clone(),
+            active_radius: self.active_radius(proposal),
+            noise: self.noise_level(),
+        })
+    }
+}

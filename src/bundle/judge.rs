@@ -1,0 +1,85 @@
+//! What an answer of the oracle does to the run: serious or null, weight, bundle, center, noise.
+
+use super::config::Convexity;
+use super::cut::Cut;
+use super::run::Run;
+use super::subproblem::Proposal;
+use super::weight::{self, Comparison};
+use crate::report::StepKind;
+use crate::{Accuracy, Answer, Evaluation, NonsmoothObjective, Vector};
+
+impl<O: NonsmoothObjective> Run<'_, '_, O> {
+    /// Serious or null: updates weight, bundle and center.
+    pub(super) fn judge(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<O::WarmStart>) {
+        let may_be_serious = matches!(answer, Answer::Accurate(_));
+        let evaluation = answer.into_evaluation();
+        let value = evaluation.value;
+        let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
+        let serious = may_be_serious && comparison.is_serious(&self.method.config);
+        self.state.failures = 0;
+        self.watch_noise(&proposal, &evaluation);
+        let kind = if serious {
+            weight::after_serious(&mut self.state, &self.method.config, &comparison);
+            if -comparison.change > self.tolerance() {
+                self.state.restarts = 0;
+            }
+            self.state.counts.serious += 1;
+            StepKind::Serious
+        } else {
+            weight::after_null(&mut self.state, &self.method.config, &proposal, &comparison);
+            self.state.counts.null += 1;
+            if may_be_serious { StepKind::Null } else { StepKind::NoDescent }
+        };
+        self.add_cut(proposal.trial.clone(), &evaluation);
+        if serious {
+            self.move_center(proposal.trial.clone(), evaluation, accuracy);
+        }
+        self.record(kind, &proposal, accuracy, Some(value), None);
+    }
+
+    /// Values that jump although the points almost coincide, and cuts above the values of a convex function, are noise.
+    fn watch_noise(&mut self, proposal: &Proposal, evaluation: &Evaluation<O::WarmStart>) {
+        let state = &mut self.state;
+        let change = evaluation.value - state.center_value;
+        let promised = evaluation.error_bound + state.center_error_bound() + state.rounding();
+        if proposal.step_length <= 1e-4 * state.length_scale() {
+            let slopes = state.bundle.cuts().iter().map(|cut| state.norm.dual_length(&cut.subgradient));
+            let steepest = slopes.fold(state.norm.dual_length(&evaluation.subgradient), f64::max);
+            if change.abs() > 4.0 * steepest * proposal.step_length + 8.0 * promised {
+                state.noise = state.noise.max(change.abs());
+            }
+        }
+        if self.method.config.convexity == Convexity::Convex {
+            let error = evaluation.subgradient.dot(&proposal.step) - change;
+            if error < -8.0 * promised {
+                state.noise = state.noise.max(-error);
+            }
+        }
+    }
+
+    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>) {
+        let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + 15).min(150));
+        let state = &mut self.state;
+        state.bundle.make_room(size, state.center_id);
+        state.bundle.push(Cut {
+            id: state.next_id,
+            point,
+            value: evaluation.value,
+            subgradient: evaluation.subgradient.clone(),
+            error_bound: evaluation.error_bound,
+            multiplier: 0.0,
+            idle: 0,
+        });
+        state.next_id += 1;
+        self.proposal = None;
+    }
+
+    /// Makes the newest cut the center.
+    pub(super) fn move_center(&mut self, point: Vector, evaluation: Evaluation<O::WarmStart>, accuracy: Accuracy) {
+        self.state.center = point;
+        self.state.center_value = evaluation.value;
+        self.state.center_id = self.state.next_id - 1;
+        self.state.center_accuracy = accuracy.tolerance();
+        self.warm_start = Some(evaluation.warm_start);
+    }
+}

@@ -1,0 +1,263 @@
+//! A run in the making: one evaluation per step.
+
+use super::builder::BundleTrust;
+use super::config::AccuracyPolicy;
+use super::model::Model;
+use super::oracle::{Outcome, evaluate};
+use super::snapshot::Snapshot;
+use super::start::{admissible_start, first_evaluation};
+use super::state::State;
+use super::subproblem::{self, Proposal, SubproblemError};
+use crate::qp::EpigraphQpSolver;
+use crate::report::{IterationRecord, StepKind, Termination};
+use crate::{
+    Accuracy, Answer, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector,
+};
+use std::ops::ControlFlow::{self, Break, Continue};
+use std::time::Instant;
+
+/// A center that is evaluated again is asked for this share of the accuracy that would just do.
+const REFINEMENT: f64 = 0.1;
+
+/// A run of [`BundleTrust`], driven by hand.
+///
+/// ```
+/// use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Vector};
+/// let theta = FnObjective::new(1, |x: &Vector| (x[0].abs(), Vector::from_element(1, x[0].signum())));
+/// let mut method = BundleTrust::new(BundleTrustConfig::default())?;
+/// let mut run = method.start(&theta, Vector::from_element(1, 2.5))?;
+/// while run.step().is_continue() && run.value() > 1.0 {}
+/// let snapshot = run.snapshot();
+/// assert!(snapshot.value() <= 1.0);
+/// let report = method.continue_from(&theta, snapshot)?;
+/// assert!(report.value < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Run<'r, 'o, O: NonsmoothObjective> {
+    pub(super) method: &'r mut BundleTrust<'o>,
+    objective: &'r O,
+    pub(super) set: Polyhedron,
+    pub(super) state: State,
+    pub(super) warm_start: Option<O::WarmStart>,
+    solver: EpigraphQpSolver,
+    /// The last subproblem's answer, as long as center and bundle are those it was solved for.
+    pub(super) proposal: Option<Proposal>,
+    pub(super) termination: Option<Termination>,
+    clock: Instant,
+}
+
+impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
+    pub(super) fn start(method: &'r mut BundleTrust<'o>, objective: &'r O, x0: Vector) -> Result<Self, OptimizeError> {
+        let clock = Instant::now();
+        let dimension = objective.dimension();
+        let set = method.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
+        let start = admissible_start(&set, dimension, x0)?;
+        let (state, warm_start) = first_evaluation(objective, &method.config, &set, start)?;
+        let mut run = Self::assemble(method, objective, set, state, clock);
+        run.warm_start = Some(warm_start);
+        if let Break(termination) = run.after_evaluation() {
+            run.termination = Some(termination);
+        }
+        Ok(run)
+    }
+
+    pub(super) fn resume(
+        method: &'r mut BundleTrust<'o>,
+        objective: &'r O,
+        from: Snapshot,
+    ) -> Result<Self, OptimizeError> {
+        let (expected, found) = (objective.dimension(), from.state.center.len());
+        if expected != found {
+            return Err(InputError::Dimension { what: "snapshot", expected, found }.into());
+        }
+        if method.constraints.as_ref().is_some_and(|set| *set != from.set) {
+            return Err(OptimizeError::ChangedConstraints);
+        }
+        Ok(Self::assemble(method, objective, from.set, from.state, Instant::now()))
+    }
+
+    fn assemble(
+        method: &'r mut BundleTrust<'o>,
+        objective: &'r O,
+        set: Polyhedron,
+        state: State,
+        clock: Instant,
+    ) -> Self {
+        let solver = EpigraphQpSolver::default();
+        Self { method, objective, set, state, warm_start: None, solver, proposal: None, termination: None, clock }
+    }
+
+    /// One step: at most one evaluation (and one more of the center where its accuracy no longer suffices). `Break` when
+    /// the run has ended; further calls repeat the reason.
+    pub fn step(&mut self) -> ControlFlow<Termination> {
+        if let Some(termination) = &self.termination {
+            return Break(termination.clone());
+        }
+        let flow = self.advance();
+        if let Break(termination) = &flow {
+            self.termination = Some(termination.clone());
+        }
+        flow
+    }
+
+    fn advance(&mut self) -> ControlFlow<Termination> {
+        self.check_limits()?;
+        // A resumed run has no memory of earlier subproblems; neither has this one, so both go the same way bit by bit.
+        self.solver.forget();
+        let proposal = self.propose()?;
+        if self.center_is_too_coarse(&proposal) {
+            return self.refine_center(&proposal);
+        }
+        self.check_length(&proposal)?;
+        let accuracy = self.wanted_accuracy(proposal.predicted_decrease);
+        let target = self.state.center_value - self.method.config.serious_fraction * proposal.predicted_decrease;
+        match self.ask(&proposal.trial, accuracy, Some(target)) {
+            Outcome::MinusInfinity => return Break(Termination::UnboundedBelow),
+            Outcome::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
+            Outcome::Answer(answer) => self.judge(proposal, accuracy, answer),
+        }
+        self.after_evaluation()
+    }
+
+    fn check_limits(&mut self) -> ControlFlow<Termination> {
+        self.state.counts.iterations += 1;
+        let config = &self.method.config;
+        if self.state.counts.evaluations >= config.max_evaluations {
+            Break(Termination::EvaluationLimit)
+        } else if self.state.counts.iterations > config.max_iterations {
+            Break(Termination::IterationLimit)
+        } else if config.max_seconds.is_some_and(|limit| self.seconds() >= limit) {
+            Break(Termination::TimeLimit)
+        } else {
+            Continue(())
+        }
+    }
+
+    /// Ends the run when the trial point cannot be told from the center.
+    fn check_length(&self, proposal: &Proposal) -> ControlFlow<Termination> {
+        let moved = proposal.trial.iter().zip(self.state.center.iter());
+        if moved.into_iter().any(|(y, x)| (y - x).abs() > 4.0 * f64::EPSILON * x.abs()) {
+            return Continue(());
+        }
+        Break(if self.state.noise > 0.0 {
+            Termination::NoiseLimit { estimate: self.noise_level() }
+        } else {
+            Termination::StepTooShort { predicted_decrease: proposal.predicted_decrease }
+        })
+    }
+
+    fn ask(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>) -> Outcome<O::WarmStart> {
+        self.state.counts.evaluations += 1;
+        let request = Request { point, warm_start: self.warm_start.as_ref(), accuracy, descent_target: target };
+        evaluate(self.objective, &request)
+    }
+
+    /// Solves the subproblem; where it fails, shorter steps are tried before the run ends.
+    pub(super) fn solve_subproblem(&mut self) -> ControlFlow<Termination, Proposal> {
+        let mut last = SubproblemError::Unusable;
+        for _ in 0..4 {
+            match self.try_subproblem() {
+                Ok(proposal) => return Continue(proposal),
+                Err(error) => last = error,
+            }
+            let weight = self.state.weight * self.method.config.weight_increase;
+            self.state.set_weight(weight, &self.method.config);
+        }
+        Break(Termination::SubproblemFailed { reason: last.to_string() })
+    }
+
+    pub(super) fn try_subproblem(&mut self) -> Result<Proposal, SubproblemError> {
+        let model = Model::new(&mut self.state, &self.method.config);
+        let before = self.solver.counts();
+        let solved = subproblem::solve(&mut self.solver, &self.set, &self.state, &model);
+        let after = self.solver.counts();
+        self.state.counts.qp_solves += after.solves - before.solves;
+        self.state.counts.qp_fallbacks += after.fallbacks - before.fallbacks;
+        let proposal = solved?;
+        self.state.bundle.set_multipliers(&proposal.cut_multipliers);
+        self.proposal = Some(proposal.clone());
+        Ok(proposal)
+    }
+
+    fn wanted_accuracy(&self, predicted_decrease: f64) -> Accuracy {
+        let AccuracyPolicy::OnDemand { tightest, coarsest, factor } = self.method.config.accuracy else {
+            return Accuracy::TIGHTEST;
+        };
+        let size = self.state.center_value.abs().max(f64::MIN_POSITIVE);
+        let tolerance = (factor * predicted_decrease / size).clamp(tightest, coarsest);
+        Accuracy::relative(tolerance).unwrap_or(Accuracy::TIGHTEST)
+    }
+
+    /// Whether the center's promised error hides the predicted decrease and a better value can be asked for.
+    pub(super) fn center_is_too_coarse(&self, proposal: &Proposal) -> bool {
+        let AccuracyPolicy::OnDemand { factor, .. } = self.method.config.accuracy else { return false };
+        let wanted = self.wanted_accuracy(REFINEMENT * proposal.predicted_decrease).tolerance();
+        self.state.center_error_bound() > factor * proposal.predicted_decrease
+            && wanted < 0.5 * self.state.center_accuracy
+    }
+
+    /// Evaluates the center again, ten times more accurately than the predicted decrease asks for.
+    fn refine_center(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
+        let accuracy = self.wanted_accuracy(REFINEMENT * proposal.predicted_decrease);
+        let center = self.state.center.clone();
+        self.state.center_accuracy = accuracy.tolerance();
+        let (value, failure) = match self.ask(&center, accuracy, None) {
+            Outcome::Answer(Answer::Accurate(evaluation)) => {
+                let value = evaluation.value;
+                let old = self.state.center_id;
+                self.add_cut(center.clone(), &evaluation);
+                self.move_center(center, evaluation, accuracy);
+                self.state.bundle.retain(|cut| cut.id != old);
+                (Some(value), None)
+            }
+            Outcome::Failure(error) => (None, Some(error.to_string())),
+            _ => (None, Some("no accurate value at the center".to_owned())),
+        };
+        self.state.counts.refined += 1;
+        self.record(StepKind::Refinement, proposal, accuracy, value, failure);
+        self.after_evaluation()
+    }
+
+    /// A failed evaluation: shorter step next, no cut.
+    fn shorten(&mut self, proposal: &Proposal, accuracy: Accuracy, error: &OracleError) -> ControlFlow<Termination> {
+        let state = &mut self.state;
+        state.counts.failed += 1;
+        state.failures += 1;
+        state.streak = -1;
+        let weight = state.weight.max(proposal.weight) * self.method.config.weight_increase;
+        state.set_weight(weight, &self.method.config);
+        let failures = state.failures;
+        self.record(StepKind::Failed, proposal, accuracy, None, Some(error.to_string()));
+        if failures >= self.method.config.max_failures {
+            return Break(Termination::OracleFailing { failures, last: error.to_string() });
+        }
+        Continue(())
+    }
+
+    /// Seconds since the start, those before a resume included.
+    pub(super) fn seconds(&self) -> f64 {
+        self.state.seconds_before + self.clock.elapsed().as_secs_f64()
+    }
+
+    /// The stability center, the best admissible point so far.
+    pub fn center(&self) -> &Vector {
+        &self.state.center
+    }
+
+    /// Θ at the center.
+    pub fn value(&self) -> f64 {
+        self.state.center_value
+    }
+
+    /// One record per evaluation so far.
+    pub fn history(&self) -> &[IterationRecord] {
+        &self.state.history
+    }
+
+    /// The run as data.
+    pub fn snapshot(&self) -> Snapshot {
+        let mut state = self.state.clone();
+        state.seconds_before = self.seconds();
+        Snapshot::new(self.set.clone(), state)
+    }
+}

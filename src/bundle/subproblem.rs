@@ -1,0 +1,146 @@
+//! From model, weight and admissible set to a trial point with its certificate quantities.
+//!
+//! ```text
+//! min over (d, v)  v + u‖d‖²/2,   ⟨h_i, d⟩ − a_i ≤ v,   x̂ + d ∈ U
+//! z̃ = Σ λ_i h_i + Aᵀμ + ν = −u W d      aggregate subgradient, constraints included
+//! ẽ = −v − u‖d‖² = Σ λ_i a_i + slack of the active constraints ≥ 0      aggregate error
+//! ```
+
+use super::model::Model;
+use super::state::State;
+use crate::qp::{EpigraphQp, EpigraphQpSolver, Metric, QpError, QpSolution, project};
+use crate::{Polyhedron, Vector};
+
+/// A trial point and what the model says about it.
+#[derive(Debug, Clone)]
+pub(crate) struct Proposal {
+    pub trial: Vector,
+    /// d = trial − x̂, shortened if the subproblem's solution left the set.
+    pub step: Vector,
+    /// ‖d‖ in the run's norm.
+    pub step_length: f64,
+    /// −v ≥ 0: what the model promises.
+    pub predicted_decrease: f64,
+    /// ‖z̃‖*.
+    pub aggregate_norm: f64,
+    /// ẽ.
+    pub aggregate_error: f64,
+    /// The part Σ λ_i a_i of ẽ.
+    pub cut_error: f64,
+    pub cut_multipliers: Vec<f64>,
+    pub row_multipliers: Vector,
+    pub bound_multipliers: Vector,
+    pub convexification: f64,
+    /// u of this subproblem.
+    pub weight: f64,
+    /// Relative violation of the set at the trial point.
+    pub violation: f64,
+}
+
+/// Trial points violate the set by at most this much, relative to each side.
+pub(crate) const FEASIBILITY: f64 = 1e-12;
+
+/// Why there is no trial point.
+#[derive(Debug, Clone, thiserror::Error)]
+pub(crate) enum SubproblemError {
+    #[error("the quadratic program was not solved: {0}")]
+    Qp(#[from] QpError),
+    #[error("its solution violates the constraints by {violation:.1e} and cannot be repaired")]
+    Infeasible { violation: f64 },
+    #[error("its solution is not finite or contradicts itself")]
+    Unusable,
+}
+
+/// Solves the subproblem at the state's weight.
+pub(crate) fn solve(
+    solver: &mut EpigraphQpSolver,
+    set: &Polyhedron,
+    state: &State,
+    model: &Model,
+) -> Result<Proposal, SubproblemError> {
+    let weight = state.weight;
+    let diagonal = state.norm.weights() * weight;
+    let at_center = set.rows() * &state.center;
+    let terms = set.rows().abs() * state.center.abs();
+    let solution = solver.solve(&EpigraphQp {
+        metric: Metric::Diagonal(&diagonal),
+        slopes: &model.slopes,
+        offsets: &model.offsets,
+        cut_ids: &model.ids,
+        rows: set.rows(),
+        row_lower: &slack(set.row_lower(), &at_center, &terms, f64::min),
+        row_upper: &slack(set.row_upper(), &at_center, &terms, f64::max),
+        lower: &(set.lower() - &state.center),
+        upper: &(set.upper() - &state.center),
+    })?;
+    let proposal = interpret(solution, state, model);
+    // Every solution has −v ≥ u‖d‖²; one that promises less is not a solution.
+    let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
+    if !(proposal.predicted_decrease >= least && proposal.step_length.is_finite()) {
+        return Err(SubproblemError::Unusable);
+    }
+    make_feasible(proposal, set, state)
+}
+
+/// Sides of the rows as seen from the center; what is rounding of the center counts as zero, so that d = 0 is admissible.
+fn slack(side: &Vector, at_center: &Vector, terms: &Vector, outward: fn(f64, f64) -> f64) -> Vector {
+    Vector::from_fn(side.len(), |i, _| {
+        let slack = side[i] - at_center[i];
+        if slack.is_finite() && slack.abs() <= FEASIBILITY * terms[i].max(side[i].abs()) {
+            0.0
+        } else {
+            outward(slack, 0.0)
+        }
+    })
+}
+
+fn interpret(mut solution: QpSolution, state: &State, model: &Model) -> Proposal {
+    let step = solution.step;
+    let squared = state.norm.squared(&step);
+    let predicted_decrease = (-solution.epigraph).max(0.0);
+    let cut_error: f64 = solution.cut_multipliers.iter().zip(&model.offsets).map(|(l, a)| l * a).sum();
+    model.distribute(&mut solution.cut_multipliers);
+    Proposal {
+        trial: &state.center + &step,
+        step_length: squared.sqrt(),
+        step,
+        predicted_decrease,
+        aggregate_norm: state.weight * squared.sqrt(),
+        aggregate_error: (predicted_decrease - state.weight * squared).max(0.0),
+        cut_error,
+        cut_multipliers: solution.cut_multipliers,
+        row_multipliers: Vector::from_vec(solution.row_multipliers),
+        bound_multipliers: Vector::from_vec(solution.bound_multipliers),
+        convexification: model.convexification,
+        weight: state.weight,
+        violation: 0.0,
+    }
+}
+
+/// Clips to the box; where a row is still violated, projects or moves back towards the center, which is admissible.
+fn make_feasible(mut proposal: Proposal, set: &Polyhedron, state: &State) -> Result<Proposal, SubproblemError> {
+    let violation = |x: &Vector| set.violation_near(x, &state.center);
+    let allowed = FEASIBILITY.max(violation(&state.center));
+    proposal.trial = set.clamp_to_box(&proposal.trial);
+    proposal.violation = violation(&proposal.trial);
+    if proposal.violation > allowed
+        && proposal.violation < 1e-6
+        && let Ok(projected) = project(set, &proposal.trial)
+        && violation(&projected) < proposal.violation
+    {
+        proposal.violation = violation(&projected);
+        proposal.trial = projected;
+    }
+    let mut factor = 1.0;
+    while proposal.violation > allowed {
+        factor *= if factor > 0.99 { 1.0 - (2.0 * proposal.violation).clamp(1e-10, 0.3) } else { 0.7 };
+        if factor < 1e-3 {
+            return Err(SubproblemError::Infeasible { violation: proposal.violation });
+        }
+        proposal.trial = set.clamp_to_box(&(&state.center + &proposal.step * factor));
+        proposal.violation = violation(&proposal.trial);
+    }
+    proposal.step = &proposal.trial - &state.center;
+    proposal.step_length = state.norm.length(&proposal.step);
+    Ok(proposal)
+}

@@ -1,0 +1,71 @@
+//! Euclidean projection onto a polyhedron.
+//!
+//! ```text
+//! min ½ |y − x|²   over   lower ≤ y ≤ upper,  row_lower ≤ A y ≤ row_upper
+//! ```
+//! In d = y − x this is the QP with the single cut 0 ≤ v and H = I.
+
+use crate::{Polyhedron, Vector};
+
+use super::problem::{EpigraphQp, Metric, QpError};
+use super::solver::EpigraphQpSolver;
+
+/// The point of the polyhedron nearest to x (`dimension()` entries); x itself if it is admissible.
+///
+/// # Errors
+/// [`QpError::Infeasible`] for an empty set, [`QpError::Input`] for an x of wrong size or with entries that are not finite.
+///
+/// ```
+/// use nonsmooth::{Polyhedron, Vector, qp::project};
+///
+/// let square = Polyhedron::boxed(Vector::zeros(2), Vector::from_element(2, 1.0))?;
+/// assert_eq!(project(&square, &Vector::from_vec(vec![3.0, 0.5]))?, Vector::from_vec(vec![1.0, 0.5]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
+    if x.len() != set.dimension() {
+        let (expected, found) = (set.dimension(), x.len());
+        return Err(crate::InputError::Dimension { what: "point", expected, found }.into());
+    }
+    if let Some(index) = crate::linalg::first_non_finite(x.as_slice()) {
+        return Err(crate::InputError::NotFinite { what: "point", index, value: x[index] }.into());
+    }
+    let clamped = set.clamp_to_box(x);
+    if clamped == *x && set.violation(x) == 0.0 {
+        return Ok(clamped);
+    }
+    let mut nearest = set.clamp_to_box(&(x + shortest_step(set, x)?));
+    // The rounding of a step is relative to its length: a second, tiny step lands closer.
+    for _ in 0..REFINEMENTS {
+        let violation = set.violation(&nearest);
+        if violation <= f64::EPSILON {
+            break;
+        }
+        let candidate = set.clamp_to_box(&(&nearest + shortest_step(set, &nearest)?));
+        if set.violation(&candidate) >= violation {
+            break;
+        }
+        nearest = candidate;
+    }
+    Ok(nearest)
+}
+
+/// Steps taken after the first, at most.
+const REFINEMENTS: usize = 2;
+
+/// The shortest d with x + d in the set.
+fn shortest_step(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
+    let shift = set.rows() * x;
+    let qp = EpigraphQp {
+        metric: Metric::ScaledIdentity(1.0),
+        slopes: &[Vector::zeros(x.len())],
+        offsets: &[0.0],
+        cut_ids: &[0],
+        rows: set.rows(),
+        row_lower: &(set.row_lower() - &shift),
+        row_upper: &(set.row_upper() - &shift),
+        lower: &(set.lower() - x),
+        upper: &(set.upper() - x),
+    };
+    Ok(EpigraphQpSolver::new().solve(&qp)?.step)
+}

@@ -1,0 +1,245 @@
+//! The solver: warm start, active-set method, certificate, interior-point fallback.
+
+use crate::Vector;
+
+use super::active_set::Outcome;
+use super::certificate::kkt_residual;
+use super::coordinates::{Coordinates, CoordinatesCache};
+use super::interior_point;
+use super::kernels::dot;
+use super::problem::{EpigraphQp, QpCounts, QpError, QpMethod, QpSolution};
+use super::working_set::{Active, Member, Side, WorkingSet};
+
+/// Residual an answer must have to be returned at once; a worse one is tried again by other means.
+const WANTED: f64 = 1e-12;
+/// Residual an answer must have to be returned at all.
+const REQUIRED: f64 = 1e-10;
+
+/// Solver of a sequence of related QPs; remembers the active set of the last answer.
+///
+/// ```
+/// use nonsmooth::qp::{EpigraphQp, EpigraphQpSolver, Metric};
+/// use nonsmooth::{Matrix, Vector};
+///
+/// // min max(d, −2 d) + ½ d²  has its minimiser in the kink.
+/// let slopes = [Vector::from_vec(vec![1.0]), Vector::from_vec(vec![-2.0])];
+/// let (rows, none) = (Matrix::zeros(0, 1), Vector::zeros(0));
+/// let (lower, upper) = (Vector::from_element(1, f64::NEG_INFINITY), Vector::from_element(1, f64::INFINITY));
+/// let qp = EpigraphQp {
+///     metric: Metric::ScaledIdentity(1.0), slopes: &slopes, offsets: &[0.0, 0.0], cut_ids: &[0, 1],
+///     rows: &rows, row_lower: &none, row_upper: &none, lower: &lower, upper: &upper,
+/// };
+/// let solution = EpigraphQpSolver::new().solve(&qp)?;
+/// assert!(solution.step[0].abs() < 1e-15);
+/// assert!((solution.cut_multipliers[0] - 2.0 / 3.0).abs() < 1e-15);
+/// # Ok::<(), nonsmooth::qp::QpError>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct EpigraphQpSolver {
+    memory: Vec<Remembered>,
+    coordinates: CoordinatesCache,
+    counts: QpCounts,
+}
+
+/// A member of the last active set, by an identity that outlives the call.
+#[derive(Debug, Clone, Copy)]
+struct Remembered {
+    identity: Identity,
+    multiplier: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Identity {
+    Cut(u64),
+    Row(usize),
+    Bound(usize),
+}
+
+/// What one run of the active-set method left behind.
+struct Attempt {
+    outcome: Outcome,
+    solution: QpSolution,
+    actives: Vec<Active>,
+}
+
+impl EpigraphQpSolver {
+    /// A solver without memory.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Work done so far.
+    pub fn counts(&self) -> QpCounts {
+        self.counts
+    }
+
+    /// Forgets the last active set: the next call starts cold.
+    pub fn forget(&mut self) {
+        self.memory.clear();
+    }
+
+    /// Solves one QP, starting from the active set of the last one.
+    ///
+    /// # Errors
+    /// [`QpError::Input`] for data that cannot be worked with, [`QpError::Infeasible`] if rows and box have no common point,
+    /// [`QpError::NotSolved`] if no answer reaches a relative KKT residual of 1e-10.
+    pub fn solve(&mut self, qp: &EpigraphQp<'_>) -> Result<QpSolution, QpError> {
+        qp.validate()?;
+        let coordinates = self.coordinates.factorise(qp.metric, qp.dimension())?;
+        self.counts.solves += 1;
+        let mut warm = self.recall(qp);
+        let mut best: Option<Attempt> = None;
+        loop {
+            let attempt = run_active_set(qp, &coordinates, &warm);
+            self.counts.pivots += attempt.solution.pivots;
+            let done = attempt.outcome == Outcome::Solved && attempt.solution.kkt_residual <= WANTED;
+            if let (Outcome::Infeasible { violation }, true) = (attempt.outcome, warm.is_empty()) {
+                return Err(QpError::Infeasible { violation });
+            }
+            keep_better(&mut best, attempt);
+            if done || warm.is_empty() {
+                break;
+            }
+            warm.clear();
+        }
+        let best = match best {
+            Some(best) if best.solution.kkt_residual <= WANTED => best,
+            other => self.fall_back(qp, &coordinates, other)?,
+        };
+        self.finish(qp, best)
+    }
+
+    fn finish(&mut self, qp: &EpigraphQp<'_>, best: Attempt) -> Result<QpSolution, QpError> {
+        if best.solution.kkt_residual <= REQUIRED {
+            self.remember(qp, &best.actives);
+            return Ok(best.solution);
+        }
+        self.memory.clear();
+        Err(QpError::NotSolved { kkt_residual: best.solution.kkt_residual })
+    }
+
+    /// Interior-point method, then the active-set method from what it found active.
+    fn fall_back(
+        &mut self,
+        qp: &EpigraphQp<'_>,
+        coordinates: &Coordinates,
+        mut best: Option<Attempt>,
+    ) -> Result<Attempt, QpError> {
+        self.counts.fallbacks += 1;
+        let answer = interior_point::solve(qp)?;
+        let polished = run_active_set(qp, coordinates, &answer.actives);
+        self.counts.pivots += polished.solution.pivots;
+        keep_better(&mut best, polished);
+        let outcome = Outcome::Stalled;
+        keep_better(&mut best, Attempt { outcome, solution: answer.solution, actives: answer.actives });
+        best.ok_or(QpError::NotSolved { kkt_residual: f64::INFINITY })
+    }
+
+    fn recall(&self, qp: &EpigraphQp<'_>) -> Vec<Active> {
+        let find = |remembered: &Remembered| {
+            let member = match remembered.identity {
+                Identity::Cut(id) => Member::Cut(qp.cut_ids.iter().position(|known| *known == id)?),
+                Identity::Row(i) => (i < qp.rows.nrows()).then_some(Member::Row(i))?,
+                Identity::Bound(k) => (k < qp.dimension()).then_some(Member::Bound(k))?,
+            };
+            Some(Active { member, side: Side::Upper, multiplier: remembered.multiplier })
+        };
+        self.memory.iter().filter_map(find).collect()
+    }
+
+    fn remember(&mut self, qp: &EpigraphQp<'_>, actives: &[Active]) {
+        let identify = |active: &Active| {
+            let identity = match active.member {
+                Member::Cut(j) => Identity::Cut(qp.cut_ids[j]),
+                Member::Row(i) => Identity::Row(i),
+                Member::Bound(k) => Identity::Bound(k),
+            };
+            Remembered { identity, multiplier: active.multiplier }
+        };
+        self.memory = actives.iter().map(identify).collect();
+    }
+}
+
+fn keep_better(best: &mut Option<Attempt>, attempt: Attempt) {
+    if best.as_ref().is_none_or(|best| attempt.solution.kkt_residual < best.solution.kkt_residual) {
+        *best = Some(attempt);
+    }
+}
+
+fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, warm: &[Active]) -> Attempt {
+    let mut set = WorkingSet::new(qp, coordinates);
+    set.start(warm);
+    let outcome = set.run();
+    let actives: Vec<Active> = set.actives().copied().collect();
+    let solution = assemble(qp, set.step, &actives, set.pivots, QpMethod::ActiveSet);
+    Attempt { outcome, solution, actives }
+}
+
+/// Completes a step and its multipliers to an answer with certificate.
+pub(super) fn assemble(
+    qp: &EpigraphQp<'_>,
+    mut step: Vector,
+    actives: &[Active],
+    pivots: usize,
+    method: QpMethod,
+) -> QpSolution {
+    for (k, entry) in step.iter_mut().enumerate() {
+        *entry = entry.max(qp.lower[k]).min(qp.upper[k]);
+    }
+    let values =
+        qp.slopes.iter().zip(qp.offsets).map(|(slope, offset)| dot(slope.as_slice(), step.as_slice()) - offset);
+    let epigraph = values.fold(f64::NEG_INFINITY, f64::max);
+    let mut solution = QpSolution {
+        step,
+        epigraph,
+        cut_multipliers: vec![0.0; qp.slopes.len()],
+        row_multipliers: vec![0.0; qp.rows.nrows()],
+        bound_multipliers: vec![0.0; qp.dimension()],
+        kkt_residual: f64::INFINITY,
+        pivots,
+        method,
+    };
+    for active in actives {
+        match active.member {
+            Member::Cut(j) => solution.cut_multipliers[j] = active.multiplier.max(0.0),
+            Member::Row(i) => solution.row_multipliers[i] = active.multiplier,
+            Member::Bound(k) => solution.bound_multipliers[k] = active.multiplier,
+        }
+    }
+    solution.kkt_residual = kkt_residual(qp, &solution);
+    solution
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Metric;
+    use super::*;
+    use crate::Matrix;
+
+    #[test]
+    fn the_fallback_is_polished_to_the_accuracy_of_the_active_set_method() {
+        let n = 6;
+        let slopes: Vec<Vector> =
+            (0..9).map(|j| Vector::from_fn(n, |i, _| (0.3 + (i * i + 1) as f64 * j as f64).sin())).collect();
+        let (lower, upper) = (Vector::from_element(n, -0.2), Vector::from_element(n, 0.1));
+        let qp = EpigraphQp {
+            metric: Metric::ScaledIdentity(0.5),
+            slopes: &slopes,
+            offsets: &[0.0; 9],
+            cut_ids: &[0, 1, 2, 3, 4, 5, 6, 7, 8],
+            rows: &Matrix::zeros(0, n),
+            row_lower: &Vector::zeros(0),
+            row_upper: &Vector::zeros(0),
+            lower: &lower,
+            upper: &upper,
+        };
+        let mut solver = EpigraphQpSolver::new();
+        let expected = solver.solve(&qp).expect("feasible");
+        let coordinates = solver.coordinates.factorise(qp.metric, n).expect("positive");
+        let attempt = solver.fall_back(&qp, &coordinates, None).expect("feasible");
+        assert_eq!(solver.counts().fallbacks, 1);
+        assert_eq!(attempt.solution.method, QpMethod::ActiveSet);
+        assert!(attempt.solution.kkt_residual <= 1e-14);
+        assert!((attempt.solution.step - expected.step).norm() <= 1e-14);
+    }
+}

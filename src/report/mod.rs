@@ -1,0 +1,75 @@
+//! What a run leaves behind: solution, reason of the end, certificate, counts, history.
+
+mod certificate;
+mod observer;
+mod record;
+mod stop;
+mod termination;
+
+pub use certificate::{Certificate, CertificateCheck};
+pub use observer::{Observer, TablePrinter};
+pub use record::{Counts, IterationRecord, StepKind};
+pub use stop::StopRule;
+pub use termination::Termination;
+
+use crate::Vector;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// The result of a run. `Display` is a one-page summary.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// The best admissible point found.
+    pub solution: Vector,
+    /// Θ there.
+    pub value: f64,
+    /// Θ at the (admissible) start.
+    pub start_value: f64,
+    /// Why the run ended.
+    pub termination: Termination,
+    /// How stationary the solution is, with everything needed to check it; none if no subproblem was solved.
+    pub certificate: Option<Certificate>,
+    /// Work done.
+    pub counts: Counts,
+    /// One record per evaluation.
+    pub history: Vec<IterationRecord>,
+    /// Largest relative violation of the admissible set among all points evaluated.
+    pub largest_violation: f64,
+    /// Things that went wrong without ending the run.
+    pub warnings: Vec<String>,
+    /// Seconds used, those before a resume included.
+    pub seconds: f64,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "stopped:     {}", self.termination)?;
+        writeln!(f, "             {}", self.termination.advice())?;
+        writeln!(
+            f,
+            "objective:   {:.10e}  (start {:.10e}), {} variables",
+            self.value,
+            self.start_value,
+            self.solution.len()
+        )?;
+        if let Some(certificate) = &self.certificate {
+            writeln!(f, "certificate: {certificate}")?;
+        }
+        writeln!(f, "constraints: largest relative violation of a point evaluated {:.1e}", self.largest_violation)?;
+        let counts = &self.counts;
+        writeln!(
+            f,
+            "work:        {} evaluations: {} serious, {} null, {} refined, {} failed; {} restarts",
+            counts.evaluations, counts.serious, counts.null, counts.refined, counts.failed, counts.restarts
+        )?;
+        writeln!(
+            f,
+            "             {} subproblems ({} by the fallback solver), {:.3} s",
+            counts.qp_solves, counts.qp_fallbacks, self.seconds
+        )?;
+        for warning in &self.warnings {
+            writeln!(f, "warning:     {warning}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,92 @@
+//! One small record per evaluation, and the counts of a run.
+
+use serde::{Deserialize, Serialize};
+
+/// What became of an evaluation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StepKind {
+    /// The first evaluation.
+    Start,
+    /// The trial point became the center.
+    Serious,
+    /// The trial point became a cut only.
+    Null,
+    /// The oracle certified that the point is no descent; a cut only.
+    NoDescent,
+    /// The center was evaluated again, more accurately.
+    Refinement,
+    /// The oracle failed; the step is shortened.
+    Failed,
+}
+
+impl std::fmt::Display for StepKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Start => "start",
+            Self::Serious => "serious",
+            Self::Null => "null",
+            Self::NoDescent => "no descent",
+            Self::Refinement => "refined",
+            Self::Failed => "failed",
+        })
+    }
+}
+
+/// One evaluation of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct IterationRecord {
+    /// Number of the evaluation, from 1, failed ones included.
+    pub evaluation: usize,
+    /// What became of it.
+    pub kind: StepKind,
+    /// Θ at the trial point; none if the oracle failed.
+    pub value: Option<f64>,
+    /// Θ at the center after the step.
+    pub center_value: f64,
+    /// What the model promised, ≥ 0.
+    pub predicted_decrease: f64,
+    /// Norm of the aggregate subgradient, constraints included.
+    pub aggregate_norm: f64,
+    /// Aggregate error, ≥ 0.
+    pub aggregate_error: f64,
+    /// The weight u = 1/t of the subproblem.
+    pub weight: f64,
+    /// Length of the step in scaled variables.
+    pub step_length: f64,
+    /// Largest relative violation of the admissible set at the trial point.
+    pub violation: f64,
+    /// Cuts in the bundle.
+    pub cuts: usize,
+    /// Curvature added to make the model convex; 0 while Θ looks convex.
+    pub convexification: f64,
+    /// Relative accuracy asked of the oracle.
+    pub accuracy: f64,
+    /// Text of the failure, if the oracle failed.
+    pub failure: Option<String>,
+    /// Seconds since the start of the run when the evaluation was done.
+    pub seconds: f64,
+}
+
+/// Counts of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Counts {
+    /// Evaluations, failed ones included.
+    pub evaluations: usize,
+    /// Steps of the engine, those without evaluation included.
+    pub iterations: usize,
+    /// Serious steps.
+    pub serious: usize,
+    /// Null steps, certified no-descent answers included.
+    pub null: usize,
+    /// Evaluations of the center repeated with a tighter accuracy.
+    pub refined: usize,
+    /// Failed evaluations.
+    pub failed: usize,
+    /// Local restarts of the bundle.
+    pub restarts: usize,
+    /// Subproblems solved.
+    pub qp_solves: usize,
+    /// Subproblems that needed the fallback solver.
+    pub qp_fallbacks: usize,
+}

@@ -1,0 +1,116 @@
+//! Why a run ended.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Why a run ended, with the numbers behind it. Only [`Stationary`](Self::Stationary) is a confirmed solution.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Termination {
+    /// The model promises less than the tolerance and every active cut lies next to the center.
+    Stationary {
+        /// Radius of the active cuts relative to the size of the variables.
+        radius: f64,
+    },
+    /// The model promises less than the tolerance, again after local restarts or because Θ looks convex, but some active
+    /// cuts lie away from the center: optimal if Θ is convex there, probably stationary otherwise.
+    StationaryUnconfirmed {
+        /// Radius of the active cuts relative to the size of the variables.
+        radius: f64,
+    },
+    /// What the model promises is below the noise of the oracle.
+    NoiseLimit {
+        /// Level of the noise, in units of Θ.
+        estimate: f64,
+    },
+    /// The step has become too short to change the variables while the model still promises decrease: values and
+    /// subgradients contradict each other.
+    StepTooShort {
+        /// The decrease still promised.
+        predicted_decrease: f64,
+    },
+    /// The largest number of evaluations was used.
+    EvaluationLimit,
+    /// The largest number of steps was used.
+    IterationLimit,
+    /// The time was used.
+    TimeLimit,
+    /// An observer asked to stop.
+    StoppedByObserver,
+    /// A stopping rule of the caller holds.
+    StopRule {
+        /// The rule, as text.
+        rule: String,
+    },
+    /// Θ falls beyond all measure of its first values.
+    UnboundedBelow,
+    /// The oracle failed again and again next to the best point.
+    OracleFailing {
+        /// Failures in a row.
+        failures: usize,
+        /// Text of the last one.
+        last: String,
+    },
+    /// The subproblem could not be solved.
+    SubproblemFailed {
+        /// What went wrong.
+        reason: String,
+    },
+}
+
+impl Termination {
+    /// Whether the run found a stationary point and confirmed it.
+    pub fn is_confirmed(&self) -> bool {
+        matches!(self, Self::Stationary { .. })
+    }
+
+    /// Whether the run ended at a point that the model calls stationary, confirmed or not.
+    pub fn is_stationary(&self) -> bool {
+        matches!(self, Self::Stationary { .. } | Self::StationaryUnconfirmed { .. })
+    }
+
+    /// What to try next.
+    pub fn advice(&self) -> &'static str {
+        match self {
+            Self::Stationary { .. } => "the certificate can be re-checked offline",
+            Self::StationaryUnconfirmed { .. } => {
+                "believe it if the objective is convex; otherwise start again from here or from elsewhere and compare"
+            }
+            Self::NoiseLimit { .. } => "a more accurate oracle is needed to get further",
+            Self::StepTooShort { .. } => "check the subgradients with `verify` at the best point",
+            Self::EvaluationLimit | Self::IterationLimit | Self::TimeLimit => "raise the limit and resume the snapshot",
+            Self::StoppedByObserver | Self::StopRule { .. } => "resume the snapshot to continue",
+            Self::UnboundedBelow => "add bounds on the variables",
+            Self::OracleFailing { .. } => "make the oracle robust near the best point, or restrict the admissible set",
+            Self::SubproblemFailed { .. } => "check the scale of the variables and of the constraint rows",
+        }
+    }
+}
+
+impl fmt::Display for Termination {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stationary { radius } => {
+                write!(f, "stationary, confirmed by cuts within relative distance {radius:.1e}")
+            }
+            Self::StationaryUnconfirmed { radius } => {
+                write!(f, "stationary, unconfirmed: active cuts reach out to relative distance {radius:.1e}")
+            }
+            Self::NoiseLimit { estimate } => write!(f, "noise limit: values are uncertain by about {estimate:.1e}"),
+            Self::StepTooShort { predicted_decrease } => {
+                write!(f, "step too short: a decrease of {predicted_decrease:.1e} is still predicted but never found")
+            }
+            Self::EvaluationLimit => write!(f, "evaluation limit reached"),
+            Self::IterationLimit => write!(f, "iteration limit reached"),
+            Self::TimeLimit => write!(f, "time limit reached"),
+            Self::StoppedByObserver => write!(f, "stopped by an observer"),
+            Self::StopRule { rule } => write!(f, "stopping rule holds: {rule}"),
+            Self::UnboundedBelow => write!(f, "the objective is unbounded below"),
+            Self::OracleFailing { failures, last } => {
+                write!(f, "the oracle failed {failures} times in a row near the best point; last: {last}")
+            }
+            Self::SubproblemFailed { reason } => write!(f, "the subproblem failed: {reason}"),
+        }
+    }
+}
