@@ -1,6 +1,6 @@
 //! Runs the collection of test problems with one setting and prints evaluations beside the best peers.
 //!
-//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--budget-factor F]`
+//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME]`
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 use serde::Serialize;
@@ -36,7 +36,9 @@ struct Summary {
     solved_constrained: (usize, usize),
     geometric_mean_to_mpbngc: f64,
     compared: usize,
+    /// Sum over the unconstrained problems that all nine peers solve.
     common_sum: usize,
+    common_mpbngc: usize,
     common_unsolved: usize,
     infeasible: usize,
     aborted: usize,
@@ -122,13 +124,14 @@ fn summarize(rows: &[Row], scale: f64) -> Summary {
     };
     let pairs: Vec<f64> =
         rows.iter().filter_map(|row| Some((row.evaluations[2]? as f64 / row.mpbngc? as f64).ln())).collect();
-    let common = || rows.iter().filter(|row| row.all_peers_solve);
+    let common = || rows.iter().filter(|row| row.all_peers_solve && !row.constrained);
     Summary {
         scale,
         solved_unconstrained: count(false),
         solved_constrained: count(true),
         geometric_mean_to_mpbngc: (pairs.iter().sum::<f64>() / pairs.len().max(1) as f64).exp(),
         compared: pairs.len(),
+        common_mpbngc: common().filter_map(|row| row.mpbngc).sum(),
         common_sum: common().filter_map(|row| row.evaluations[2]).sum(),
         common_unsolved: common().filter(|row| row.evaluations[2].is_none()).count(),
         infeasible: rows.iter().map(|row| row.infeasible).sum(),
@@ -159,7 +162,7 @@ fn print_row(row: &Row) {
 
 fn print_summary(summary: &Summary) {
     println!(
-        "solved {}/{} unconstrained, {}/{} constrained; geometric mean to MPBNGC {:.3} over {}; common sum {} ({} unsolved); \
+        "solved {}/{} unconstrained, {}/{} constrained; geometric mean to MPBNGC {:.3} over {}; common sum {} (MPBNGC {}, {} unsolved); \
          infeasible evaluations {}; aborted {}; stationary but not solved {}",
         summary.solved_unconstrained.0,
         summary.solved_unconstrained.1,
@@ -168,6 +171,7 @@ fn print_summary(summary: &Summary) {
         summary.geometric_mean_to_mpbngc,
         summary.compared,
         summary.common_sum,
+        summary.common_mpbngc,
         summary.common_unsolved,
         summary.infeasible,
         summary.aborted,

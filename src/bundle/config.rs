@@ -73,8 +73,9 @@ pub struct BundleTrustConfig {
     pub max_iterations: usize,
     /// Largest time in seconds. Default none. Positive.
     pub max_seconds: Option<f64>,
-    /// Length of the first step in scaled variables. Default none: the engine chooses. Positive. A typical change of the
-    /// variables is the best value; too small costs some evaluations, too large costs one or two.
+    /// Length of the first step in scaled variables. Default none: the length of the start vector, or where that is zero the
+    /// distance |Θ|/|ξ| at which a linear Θ would vanish. Positive. A typical change of the variables is the best value; too
+    /// small or too large costs some evaluations.
     pub first_step: Option<f64>,
     /// What is known about convexity. Default unknown.
     pub convexity: Convexity,

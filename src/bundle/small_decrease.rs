@@ -6,12 +6,15 @@
 use super::config::AccuracyPolicy;
 use super::run::Run;
 use super::subproblem::Proposal;
-use crate::NonsmoothObjective;
 use crate::report::Termination;
+use crate::{NonsmoothObjective, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Active cuts within this relative distance confirm stationarity.
 const CONFIRMING_RADIUS: f64 = 1e-5;
+/// Largest share of the aggregate subgradient that may stem from convexification in a confirmed end: more means that
+/// subgradients and values contradict each other, or that the cuts lie on both sides of a ridge.
+const HONEST_SHARE: f64 = 0.1;
 /// Multipliers above this are active.
 const ACTIVE: f64 = 1e-9;
 /// The weight is lowered until the step has this relative length.
@@ -94,14 +97,32 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             return Break(Termination::NoiseLimit { estimate: noise });
         }
         let radius = self.active_radius(proposal) / self.state.length_scale().max(f64::MIN_POSITIVE);
-        if radius <= CONFIRMING_RADIUS {
+        let near = radius <= CONFIRMING_RADIUS;
+        let honest = self.convexified_share(proposal) <= HONEST_SHARE;
+        if near && honest {
             return Break(Termination::Stationary { radius });
         }
         let allowed = if self.state.nonconvex { self.method.config.max_restarts } else { 1 };
         if self.state.restarts >= allowed.min(self.method.config.max_restarts) {
-            return Break(Termination::StationaryUnconfirmed { radius });
+            return Break(if near {
+                Termination::StepTooShort { predicted_decrease: proposal.predicted_decrease }
+            } else {
+                Termination::StationaryUnconfirmed { radius }
+            });
         }
         Continue(())
+    }
+
+    /// Norm of what convexification added to the aggregate subgradient, relative to the active subgradients.
+    fn convexified_share(&self, proposal: &Proposal) -> f64 {
+        let state = &self.state;
+        let (mut added, mut slopes) = (Vector::zeros(state.center.len()), 0.0);
+        for (cut, &multiplier) in state.bundle.cuts().iter().zip(&proposal.cut_multipliers) {
+            added +=
+                state.norm.lower_index(&(&state.center - &cut.point)) * (2.0 * proposal.convexification * multiplier);
+            slopes += multiplier * state.norm.dual_length(&cut.subgradient);
+        }
+        if slopes > 0.0 { state.norm.dual_length(&added) / slopes } else { 0.0 }
     }
 
     /// Largest distance of a cut with a positive multiplier.

@@ -55,7 +55,7 @@ pub(super) fn first_evaluation<O: NonsmoothObjective>(
     };
     let Evaluation { value, subgradient, error_bound, warm_start } = evaluation;
     let slope = norm.dual_length(&subgradient);
-    let first_step = config.first_step.unwrap_or(1.0);
+    let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
     let cut = Cut { id: 1, point: start.clone(), value, subgradient, error_bound, multiplier: 0.0, idle: 0 };
     let mut state = State {
@@ -84,6 +84,18 @@ pub(super) fn first_evaluation<O: NonsmoothObjective>(
     };
     state.history.push(first_record(&state, set, slope));
     Ok((state, warm_start))
+}
+
+/// A first step length that follows the units of variables and values: the size of the start, or the distance at which a
+/// linear Θ would vanish if the start is zero.
+fn natural_step(size: f64, value: f64, slope: f64) -> f64 {
+    if size > 0.0 {
+        size
+    } else if value != 0.0 && slope > 0.0 {
+        value.abs() / slope
+    } else {
+        1.0
+    }
 }
 
 fn first_record(state: &State, set: &Polyhedron, slope: f64) -> IterationRecord {

@@ -14,7 +14,7 @@ const ROUNDING: f64 = 2e-15;
 pub(super) struct Violation {
     pub(super) member: Member,
     pub(super) side: Side,
-    /// Excess relative to the size of its terms.
+    /// Excess relative to the size of its terms and of the sides of the problem.
     pub(super) relative: f64,
     /// Excess over the norm of the normal: a distance.
     distance: f64,
@@ -36,7 +36,7 @@ impl WorkingSet<'_> {
             let own_size = self.size(member, bound);
             let size = if matches!(member, Member::Cut(_)) { own_size.min(self.smallest_cut_size) } else { own_size };
             let satisfied = (SATISFIED * size).max(ROUNDING * self.terms(member, bound));
-            let relative = excess / own_size;
+            let relative = excess / self.data_size(member, bound);
             if excess > satisfied && !self.is_held(member) {
                 let side = if lower == upper { Side::Both } else { side };
                 worst = Some(Violation { member, side, relative, distance: excess / norm });

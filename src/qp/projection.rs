@@ -41,7 +41,8 @@ pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
         if violation <= f64::EPSILON {
             break;
         }
-        let candidate = set.clamp_to_box(&(&nearest + shortest_step(set, &nearest)?));
+        let Ok(step) = shortest_step(set, &nearest) else { break };
+        let candidate = set.clamp_to_box(&(&nearest + step));
         if set.violation(&candidate) >= violation {
             break;
         }

@@ -66,6 +66,7 @@ impl WorkingSet<'_> {
                 }
                 None => {
                     self.advance(&correction, 1.0);
+                    self.place_fixed();
                     full_passes += 1;
                 }
             }
@@ -81,6 +82,15 @@ impl WorkingSet<'_> {
         self.coordinates.minimiser(&mut step);
         self.step = step;
         self.epigraph = 0.0;
+    }
+
+    /// Puts fixed coordinates on their bounds without rounding.
+    fn place_fixed(&mut self) {
+        for k in 0..self.fixed.len() {
+            if let Some(active) = self.fixed[k] {
+                self.step[k] = self.held_value(&active);
+            }
+        }
     }
 
     fn add_gradient(&self, sum: &mut [f64], factor: f64, member: Member) {

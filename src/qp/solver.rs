@@ -126,7 +126,15 @@ impl EpigraphQpSolver {
         mut best: Option<Attempt>,
     ) -> Result<Attempt, QpError> {
         self.counts.fallbacks += 1;
-        let answer = interior_point::solve(qp)?;
+        let answer = match (interior_point::solve(qp), best) {
+            (Ok(answer), known) => {
+                best = known;
+                answer
+            }
+            // A contradiction in the rounding of the sides is no contradiction.
+            (Err(_), Some(known)) if known.outcome == Outcome::Solved => return Ok(known),
+            (Err(error), _) => return Err(error),
+        };
         let polished = run_active_set(qp, coordinates, &answer.actives);
         self.counts.pivots += polished.solution.pivots;
         keep_better(&mut best, polished);
@@ -175,17 +183,26 @@ fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, warm: &[Active
     Attempt { outcome, solution, actives }
 }
 
-/// Completes a step and its multipliers to an answer with certificate.
+/// Completes a step and its multipliers to an answer with certificate; the step is moved into the box unless the certificate
+/// suffers (with a large H the rounding of a bound may weigh more than the whole step).
 pub(super) fn assemble(
     qp: &EpigraphQp<'_>,
-    mut step: Vector,
+    step: Vector,
     actives: &[Active],
     pivots: usize,
     method: QpMethod,
 ) -> QpSolution {
-    for (k, entry) in step.iter_mut().enumerate() {
-        *entry = entry.max(qp.lower[k]).min(qp.upper[k]);
+    let clamped = Vector::from_fn(step.len(), |k, _| step[k].max(qp.lower[k]).min(qp.upper[k]));
+    let unchanged = clamped == step;
+    let inside = complete(qp, clamped, actives, pivots, method);
+    if unchanged || inside.kkt_residual <= WANTED {
+        return inside;
     }
+    let outside = complete(qp, step, actives, pivots, method);
+    if outside.kkt_residual < inside.kkt_residual { outside } else { inside }
+}
+
+fn complete(qp: &EpigraphQp<'_>, step: Vector, actives: &[Active], pivots: usize, method: QpMethod) -> QpSolution {
     let values =
         qp.slopes.iter().zip(qp.offsets).map(|(slope, offset)| dot(slope.as_slice(), step.as_slice()) - offset);
     let epigraph = values.fold(f64::NEG_INFINITY, f64::max);

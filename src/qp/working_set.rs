@@ -171,9 +171,13 @@ impl<'a> WorkingSet<'a> {
 
     /// Size of a side: its terms, and a share of its normal where they vanish.
     pub(super) fn size(&self, member: Member, side: f64) -> f64 {
+        self.terms(member, side) + LENGTH_SHARE * self.reach * self.norm(member)
+    }
+
+    /// Size of a side, not less than the rounding of the data allows to tell: see the certificate.
+    pub(super) fn data_size(&self, member: Member, side: f64) -> f64 {
         let largest_side = if matches!(member, Member::Cut(_)) { 0.0 } else { self.largest_side };
-        let floor = LENGTH_SHARE * self.reach + SIDE_SHARE * largest_side;
-        self.terms(member, side) + floor * self.norm(member)
+        self.size(member, side) + SIDE_SHARE * largest_side * self.norm(member)
     }
 
     /// Norm of a normal in the metric's coordinates; for a dense metric in those of its diagonal.

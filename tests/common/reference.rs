@@ -1,7 +1,7 @@
 //! The same QP, straight to the interior-point solver: variables (d, v), no scaling.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, ZeroConeT};
+use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use nonsmooth::qp::{EpigraphQp, Metric};
 
 /// Data in the form the interior-point solver takes.
@@ -59,8 +59,8 @@ impl Reference {
         }
     }
 
-    /// (d, v), from scratch.
-    pub fn solve(&self, tolerance: f64) -> Vec<f64> {
+    /// (d, v), from scratch; none unless the solver says it reached the tolerance.
+    pub fn solve(&self, tolerance: f64) -> Option<Vec<f64>> {
         let settings = DefaultSettings {
             verbose: false,
             max_threads: 1,
@@ -74,7 +74,7 @@ impl Reference {
             DefaultSolver::new(&self.quadratic, &self.linear, &self.matrix, &self.bounds, &cones, settings)
                 .expect("valid data");
         solver.solve();
-        solver.solution.x.clone()
+        (solver.solution.status == SolverStatus::Solved).then(|| solver.solution.x.clone())
     }
 }
 
