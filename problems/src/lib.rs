@@ -15,3 +15,4 @@ pub mod shape;
 pub mod shape_load;
 pub mod shape_sensitivity;
 pub mod tfeti;
+pub mod toy;
