@@ -122,7 +122,8 @@ impl ContactShape {
         if scene.upper.is_none() {
             left_out.push("second body (rigid obstacle)");
         } else {
-            left_out.push("repeated factorisation of the upper body (its shape does not change: factored once per run)");
+            left_out
+                .push("repeated factorisation of the upper body (its shape does not change: factored once per run)");
             left_out.push("shape derivative of the upper body (its shape does not change)");
         }
         match &self.solver {
@@ -222,12 +223,7 @@ impl StateSolver for ContactShape {
 }
 
 impl Coderivative for ContactShape {
-    fn coderivative(
-        &self,
-        control: &Vector,
-        state: &ContactState,
-        direction: &Vector,
-    ) -> Result<Vector, OracleError> {
+    fn coderivative(&self, control: &Vector, state: &ContactState, direction: &Vector) -> Result<Vector, OracleError> {
         self.check_dimension(control)?;
         let (expected, found) = (self.problem.boundary.dual_dimension(), direction.len());
         if expected != found {

@@ -88,7 +88,9 @@ pub enum ContactError {
         allowed: f64,
     },
     /// The contact nodes that are closed at some iteration hold the bodies no longer.
-    #[error("the closed contact nodes leave a rigid motion free (pivot ratio {pivot_ratio:.1e}); the resultant is {resultant:.3e}")]
+    #[error(
+        "the closed contact nodes leave a rigid motion free (pivot ratio {pivot_ratio:.1e}); the resultant is {resultant:.3e}"
+    )]
     Unheld {
         /// Smallest over largest pivot of the coarse matrix.
         pivot_ratio: f64,
@@ -104,7 +106,9 @@ pub enum ContactError {
         reason: String,
     },
     /// An iteration ended above its tolerance.
-    #[error("{solver} stopped at relative residual {residual:.3e} (asked for {tolerance:.1e}) after {iterations} iterations")]
+    #[error(
+        "{solver} stopped at relative residual {residual:.3e} (asked for {tolerance:.1e}) after {iterations} iterations"
+    )]
     NotConverged {
         /// Name of the iteration.
         solver: &'static str,

@@ -29,7 +29,8 @@ pub fn column_sensitivities(
         let corners: [usize; 8] = std::array::from_fn(|a| {
             place.local_node([local[0] + (a >> 2 & 1), local[1] + (a >> 1 & 1), local[2] + (a & 1)])
         });
-        let take = |values: &[f64]| -> [f64; DOFS] { std::array::from_fn(|dof| values[3 * corners[dof / 3] + dof % 3]) };
+        let take =
+            |values: &[f64]| -> [f64; DOFS] { std::array::from_fn(|dof| values[3 * corners[dof / 3] + dof % 3]) };
         let coordinates = block.brick(std::array::from_fn(|axis| local[axis] + place.first_cell[axis]));
         let derivative = hex8::height_derivative(&coordinates, material, &take(u), &take(p));
         for (corner, derivative) in corners.into_iter().zip(derivative) {
@@ -51,9 +52,8 @@ pub fn column_sensitivities(
     for i in 0..n1 {
         for j in 0..n2 {
             let column = block.grid.column(i + place.first_cell[0], j + place.first_cell[1]);
-            let sum = (0..n3)
-                .map(|k| nodes[place.local_node([i, j, k])] * (k + place.first_cell[2]) as f64 / layers)
-                .sum();
+            let sum =
+                (0..n3).map(|k| nodes[place.local_node([i, j, k])] * (k + place.first_cell[2]) as f64 / layers).sum();
             columns.push((column, sum));
         }
     }

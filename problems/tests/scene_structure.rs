@@ -191,7 +191,8 @@ fn certificates_hold() {
         let shape = ContactShape::new(small(scene, 6, 2), SolverKind::Newton).unwrap();
         let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
         let residuals = state.forces.residuals;
-        for value in [residuals.equilibrium, residuals.complementarity, residuals.friction_cone, residuals.dissipation] {
+        for value in [residuals.equilibrium, residuals.complementarity, residuals.friction_cone, residuals.dissipation]
+        {
             assert!(value < 1e-11, "{residuals:?}");
         }
     }

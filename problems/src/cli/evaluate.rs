@@ -100,7 +100,11 @@ impl fmt::Display for Evaluated {
             "work                 {} Newton steps, {} products with the dual operator ({} for the adjoint), {} factorisations",
             work.newton_steps, work.dual_operator_applications, work.adjoint_applications, work.factorizations
         )?;
-        writeln!(f, "seconds              state {:.3}, subgradient {:.3}", self.seconds.state, self.seconds.subgradient)?;
+        writeln!(
+            f,
+            "seconds              state {:.3}, subgradient {:.3}",
+            self.seconds.state, self.seconds.subgradient
+        )?;
         writeln!(f, "left out             {}", self.left_out.join("; "))
     }
 }

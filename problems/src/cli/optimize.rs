@@ -143,7 +143,8 @@ fn page(report: &Report, objective: &ContactObjective, peaks: [f64; 2]) -> Strin
 }
 
 fn history_table(report: &Report) -> String {
-    let mut table = String::from("evaluation,kind,value,center_value,predicted_decrease,aggregate_norm,aggregate_error,seconds\n");
+    let mut table =
+        String::from("evaluation,kind,value,center_value,predicted_decrease,aggregate_norm,aggregate_error,seconds\n");
     for record in &report.history {
         let value = record.value.map_or_else(String::new, |value| value.to_string());
         table += &format!(

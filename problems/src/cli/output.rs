@@ -42,9 +42,7 @@ impl Folder {
 /// # Errors
 /// [`Failure::Computation`] if a value cannot be written.
 pub fn json(value: &impl Serialize) -> Result<String, Failure> {
-    serde_json::to_string_pretty(value)
-        .map(|text| text + "\n")
-        .map_err(|error| Failure::Computation(error.to_string()))
+    serde_json::to_string_pretty(value).map(|text| text + "\n").map_err(|error| Failure::Computation(error.to_string()))
 }
 
 /// max σ, MPa.

@@ -34,11 +34,7 @@ impl StatusCounts {
     /// Counts a list of statuses.
     pub fn of(statuses: &[ContactStatus]) -> Self {
         let count = |status| statuses.iter().filter(|&&other| other == status).count();
-        Self {
-            open: count(ContactStatus::Open),
-            stick: count(ContactStatus::Stick),
-            slip: count(ContactStatus::Slip),
-        }
+        Self { open: count(ContactStatus::Open), stick: count(ContactStatus::Stick), slip: count(ContactStatus::Slip) }
     }
 }
 

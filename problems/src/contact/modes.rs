@@ -22,14 +22,7 @@ const UNLOADED: f64 = 1e-9;
 /// Displacement (three components) of the six motions at a point; `centre`, `length` in mm.
 pub fn motions(point: [f64; 3], centre: [f64; 3], length: f64) -> [[f64; 3]; MOTIONS] {
     let x: [f64; 3] = std::array::from_fn(|axis| (point[axis] - centre[axis]) / length);
-    [
-        [1.0, 0.0, 0.0],
-        [0.0, 1.0, 0.0],
-        [0.0, 0.0, 1.0],
-        [0.0, -x[2], x[1]],
-        [x[2], 0.0, -x[0]],
-        [-x[1], x[0], 0.0],
-    ]
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]]
 }
 
 /// What the analysis needs to know of a scene's geometry.

@@ -126,7 +126,12 @@ impl ContactProblem {
             .map(|point| {
                 let [i, j] = point.position;
                 let lower = blocks[0].coordinates([i, j, self.grid.cells[2]]);
-                [lower, blocks.last().map_or(lower, |block| if blocks.len() == 2 { block.coordinates([i, j, 0]) } else { lower })]
+                [
+                    lower,
+                    blocks
+                        .last()
+                        .map_or(lower, |block| if blocks.len() == 2 { block.coordinates([i, j, 0]) } else { lower }),
+                ]
             })
             .collect();
         let [a, b] = self.grid.size;

@@ -197,8 +197,7 @@ impl CondensedContact<'_> {
         let coefficient = |body: usize, dof: usize, other: usize| -self.bodies[body].schur[(dof, other)];
         let law_rows = self.law_coefficients(linearizations);
         let rows = self.rows_by_dof();
-        let decoupled: Vec<bool> =
-            (0..size).map(|dof| self.bodies.len() == 2 && self.upper_decoupled(dof)).collect();
+        let decoupled: Vec<bool> = (0..size).map(|dof| self.bodies.len() == 2 && self.upper_decoupled(dof)).collect();
         for column in 0..size {
             for dof in 0..size {
                 let Some(row) = rows[dof] else {
@@ -211,7 +210,8 @@ impl CondensedContact<'_> {
                 let equation = if lower_held { size + dof } else { dof };
                 for &(force_dof, force_factor, jump_factor) in &law_rows[row] {
                     let (body, sign) = if self.lower_held[force_dof] { (1, -1.0) } else { (0, 1.0) };
-                    matrix[(equation, body * size + column)] += sign * force_factor * coefficient(body, force_dof, column);
+                    matrix[(equation, body * size + column)] +=
+                        sign * force_factor * coefficient(body, force_dof, column);
                     if force_dof == column {
                         matrix[(equation, column)] -= jump_factor;
                         if self.bodies.len() == 2 {

@@ -141,7 +141,8 @@ impl DirectSolver {
         let whole = Subdomain { first_cell: [0; 3], cells: problem.grid.cells };
         let lower = &problem.scene.lower;
         let mut heights = vec![0.0; problem.grid.column_count()];
-        for (column, value) in column_sensitivities(&state.system.block, &whole, &lower.material, &lower.loads, &u, &p) {
+        for (column, value) in column_sensitivities(&state.system.block, &whole, &lower.material, &lower.loads, &u, &p)
+        {
             heights[column] += value;
         }
         for (height, point) in heights.iter_mut().zip(&problem.boundary.points) {
@@ -172,7 +173,14 @@ fn unpack(problem: &ContactProblem, state: &DirectState) -> ContactForces {
     let law = law_residuals(boundary, &solution.forces, &solution.jumps, stiffness, state.system.load);
     // Equilibrium holds through the equations φ₁ + φ₂ = 0, whose residual is part of Newton's.
     let residuals = Residuals { equilibrium: solution.residual, newton: solution.residual, ..law };
-    ContactForces::unpack(boundary, &solution.forces, &solution.jumps, status, residuals, Kink::of(boundary, &arguments))
+    ContactForces::unpack(
+        boundary,
+        &solution.forces,
+        &solution.jumps,
+        status,
+        residuals,
+        Kink::of(boundary, &arguments),
+    )
 }
 
 /// Mean normal stiffness of the contact nodes, bodies in series, N/mm.

@@ -4,11 +4,11 @@ use crate::error::ContactError;
 use crate::linear::symmetric::LowerPattern;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::Perm;
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky, supernodal,
 };
-use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut, Par, Side};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! Sparse rows: y_r = Σ values·x[columns].
+//! Sparse rows: y_r = Σ_c A_rc x_c.
 
 use rayon::prelude::*;
 

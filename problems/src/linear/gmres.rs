@@ -63,7 +63,7 @@ pub fn gmres<P>(
         // A vanishing new vector means the solution is exact in this space; NaN ends the loop as well.
         let scale = triangle.last_column_norm();
         let stalled = history.len() > STALL_WINDOW && result.residual > 0.5 * history[history.len() - 1 - STALL_WINDOW];
-        if !(length > 1e-14 * scale) || stalled {
+        if length.is_nan() || length <= 1e-14 * scale || stalled {
             break;
         }
         image.iter_mut().for_each(|entry| *entry /= length);

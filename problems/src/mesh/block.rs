@@ -129,7 +129,13 @@ impl Block {
             let column = self.grid.column(i, j);
             let determinant = base * (self.upper[column] - self.lower[column]) / n3 as f64;
             if !(determinant > 0.0 && determinant.is_finite()) {
-                return Err(ContactError::InvertedElement { body, i: i.min(n1 - 1), j: j.min(n2 - 1), k: 0, determinant });
+                return Err(ContactError::InvertedElement {
+                    body,
+                    i: i.min(n1 - 1),
+                    j: j.min(n2 - 1),
+                    k: 0,
+                    determinant,
+                });
             }
         }
         Ok(())

@@ -102,7 +102,11 @@ impl Scene {
     pub fn validate(&self) -> Result<(), SceneError> {
         for (axis, (&mesh, &subdomains)) in self.mesh.iter().zip(&self.subdomains).enumerate() {
             if mesh == 0 || mesh > 400 {
-                return Err(SceneError::out_of_range(format!("mesh (axis {})", axis + 1), mesh, "1 … 400 bricks per edge"));
+                return Err(SceneError::out_of_range(
+                    format!("mesh (axis {})", axis + 1),
+                    mesh,
+                    "1 … 400 bricks per edge",
+                ));
             }
             if subdomains == 0 || !mesh.is_multiple_of(subdomains) {
                 let allowed = format!("a divisor of the {mesh} bricks per edge");
@@ -111,7 +115,11 @@ impl Scene {
         }
         for (axis, &length) in self.size.iter().enumerate() {
             if !(length > 0.0 && length.is_finite()) {
-                return Err(SceneError::out_of_range(format!("size (axis {})", axis + 1), length, "a finite length > 0 mm"));
+                return Err(SceneError::out_of_range(
+                    format!("size (axis {})", axis + 1),
+                    length,
+                    "a finite length > 0 mm",
+                ));
             }
         }
         if !(self.friction >= 0.0 && self.friction.is_finite()) {

@@ -41,10 +41,7 @@ pub fn signorini() -> Result<Scene, SceneError> {
 /// Never for the constants used here; the material's check is passed on.
 pub fn hertz() -> Result<Scene, SceneError> {
     let symmetry = || {
-        vec![
-            Support { face: Face::X1Min, components: ALONG_X1 },
-            Support { face: Face::X2Min, components: ALONG_X2 },
-        ]
+        vec![Support { face: Face::X1Min, components: ALONG_X1 }, Support { face: Face::X2Min, components: ALONG_X2 }]
     };
     let mut lower_supports = symmetry();
     lower_supports.push(Support { face: Face::Bottom, components: ALONG_X3 });

@@ -54,8 +54,7 @@ impl AdmissibleSet {
         for i in 0..counts[0] {
             for j in 0..counts[1] {
                 let here = i * counts[1] + j;
-                for (axis, exists, next) in
-                    [(0, i + 1 < counts[0], here + counts[1]), (1, j + 1 < counts[1], here + 1)]
+                for (axis, exists, next) in [(0, i + 1 < counts[0], here + counts[1]), (1, j + 1 < counts[1], here + 1)]
                 {
                     if exists {
                         let bound = bounds.slope * grid.size[axis] / intervals[axis];
@@ -91,23 +90,18 @@ impl AdmissibleSet {
             return Ok(());
         }
         let set = &self.polyhedron;
-        let bounds = (0..controls.len())
-            .map(|i| (format!("α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
+        let bounds = (0..controls.len()).map(|i| (format!("α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
         let products = set.rows() * controls;
         let rows = (0..products.len())
             .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
         let excess = |value: f64, lower: f64, upper: f64| {
             (lower - value).max(value - upper) / lower.abs().max(upper.abs()).max(f64::MIN_POSITIVE)
         };
-        let worst = bounds
-            .chain(rows)
-            .max_by(|a, b| excess(a.1, a.2, a.3).total_cmp(&excess(b.1, b.2, b.3)));
+        let worst = bounds.chain(rows).max_by(|a, b| excess(a.1, a.2, a.3).total_cmp(&excess(b.1, b.2, b.3)));
         match worst {
-            Some((constraint, value, lower, upper)) => Err(SceneError::NotAdmissible {
-                constraint,
-                value,
-                allowed: format!("[{lower}, {upper}]"),
-            }),
+            Some((constraint, value, lower, upper)) => {
+                Err(SceneError::NotAdmissible { constraint, value, allowed: format!("[{lower}, {upper}]") })
+            }
             None => Ok(()),
         }
     }

@@ -27,9 +27,8 @@ impl Basis {
             return Err(SceneError::out_of_range("spline degree", degree, allowed));
         }
         let spans = count - degree;
-        let knots = (0..count + degree + 1)
-            .map(|index| (index.clamp(degree, count) - degree) as f64 / spans as f64)
-            .collect();
+        let knots =
+            (0..count + degree + 1).map(|index| (index.clamp(degree, count) - degree) as f64 / spans as f64).collect();
         Ok(Self { degree, count, knots })
     }
 
@@ -40,10 +39,7 @@ impl Basis {
 
     /// Values of all basis functions at t ∈ [0, 1].
     pub fn values<T: Scalar>(&self, t: T) -> Vec<T> {
-        let span = (self.degree..self.count)
-            .rev()
-            .find(|&span| self.knots[span] <= t.value())
-            .unwrap_or(self.degree);
+        let span = (self.degree..self.count).rev().find(|&span| self.knots[span] <= t.value()).unwrap_or(self.degree);
         let mut values = vec![T::zero(); self.count];
         values[span] = T::one();
         for degree in 1..=self.degree {
@@ -67,9 +63,7 @@ impl Basis {
 
     /// ∫₀¹ of every basis function.
     pub fn integrals(&self) -> Vec<f64> {
-        (0..self.count)
-            .map(|i| (self.knots[i + self.degree + 1] - self.knots[i]) / (self.degree + 1) as f64)
-            .collect()
+        (0..self.count).map(|i| (self.knots[i + self.degree + 1] - self.knots[i]) / (self.degree + 1) as f64).collect()
     }
 }
 

@@ -68,8 +68,7 @@ impl TornContact<'_> {
                     (reduced, product)
                 },
             );
-            for ((coefficient, z), product) in
-                krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
+            for ((coefficient, z), product) in krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
             {
                 add_scaled(&mut unknowns, *coefficient, z);
                 add_scaled(&mut rest, -coefficient, product);
@@ -78,7 +77,7 @@ impl TornContact<'_> {
             coarse.project_adjoint(&mut projected);
             residual = norm(&projected);
         }
-        if !(residual <= ACCEPTABLE.max(tolerance) * start) {
+        if residual.is_nan() || residual > ACCEPTABLE.max(tolerance) * start {
             return Err(ContactError::NotConverged {
                 solver: "adjoint GMRES on TFETI",
                 residual: residual / start,

@@ -48,8 +48,11 @@ impl CoarseSpace {
                 entries
             })
             .collect();
-        let resultants =
-            system.factors.iter().flat_map(|factors| factors.modes.iter().map(|mode| dot(mode, &factors.load))).collect();
+        let resultants = system
+            .factors
+            .iter()
+            .flat_map(|factors| factors.modes.iter().map(|mode| dot(mode, &factors.load)))
+            .collect();
         let rows = Csr::from_rows(coarse_count, entries);
         let mut fixed_part = Mat::<f64>::zeros(coarse_count, coarse_count);
         for row in 0..model.constraints.equality_count {

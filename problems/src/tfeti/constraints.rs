@@ -121,6 +121,9 @@ fn equality_rows(body: &BodyRows<'_>, rows: &mut Vec<Vec<(usize, f64)>>) -> usiz
     gluing_count
 }
 
+/// Entries (torn dof, value) of one row.
+type Row = Vec<(usize, f64)>;
+
 /// The copies of one body in a contact row.
 struct ContactPart {
     sign: f64,
@@ -143,7 +146,7 @@ fn contact_parts(scene: &Scene, bodies: &[BodyRows<'_>], [i, j]: [usize; 2], com
 }
 
 /// A row of B and of B_D.
-fn contact_row(parts: &[ContactPart], nu: f64) -> (Vec<(usize, f64)>, Vec<(usize, f64)>) {
+fn contact_row(parts: &[ContactPart], nu: f64) -> (Row, Row) {
     // Row entries s/(mν); weights ω s/(mν) with Σ ω/(mν²) = 1 and ω proportional to the body's compliance.
     let total: f64 = parts.iter().map(|part| part.compliance / (part.copies.len() as f64 * nu * nu)).sum();
     let (mut row, mut weights) = (Vec::new(), Vec::new());

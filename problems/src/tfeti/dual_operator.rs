@@ -54,11 +54,7 @@ impl<'a> DualOperator<'a> {
         self.for_each_subdomain(torn, |factors, part| factors.inverse.solve_in_place(part, 1, Par::Seq));
     }
 
-    fn for_each_subdomain(
-        &self,
-        torn: &mut [f64],
-        work: impl Fn(&crate::tfeti::SubdomainFactors, &mut [f64]) + Sync,
-    ) {
+    fn for_each_subdomain(&self, torn: &mut [f64], work: impl Fn(&crate::tfeti::SubdomainFactors, &mut [f64]) + Sync) {
         let size = self.model.pattern.pattern.dimension();
         torn.par_chunks_mut(size).zip(&self.system.factors).for_each(|(part, factors)| work(factors, part));
     }

@@ -87,10 +87,8 @@ impl SubdomainFactors {
 
 /// Values of K + ρNNᵀ.
 fn regularise(pattern: &LocalPattern, stiffness: &[f64], modes: &[Vec<f64>]) -> Vec<f64> {
-    let dofs: Vec<usize> =
-        fixing_nodes(pattern.shape.cells).iter().flat_map(|node| 3 * node..3 * node + 3).collect();
-    let mut restricted: Vec<Vec<f64>> =
-        modes.iter().map(|mode| dofs.iter().map(|&dof| mode[dof]).collect()).collect();
+    let dofs: Vec<usize> = fixing_nodes(pattern.shape.cells).iter().flat_map(|node| 3 * node..3 * node + 3).collect();
+    let mut restricted: Vec<Vec<f64>> = modes.iter().map(|mode| dofs.iter().map(|&dof| mode[dof]).collect()).collect();
     orthonormalise(&mut restricted);
     let starts = pattern.pattern.starts();
     let dimension = pattern.pattern.dimension();

@@ -1,7 +1,7 @@
 //! What all subdomains of one size share: sparsity, scatter of element matrices, elimination order, fixing nodes.
 
-use crate::elasticity::hex8::{self, DOFS, Nodes};
 use crate::elasticity::Material;
+use crate::elasticity::hex8::{self, DOFS, Nodes};
 use crate::error::ContactError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;

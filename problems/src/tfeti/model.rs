@@ -9,10 +9,10 @@ use crate::linear::symmetric::Submatrix;
 use crate::mesh::{Block, Subdomain, Tearing};
 use crate::scene::{BodyScene, Scene};
 use crate::shape_load::loaded_faces;
+use crate::tfeti::PreconditionerKind;
 use crate::tfeti::constraints::{BodyRows, Constraints};
 use crate::tfeti::factors::{InteriorClass, SubdomainFactors};
 use crate::tfeti::local_pattern::{LocalPattern, fixing_nodes};
-use crate::tfeti::PreconditionerKind;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
@@ -170,7 +170,14 @@ impl TornModel {
     }
 
     /// Coarse amplitudes of a rigid motion of the scene: Rᵀ of its displacement on every subdomain.
-    pub fn amplitudes(&self, system: &TornSystem, blocks: &[Block], motion: &Motion, centre: [f64; 3], length: f64) -> Vec<f64> {
+    pub fn amplitudes(
+        &self,
+        system: &TornSystem,
+        blocks: &[Block],
+        motion: &Motion,
+        centre: [f64; 3],
+        length: f64,
+    ) -> Vec<f64> {
         let mut amplitudes = Vec::with_capacity(6 * self.subdomains.len());
         for (subdomain, factors) in self.subdomains.iter().zip(&system.factors) {
             let coefficients = &motion[6 * subdomain.body..6 * subdomain.body + 6];

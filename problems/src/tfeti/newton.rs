@@ -96,7 +96,8 @@ impl TornContact<'_> {
         let mut history = vec![residual];
         let mut forcing = FIRST_FORCING;
         while residual > settings.tolerance && history.len() <= settings.max_steps {
-            let candidate = self.step(&iterate, forcing.max(0.3 * settings.tolerance / residual), residual, settings)?;
+            let candidate =
+                self.step(&iterate, forcing.max(0.3 * settings.tolerance / residual), residual, settings)?;
             let (next, length) = self.search(iterate, candidate, residual);
             iterate = next;
             let previous = residual;

@@ -47,7 +47,8 @@ impl<'a> ReducedRows<'a> {
 
     /// Calls `visit(node's first row, its number of rows, its first unknown, derivative)` for every closed node.
     fn closed_nodes(&self, mut visit: impl FnMut(usize, usize, usize, &Linearization)) {
-        for ((point, linearization), &start) in self.boundary.points.iter().zip(&self.linearizations).zip(&self.starts) {
+        for ((point, linearization), &start) in self.boundary.points.iter().zip(&self.linearizations).zip(&self.starts)
+        {
             if *linearization != Linearization::Open {
                 visit(self.equality_count + point.start, point.row_count(), start, linearization);
             }

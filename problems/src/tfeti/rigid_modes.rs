@@ -12,7 +12,7 @@ pub fn orthonormal_modes(nodes: &[[f64; 3]]) -> Vec<Vec<f64>> {
         .map(|node| (0..3).map(|axis| (node[axis] - centre[axis]).powi(2)).sum::<f64>())
         .fold(0.0, f64::max)
         .sqrt();
-    let mut modes = vec![Vec::with_capacity(3 * nodes.len()); MOTIONS];
+    let mut modes = vec![Vec::new(); MOTIONS];
     for &node in nodes {
         for (mode, motion) in modes.iter_mut().zip(motions(node, centre, length)) {
             mode.extend_from_slice(&motion);

@@ -126,11 +126,8 @@ impl TornSolver {
                 diagonal[self.model.subdomains[subdomain].body] +=
                     system.factors[subdomain].stiffness[starts[dof % size]];
             }
-            sum += if problem.scene.upper.is_some() {
-                1.0 / (1.0 / diagonal[0] + 1.0 / diagonal[1])
-            } else {
-                diagonal[0]
-            };
+            sum +=
+                if problem.scene.upper.is_some() { 1.0 / (1.0 / diagonal[0] + 1.0 / diagonal[1]) } else { diagonal[0] };
         }
         sum / problem.boundary.points.len() as f64
     }
