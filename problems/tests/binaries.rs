@@ -101,9 +101,9 @@ fn subgradients_pass_the_taylor_test() {
 
 #[test]
 fn a_short_optimization_descends_and_stays_admissible() {
-    let result = json("hertz3d", &["--mesh", "4", "--max-evaluations", "25", "--json"]);
+    let result = json("hertz3d", &["--mesh", "6", "--max-evaluations", "25", "--json"]);
     let (start, end) = (result["objective_start"].as_f64().unwrap(), result["objective"].as_f64().unwrap());
-    assert!(start / end > 8.0, "{start} {end}");
+    assert!(start / end > 5.0, "{start} {end}");
     assert!(result["largest_constraint_violation"].as_f64().unwrap() <= 1e-9);
     assert_eq!(result["evaluations"], 25);
     assert_eq!(result["history"].as_array().unwrap().len(), 25);
