@@ -233,10 +233,9 @@ impl Coderivative for ContactShape {
         let heights = match (&self.solver, &state.solution) {
             (Solver::Torn(solver), Solution::Torn(torn)) => {
                 let tolerance = (ADJOINT_SHARE * state.forces.residuals.newton).clamp(TIGHTEST_ADJOINT, 1e-3);
-                let (heights, applications) =
-                    solver.sensitivities(&self.problem, torn, &packed, tolerance).map_err(oracle)?;
-                state.adjoint_applications.fetch_add(applications, Ordering::Relaxed);
-                heights
+                let result = solver.sensitivities(&self.problem, torn, &packed, tolerance).map_err(oracle)?;
+                state.adjoint_applications.fetch_add(result.applications, Ordering::Relaxed);
+                result.heights
             }
             (Solver::Direct(solver), Solution::Direct(direct)) => solver.sensitivities(&self.problem, direct, &packed),
             _ => {

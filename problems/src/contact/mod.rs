@@ -11,7 +11,7 @@ mod state;
 pub use boundary::{ContactBoundary, ContactPoint};
 pub use certificate::{Kink, Residuals, StatusCounts};
 pub use problem::ContactProblem;
-pub use state::{ContactForces, Work};
+pub use state::{ContactForces, StageSeconds, Work};
 
 /// What a contact node does; method.md (3.2), (3.3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]

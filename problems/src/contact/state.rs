@@ -16,6 +16,25 @@ pub struct Work {
     pub factorizations: usize,
 }
 
+/// Wall-clock seconds of the stages of one state and its subgradient.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct StageSeconds {
+    /// Rigid body analysis of the scene.
+    pub equilibrium: f64,
+    /// Assembly and factorisation of subdomains (interiors included) or bodies.
+    pub factorization: f64,
+    /// Coarse space: G and the part of its matrix that all active sets share.
+    pub coarse_space: f64,
+    /// Newton iteration: coarse factors, Krylov, dual operator.
+    pub newton: f64,
+    /// Displacements and certificates.
+    pub recovery: f64,
+    /// Adjoint system.
+    pub adjoint: f64,
+    /// Element sums of the shape derivative.
+    pub shape_derivative: f64,
+}
+
 /// Forces on the contact nodes and what is known about them; physical units, whatever solver found them.
 #[derive(Debug, Clone)]
 pub struct ContactForces {

@@ -27,4 +27,4 @@ pub use model::{TornModel, TornSystem};
 pub use newton::{Iterate, NewtonSettings, TornContact, TornSolution};
 pub use preconditioner::{Preconditioner, PreconditionerKind};
 pub use reduced::ReducedRows;
-pub use solver::{TornSolver, TornState};
+pub use solver::{Sensitivities, TornSolver, TornState};

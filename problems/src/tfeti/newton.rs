@@ -301,7 +301,7 @@ const BONDED_REDUCTION: f64 = 0.1;
 /// Krylov iterations of the bonded start.
 const BONDED_KRYLOV: usize = 200;
 /// First forcing term.
-const FIRST_FORCING: f64 = 0.1;
+const FIRST_FORCING: f64 = 0.3;
 /// Forcing after a shortened step.
 const SHORTENED_FORCING: f64 = 0.01;
 /// Pivot ratio of a coarse matrix that counts as singular.

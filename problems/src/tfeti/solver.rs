@@ -2,7 +2,7 @@
 
 use crate::contact::certificate::law_residuals;
 use crate::contact::law::Linearization;
-use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, Work};
+use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, StageSeconds, Work};
 use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::mesh::Block;
@@ -12,6 +12,7 @@ use crate::tfeti::{
     TornSolution, TornSystem,
 };
 use rayon::prelude::*;
+use std::time::Instant;
 
 /// The TFETI solver of one scene.
 #[derive(Debug)]
@@ -30,6 +31,36 @@ pub struct TornState {
     displacement: Vec<f64>,
     stiffness: f64,
     load: f64,
+    seconds: StageSeconds,
+}
+
+/// Result of the adjoint: sensitivities of the column heights, and what they cost.
+#[derive(Debug, Clone)]
+pub struct Sensitivities {
+    /// ∂J/∂F per column, mm⁻¹ times the unit of J.
+    pub heights: Vec<f64>,
+    /// Products with F.
+    pub applications: usize,
+    /// Seconds of the adjoint system.
+    pub adjoint_seconds: f64,
+    /// Seconds of the element sums.
+    pub shape_seconds: f64,
+}
+
+/// Laps of wall-clock time.
+struct Clock(Instant);
+
+impl Clock {
+    fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    /// Seconds since the last lap.
+    fn lap(&mut self) -> f64 {
+        let seconds = self.0.elapsed().as_secs_f64();
+        self.0 = Instant::now();
+        seconds
+    }
 }
 
 /// c relative to the assembled diagonal of the contact nodes: the Schur complement's diagonal is about half of it.
@@ -60,10 +91,14 @@ impl TornSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(TornState, ContactForces, Work), ContactError> {
+        let mut clock = Clock::start();
+        let mut seconds = StageSeconds::default();
         let blocks = problem.blocks(controls)?;
         let rigid = problem.rigid_scene(&blocks);
         let grounded = rigid.analyse(&problem.boundary)?;
+        seconds.equilibrium = clock.lap();
         let system = self.model.factorize(&blocks)?;
+        seconds.factorization = clock.lap();
         let amplitudes: Vec<Vec<f64>> = grounded
             .iter()
             .map(|motion| self.model.amplitudes(&system, &blocks, motion, rigid.centre, rigid.length))
@@ -74,6 +109,7 @@ impl TornSolver {
         let load = rigid.total_load() + stiffness * penetration;
         let operator = DualOperator::new(&self.model, &system);
         let space = CoarseSpace::new(&operator, &amplitudes);
+        seconds.coarse_space = clock.lap();
         let (solution, displacement, residuals) = {
             let preconditioner = Preconditioner::new(&operator, self.preconditioner, stiffness);
             let contact = TornContact {
@@ -86,6 +122,7 @@ impl TornSolver {
                 load: if load > 0.0 { load } else { 1.0 },
             };
             let solution = contact.solve(start, &NewtonSettings::to(tolerance))?;
+            seconds.newton = clock.lap();
             let iterate = &solution.iterate;
             let displacement = operator.displacement(&iterate.multipliers, &iterate.amplitudes, true);
             let residuals = self.certify(problem, &contact, &solution);
@@ -97,7 +134,8 @@ impl TornSolver {
             adjoint_applications: 0,
             factorizations: system.factorizations,
         };
-        let state = TornState { blocks, space, solution, displacement, stiffness, load, system };
+        seconds.recovery = clock.lap();
+        let state = TornState { blocks, space, solution, displacement, stiffness, load, system, seconds };
         let forces = self.forces(problem, &state, residuals);
         Ok((state, forces, work))
     }
@@ -173,8 +211,7 @@ impl TornSolver {
         ContactForces::unpack(&problem.boundary, &forces, &jumps, status, residuals, kink)
     }
 
-    /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed physical rows; returns them with the products
-    /// with F that the adjoint took.
+    /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed physical rows.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] from the adjoint.
@@ -184,7 +221,8 @@ impl TornSolver {
         state: &TornState,
         direction: &[f64],
         tolerance: f64,
-    ) -> Result<(Vec<f64>, usize), ContactError> {
+    ) -> Result<Sensitivities, ContactError> {
+        let mut clock = Clock::start();
         let operator = DualOperator::new(&self.model, &state.system);
         let preconditioner = Preconditioner::new(&operator, self.preconditioner, state.stiffness);
         let contact = TornContact {
@@ -205,6 +243,7 @@ impl TornSolver {
             }
         }
         let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, tolerance)?;
+        let adjoint_seconds = clock.lap();
         let mut heights = vec![0.0; problem.grid.column_count()];
         for part in self.element_sensitivities(problem, state, &adjoint.displacement) {
             for (column, value) in part {
@@ -215,7 +254,8 @@ impl TornSolver {
         for ((height, point), nu) in heights.iter_mut().zip(&problem.boundary.points).zip(&constraints.normalisation) {
             *height -= adjoint.multipliers[equality + point.start] / nu;
         }
-        Ok((heights, operator.applications()))
+        let shape_seconds = clock.lap();
+        Ok(Sensitivities { heights, applications: operator.applications(), adjoint_seconds, shape_seconds })
     }
 
     /// Element sums per subdomain of the lower body, in order.
@@ -264,5 +304,10 @@ impl TornState {
     /// Force that residuals are relative to, N.
     pub fn load(&self) -> f64 {
         self.load
+    }
+
+    /// Seconds of the stages of the state.
+    pub fn seconds(&self) -> StageSeconds {
+        self.seconds
     }
 }
