@@ -7,7 +7,6 @@
 
 use crate::linear::csr::Csr;
 use crate::linear::dense::DenseLu;
-use crate::linear::vector::dot;
 use crate::tfeti::{DualOperator, ReducedRows};
 use faer::Mat;
 use rayon::prelude::*;
@@ -28,7 +27,7 @@ impl CoarseSpace {
     pub fn new(operator: &DualOperator<'_>, grounded: &[Vec<f64>]) -> Self {
         let (model, system) = (operator.model, operator.system);
         let size = model.pattern.pattern.dimension();
-        let coarse_count = 6 * system.factors.len();
+        let coarse_count = 6 * system.parts.len();
         let entries: Vec<Vec<(usize, f64)>> = (0..model.constraints.row_count())
             .into_par_iter()
             .map(|row| {
@@ -41,18 +40,14 @@ impl CoarseSpace {
                         entries.extend((first..first + 6).map(|index| (index, 0.0)));
                         entries.len() - 6
                     });
-                    for (entry, mode) in entries[position..].iter_mut().zip(&system.factors[subdomain].modes) {
+                    for (entry, mode) in entries[position..].iter_mut().zip(&system.parts[subdomain].rigid.modes) {
                         entry.1 += value * mode[dof - first / 6 * size];
                     }
                 }
                 entries
             })
             .collect();
-        let resultants = system
-            .factors
-            .iter()
-            .flat_map(|factors| factors.modes.iter().map(|mode| dot(mode, &factors.load)))
-            .collect();
+        let resultants = system.parts.iter().flat_map(|part| part.rigid.resultants.iter().copied()).collect();
         let rows = Csr::from_rows(coarse_count, entries);
         let mut fixed_part = Mat::<f64>::zeros(coarse_count, coarse_count);
         for row in 0..model.constraints.equality_count {

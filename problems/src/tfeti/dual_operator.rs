@@ -1,6 +1,7 @@
 //! F = B K⁺ Bᵀ and the products around it; subdomains in parallel, sums in a fixed order.
 
-use crate::tfeti::{TornModel, TornSystem};
+use crate::linear::vector::add_scaled;
+use crate::tfeti::{SubdomainFactors, TornModel, TornSystem};
 use faer::Par;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -42,10 +43,11 @@ impl<'a> DualOperator<'a> {
         torn
     }
 
-    /// B u of a torn displacement.
+    /// B u of a torn displacement, summed over all processes.
     pub fn gather(&self, torn: &[f64]) -> Vec<f64> {
         let mut rows = vec![0.0; self.model.constraints.row_count()];
         self.model.constraints.rows.multiply(torn, &mut rows);
+        self.model.communication.exchange(&mut rows);
         rows
     }
 
@@ -54,9 +56,13 @@ impl<'a> DualOperator<'a> {
         self.for_each_subdomain(torn, |factors, part| factors.inverse.solve_in_place(part, 1, Par::Seq));
     }
 
-    fn for_each_subdomain(&self, torn: &mut [f64], work: impl Fn(&crate::tfeti::SubdomainFactors, &mut [f64]) + Sync) {
+    /// Works on the parts of a torn vector that belong to this process and clears the others.
+    fn for_each_subdomain(&self, torn: &mut [f64], work: impl Fn(&SubdomainFactors, &mut [f64]) + Sync) {
         let size = self.model.pattern.pattern.dimension();
-        torn.par_chunks_mut(size).zip(&self.system.factors).for_each(|(part, factors)| work(factors, part));
+        torn.par_chunks_mut(size).zip(&self.system.parts).for_each(|(values, part)| match &part.factors {
+            Some(factors) => work(factors, values),
+            None => values.fill(0.0),
+        });
     }
 
     /// K⁺ f over torn dofs.
@@ -70,20 +76,19 @@ impl<'a> DualOperator<'a> {
         torn
     }
 
-    /// u = K⁺(f − Bᵀλ) + R a, with or without the load; method.md (4.2).
+    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere; with or without the load; method.md (4.2).
     pub fn displacement(&self, multipliers: &[f64], amplitudes: &[f64], loaded: bool) -> Vec<f64> {
         let mut torn = self.scatter(multipliers);
         self.solve_subdomains(&mut torn);
         let size = self.model.pattern.pattern.dimension();
-        torn.par_chunks_mut(size).zip(&self.system.factors).enumerate().for_each(|(index, (part, factors))| {
-            part.iter_mut().for_each(|entry| *entry = -*entry);
+        torn.par_chunks_mut(size).zip(&self.system.parts).enumerate().for_each(|(index, (values, part))| {
+            let Some(factors) = &part.factors else { return };
+            values.iter_mut().for_each(|entry| *entry = -*entry);
             if loaded && !factors.loaded_displacement.is_empty() {
-                for (entry, loaded) in part.iter_mut().zip(&factors.loaded_displacement) {
-                    *entry += loaded;
-                }
+                add_scaled(values, 1.0, &factors.loaded_displacement);
             }
-            for (mode, amplitude) in factors.modes.iter().zip(&amplitudes[6 * index..]) {
-                crate::linear::vector::add_scaled(part, *amplitude, mode);
+            for (mode, amplitude) in part.rigid.modes.iter().zip(&amplitudes[6 * index..]) {
+                add_scaled(values, *amplitude, mode);
             }
         });
         torn

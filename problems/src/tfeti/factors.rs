@@ -25,17 +25,31 @@ pub struct InteriorClass {
     pub symbolic: Option<Arc<SymbolicFactor>>,
 }
 
-/// All matrices of one subdomain.
+/// What every process knows of a subdomain: its rigid motions and their loads.
+#[derive(Debug)]
+pub struct SubdomainRigid {
+    /// Orthonormal rigid modes, six columns.
+    pub modes: Vec<Vec<f64>>,
+    /// Resultants Rᵀ f of the loads along them.
+    pub resultants: Vec<f64>,
+}
+
+impl SubdomainRigid {
+    /// From the coordinates of the nodes and the nodal loads.
+    pub fn new(coordinates: &[[f64; 3]], load: &[f64]) -> Self {
+        let modes = orthonormal_modes(coordinates);
+        let resultants = modes.iter().map(|mode| dot(mode, load)).collect();
+        Self { modes, resultants }
+    }
+}
+
+/// The matrices of one subdomain, on the process that works on it.
 #[derive(Debug)]
 pub struct SubdomainFactors {
     /// Values of the stiffness matrix K over [`LocalPattern::pattern`].
     pub stiffness: Vec<f64>,
     /// Factor of K + ρNNᵀ.
     pub inverse: NumericFactor,
-    /// Orthonormal rigid modes, six columns.
-    pub modes: Vec<Vec<f64>>,
-    /// Consistent nodal loads.
-    pub load: Vec<f64>,
     /// K⁺ times the load; empty for an unloaded subdomain.
     pub loaded_displacement: Vec<f64>,
     /// Factor of the interior matrix, if the preconditioner needs it.
@@ -48,8 +62,8 @@ const GENERALISED_INVERSE: f64 = 1e-8;
 impl SubdomainFactors {
     /// Assembles and factors one subdomain.
     ///
-    /// `coordinates`: its nodes; `brick`: nodes of a local brick; `interior`: class to factor for the Dirichlet
-    /// preconditioner.
+    /// `modes`: its rigid modes; `brick`: nodes of a local brick; `load`: consistent nodal loads; `interior`: class to factor
+    /// for the Dirichlet preconditioner.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a matrix is not positive definite or K K⁺ K = K fails.
@@ -57,14 +71,13 @@ impl SubdomainFactors {
         pattern: &LocalPattern,
         symbolic: &Arc<SymbolicFactor>,
         material: &Material,
-        coordinates: &[[f64; 3]],
+        modes: &[Vec<f64>],
         brick: impl Fn([usize; 3]) -> Nodes<f64>,
-        load: Vec<f64>,
+        load: &[f64],
         interior: Option<&InteriorClass>,
     ) -> Result<Self, ContactError> {
         let stiffness = pattern.assemble(material, brick);
-        let modes = orthonormal_modes(coordinates);
-        let regularised = regularise(pattern, &stiffness, &modes);
+        let regularised = regularise(pattern, &stiffness, modes);
         let inverse = symbolic.factorize(&regularised, Par::Seq)?;
         check_generalised_inverse(pattern, &stiffness, &inverse)?;
         let interior = match interior.and_then(|class| class.symbolic.as_ref().map(|symbolic| (class, symbolic))) {
@@ -73,10 +86,10 @@ impl SubdomainFactors {
         };
         let mut loaded_displacement = Vec::new();
         if load.iter().any(|&force| force != 0.0) {
-            loaded_displacement = load.clone();
+            loaded_displacement = load.to_vec();
             inverse.solve_in_place(&mut loaded_displacement, 1, Par::Seq);
         }
-        Ok(Self { stiffness, inverse, modes, load, loaded_displacement, interior })
+        Ok(Self { stiffness, inverse, loaded_displacement, interior })
     }
 
     /// Number of numeric factorisations this subdomain took.

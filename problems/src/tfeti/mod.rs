@@ -6,6 +6,7 @@
 
 mod adjoint;
 mod coarse;
+pub mod communication;
 mod constraints;
 mod dual_operator;
 mod factors;
@@ -19,9 +20,10 @@ mod solver;
 
 pub use adjoint::TornAdjoint;
 pub use coarse::{CoarseProblem, CoarseSpace};
+pub use communication::{Communication, InProcess};
 pub use constraints::Constraints;
 pub use dual_operator::DualOperator;
-pub use factors::SubdomainFactors;
+pub use factors::{SubdomainFactors, SubdomainRigid};
 pub use local_pattern::LocalPattern;
 pub use model::{TornModel, TornSystem};
 pub use newton::{Iterate, NewtonSettings, TornContact, TornSolution};

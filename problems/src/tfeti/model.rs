@@ -9,10 +9,10 @@ use crate::linear::symmetric::Submatrix;
 use crate::mesh::{Block, Subdomain, Tearing};
 use crate::scene::{BodyScene, Scene};
 use crate::shape_load::loaded_faces;
-use crate::tfeti::PreconditionerKind;
 use crate::tfeti::constraints::{BodyRows, Constraints};
 use crate::tfeti::factors::{InteriorClass, SubdomainFactors};
 use crate::tfeti::local_pattern::{LocalPattern, fixing_nodes};
+use crate::tfeti::{Communication, PreconditionerKind, SubdomainRigid};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
@@ -40,16 +40,27 @@ pub struct TornModel {
     /// Pattern shared by all subdomains.
     pub pattern: LocalPattern,
     symbolic: Arc<SymbolicFactor>,
-    fixed: OnceLock<Vec<Arc<SubdomainFactors>>>,
+    fixed: OnceLock<Vec<TornPart>>,
+    /// The process this model lives in.
+    pub communication: Arc<dyn Communication>,
     /// Number of torn dofs.
     pub dof_count: usize,
+}
+
+/// One subdomain of one shape.
+#[derive(Debug, Clone)]
+pub struct TornPart {
+    /// Rigid motions, known to every process.
+    pub rigid: Arc<SubdomainRigid>,
+    /// Factors, on the process that works on the subdomain.
+    pub factors: Option<Arc<SubdomainFactors>>,
 }
 
 /// The factored subdomains of one shape.
 #[derive(Debug)]
 pub struct TornSystem {
-    /// Factors per subdomain.
-    pub factors: Vec<Arc<SubdomainFactors>>,
+    /// All subdomains, lower body first.
+    pub parts: Vec<TornPart>,
     /// Numeric factorisations done for this shape.
     pub factorizations: usize,
 }
@@ -63,6 +74,7 @@ impl TornModel {
         scene: &Scene,
         boundary: &ContactBoundary,
         preconditioner: PreconditionerKind,
+        communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
         let grid = scene.grid();
         let bodies: Vec<BodyScene> =
@@ -99,7 +111,16 @@ impl TornModel {
             let place = tearing.subdomains[index % per_body].clone();
             subdomains.push(TornSubdomain { body: index / per_body, place, first_dof, interior });
         }
-        Ok(Self { bodies, subdomains, constraints, pattern, symbolic, fixed: OnceLock::new(), dof_count })
+        Ok(Self {
+            bodies,
+            subdomains,
+            constraints,
+            pattern,
+            symbolic,
+            fixed: OnceLock::new(),
+            communication,
+            dof_count,
+        })
     }
 
     /// Factors the subdomains of the given blocks (lower, then upper). The upper body keeps its shape: it is factored at the
@@ -108,9 +129,11 @@ impl TornModel {
     /// # Errors
     /// [`ContactError::Factorization`] from a subdomain.
     pub fn factorize(&self, blocks: &[Block]) -> Result<TornSystem, ContactError> {
-        let count = |factors: &[Arc<SubdomainFactors>]| factors.iter().map(|f| f.factorizations()).sum::<usize>();
-        let mut factors = self.factorize_body(0, &blocks[0])?;
-        let mut factorizations = count(&factors);
+        let count = |parts: &[TornPart]| {
+            parts.iter().flat_map(|part| &part.factors).map(|factors| factors.factorizations()).sum::<usize>()
+        };
+        let mut parts = self.factorize_body(0, &blocks[0])?;
+        let mut factorizations = count(&parts);
         if blocks.len() == 2 {
             if self.fixed.get().is_none() {
                 let upper = self.factorize_body(1, &blocks[1])?;
@@ -118,30 +141,36 @@ impl TornModel {
                 // Another thread may have been first; its factors are the same.
                 let _ = self.fixed.set(upper);
             }
-            factors.extend(self.fixed.get().into_iter().flatten().cloned());
+            parts.extend(self.fixed.get().into_iter().flatten().cloned());
         }
-        Ok(TornSystem { factors, factorizations })
+        Ok(TornSystem { parts, factorizations })
     }
 
-    fn factorize_body(&self, body: usize, block: &Block) -> Result<Vec<Arc<SubdomainFactors>>, ContactError> {
-        let members: Vec<&TornSubdomain> = self.subdomains.iter().filter(|s| s.body == body).collect();
-        members
+    fn factorize_body(&self, body: usize, block: &Block) -> Result<Vec<TornPart>, ContactError> {
+        let owned = self.communication.owned(self.subdomains.len());
+        self.subdomains
             .par_iter()
-            .map(|subdomain| {
+            .enumerate()
+            .filter(|(_, subdomain)| subdomain.body == body)
+            .map(|(index, subdomain)| {
                 let place = &subdomain.place;
                 let coordinates: Vec<[f64; 3]> =
                     (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect();
-                let brick = |local: [usize; 3]| block.brick(std::array::from_fn(|a| local[a] + place.first_cell[a]));
-                SubdomainFactors::new(
+                let load = self.loads(body, place, block);
+                let rigid = Arc::new(SubdomainRigid::new(&coordinates, &load));
+                if !owned.contains(&index) {
+                    return Ok(TornPart { rigid, factors: None });
+                }
+                let factors = SubdomainFactors::new(
                     &self.pattern,
                     &self.symbolic,
                     &self.bodies[body].material,
-                    &coordinates,
-                    brick,
-                    self.loads(body, place, block),
+                    &rigid.modes,
+                    |local| block.brick(std::array::from_fn(|axis| local[axis] + place.first_cell[axis])),
+                    &load,
                     subdomain.interior.as_deref(),
-                )
-                .map(Arc::new)
+                )?;
+                Ok(TornPart { rigid, factors: Some(Arc::new(factors)) })
             })
             .collect()
     }
@@ -179,7 +208,7 @@ impl TornModel {
         length: f64,
     ) -> Vec<f64> {
         let mut amplitudes = Vec::with_capacity(6 * self.subdomains.len());
-        for (subdomain, factors) in self.subdomains.iter().zip(&system.factors) {
+        for (subdomain, part) in self.subdomains.iter().zip(&system.parts) {
             let coefficients = &motion[6 * subdomain.body..6 * subdomain.body + 6];
             let place = &subdomain.place;
             let mut displacement = Vec::with_capacity(place.dof_count());
@@ -190,7 +219,7 @@ impl TornModel {
                     displacement.push(basis.iter().zip(coefficients).map(|(b, c)| b[component] * c).sum::<f64>());
                 }
             }
-            amplitudes.extend(factors.modes.iter().map(|mode| crate::linear::vector::dot(mode, &displacement)));
+            amplitudes.extend(part.rigid.modes.iter().map(|mode| crate::linear::vector::dot(mode, &displacement)));
         }
         amplitudes
     }

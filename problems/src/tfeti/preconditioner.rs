@@ -44,15 +44,18 @@ impl<'a> Preconditioner<'a> {
         let mut torn = vec![0.0; model.dof_count];
         model.constraints.weighted_transposed.multiply(residual, &mut torn);
         let size = model.pattern.pattern.dimension();
-        torn.par_chunks_mut(size).zip(&self.operator.system.factors).enumerate().for_each(
-            |(index, (part, factors))| {
-                if part.iter().any(|entry| *entry != 0.0) {
-                    self.apply_subdomain(index, factors, part);
+        torn.par_chunks_mut(size).zip(&self.operator.system.parts).enumerate().for_each(|(index, (values, part))| {
+            match &part.factors {
+                Some(factors) if values.iter().any(|entry| *entry != 0.0) => {
+                    self.apply_subdomain(index, factors, values)
                 }
-            },
-        );
+                Some(_) => {}
+                None => values.fill(0.0),
+            }
+        });
         let mut result = vec![0.0; model.constraints.row_count()];
         model.constraints.weighted.multiply(&torn, &mut result);
+        model.communication.exchange(&mut result);
         result
     }
 

@@ -8,10 +8,11 @@ use crate::linear::vector::norm;
 use crate::mesh::Block;
 use crate::shape_sensitivity::column_sensitivities;
 use crate::tfeti::{
-    CoarseSpace, DualOperator, NewtonSettings, Preconditioner, PreconditionerKind, TornContact, TornModel,
-    TornSolution, TornSystem,
+    CoarseSpace, Communication, DualOperator, InProcess, NewtonSettings, Preconditioner, PreconditionerKind,
+    TornContact, TornModel, TornSolution, TornSystem,
 };
 use rayon::prelude::*;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The TFETI solver of one scene.
@@ -72,7 +73,20 @@ impl TornSolver {
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn new(problem: &ContactProblem, preconditioner: PreconditionerKind) -> Result<Self, ContactError> {
-        Ok(Self { model: TornModel::new(&problem.scene, &problem.boundary, preconditioner)?, preconditioner })
+        Self::with_communication(problem, preconditioner, Arc::new(InProcess))
+    }
+
+    /// As [`TornSolver::new`], for one process of several: each solves the same problem and works on its own subdomains.
+    ///
+    /// # Errors
+    /// As [`TornSolver::new`].
+    pub fn with_communication(
+        problem: &ContactProblem,
+        preconditioner: PreconditionerKind,
+        communication: Arc<dyn Communication>,
+    ) -> Result<Self, ContactError> {
+        let model = TornModel::new(&problem.scene, &problem.boundary, preconditioner, communication)?;
+        Ok(Self { model, preconditioner })
     }
 
     /// The torn model.
@@ -156,18 +170,21 @@ impl TornSolver {
         let size = self.model.pattern.pattern.dimension();
         let starts = self.model.pattern.pattern.starts();
         let constraints = &self.model.constraints;
-        let mut sum = 0.0;
-        for point in &problem.boundary.points {
-            let mut diagonal = [0.0; 2];
+        let mut diagonals = vec![0.0; 2 * problem.boundary.points.len()];
+        for (point, diagonal) in problem.boundary.points.iter().zip(diagonals.chunks_exact_mut(2)) {
             for (dof, _) in constraints.rows.row(constraints.equality_count + point.start) {
                 let subdomain = dof / size;
-                diagonal[self.model.subdomains[subdomain].body] +=
-                    system.factors[subdomain].stiffness[starts[dof % size]];
+                if let Some(factors) = &system.parts[subdomain].factors {
+                    diagonal[self.model.subdomains[subdomain].body] += factors.stiffness[starts[dof % size]];
+                }
             }
-            sum +=
-                if problem.scene.upper.is_some() { 1.0 / (1.0 / diagonal[0] + 1.0 / diagonal[1]) } else { diagonal[0] };
         }
-        sum / problem.boundary.points.len() as f64
+        self.model.communication.sum(&mut diagonals);
+        let series = |diagonal: &[f64]| match problem.scene.upper {
+            Some(_) => 1.0 / (1.0 / diagonal[0] + 1.0 / diagonal[1]),
+            None => diagonal[0],
+        };
+        diagonals.chunks_exact(2).map(series).sum::<f64>() / problem.boundary.points.len() as f64
     }
 
     /// Recomputes the residuals from the multipliers with a fresh product F λ.
@@ -250,6 +267,7 @@ impl TornSolver {
                 heights[column] += value;
             }
         }
+        self.model.communication.sum(&mut heights);
         // The gap F² − F_α falls as the surface rises.
         for ((height, point), nu) in heights.iter_mut().zip(&problem.boundary.points).zip(&constraints.normalisation) {
             *height -= adjoint.multipliers[equality + point.start] / nu;
@@ -269,8 +287,9 @@ impl TornSolver {
         self.model
             .subdomains
             .par_iter()
-            .filter(|subdomain| subdomain.body == 0)
-            .map(|subdomain| {
+            .zip(&state.system.parts)
+            .filter(|(subdomain, part)| subdomain.body == 0 && part.factors.is_some())
+            .map(|(subdomain, _)| {
                 let dofs = subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count();
                 column_sensitivities(
                     &state.blocks[0],
@@ -291,7 +310,7 @@ impl TornState {
         &self.solution.iterate.multipliers
     }
 
-    /// Displacements over torn dofs, mm.
+    /// Displacements over the torn dofs of this process (zero elsewhere), mm.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement
     }
