@@ -42,6 +42,26 @@ impl Linearization {
         Self::Slip { direction: [x[1] / length, second], ratio: radius / length }
     }
 
+    /// D over the `count` rows of a node (1, 2 or 3), zero elsewhere.
+    pub fn derivative(&self, count: usize, friction: f64) -> [[f64; 3]; 3] {
+        let mut block = [[0.0; 3]; 3];
+        match *self {
+            Self::Open => {}
+            Self::Stick => (0..count).for_each(|i| block[i][i] = 1.0),
+            Self::Slip { direction, ratio } => {
+                block[0][0] = 1.0;
+                for i in 1..count {
+                    block[i][0] = friction * direction[i - 1];
+                    for j in 1..count {
+                        let identity = f64::from(u8::from(i == j));
+                        block[i][j] = ratio * (identity - direction[i - 1] * direction[j - 1]);
+                    }
+                }
+            }
+        }
+        block
+    }
+
     /// The status this derivative stands for. Without tangential rows a closed node that can slide slips.
     pub fn status(&self, point: &ContactPoint) -> ContactStatus {
         match self {
@@ -93,19 +113,8 @@ mod tests {
 
     /// DΠ(x)·dx from the linearisation.
     fn derivative(x: &[f64], dx: &[f64], friction: f64) -> Vec<f64> {
-        match Linearization::at(x, friction) {
-            Linearization::Open => vec![0.0; x.len()],
-            Linearization::Stick => dx.to_vec(),
-            Linearization::Slip { direction, ratio } => {
-                let along: f64 = (1..x.len()).map(|i| direction[i - 1] * dx[i]).sum();
-                let mut result = vec![dx[0]];
-                for i in 1..x.len() {
-                    let e = direction[i - 1];
-                    result.push(ratio * (dx[i] - along * e) + friction * dx[0] * e);
-                }
-                result
-            }
-        }
+        let block = Linearization::at(x, friction).derivative(x.len(), friction);
+        block[..x.len()].iter().map(|row| row.iter().zip(dx).map(|(d, dx)| d * dx).sum()).collect()
     }
 
     proptest! {

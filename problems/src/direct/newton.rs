@@ -251,7 +251,7 @@ impl CondensedContact<'_> {
         let mut coefficients = vec![Vec::new(); self.boundary.row_count];
         for ((index, point), linearization) in self.boundary.points.iter().enumerate().zip(linearizations) {
             let rows: Vec<(usize, usize)> = Self::rows_of(index, point).collect();
-            let derivative = derivative_block(linearization, rows.len(), self.boundary.friction);
+            let derivative = linearization.derivative(rows.len(), self.boundary.friction);
             for (i, &(_, row)) in rows.iter().enumerate() {
                 for (j, &(dof, _)) in rows.iter().enumerate() {
                     let d = derivative[i][j];
@@ -295,24 +295,4 @@ impl CondensedContact<'_> {
         }
         (to.to_vec(), full)
     }
-}
-
-/// D, the derivative of Π at one node.
-fn derivative_block(linearization: &Linearization, count: usize, friction: f64) -> [[f64; 3]; 3] {
-    let mut block = [[0.0; 3]; 3];
-    match *linearization {
-        Linearization::Open => {}
-        Linearization::Stick => (0..count).for_each(|i| block[i][i] = 1.0),
-        Linearization::Slip { direction, ratio } => {
-            block[0][0] = 1.0;
-            for i in 1..count {
-                block[i][0] = friction * direction[i - 1];
-                for j in 1..count {
-                    let identity = f64::from(u8::from(i == j));
-                    block[i][j] = ratio * (identity - direction[i - 1] * direction[j - 1]);
-                }
-            }
-        }
-    }
-    block
 }

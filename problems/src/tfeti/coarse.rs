@@ -68,6 +68,11 @@ impl CoarseSpace {
         Self { transposed: rows.transpose(), rows, resultants, fixed_part }
     }
 
+    /// G_E G_Eᵀ with the grounded motions: the part of the coarse matrix that all active sets share.
+    pub fn equality_gram(&self) -> &Mat<f64> {
+        &self.fixed_part
+    }
+
     /// G λ.
     pub fn resultant(&self, multipliers: &[f64]) -> Vec<f64> {
         let mut result = vec![0.0; self.rows.column_count()];
