@@ -1,0 +1,360 @@
+//! SMALSE-M: semimonotonic augmented Lagrangians for separable and equality constraints.
+//!
+//! ```text
+//! L(x, μ) = ½ xᵀHx − xᵀb + μᵀ(C x − e) + ρ/2 |C x − e|²
+//! 1. find x ∈ Ω with |g̃(x, μ)| ≤ min(M |C x − e|, η |b|)                    (MPGP, warm)
+//! 2. stop when |g̃| and |C x − e| are small enough
+//! 3. μ ← μ + ρ (C x − e);   if L grew by less than ρ/2 |C x − e|²: M ← β M
+//! ```
+//! ρ stays fixed at |H| (for orthonormal rows C the spectrum of H + ρCᵀC is then that of H on the kernel of C, and ρ).
+
+use crate::linear::vector::{add_scaled, dot, norm};
+use crate::qp::mpgp::Ending;
+use crate::qp::{
+    FacePreconditioner, LinearEqualities, Mpgp, MpgpSettings, Point, QpError, SeparableSet, StepCounts,
+    SymmetricOperator, largest_eigenvalue,
+};
+
+/// The data of a program.
+#[derive(Clone, Copy)]
+pub struct QuadraticProgram<'a> {
+    /// H, positive definite on the kernel of C.
+    pub hessian: &'a dyn SymmetricOperator,
+    /// b.
+    pub linear: &'a [f64],
+    /// Ω.
+    pub set: &'a SeparableSet,
+    /// C x = e, if there are equalities.
+    pub equalities: Option<&'a dyn LinearEqualities>,
+}
+
+/// Constants of the outer loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SmalseSettings {
+    /// ρ over |H|/|C|². Default 1.
+    pub penalty: f64,
+    /// First M over ρ|C|. Default 1.
+    pub first_m: f64,
+    /// β, the factor of M. Default 0.8.
+    pub beta: f64,
+    /// η. Default 1.
+    pub eta: f64,
+    /// Updates of μ allowed. Default 500.
+    pub max_outer: usize,
+    /// Lanczos steps for |H| when it is not known. Default 8.
+    pub norm_steps: usize,
+    /// Constants of the inner solver.
+    pub inner: MpgpSettings,
+}
+
+impl Default for SmalseSettings {
+    fn default() -> Self {
+        Self {
+            penalty: 1.0,
+            first_m: 1.0,
+            beta: 0.8,
+            eta: 1.0,
+            max_outer: 500,
+            norm_steps: 8,
+            inner: MpgpSettings::default(),
+        }
+    }
+}
+
+/// What a similar program may start from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WarmStart {
+    /// x; projected onto Ω.
+    pub x: Vec<f64>,
+    /// H x without the penalty, if known for exactly this x and x is feasible: saves one product.
+    pub image: Option<Vec<f64>>,
+    /// μ.
+    pub multipliers: Vec<f64>,
+    /// M, absolute; none for the default.
+    pub m: Option<f64>,
+    /// |H|; none to have it estimated.
+    pub norm: Option<f64>,
+}
+
+/// The end of a run.
+#[derive(Debug, Clone)]
+pub struct SmalseSolution {
+    /// What a similar program may start from; holds x and μ.
+    pub warm: WarmStart,
+    /// H x − b + Cᵀμ.
+    pub gradient: Vec<f64>,
+    /// |g̃|.
+    pub reduced_gradient: f64,
+    /// |C x − e|.
+    pub infeasibility: f64,
+    /// Updates of μ.
+    pub outer: usize,
+    /// Work.
+    pub counts: StepCounts,
+    /// Whether the accuracy asked for was reached (otherwise rounding stopped all progress).
+    pub converged: bool,
+}
+
+/// What a caller may judge the accuracy by.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress<'a> {
+    /// x.
+    pub x: &'a [f64],
+    /// H x − b + Cᵀμ with the updated μ (without penalty).
+    pub gradient: &'a [f64],
+    /// |g̃|.
+    pub reduced_gradient: f64,
+    /// |C x − e|.
+    pub infeasibility: f64,
+}
+
+/// H + ρCᵀC.
+struct Augmented<'a> {
+    program: QuadraticProgram<'a>,
+    rho: f64,
+}
+
+impl SymmetricOperator for Augmented<'_> {
+    fn dimension(&self) -> usize {
+        self.program.hessian.dimension()
+    }
+
+    fn apply(&self, x: &[f64], result: &mut [f64]) {
+        self.program.hessian.apply(x, result);
+        if let Some(equalities) = self.program.equalities {
+            let image = equalities.apply_transposed(&equalities.apply(x));
+            add_scaled(result, self.rho, &image);
+        }
+    }
+}
+
+/// CᵀC.
+struct Gram<'a> {
+    equalities: &'a dyn LinearEqualities,
+    dimension: usize,
+}
+
+impl SymmetricOperator for Gram<'_> {
+    fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    fn apply(&self, x: &[f64], result: &mut [f64]) {
+        result.copy_from_slice(&self.equalities.apply_transposed(&self.equalities.apply(x)));
+    }
+}
+
+/// The solver.
+#[derive(Clone, Copy)]
+pub struct Smalse<'a> {
+    /// The program.
+    pub program: QuadraticProgram<'a>,
+    /// Preconditioner of H + ρCᵀC inside faces.
+    pub preconditioner: Option<FacePreconditioner<'a>>,
+    /// Constants.
+    pub settings: SmalseSettings,
+}
+
+impl Smalse<'_> {
+    /// Solves to |g̃| ≤ tolerance·|b| and |C x − e| ≤ tolerance·|b|/|H| (or tolerance·|e|, if that is larger).
+    ///
+    /// # Errors
+    /// [`QpError`]; also when rounding stops the iteration above a thousand times the tolerance.
+    pub fn solve(&self, start: &WarmStart, tolerance: f64) -> Result<SmalseSolution, QpError> {
+        let norm_h = self.norm(start)?;
+        let start = WarmStart { norm: Some(norm_h), ..start.clone() };
+        let scale = norm(self.program.linear).max(f64::MIN_POSITIVE);
+        let right = self.program.equalities.map_or(0.0, |equalities| norm(equalities.right_side()));
+        let feasible = (scale / norm_h).max(right);
+        let inner = tolerance * scale;
+        let solution = self.run(&start, inner, &mut |progress| {
+            progress.reduced_gradient <= inner && progress.infeasibility <= tolerance * feasible
+        })?;
+        let residual = (solution.reduced_gradient / scale).max(solution.infeasibility / feasible);
+        if solution.converged || residual <= ACCEPTED * tolerance {
+            return Ok(solution);
+        }
+        let steps = solution.counts.products();
+        Err(QpError::NotConverged { solver: "SMALSE-M", residual, steps, history: vec![residual] })
+    }
+
+    /// Runs until `enough` is satisfied after an inner solve or rounding stops all progress; `floor` is the smallest |g̃|
+    /// that is ever asked of the inner solver.
+    ///
+    /// # Errors
+    /// [`QpError::NotConverged`] with the history of |g̃| + ρ|C x − e| over |b| at the limit of outer steps, and what the
+    /// inner solver returns.
+    pub fn run(
+        &self,
+        start: &WarmStart,
+        floor: f64,
+        enough: &mut dyn FnMut(&Progress<'_>) -> bool,
+    ) -> Result<SmalseSolution, QpError> {
+        let mut state = State::new(self, start)?;
+        let mut history = Vec::new();
+        let augmented = Augmented { program: self.program, rho: state.rho };
+        let mut inner = Mpgp {
+            hessian: &augmented,
+            set: self.program.set,
+            preconditioner: self.preconditioner,
+            norm: state.norm + state.rho * state.row_norm * state.row_norm,
+            settings: self.settings.inner,
+            counts: StepCounts::default(),
+        };
+        state.begin(&mut inner, start)?;
+        let scale = norm(self.program.linear).max(f64::MIN_POSITIVE);
+        loop {
+            let stagnated = state.inner_solve(&mut inner, self.settings.eta * scale, floor)?;
+            let solution = state.update(self, &inner, history.len());
+            history.push((solution.reduced_gradient + state.rho * solution.infeasibility) / scale);
+            let progress = Progress {
+                x: &solution.warm.x,
+                gradient: &solution.gradient,
+                reduced_gradient: solution.reduced_gradient,
+                infeasibility: solution.infeasibility,
+            };
+            let converged = enough(&progress);
+            if converged || stagnated || (self.program.equalities.is_none() && solution.reduced_gradient <= floor) {
+                return Ok(SmalseSolution { converged, ..solution });
+            }
+            if history.len() >= self.settings.max_outer {
+                let residual = history[history.len() - 1];
+                let steps = inner.counts.products();
+                return Err(QpError::NotConverged { solver: "SMALSE-M", residual, steps, history });
+            }
+        }
+    }
+
+    fn norm(&self, start: &WarmStart) -> Result<f64, QpError> {
+        match start.norm {
+            Some(norm) => Ok(norm),
+            None => {
+                let estimate = NORM_SAFETY * largest_eigenvalue(self.program.hessian, self.settings.norm_steps)?;
+                Ok(if estimate > 0.0 { estimate } else { 1.0 })
+            }
+        }
+    }
+}
+
+/// Factor on the Lanczos estimate of |H|.
+const NORM_SAFETY: f64 = 1.05;
+/// Multiple of the tolerance accepted when rounding stops all progress.
+const ACCEPTED: f64 = 1e3;
+/// Lanczos steps for |C|.
+const ROW_NORM_STEPS: usize = 10;
+
+/// What changes during a run.
+struct State<'a> {
+    program: QuadraticProgram<'a>,
+    norm: f64,
+    row_norm: f64,
+    rho: f64,
+    m: f64,
+    multipliers: Vec<f64>,
+    linear: Vec<f64>,
+    point: Point,
+    lagrangian: f64,
+}
+
+impl<'a> State<'a> {
+    fn new(solver: &Smalse<'a>, start: &WarmStart) -> Result<Self, QpError> {
+        let program = solver.program;
+        let norm = solver.norm(start)?;
+        let (mut row_norm, mut multipliers) = (0.0, Vec::new());
+        if let Some(equalities) = program.equalities {
+            let gram = Gram { equalities, dimension: program.hessian.dimension() };
+            row_norm = largest_eigenvalue(&gram, ROW_NORM_STEPS)?.max(0.0).sqrt();
+            multipliers = vec![0.0; equalities.right_side().len()];
+            if start.multipliers.len() == multipliers.len() {
+                multipliers.copy_from_slice(&start.multipliers);
+            }
+        }
+        let rho = if row_norm > 0.0 { solver.settings.penalty * norm / (row_norm * row_norm) } else { 0.0 };
+        let m = start.m.unwrap_or(solver.settings.first_m * rho * row_norm);
+        let mut linear = program.linear.to_vec();
+        if let Some(equalities) = program.equalities {
+            let shift: Vec<f64> =
+                equalities.right_side().iter().zip(&multipliers).map(|(e, mu)| rho * e - mu).collect();
+            if linear.len() == program.hessian.dimension() {
+                add_scaled(&mut linear, 1.0, &equalities.apply_transposed(&shift));
+            }
+        }
+        let point = Point { x: Vec::new(), gradient: Vec::new() };
+        Ok(Self { program, norm, row_norm, rho, m, multipliers, linear, point, lagrangian: f64::NEG_INFINITY })
+    }
+
+    /// The first point, with a known product or a new one.
+    fn begin(&mut self, inner: &mut Mpgp<'_>, start: &WarmStart) -> Result<(), QpError> {
+        let mut x = start.x.clone();
+        if let Some(image) = &start.image
+            && x.len() == self.linear.len()
+            && image.len() == x.len()
+            && !self.program.set.project(&mut x)
+        {
+            let mut gradient: Vec<f64> = image.iter().zip(&self.linear).map(|(image, b)| image - b).collect();
+            if let Some(equalities) = self.program.equalities {
+                add_scaled(&mut gradient, self.rho, &equalities.apply_transposed(&equalities.apply(&x)));
+            }
+            self.point = Point { x, gradient };
+        } else {
+            self.point = inner.start(start.x.clone(), &self.linear)?;
+        }
+        Ok(())
+    }
+
+    fn defect(&self, x: &[f64]) -> Vec<f64> {
+        self.program.equalities.map_or_else(Vec::new, |equalities| {
+            equalities.apply(x).iter().zip(equalities.right_side()).map(|(image, e)| image - e).collect()
+        })
+    }
+
+    /// Minimises the augmented Lagrangian; true when rounding stopped it.
+    fn inner_solve(&mut self, inner: &mut Mpgp<'_>, largest: f64, floor: f64) -> Result<bool, QpError> {
+        let mut point = std::mem::replace(&mut self.point, Point { x: Vec::new(), gradient: Vec::new() });
+        let ending = inner.minimise(&mut point, &self.linear, &|x: &[f64]| {
+            if self.program.equalities.is_none() {
+                return floor;
+            }
+            (self.m * norm(&self.defect(x))).min(largest).max(floor)
+        });
+        self.point = point;
+        Ok(ending? == Ending::Stagnated)
+    }
+
+    /// Step 3; returns the state of affairs.
+    fn update(&mut self, solver: &Smalse<'_>, inner: &Mpgp<'_>, outer: usize) -> SmalseSolution {
+        let reduced = self.program.set.reduced_gradient(&self.point.x, &self.point.gradient, 1.0 / inner.norm);
+        let defect = self.defect(&self.point.x);
+        let infeasibility = norm(&defect);
+        let energy = 0.5
+            * self.point.x.iter().zip(&self.point.gradient).zip(&self.linear).map(|((x, g), b)| x * (g - b)).sum::<f64>();
+        let right = self.program.equalities.map_or(&[][..], |equalities| equalities.right_side());
+        let lagrangian = energy - dot(&self.multipliers, right) + 0.5 * self.rho * dot(right, right);
+        if lagrangian < self.lagrangian + 0.5 * self.rho * infeasibility * infeasibility {
+            self.m *= solver.settings.beta;
+        }
+        self.lagrangian = lagrangian;
+        if let Some(equalities) = self.program.equalities {
+            add_scaled(&mut self.multipliers, self.rho, &defect);
+            let shift = equalities.apply_transposed(&defect);
+            add_scaled(&mut self.linear, -self.rho, &shift);
+            add_scaled(&mut self.point.gradient, self.rho, &shift);
+        }
+        // H x − b + Cᵀμ⁺ = g⁺ − ρCᵀ(C x − e) = the gradient before the update.
+        let mut gradient = self.point.gradient.clone();
+        let mut image: Vec<f64> = gradient.iter().zip(&self.linear).map(|(g, b)| g + b).collect();
+        if let Some(equalities) = self.program.equalities {
+            add_scaled(&mut gradient, -self.rho, &equalities.apply_transposed(&defect));
+            add_scaled(&mut image, -self.rho, &equalities.apply_transposed(&equalities.apply(&self.point.x)));
+        }
+        let warm = WarmStart {
+            x: self.point.x.clone(),
+            image: Some(image),
+            multipliers: self.multipliers.clone(),
+            m: Some(self.m),
+            norm: Some(self.norm),
+        };
+        let reduced_gradient = norm(&reduced);
+        SmalseSolution { warm, gradient, reduced_gradient, infeasibility, outer: outer + 1, counts: inner.counts, converged: false }
+    }
+}
