@@ -1,7 +1,7 @@
 //! Residuals of a claimed solution, recomputed from x and μ alone.
 
 use crate::linear::vector::{add_scaled, norm};
-use crate::qp::{QuadraticProgram, SymmetricOperator};
+use crate::qp::QuadraticProgram;
 
 /// How far (x, μ) is from satisfying the optimality conditions; dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -225,7 +225,11 @@ impl Smalse<'_> {
         }
     }
 
-    fn norm(&self, start: &WarmStart) -> Result<f64, QpError> {
+    /// |H| as given, or a safe estimate.
+    ///
+    /// # Errors
+    /// [`QpError::NotFinite`] from the estimate.
+    pub fn norm(&self, start: &WarmStart) -> Result<f64, QpError> {
         match start.norm {
             Some(norm) => Ok(norm),
             None => {

@@ -5,6 +5,7 @@
 //! ```
 
 mod adjoint;
+mod augmented_lagrangian;
 mod coarse;
 mod constraints;
 mod dual_operator;
@@ -13,11 +14,13 @@ mod local_pattern;
 mod model;
 mod newton;
 mod preconditioner;
+mod projected_dual;
 mod reduced;
 mod rigid_modes;
 mod solver;
 
 pub use adjoint::TornAdjoint;
+pub use augmented_lagrangian::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
 pub use coarse::{CoarseProblem, CoarseSpace};
 pub use constraints::Constraints;
 pub use dual_operator::DualOperator;

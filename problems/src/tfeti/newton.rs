@@ -143,7 +143,7 @@ impl TornContact<'_> {
         pairs.map(|(force, jump)| force + self.stiffness * jump).collect()
     }
 
-    fn linearize(&self, iterate: &Iterate) -> Vec<Linearization> {
+    pub(crate) fn linearize(&self, iterate: &Iterate) -> Vec<Linearization> {
         let arguments = self.arguments(iterate);
         let points = self.boundary.points.iter();
         points
@@ -160,7 +160,7 @@ impl TornContact<'_> {
     }
 
     /// All contact rows glued, solved roughly: the start that Newton converges from.
-    fn bonded(&self) -> Result<Iterate, ContactError> {
+    pub(crate) fn bonded(&self) -> Result<Iterate, ContactError> {
         let rows = self.reduced(vec![Linearization::Stick; self.boundary.points.len()]);
         let zero = vec![0.0; self.operator.model.constraints.row_count()];
         let (iterate, _) = self.linear_solve(&rows, &zero, |start| BONDED_REDUCTION * start, BONDED_KRYLOV)?;
@@ -192,7 +192,7 @@ impl TornContact<'_> {
         Ok(self.iterate(multipliers, image, amplitudes))
     }
 
-    fn iterate(&self, multipliers: Vec<f64>, image: Vec<f64>, amplitudes: Vec<f64>) -> Iterate {
+    pub(crate) fn iterate(&self, multipliers: Vec<f64>, image: Vec<f64>, amplitudes: Vec<f64>) -> Iterate {
         let mut jumps = self.space.jumps(&amplitudes);
         for ((jump, d), image) in jumps.iter_mut().zip(&self.constant).zip(&image) {
             *jump += d - image;

@@ -60,6 +60,19 @@ impl TornSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(TornState, ContactForces, Work), ContactError> {
+        self.solve_by(problem, controls, |contact| contact.solve(start, &NewtonSettings::to(tolerance)))
+    }
+
+    /// Solves one shape by any method on the torn contact problem.
+    ///
+    /// # Errors
+    /// [`ContactError`]: inverted elements, no equilibrium, and what the method returns.
+    pub fn solve_by(
+        &self,
+        problem: &ContactProblem,
+        controls: &[f64],
+        method: impl FnOnce(&TornContact<'_>) -> Result<TornSolution, ContactError>,
+    ) -> Result<(TornState, ContactForces, Work), ContactError> {
         let blocks = problem.blocks(controls)?;
         let rigid = problem.rigid_scene(&blocks);
         let grounded = rigid.analyse(&problem.boundary)?;
@@ -85,7 +98,7 @@ impl TornSolver {
                 stiffness,
                 load: if load > 0.0 { load } else { 1.0 },
             };
-            let solution = contact.solve(start, &NewtonSettings::to(tolerance))?;
+            let solution = method(&contact)?;
             let iterate = &solution.iterate;
             let displacement = operator.displacement(&iterate.multipliers, &iterate.amplitudes, true);
             let residuals = self.certify(problem, &contact, &solution);

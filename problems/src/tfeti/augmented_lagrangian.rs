@@ -1,0 +1,278 @@
+//! The paper's path: successive approximations over Tresca problems, each a dual QP for SMALSE-M and MPGP.
+//!
+//! ```text
+//! Ψ ← 𝓕 λ_N(Ψ):   min ½ λᵀ PFP λ − λᵀ P(d − F λ₀)   s.t.  C λ = L⁻¹e,  λ_N ≥ 0,  |λ_T,i| ≤ Ψ_i          method.md (4.1)
+//! λ₀ = Gᵀ(GGᵀ)⁻¹ e,   C = L⁻¹G,   LLᵀ = GGᵀ,   Q = CᵀC,   P = I − Q
+//! ```
+//! The orthonormalised homogenised problem in the unshifted multipliers: P λ₀ = 0, so that the bounds stay where they are.
+//! Every Tresca problem is solved only as far as its slip bound is worth: to 0.1 of the change of Ψ that it brings about.
+
+use crate::error::ContactError;
+use crate::linear::vector::{add_scaled, norm};
+use crate::qp::{
+    Block, FacePreconditioner, QuadraticProgram, SeparableSet, Smalse, SmalseSettings, SmalseSolution, WarmStart,
+};
+use crate::tfeti::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
+use crate::tfeti::{Iterate, TornContact, TornSolution};
+use crate::contact::certificate::projection_residual;
+use crate::contact::law::{Linearization, tangential_norm};
+
+/// When to stop, and how the dual QPs are solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AugmentedLagrangianSettings {
+    /// Relative residual aimed at, measured as [`TornContact::residual`] does.
+    pub tolerance: f64,
+    /// Inner accuracy relative to the change of the slip bound. Default 0.1.
+    pub adaptivity: f64,
+    /// Fixed point steps allowed. Default 60.
+    pub max_fixed_point_steps: usize,
+    /// Whether the preconditioner is used inside faces. Default true.
+    pub precondition: bool,
+    /// Constants of the dual QP solver.
+    pub qp: SmalseSettings,
+}
+
+impl AugmentedLagrangianSettings {
+    /// Settings for a relative residual.
+    pub fn to(tolerance: f64) -> Self {
+        let tolerance = tolerance.max(SMALLEST_TOLERANCE);
+        Self { tolerance, adaptivity: 0.1, max_fixed_point_steps: 60, precondition: true, qp: SmalseSettings::default() }
+    }
+}
+
+/// Work of the paper's path.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AugmentedLagrangianCounts {
+    /// Tresca problems.
+    pub fixed_point_steps: usize,
+    /// Multiplier updates of SMALSE-M.
+    pub outer: usize,
+    /// Conjugate gradient steps.
+    pub cg_steps: usize,
+    /// Expansion steps.
+    pub expansion_steps: usize,
+    /// Proportioning steps.
+    pub proportioning_steps: usize,
+    /// Gradients computed afresh at starts and against drift.
+    pub refreshed_gradients: usize,
+    /// Estimated contraction factor of Ψ ↦ 𝓕λ_N(Ψ); 0 without friction or with fewer than three steps.
+    pub contraction: f64,
+}
+
+/// Smallest tolerance that rounding allows to ask for.
+const SMALLEST_TOLERANCE: f64 = 1e-12;
+/// Consecutive steps without contraction that end the iteration.
+const PATIENCE: usize = 4;
+/// Share of the tolerance that the inner solver may leave.
+const INNER_SHARE: f64 = 0.3;
+
+/// The changing part of the fixed point iteration.
+struct FixedPoint {
+    bounds: Vec<f64>,
+    warm: WarmStart,
+    changes: Vec<f64>,
+    counts: AugmentedLagrangianCounts,
+}
+
+impl TornContact<'_> {
+    /// Solves by successive approximations of the slip bound, from given multipliers of a similar problem or from the bonded
+    /// problem.
+    ///
+    /// # Errors
+    /// [`ContactError::NoContraction`] when the fixed point iteration does not contract, [`ContactError::DualProblem`] from
+    /// the dual QP, [`ContactError::NotConverged`], [`ContactError::NoEquilibrium`].
+    pub fn solve_by_successive_approximations(
+        &self,
+        start: Option<&[f64]>,
+        settings: &AugmentedLagrangianSettings,
+    ) -> Result<(TornSolution, AugmentedLagrangianCounts), ContactError> {
+        let coarse = OrthonormalCoarse::new(self.space)?;
+        let dual = ProjectedDual::new(self.operator, &coarse);
+        let linear = dual.homogenised(&self.constant);
+        let bonded;
+        let multipliers = match start {
+            Some(multipliers) => multipliers,
+            None => {
+                bonded = self.bonded()?;
+                &bonded.multipliers
+            }
+        };
+        let mut state = self.first(multipliers);
+        let mut history = Vec::new();
+        loop {
+            let solution = self.tresca(&coarse, &dual, &linear, settings, &state)?;
+            history.push(self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility));
+            let done = history[history.len() - 1] <= settings.tolerance || !self.boundary.has_friction();
+            self.count(&mut state.counts, &solution);
+            self.advance(&mut state, solution)?;
+            if done {
+                break;
+            }
+            if history.len() >= settings.max_fixed_point_steps {
+                return Err(ContactError::NotConverged {
+                    solver: "successive approximations",
+                    residual: history[history.len() - 1],
+                    tolerance: settings.tolerance,
+                    iterations: history.len(),
+                    history,
+                });
+            }
+        }
+        let iterate = self.recover(&state.warm.x, &state.bounds)?;
+        let residual = self.residual(&iterate);
+        let linearizations = self.linearize(&iterate);
+        Ok((TornSolution { iterate, linearizations, residual, steps: state.counts.fixed_point_steps }, state.counts))
+    }
+
+    /// The first slip bounds and multipliers: those given, cut to the feasible set.
+    fn first(&self, multipliers: &[f64]) -> FixedPoint {
+        let warm = WarmStart { x: multipliers.to_vec(), image: None, multipliers: Vec::new(), m: None, norm: None };
+        let bounds = self.slip_bounds(multipliers);
+        FixedPoint { bounds, warm, changes: Vec::new(), counts: AugmentedLagrangianCounts::default() }
+    }
+
+    /// Ψ = 𝓕 max(0, λ_N) per contact node (scaled rows).
+    fn slip_bounds(&self, multipliers: &[f64]) -> Vec<f64> {
+        let equality = self.operator.model.constraints.equality_count;
+        let normal = self.boundary.points.iter().map(|point| multipliers[equality + point.start].max(0.0));
+        normal.map(|normal| self.boundary.friction * normal).collect()
+    }
+
+    /// λ_N ≥ 0, |λ_T| ≤ Ψ.
+    fn feasible_set(&self, bounds: &[f64]) -> Result<SeparableSet, ContactError> {
+        let equality = self.operator.model.constraints.equality_count;
+        let mut blocks = Vec::with_capacity(2 * bounds.len());
+        for (point, &radius) in self.boundary.points.iter().zip(bounds) {
+            let index = equality + point.start;
+            blocks.push(Block::HalfLine { index, bound: 0.0 });
+            if !point.tangents.is_empty() {
+                blocks.push(Block::Disc { first: index + 1, size: point.tangents.len(), centre: [0.0; 2], radius });
+            }
+        }
+        Ok(SeparableSet::new(self.operator.model.constraints.row_count(), blocks)?)
+    }
+
+    /// Solves the Tresca problem of the current slip bounds as far as they deserve.
+    fn tresca(
+        &self,
+        coarse: &OrthonormalCoarse<'_>,
+        dual: &ProjectedDual<'_>,
+        linear: &[f64],
+        settings: &AugmentedLagrangianSettings,
+        state: &FixedPoint,
+    ) -> Result<SmalseSolution, ContactError> {
+        let set = self.feasible_set(&state.bounds)?;
+        let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: Some(coarse) };
+        let mut solver = Smalse { program, preconditioner: None, settings: settings.qp };
+        let norm_h = solver.norm(&state.warm)?;
+        let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
+        let penalty = settings.qp.penalty * norm_h;
+        let preconditioner = ProjectedPreconditioner::new(self.preconditioner, coarse, penalty);
+        if settings.precondition {
+            solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
+        }
+        let floor = INNER_SHARE * settings.tolerance * self.load / self.stiffness;
+        let solution = solver.run(&warm, floor, &mut |progress| {
+            let error = self.stiffness * progress.reduced_gradient + progress.infeasibility;
+            let residual = self.coulomb_residual(progress.x, progress.gradient, progress.infeasibility);
+            let change = difference(&self.slip_bounds(progress.x), &state.bounds);
+            residual <= settings.tolerance || (self.boundary.has_friction() && error <= settings.adaptivity * change)
+        })?;
+        Ok(solution)
+    }
+
+    /// The residual of [`TornContact::residual`] for the jumps that the multipliers of the equalities imply.
+    fn coulomb_residual(&self, multipliers: &[f64], gradient: &[f64], infeasibility: f64) -> f64 {
+        let equality = self.operator.model.constraints.equality_count;
+        let glued = self.stiffness * norm(&gradient[..equality]);
+        let jumps: Vec<f64> = gradient[equality..].iter().map(|entry| -entry).collect();
+        let law = projection_residual(self.boundary, &multipliers[equality..], &jumps, self.stiffness);
+        glued.hypot(norm(&law)).hypot(infeasibility) / self.load
+    }
+
+    fn count(&self, counts: &mut AugmentedLagrangianCounts, solution: &SmalseSolution) {
+        counts.fixed_point_steps += 1;
+        counts.outer += solution.outer;
+        counts.cg_steps += solution.counts.cg_steps;
+        counts.expansion_steps += solution.counts.expansion_steps;
+        counts.proportioning_steps += solution.counts.proportioning_steps;
+        counts.refreshed_gradients += solution.counts.refreshed_gradients;
+    }
+
+    /// Ψ ← 𝓕λ_N; sliding tractions keep to the circle. Watches the contraction.
+    fn advance(&self, state: &mut FixedPoint, solution: SmalseSolution) -> Result<(), ContactError> {
+        let equality = self.operator.model.constraints.equality_count;
+        let bounds = self.slip_bounds(&solution.warm.x);
+        let change = difference(&bounds, &state.bounds);
+        if !change.is_finite() {
+            return Err(ContactError::NotFinite { what: "slip bound" });
+        }
+        state.warm = solution.warm;
+        for ((point, &new), &old) in self.boundary.points.iter().zip(&bounds).zip(&state.bounds) {
+            let range = equality + point.start..equality + point.start + point.row_count();
+            let rows = &mut state.warm.x[range];
+            if old > 0.0 && tangential_norm(rows) >= old * (1.0 - 1e-9) {
+                rows[1..].iter_mut().for_each(|entry| *entry *= new / old);
+            }
+        }
+        state.warm.image = None;
+        state.bounds = bounds;
+        state.changes.push(change / norm(&state.bounds).max(f64::MIN_POSITIVE));
+        state.counts.contraction = contraction(&state.changes);
+        let recent = &state.changes[state.changes.len().saturating_sub(PATIENCE + 1)..];
+        if recent.len() > PATIENCE && recent.windows(2).all(|pair| pair[1] >= pair[0]) {
+            return Err(ContactError::NoContraction { factor: state.counts.contraction, history: state.changes.clone() });
+        }
+        Ok(())
+    }
+
+    /// Balanced multipliers with their image, and amplitudes by least squares on the held rows.
+    fn recover(&self, multipliers: &[f64], bounds: &[f64]) -> Result<Iterate, ContactError> {
+        let equality = self.operator.model.constraints.equality_count;
+        let statuses = |held_slip: bool| -> Vec<Linearization> {
+            let points = self.boundary.points.iter().zip(bounds);
+            points
+                .map(|(point, &bound)| {
+                    let first = equality + point.start;
+                    let rows = &multipliers[first..first + point.row_count()];
+                    let traction = tangential_norm(rows);
+                    if rows[0] <= 0.0 {
+                        Linearization::Open
+                    } else if held_slip || rows.len() == 1 || traction < (1.0 - 1e-9) * bound {
+                        Linearization::Stick
+                    } else {
+                        let second = if rows.len() > 2 { rows[2] / traction } else { 0.0 };
+                        Linearization::Slip { direction: [rows[1] / traction, second], ratio: 0.0 }
+                    }
+                })
+                .collect()
+        };
+        let held = self.reduced(statuses(true));
+        let coarse = self.coarse(&held, false)?;
+        let mut unknowns = held.initial(multipliers);
+        coarse.enforce(&mut unknowns, &self.space.resultants);
+        let multipliers = held.expand(&unknowns, false);
+        let image = self.operator.apply(&multipliers);
+        let rows = self.reduced(statuses(false));
+        let coarse = self.coarse(&rows, false)?;
+        let mut rest = self.constant.clone();
+        add_scaled(&mut rest, -1.0, &image);
+        let amplitudes = coarse.amplitudes(&rows.restrict(&rest, false));
+        Ok(self.iterate(multipliers, image, amplitudes))
+    }
+}
+
+/// |a − b|₂.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
+
+/// Geometric mean of the last ratios of changes; the first change measures the start and does not count.
+fn contraction(changes: &[f64]) -> f64 {
+    let ratios: Vec<f64> = changes.windows(2).skip(1).map(|pair| pair[1] / pair[0].max(f64::MIN_POSITIVE)).collect();
+    let recent = &ratios[ratios.len().saturating_sub(PATIENCE)..];
+    if recent.is_empty() {
+        return 0.0;
+    }
+    (recent.iter().map(|ratio| ratio.max(f64::MIN_POSITIVE).ln()).sum::<f64>() / recent.len() as f64).exp()
+}
