@@ -24,10 +24,20 @@ pub enum QpError {
         /// What is wrong.
         reason: &'static str,
     },
-    /// The quadratic form has a direction of negative curvature, or none at all where the objective falls for ever.
+    /// A constant of a method is outside its range.
+    #[error("{name} = {value} is not allowed; allowed: {allowed}")]
+    Setting {
+        /// Its name.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// The objective has negative curvature, or falls for ever along a direction without curvature.
     #[error("the quadratic form is not positive along a descent direction: dᵀHd/dᵀd = {curvature:.3e}, allowed: > 0")]
     Curvature {
-        /// Curvature found, relative to nothing.
+        /// dᵀHd/dᵀd.
         curvature: f64,
     },
     /// A number is not finite.

@@ -28,22 +28,41 @@ pub struct FacePreconditioner<'a> {
 /// Constants of the method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MpgpSettings {
-    /// Γ: constraints are let go when |chopped| > Γ·|free|. Default 1; larger holds them longer.
+    /// Γ > 0: constraints are let go when |chopped| > Γ·|free|. Default 0.5; larger holds them longer.
     pub proportion: f64,
     /// Relative residual at which conjugate gradients leave a face, in (0, 1). Default 0.1.
     pub forcing: f64,
-    /// Share of the certain gain of a projected step that a sweep must reach. Default 0.1.
+    /// Share of the certain gain of a projected step that a sweep must reach, in (0, 1). Default 0.1.
     pub sufficient: f64,
     /// Products with H allowed. Default 20 000.
     pub max_products: usize,
-    /// Conjugate gradient steps allowed without a gradient computed from x. Default 100.
+    /// Conjugate gradient steps allowed without a gradient computed from x, at least 1. Default 100.
     pub refresh: usize,
 }
 
 impl Default for MpgpSettings {
     fn default() -> Self {
-        Self { proportion: 1.0, forcing: 0.1, sufficient: 0.1, max_products: 20_000, refresh: 100 }
+        Self { proportion: 0.5, forcing: 0.1, sufficient: 0.1, max_products: 20_000, refresh: 100 }
     }
+}
+
+impl MpgpSettings {
+    /// Checks every constant.
+    ///
+    /// # Errors
+    /// [`QpError::Setting`].
+    pub fn validate(&self) -> Result<(), QpError> {
+        let unit = |value: f64| value > 0.0 && value < 1.0;
+        setting("proportion", self.proportion, "> 0", self.proportion > 0.0)?;
+        setting("forcing", self.forcing, "in (0, 1)", unit(self.forcing))?;
+        setting("sufficient", self.sufficient, "in (0, 1)", unit(self.sufficient))?;
+        setting("refresh", self.refresh as f64, "at least 1", self.refresh > 0)
+    }
+}
+
+/// Refuses a setting that is not `valid`.
+pub(crate) fn setting(name: &'static str, value: f64, allowed: &'static str, valid: bool) -> Result<(), QpError> {
+    if valid { Ok(()) } else { Err(QpError::Setting { name, value, allowed }) }
 }
 
 /// Products with H by the kind of step that needed them.
@@ -110,8 +129,10 @@ impl Mpgp<'_> {
     /// The point P_Ω(x) with its gradient (one product).
     ///
     /// # Errors
-    /// [`QpError::Dimension`], [`QpError::NotFinite`].
+    /// [`QpError::Dimension`], [`QpError::Setting`], [`QpError::NotFinite`].
     pub fn start(&mut self, mut x: Vec<f64>, linear: &[f64]) -> Result<Point, QpError> {
+        self.settings.validate()?;
+        setting("norm", self.norm, "finite and > 0", self.norm > 0.0 && self.norm.is_finite())?;
         let expected = self.hessian.dimension();
         for (what, found) in [("start", x.len()), ("linear term", linear.len()), ("set", self.set.dimension())] {
             if found != expected {
@@ -230,21 +251,42 @@ impl Mpgp<'_> {
             face.restrict(&mut applied);
             face.add_curvature(&direction, &mut applied);
             let curvature = dot(&direction, &applied);
-            if !(curvature > 0.0) {
-                let curvature = curvature / dot(&direction, &direction);
-                return Err(if curvature.is_nan() {
-                    QpError::NotFinite { what: "product with the quadratic form" }
-                } else {
-                    QpError::Curvature { curvature }
-                });
-            }
-            let length = product / curvature;
+            let Some(length) = self.step_length(point, &direction, product, curvature, index)? else { break };
             add_scaled(&mut sweep.step, length, &direction);
             add_scaled(&mut sweep.image, length, &image);
             add_scaled(&mut position, length, &direction);
             add_scaled(&mut residual, -length, &applied);
         }
         Ok(sweep)
+    }
+
+    /// The minimising length along a direction of a sweep; where q is flat, the way to the boundary of Ω if the sweep begins
+    /// there, otherwise none.
+    fn step_length(
+        &self,
+        point: &Point,
+        direction: &[f64],
+        product: f64,
+        curvature: f64,
+        index: usize,
+    ) -> Result<Option<f64>, QpError> {
+        let square = dot(direction, direction);
+        if !(curvature.is_finite() && square.is_finite()) {
+            return Err(QpError::NotFinite { what: "product with the quadratic form" });
+        }
+        if curvature > FLAT * self.norm * square {
+            return Ok(Some(product / curvature));
+        }
+        if curvature < -FLAT * self.norm * square {
+            return Err(QpError::Curvature { curvature: curvature / square });
+        }
+        if index > 0 {
+            return Ok(None);
+        }
+        match self.set.feasible_step(&point.x, direction, f64::INFINITY) {
+            length if length.is_finite() => Ok(Some(length)),
+            _ => Err(QpError::Curvature { curvature: curvature / square }),
+        }
     }
 
     fn cg_step(&mut self, direction: &[f64]) -> Vec<f64> {
@@ -264,6 +306,8 @@ impl Mpgp<'_> {
 
     /// x ← P_Ω(x − αg); raises the norm estimate until q falls. False when q does not fall any more.
     fn projected_step(&mut self, point: &mut Point, linear: &[f64]) -> Result<bool, QpError> {
+        let estimate = self.norm;
+        let scale = norm(&point.x).max(norm(linear) / self.norm) * f64::EPSILON;
         for _raise in 0..MAX_RAISES {
             let mut x: Vec<f64> = point.x.iter().zip(&point.gradient).map(|(x, g)| x - g / self.norm).collect();
             self.set.project(&mut x);
@@ -275,12 +319,12 @@ impl Mpgp<'_> {
                 *point = candidate;
                 return Ok(true);
             }
-            let scale = norm(&point.x) * f64::EPSILON;
             if moved.sqrt() <= STAGNATION * scale || !gain.is_finite() {
-                return Ok(false);
+                break;
             }
             self.norm *= 2.0;
         }
+        self.norm = estimate;
         Ok(false)
     }
 
@@ -316,6 +360,8 @@ impl Mpgp<'_> {
 
 /// Doublings of the norm estimate in one projected step.
 const MAX_RAISES: usize = 60;
+/// Curvature relative to |H| that counts as zero.
+const FLAT: f64 = 1e-14;
 /// Multiple of the rounding unit of x below which a step is no progress.
 const STAGNATION: f64 = 100.0;
 

@@ -9,7 +9,7 @@
 //! ρ stays fixed at |H| (for orthonormal rows C the spectrum of H + ρCᵀC is then that of H on the kernel of C, and ρ).
 
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::qp::mpgp::Ending;
+use crate::qp::mpgp::{Ending, setting};
 use crate::qp::{
     FacePreconditioner, LinearEqualities, Mpgp, MpgpSettings, Point, QpError, SeparableSet, StepCounts,
     SymmetricOperator, largest_eigenvalue,
@@ -31,17 +31,17 @@ pub struct QuadraticProgram<'a> {
 /// Constants of the outer loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SmalseSettings {
-    /// ρ over |H|/|C|². Default 1.
+    /// ρ over |H|/|C|², > 0. Default 1.
     pub penalty: f64,
-    /// First M over ρ|C|. Default 1.
+    /// First M over ρ|C|, > 0. Default 1.
     pub first_m: f64,
-    /// β, the factor of M. Default 0.8.
+    /// β, the factor of M, in (0, 1). Default 0.8.
     pub beta: f64,
-    /// η. Default 1.
+    /// η > 0. Default 1.
     pub eta: f64,
     /// Updates of μ allowed. Default 500.
     pub max_outer: usize,
-    /// Lanczos steps for |H| when it is not known. Default 8.
+    /// Lanczos steps for |H| when it is not known; a low estimate costs steps, not correctness. Default 5.
     pub norm_steps: usize,
     /// Constants of the inner solver.
     pub inner: MpgpSettings,
@@ -55,14 +55,30 @@ impl Default for SmalseSettings {
             beta: 0.8,
             eta: 1.0,
             max_outer: 500,
-            norm_steps: 8,
+            norm_steps: 5,
             inner: MpgpSettings::default(),
         }
     }
 }
 
+impl SmalseSettings {
+    /// Checks every constant.
+    ///
+    /// # Errors
+    /// [`QpError::Setting`].
+    pub fn validate(&self) -> Result<(), QpError> {
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        setting("penalty", self.penalty, "finite and > 0", positive(self.penalty))?;
+        setting("first M", self.first_m, "finite and > 0", positive(self.first_m))?;
+        setting("beta", self.beta, "in (0, 1)", self.beta > 0.0 && self.beta < 1.0)?;
+        setting("eta", self.eta, "> 0", self.eta > 0.0)?;
+        setting("Lanczos steps", self.norm_steps as f64, "at least 1", self.norm_steps > 0)?;
+        self.inner.validate()
+    }
+}
+
 /// What a similar program may start from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct WarmStart {
     /// x; projected onto Ω.
     pub x: Vec<f64>,
@@ -190,6 +206,7 @@ impl Smalse<'_> {
         floor: f64,
         enough: &mut dyn FnMut(&Progress<'_>) -> bool,
     ) -> Result<SmalseSolution, QpError> {
+        self.settings.validate()?;
         let mut state = State::new(self, start)?;
         let mut history = Vec::new();
         let augmented = Augmented { program: self.program, rho: state.rho };
@@ -207,6 +224,9 @@ impl Smalse<'_> {
             let stagnated = state.inner_solve(&mut inner, self.settings.eta * scale, floor)?;
             let solution = state.update(self, &inner, history.len());
             history.push((solution.reduced_gradient + state.rho * solution.infeasibility) / scale);
+            if !history[history.len() - 1].is_finite() {
+                return Err(QpError::NotFinite { what: "residual of the equalities" });
+            }
             let progress = Progress {
                 x: &solution.warm.x,
                 gradient: &solution.gradient,

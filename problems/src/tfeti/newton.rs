@@ -168,7 +168,7 @@ impl TornContact<'_> {
     }
 
     /// Multipliers of a similar problem, corrected to the new resultants; amplitudes by least squares on the held rows.
-    fn restart(&self, multipliers: &[f64]) -> Result<Iterate, ContactError> {
+    pub(crate) fn restart(&self, multipliers: &[f64]) -> Result<Iterate, ContactError> {
         let equality = self.operator.model.constraints.equality_count;
         let guess = |held_slip: bool| -> Vec<Linearization> {
             let points = self.boundary.points.iter();
