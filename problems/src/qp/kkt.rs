@@ -10,7 +10,7 @@ pub struct KktResidual {
     pub set: f64,
     /// |C x − e| over |e| + |C x|.
     pub equality: f64,
-    /// |x − P_Ω(x − α(H x − b + Cᵀμ))|/α over |b| + |H x|, with α = 1/norm.
+    /// |x − P_Ω(x − α(H x − b + Cᵀμ))|/α over |b| + norm·|x|, with α = 1/norm.
     pub stationarity: f64,
 }
 
@@ -19,7 +19,7 @@ impl KktResidual {
     pub fn of(program: &QuadraticProgram<'_>, x: &[f64], multipliers: &[f64], norm_h: f64) -> Self {
         let mut image = vec![0.0; x.len()];
         program.hessian.apply(x, &mut image);
-        let scale = (norm(program.linear) + norm(&image)).max(f64::MIN_POSITIVE);
+        let scale = (norm(program.linear) + norm_h * norm(x)).max(f64::MIN_POSITIVE);
         let mut gradient: Vec<f64> = image.iter().zip(program.linear).map(|(image, b)| image - b).collect();
         let mut equality = 0.0;
         if let Some(equalities) = program.equalities {

@@ -157,6 +157,7 @@ impl Mpgp<'_> {
     ) -> Result<Ending, QpError> {
         let mut history = Vec::new();
         let mut since_refresh = 0;
+        let (mut best, mut since_best) = (f64::INFINITY, 0);
         loop {
             let reduced = self.set.reduced_gradient(&point.x, &point.gradient, 1.0 / self.norm);
             let length = norm(&reduced);
@@ -165,6 +166,12 @@ impl Mpgp<'_> {
             }
             if length <= tolerance(&point.x) {
                 return Ok(Ending::Converged);
+            }
+            let rounding = f64::EPSILON * (norm(linear) + self.norm * norm(&point.x));
+            since_best = if length < best { 0 } else { since_best + 1 };
+            best = best.min(length);
+            if length <= ROUNDED * rounding || (since_best > PATIENCE && best <= BLURRED * rounding) {
+                return Ok(Ending::Stagnated);
             }
             history.push(length);
             if self.counts.products() >= self.settings.max_products {
@@ -211,11 +218,12 @@ impl Mpgp<'_> {
             point.gradient.iter().zip(&sweep.image).map(|(g, image)| g + image).collect()
         };
         let candidate = Point { x, gradient };
-        if gain(point, &candidate) >= certain {
-            *point = candidate;
-            return Ok(true);
+        match judge(point, &candidate, certain) {
+            Verdict::Lower => *point = candidate,
+            Verdict::Blurred if self.calmer(&candidate, reduced, 0.9) => *point = candidate,
+            _ => return self.projected_step(point, linear, reduced),
         }
-        self.projected_step(point, linear)
+        Ok(true)
     }
 
     /// Conjugate gradients in the face, from the point.
@@ -304,8 +312,13 @@ impl Mpgp<'_> {
         self.gradient(x, linear)
     }
 
-    /// x ← P_Ω(x − αg); raises the norm estimate until q falls. False when q does not fall any more.
-    fn projected_step(&mut self, point: &mut Point, linear: &[f64]) -> Result<bool, QpError> {
+    /// Whether |g̃| at the candidate is below `factor` times what it was.
+    fn calmer(&self, candidate: &Point, reduced: &[f64], factor: f64) -> bool {
+        norm(&self.set.reduced_gradient(&candidate.x, &candidate.gradient, 1.0 / self.norm)) < factor * norm(reduced)
+    }
+
+    /// x ← P_Ω(x − αg); raises the norm estimate until q falls. False when neither q nor |g̃| falls any more.
+    fn projected_step(&mut self, point: &mut Point, linear: &[f64], reduced: &[f64]) -> Result<bool, QpError> {
         let estimate = self.norm;
         let scale = norm(&point.x).max(norm(linear) / self.norm) * f64::EPSILON;
         for _raise in 0..MAX_RAISES {
@@ -314,13 +327,17 @@ impl Mpgp<'_> {
             let gradient = self.expansion_step(&x, linear)?;
             let candidate = Point { x, gradient };
             let moved: f64 = candidate.x.iter().zip(&point.x).map(|(new, old)| (new - old) * (new - old)).sum();
-            let gain = gain(point, &candidate);
-            if gain >= 0.49 * self.norm * moved && gain > 0.0 {
-                *point = candidate;
-                return Ok(true);
-            }
-            if moved.sqrt() <= STAGNATION * scale || !gain.is_finite() {
-                break;
+            match judge(point, &candidate, 0.49 * self.norm * moved) {
+                Verdict::Lower if moved > 0.0 => {
+                    *point = candidate;
+                    return Ok(true);
+                }
+                Verdict::Blurred if self.calmer(&candidate, reduced, 1.0) => {
+                    *point = candidate;
+                    return Ok(true);
+                }
+                Verdict::Higher if moved.sqrt() > STAGNATION * scale => {}
+                _ => break,
             }
             self.norm *= 2.0;
         }
@@ -358,6 +375,12 @@ impl Mpgp<'_> {
     }
 }
 
+/// Multiple of the rounding of the gradient below which |g̃| means nothing.
+const ROUNDED: f64 = 2.0;
+/// The same, if no progress was made for [`PATIENCE`] sweeps.
+const BLURRED: f64 = 1e7;
+/// Sweeps without a smaller |g̃| near the level of rounding.
+const PATIENCE: usize = 20;
 /// Doublings of the norm estimate in one projected step.
 const MAX_RAISES: usize = 60;
 /// Curvature relative to |H| that counts as zero.
@@ -365,9 +388,31 @@ const FLAT: f64 = 1e-14;
 /// Multiple of the rounding unit of x below which a step is no progress.
 const STAGNATION: f64 = 100.0;
 
-/// q(from) − q(to), without the cancellation of two large values.
-fn gain(from: &Point, to: &Point) -> f64 {
-    let gradients = from.gradient.iter().zip(&to.gradient);
-    let steps = from.x.iter().zip(&to.x);
-    0.5 * gradients.zip(steps).map(|((g, h), (x, y))| (g + h) * (x - y)).sum::<f64>()
+/// What the values of q say about a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    /// The gain asked for was made.
+    Lower,
+    /// Gain and what was asked for drown in rounding: q says nothing.
+    Blurred,
+    /// Too little gain, or none.
+    Higher,
+}
+
+/// Compares q(from) − q(to), computed without the cancellation of two large values, with what is asked for.
+fn judge(from: &Point, to: &Point, asked: f64) -> Verdict {
+    let (mut gain, mut size) = (0.0, 0.0);
+    for index in 0..from.x.len() {
+        let slope = 0.5 * (from.gradient[index] + to.gradient[index]);
+        gain += slope * (from.x[index] - to.x[index]);
+        size += (slope * from.x[index]).abs() + (slope * to.x[index]).abs();
+    }
+    let noise = 16.0 * f64::EPSILON * size;
+    if gain >= asked {
+        Verdict::Lower
+    } else if asked <= noise && gain >= -noise {
+        Verdict::Blurred
+    } else {
+        Verdict::Higher
+    }
 }

@@ -6,7 +6,8 @@
 //! 2. stop when |g̃| and |C x − e| are small enough
 //! 3. μ ← μ + ρ (C x − e);   if L grew by less than ρ/2 |C x − e|²: M ← β M
 //! ```
-//! ρ stays fixed at |H| (for orthonormal rows C the spectrum of H + ρCᵀC is then that of H on the kernel of C, and ρ).
+//! ρ stays at |H| (for orthonormal rows C the spectrum of H + ρCᵀC is then that of H on the kernel of C, and ρ), unless
+//! ten updates do not halve C x − e; then it grows by a factor of four.
 
 use crate::linear::vector::{add_scaled, dot, norm};
 use crate::qp::mpgp::{Ending, setting};
@@ -172,22 +173,26 @@ pub struct Smalse<'a> {
 }
 
 impl Smalse<'_> {
-    /// Solves to |g̃| ≤ tolerance·|b| and |C x − e| ≤ tolerance·|b|/|H| (or tolerance·|e|, if that is larger).
+    /// Solves to |g̃| ≤ tolerance·|H|·s and |C x − e| ≤ tolerance·s, where s = max(|b|/|H|, |e|, |P_Ω(0)|) is the size of
+    /// the solution that the data suggest.
     ///
     /// # Errors
     /// [`QpError`]; also when rounding stops the iteration above a thousand times the tolerance.
     pub fn solve(&self, start: &WarmStart, tolerance: f64) -> Result<SmalseSolution, QpError> {
+        self.check(start)?;
         let norm_h = self.norm(start)?;
         let start = WarmStart { norm: Some(norm_h), ..start.clone() };
-        let scale = norm(self.program.linear).max(f64::MIN_POSITIVE);
+        let mut nearest = vec![0.0; self.program.hessian.dimension()];
+        self.program.set.project(&mut nearest);
         let right = self.program.equalities.map_or(0.0, |equalities| norm(equalities.right_side()));
-        let feasible = (scale / norm_h).max(right);
+        let feasible = (norm(self.program.linear) / norm_h).max(right).max(norm(&nearest));
+        let scale = norm_h * feasible;
         let inner = tolerance * scale;
         let solution = self.run(&start, inner, &mut |progress| {
             progress.reduced_gradient <= inner && progress.infeasibility <= tolerance * feasible
         })?;
         let residual = (solution.reduced_gradient / scale).max(solution.infeasibility / feasible);
-        if solution.converged || residual <= ACCEPTED * tolerance {
+        if solution.converged || scale == 0.0 || residual <= ACCEPTED * tolerance {
             return Ok(solution);
         }
         let steps = solution.counts.products();
@@ -206,27 +211,31 @@ impl Smalse<'_> {
         floor: f64,
         enough: &mut dyn FnMut(&Progress<'_>) -> bool,
     ) -> Result<SmalseSolution, QpError> {
-        self.settings.validate()?;
+        self.check(start)?;
         let mut state = State::new(self, start)?;
         let mut history = Vec::new();
-        let augmented = Augmented { program: self.program, rho: state.rho };
-        let mut inner = Mpgp {
-            hessian: &augmented,
-            set: self.program.set,
-            preconditioner: self.preconditioner,
-            norm: state.norm + state.rho * state.row_norm * state.row_norm,
-            settings: self.settings.inner,
-            counts: StepCounts::default(),
-        };
-        state.begin(&mut inner, start)?;
         let scale = norm(self.program.linear).max(f64::MIN_POSITIVE);
         loop {
+            let augmented = Augmented { program: self.program, rho: state.rho };
+            let mut inner = Mpgp {
+                hessian: &augmented,
+                set: self.program.set,
+                preconditioner: self.preconditioner,
+                norm: state.norm + state.rho * state.row_norm * state.row_norm,
+                settings: self.settings.inner,
+                counts: state.counts,
+            };
+            if history.is_empty() {
+                state.begin(&mut inner, start)?;
+            }
             let stagnated = state.inner_solve(&mut inner, self.settings.eta * scale, floor)?;
-            let solution = state.update(self, &inner, history.len());
+            state.counts = inner.counts;
+            let solution = state.update(self, inner.norm, history.len());
             history.push((solution.reduced_gradient + state.rho * solution.infeasibility) / scale);
             if !history[history.len() - 1].is_finite() {
                 return Err(QpError::NotFinite { what: "residual of the equalities" });
             }
+            state.strengthen(solution.infeasibility);
             let progress = Progress {
                 x: &solution.warm.x,
                 gradient: &solution.gradient,
@@ -239,10 +248,28 @@ impl Smalse<'_> {
             }
             if history.len() >= self.settings.max_outer {
                 let residual = history[history.len() - 1];
-                let steps = inner.counts.products();
+                let steps = state.counts.products();
                 return Err(QpError::NotConverged { solver: "SMALSE-M", residual, steps, history });
             }
         }
+    }
+
+    /// Checks settings and sizes.
+    fn check(&self, start: &WarmStart) -> Result<(), QpError> {
+        self.settings.validate()?;
+        let expected = self.program.hessian.dimension();
+        let sizes = [("linear term", self.program.linear.len()), ("set", self.program.set.dimension()), ("start", start.x.len())];
+        if let Some(&(what, found)) = sizes.iter().find(|(_, found)| *found != expected) {
+            return Err(QpError::Dimension { what, expected, found });
+        }
+        if let Some(equalities) = self.program.equalities {
+            let count = equalities.right_side().len();
+            let found = equalities.apply_transposed(&vec![0.0; count]).len();
+            if found != expected {
+                return Err(QpError::Dimension { what: "row of the equalities", expected, found });
+            }
+        }
+        Ok(())
     }
 
     /// |H| as given, or a safe estimate.
@@ -264,6 +291,10 @@ impl Smalse<'_> {
 const NORM_SAFETY: f64 = 1.05;
 /// Multiple of the tolerance accepted when rounding stops all progress.
 const ACCEPTED: f64 = 1e3;
+/// Updates of μ after which C x − e should have been halved.
+const SLOW: usize = 10;
+/// Factor of ρ when it was not.
+const RAISE: f64 = 4.0;
 /// Lanczos steps for |C|.
 const ROW_NORM_STEPS: usize = 10;
 
@@ -278,6 +309,9 @@ struct State<'a> {
     linear: Vec<f64>,
     point: Point,
     lagrangian: f64,
+    counts: StepCounts,
+    /// |C x − e| when ρ was last looked at, and updates of μ since then.
+    checkpoint: (f64, usize),
 }
 
 impl<'a> State<'a> {
@@ -299,19 +333,28 @@ impl<'a> State<'a> {
         if let Some(equalities) = program.equalities {
             let shift: Vec<f64> =
                 equalities.right_side().iter().zip(&multipliers).map(|(e, mu)| rho * e - mu).collect();
-            if linear.len() == program.hessian.dimension() {
-                add_scaled(&mut linear, 1.0, &equalities.apply_transposed(&shift));
-            }
+            add_scaled(&mut linear, 1.0, &equalities.apply_transposed(&shift));
         }
         let point = Point { x: Vec::new(), gradient: Vec::new() };
-        Ok(Self { program, norm, row_norm, rho, m, multipliers, linear, point, lagrangian: f64::NEG_INFINITY })
+        Ok(Self {
+            program,
+            norm,
+            row_norm,
+            rho,
+            m,
+            multipliers,
+            linear,
+            point,
+            lagrangian: f64::NEG_INFINITY,
+            counts: StepCounts::default(),
+            checkpoint: (f64::INFINITY, 0),
+        })
     }
 
     /// The first point, with a known product or a new one.
     fn begin(&mut self, inner: &mut Mpgp<'_>, start: &WarmStart) -> Result<(), QpError> {
         let mut x = start.x.clone();
         if let Some(image) = &start.image
-            && x.len() == self.linear.len()
             && image.len() == x.len()
             && !self.program.set.project(&mut x)
         {
@@ -345,9 +388,29 @@ impl<'a> State<'a> {
         Ok(ending? == Ending::Stagnated)
     }
 
+    /// Raises ρ when C x − e has not been halved in [`SLOW`] updates: rows that hardly touch the face.
+    fn strengthen(&mut self, infeasibility: f64) {
+        self.checkpoint.1 += 1;
+        if self.checkpoint.1 < SLOW {
+            return;
+        }
+        if let Some(equalities) = self.program.equalities
+            && infeasibility > 0.5 * self.checkpoint.0
+        {
+            let added = (RAISE - 1.0) * self.rho;
+            let defect = self.defect(&self.point.x);
+            add_scaled(&mut self.linear, added, &equalities.apply_transposed(equalities.right_side()));
+            add_scaled(&mut self.point.gradient, added, &equalities.apply_transposed(&defect));
+            self.rho *= RAISE;
+            self.m *= RAISE;
+            self.lagrangian = f64::NEG_INFINITY;
+        }
+        self.checkpoint = (infeasibility, 0);
+    }
+
     /// Step 3; returns the state of affairs.
-    fn update(&mut self, solver: &Smalse<'_>, inner: &Mpgp<'_>, outer: usize) -> SmalseSolution {
-        let reduced = self.program.set.reduced_gradient(&self.point.x, &self.point.gradient, 1.0 / inner.norm);
+    fn update(&mut self, solver: &Smalse<'_>, norm_rho: f64, outer: usize) -> SmalseSolution {
+        let reduced = self.program.set.reduced_gradient(&self.point.x, &self.point.gradient, 1.0 / norm_rho);
         let defect = self.defect(&self.point.x);
         let infeasibility = norm(&defect);
         let energy = 0.5
@@ -379,6 +442,6 @@ impl<'a> State<'a> {
             norm: Some(self.norm),
         };
         let reduced_gradient = norm(&reduced);
-        SmalseSolution { warm, gradient, reduced_gradient, infeasibility, outer: outer + 1, counts: inner.counts, converged: false }
+        SmalseSolution { warm, gradient, reduced_gradient, infeasibility, outer: outer + 1, counts: self.counts, converged: false }
     }
 }
