@@ -8,7 +8,7 @@ use crate::qp::QuadraticProgram;
 pub struct KktResidual {
     /// |x − P_Ω(x)|∞ over |x|∞.
     pub set: f64,
-    /// |C x − e| over |e| + |C x|.
+    /// |C x − e| over |e| + |x|: meant for rows C of unit length.
     pub equality: f64,
     /// |x − P_Ω(x − α(H x − b + Cᵀμ))|/α over |b| + norm·|x|, with α = 1/norm.
     pub stationarity: f64,
@@ -26,7 +26,7 @@ impl KktResidual {
             add_scaled(&mut gradient, 1.0, &equalities.apply_transposed(multipliers));
             let rows = equalities.apply(x);
             let defect: Vec<f64> = rows.iter().zip(equalities.right_side()).map(|(row, e)| row - e).collect();
-            equality = norm(&defect) / (norm(&rows) + norm(equalities.right_side())).max(f64::MIN_POSITIVE);
+            equality = norm(&defect) / (norm(x) + norm(equalities.right_side())).max(f64::MIN_POSITIVE);
         }
         let reduced = program.set.reduced_gradient(x, &gradient, 1.0 / norm_h);
         let mut projected = x.to_vec();

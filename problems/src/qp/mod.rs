@@ -16,6 +16,7 @@ pub mod kkt;
 mod lanczos;
 pub mod mpgp;
 mod operator;
+mod program;
 mod separable_set;
 pub mod smalse;
 
@@ -24,5 +25,6 @@ pub use face::Face;
 pub use lanczos::largest_eigenvalue;
 pub use mpgp::{FacePreconditioner, Mpgp, MpgpSettings, Point, StepCounts};
 pub use operator::{DenseRows, DenseSymmetric, LinearEqualities, SymmetricOperator};
+pub use program::{Progress, QuadraticProgram, SmalseSettings, SmalseSolution, WarmStart};
 pub use separable_set::{Block, SeparableSet};
-pub use smalse::{QuadraticProgram, Smalse, SmalseSettings, SmalseSolution, WarmStart};
+pub use smalse::Smalse;

@@ -156,7 +156,8 @@ impl Mpgp<'_> {
         tolerance: &dyn Fn(&[f64]) -> f64,
     ) -> Result<Ending, QpError> {
         let mut history = Vec::new();
-        let mut since_refresh = 0;
+        // The gradient of the point may come from a recursion.
+        let mut since_refresh = 1;
         let (mut best, mut since_best) = (f64::INFINITY, 0);
         loop {
             let reduced = self.set.reduced_gradient(&point.x, &point.gradient, 1.0 / self.norm);

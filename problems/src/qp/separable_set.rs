@@ -43,8 +43,12 @@ impl Block {
         match *self {
             Self::HalfLine { bound, .. } if !bound.is_finite() => Err("the bound is not finite"),
             Self::Disc { size, .. } if size != 1 && size != 2 => Err("a disc has one or two entries"),
-            Self::Disc { radius, .. } if !(radius >= 0.0 && radius.is_finite()) => Err("the radius must be finite and ≥ 0"),
-            Self::Disc { centre, .. } if !centre.iter().all(|entry| entry.is_finite()) => Err("the centre is not finite"),
+            Self::Disc { radius, .. } if !(radius >= 0.0 && radius.is_finite()) => {
+                Err("the radius must be finite and ≥ 0")
+            }
+            Self::Disc { centre, .. } if !centre.iter().all(|entry| entry.is_finite()) => {
+                Err("the centre is not finite")
+            }
             _ => Ok(()),
         }
     }

@@ -10,120 +10,11 @@
 //! ten updates do not halve C x − e; then it grows by a factor of four.
 
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::qp::mpgp::{Ending, setting};
+use crate::qp::mpgp::Ending;
 use crate::qp::{
-    FacePreconditioner, LinearEqualities, Mpgp, MpgpSettings, Point, QpError, SeparableSet, StepCounts,
-    SymmetricOperator, largest_eigenvalue,
+    FacePreconditioner, LinearEqualities, Mpgp, Point, Progress, QpError, QuadraticProgram, SmalseSettings,
+    SmalseSolution, StepCounts, SymmetricOperator, WarmStart, largest_eigenvalue,
 };
-
-/// The data of a program.
-#[derive(Clone, Copy)]
-pub struct QuadraticProgram<'a> {
-    /// H, positive definite on the kernel of C.
-    pub hessian: &'a dyn SymmetricOperator,
-    /// b.
-    pub linear: &'a [f64],
-    /// Ω.
-    pub set: &'a SeparableSet,
-    /// C x = e, if there are equalities.
-    pub equalities: Option<&'a dyn LinearEqualities>,
-}
-
-/// Constants of the outer loop.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SmalseSettings {
-    /// ρ over |H|/|C|², > 0. Default 1.
-    pub penalty: f64,
-    /// First M over ρ|C|, > 0. Default 1.
-    pub first_m: f64,
-    /// β, the factor of M, in (0, 1). Default 0.8.
-    pub beta: f64,
-    /// η > 0. Default 1.
-    pub eta: f64,
-    /// Updates of μ allowed. Default 500.
-    pub max_outer: usize,
-    /// Lanczos steps for |H| when it is not known; a low estimate costs steps, not correctness. Default 5.
-    pub norm_steps: usize,
-    /// Constants of the inner solver.
-    pub inner: MpgpSettings,
-}
-
-impl Default for SmalseSettings {
-    fn default() -> Self {
-        Self {
-            penalty: 1.0,
-            first_m: 1.0,
-            beta: 0.8,
-            eta: 1.0,
-            max_outer: 500,
-            norm_steps: 5,
-            inner: MpgpSettings::default(),
-        }
-    }
-}
-
-impl SmalseSettings {
-    /// Checks every constant.
-    ///
-    /// # Errors
-    /// [`QpError::Setting`].
-    pub fn validate(&self) -> Result<(), QpError> {
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        setting("penalty", self.penalty, "finite and > 0", positive(self.penalty))?;
-        setting("first M", self.first_m, "finite and > 0", positive(self.first_m))?;
-        setting("beta", self.beta, "in (0, 1)", self.beta > 0.0 && self.beta < 1.0)?;
-        setting("eta", self.eta, "> 0", self.eta > 0.0)?;
-        setting("Lanczos steps", self.norm_steps as f64, "at least 1", self.norm_steps > 0)?;
-        self.inner.validate()
-    }
-}
-
-/// What a similar program may start from.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct WarmStart {
-    /// x; projected onto Ω.
-    pub x: Vec<f64>,
-    /// H x without the penalty, if known for exactly this x and x is feasible: saves one product.
-    pub image: Option<Vec<f64>>,
-    /// μ.
-    pub multipliers: Vec<f64>,
-    /// M, absolute; none for the default.
-    pub m: Option<f64>,
-    /// |H|; none to have it estimated.
-    pub norm: Option<f64>,
-}
-
-/// The end of a run.
-#[derive(Debug, Clone)]
-pub struct SmalseSolution {
-    /// What a similar program may start from; holds x and μ.
-    pub warm: WarmStart,
-    /// H x − b + Cᵀμ.
-    pub gradient: Vec<f64>,
-    /// |g̃|.
-    pub reduced_gradient: f64,
-    /// |C x − e|.
-    pub infeasibility: f64,
-    /// Updates of μ.
-    pub outer: usize,
-    /// Work.
-    pub counts: StepCounts,
-    /// Whether the accuracy asked for was reached (otherwise rounding stopped all progress).
-    pub converged: bool,
-}
-
-/// What a caller may judge the accuracy by.
-#[derive(Debug, Clone, Copy)]
-pub struct Progress<'a> {
-    /// x.
-    pub x: &'a [f64],
-    /// H x − b + Cᵀμ with the updated μ (without penalty).
-    pub gradient: &'a [f64],
-    /// |g̃|.
-    pub reduced_gradient: f64,
-    /// |C x − e|.
-    pub infeasibility: f64,
-}
 
 /// H + ρCᵀC.
 struct Augmented<'a> {
@@ -214,6 +105,7 @@ impl Smalse<'_> {
         self.check(start)?;
         let mut state = State::new(self, start)?;
         let mut history = Vec::new();
+        let (mut infeasibility, mut stalled) = (f64::INFINITY, 0);
         let scale = norm(self.program.linear).max(f64::MIN_POSITIVE);
         loop {
             let augmented = Augmented { program: self.program, rho: state.rho };
@@ -243,7 +135,13 @@ impl Smalse<'_> {
                 infeasibility: solution.infeasibility,
             };
             let converged = enough(&progress);
-            if converged || stagnated || (self.program.equalities.is_none() && solution.reduced_gradient <= floor) {
+            let progressed = solution.infeasibility < 0.9 * infeasibility;
+            stalled = if stagnated && !progressed { stalled + 1 } else { 0 };
+            infeasibility = solution.infeasibility;
+            if converged
+                || stalled > STALLED
+                || (self.program.equalities.is_none() && solution.reduced_gradient <= floor)
+            {
                 return Ok(SmalseSolution { converged, ..solution });
             }
             if history.len() >= self.settings.max_outer {
@@ -258,7 +156,11 @@ impl Smalse<'_> {
     fn check(&self, start: &WarmStart) -> Result<(), QpError> {
         self.settings.validate()?;
         let expected = self.program.hessian.dimension();
-        let sizes = [("linear term", self.program.linear.len()), ("set", self.program.set.dimension()), ("start", start.x.len())];
+        let sizes = [
+            ("linear term", self.program.linear.len()),
+            ("set", self.program.set.dimension()),
+            ("start", start.x.len()),
+        ];
         if let Some(&(what, found)) = sizes.iter().find(|(_, found)| *found != expected) {
             return Err(QpError::Dimension { what, expected, found });
         }
@@ -293,6 +195,10 @@ const NORM_SAFETY: f64 = 1.05;
 const ACCEPTED: f64 = 1e3;
 /// Updates of μ after which C x − e should have been halved.
 const SLOW: usize = 10;
+/// Updates of μ without progress, with an inner solver stopped by rounding, that end a run.
+const STALLED: usize = 3;
+/// Multiple of the rounding of C x below which C x − e means nothing.
+const BLURRED: f64 = 1e3;
 /// Factor of ρ when it was not.
 const RAISE: f64 = 4.0;
 /// Lanczos steps for |C|.
@@ -394,8 +300,9 @@ impl<'a> State<'a> {
         if self.checkpoint.1 < SLOW {
             return;
         }
+        let rounding = f64::EPSILON * self.row_norm * norm(&self.point.x);
         if let Some(equalities) = self.program.equalities
-            && infeasibility > 0.5 * self.checkpoint.0
+            && infeasibility > (0.5 * self.checkpoint.0).max(BLURRED * rounding)
         {
             let added = (RAISE - 1.0) * self.rho;
             let defect = self.defect(&self.point.x);
@@ -414,7 +321,14 @@ impl<'a> State<'a> {
         let defect = self.defect(&self.point.x);
         let infeasibility = norm(&defect);
         let energy = 0.5
-            * self.point.x.iter().zip(&self.point.gradient).zip(&self.linear).map(|((x, g), b)| x * (g - b)).sum::<f64>();
+            * self
+                .point
+                .x
+                .iter()
+                .zip(&self.point.gradient)
+                .zip(&self.linear)
+                .map(|((x, g), b)| x * (g - b))
+                .sum::<f64>();
         let right = self.program.equalities.map_or(&[][..], |equalities| equalities.right_side());
         let lagrangian = energy - dot(&self.multipliers, right) + 0.5 * self.rho * dot(right, right);
         if lagrangian < self.lagrangian + 0.5 * self.rho * infeasibility * infeasibility {
@@ -442,6 +356,14 @@ impl<'a> State<'a> {
             norm: Some(self.norm),
         };
         let reduced_gradient = norm(&reduced);
-        SmalseSolution { warm, gradient, reduced_gradient, infeasibility, outer: outer + 1, counts: self.counts, converged: false }
+        SmalseSolution {
+            warm,
+            gradient,
+            reduced_gradient,
+            infeasibility,
+            outer: outer + 1,
+            counts: self.counts,
+            converged: false,
+        }
     }
 }

@@ -7,15 +7,16 @@
 //! The orthonormalised homogenised problem in the unshifted multipliers: P λ₀ = 0, so that the bounds stay where they are.
 //! Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ that it brings about.
 
+use crate::contact::certificate::projection_residual;
+use crate::contact::law::{Linearization, tangential_norm};
 use crate::error::ContactError;
 use crate::linear::vector::{add_scaled, norm};
 use crate::qp::{
-    Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings, SmalseSolution, WarmStart,
+    Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
+    SmalseSolution, WarmStart,
 };
 use crate::tfeti::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
 use crate::tfeti::{Iterate, TornContact, TornSolution};
-use crate::contact::certificate::projection_residual;
-use crate::contact::law::{Linearization, tangential_norm};
 
 /// When to stop, and how the dual QPs are solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +38,13 @@ impl AugmentedLagrangianSettings {
     /// Settings for a relative residual.
     pub fn to(tolerance: f64) -> Self {
         let tolerance = tolerance.max(SMALLEST_TOLERANCE);
-        Self { tolerance, adaptivity: 0.2, max_fixed_point_steps: 60, precondition: true, qp: SmalseSettings::default() }
+        Self {
+            tolerance,
+            adaptivity: 0.2,
+            max_fixed_point_steps: 60,
+            precondition: true,
+            qp: SmalseSettings::default(),
+        }
     }
 }
 
@@ -120,7 +127,7 @@ impl TornContact<'_> {
         }
         let iterate = self.recover(&state.warm.x, &state.bounds)?;
         let residual = self.residual(&iterate);
-        if !(residual <= acceptable) {
+        if residual.is_nan() || residual > acceptable {
             return Err(ContactError::NotConverged {
                 solver: "successive approximations",
                 residual,
@@ -231,7 +238,10 @@ impl TornContact<'_> {
         state.changes.push(change / norm(&state.bounds).max(f64::MIN_POSITIVE));
         state.counts.contraction = contraction(&state.changes);
         if diverges(&state.changes) {
-            return Err(ContactError::NoContraction { factor: state.counts.contraction, history: state.changes.clone() });
+            return Err(ContactError::NoContraction {
+                factor: state.counts.contraction,
+                history: state.changes.clone(),
+            });
         }
         Ok(())
     }

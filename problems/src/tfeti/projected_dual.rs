@@ -8,8 +8,8 @@ use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
 use crate::qp::{LinearEqualities, SymmetricOperator};
 use crate::tfeti::{CoarseSpace, DualOperator, Preconditioner};
-use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::linalg::solvers::Llt;
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, MatMut, Par, Side};
 
 /// Rows C and right side L⁻¹e of the equilibrium of all subdomains.
