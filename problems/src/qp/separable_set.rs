@@ -10,14 +10,14 @@ use crate::qp::{Face, QpError};
 /// One constrained part of x.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Block {
-    /// x[index] ≥ bound.
+    /// `x[index]` ≥ bound.
     HalfLine {
         /// Which entry.
         index: usize,
         /// Its lower bound.
         bound: f64,
     },
-    /// |x[first .. first + size] − centre| ≤ radius.
+    /// |`x[first .. first + size]` − centre| ≤ radius.
     Disc {
         /// First entry.
         first: usize,

@@ -53,6 +53,20 @@ impl SymmetricOperator for Gram<'_> {
 }
 
 /// The solver.
+///
+/// ```
+/// use problems::qp::*;
+/// // The point of the half-plane x₀ ≥ 1/2 on the line x₀ + x₁ = 0 that is nearest to the origin.
+/// let hessian = DenseSymmetric::new(vec![vec![1.0, 0.0], vec![0.0, 1.0]])?;
+/// let set = SeparableSet::new(2, vec![Block::HalfLine { index: 0, bound: 0.5 }])?;
+/// let line = DenseRows::new(2, vec![vec![1.0, 1.0]], vec![0.0])?;
+/// let program = QuadraticProgram { hessian: &hessian, linear: &[0.0; 2], set: &set, equalities: Some(&line) };
+/// let solver = Smalse { program, preconditioner: None, settings: SmalseSettings::default() };
+/// let start = WarmStart { x: vec![0.0; 2], ..WarmStart::default() };
+/// let x = solver.solve(&start, 1e-10)?.warm.x;
+/// assert!((x[0] - 0.5).abs() < 1e-9 && (x[1] + 0.5).abs() < 1e-9);
+/// # Ok::<(), QpError>(())
+/// ```
 #[derive(Clone, Copy)]
 pub struct Smalse<'a> {
     /// The program.
@@ -294,7 +308,7 @@ impl<'a> State<'a> {
         Ok(ending? == Ending::Stagnated)
     }
 
-    /// Raises ρ when C x − e has not been halved in [`SLOW`] updates: rows that hardly touch the face.
+    /// Raises ρ when C x − e has not been halved in ten updates: rows that hardly touch the face.
     fn strengthen(&mut self, infeasibility: f64) {
         self.checkpoint.1 += 1;
         if self.checkpoint.1 < SLOW {
