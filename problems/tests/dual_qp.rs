@@ -99,9 +99,9 @@ impl Instance {
                         a.push(vec![0.0; self.dimension()]);
                         b.push(radius);
                     }
-                    for offset in 0..size {
+                    for (offset, centre) in centre.iter().enumerate().take(size) {
                         a.push(unit(first + offset, -1.0));
-                        b.push(-centre[offset]);
+                        b.push(-centre);
                     }
                     cones.push(match radius > 0.0 {
                         true => SupportedConeT::SecondOrderConeT(size + 1),
