@@ -10,7 +10,7 @@ use crate::contact::{ContactForces, ContactProblem, Work};
 use crate::direct::{DirectSolver, DirectState};
 use crate::error::{ContactError, SceneError};
 use crate::scene::Scene;
-use crate::tfeti::{PreconditionerKind, TornSolver, TornState};
+use crate::tfeti::{AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornSolver, TornState};
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -23,6 +23,8 @@ pub enum SolverKind {
     Newton,
     /// Semismooth Newton on directly condensed bodies.
     Direct,
+    /// The paper's path on total FETI: successive approximations, dual QPs by SMALSE-M and MPGP.
+    AugmentedLagrangian,
 }
 
 /// The control-to-state map of a scene.
@@ -30,6 +32,7 @@ pub enum SolverKind {
 pub struct ContactShape {
     problem: ContactProblem,
     solver: Solver,
+    kind: SolverKind,
 }
 
 #[derive(Debug)]
@@ -43,6 +46,8 @@ enum Solver {
 pub struct ContactState {
     /// Forces, status, certificates.
     pub forces: ContactForces,
+    /// Estimated contraction factor of the successive approximations, if that path was taken.
+    pub contraction: Option<f64>,
     work: Work,
     adjoint_applications: AtomicUsize,
     error: f64,
@@ -95,10 +100,12 @@ impl ContactShape {
         let problem = ContactProblem::new(scene)?;
         let size = |error: ContactError| SceneError::out_of_range("mesh", error, "a size that can be factored");
         let solver = match kind {
-            SolverKind::Newton => Solver::Torn(Box::new(TornSolver::new(&problem, preconditioner).map_err(size)?)),
+            SolverKind::Newton | SolverKind::AugmentedLagrangian => {
+                Solver::Torn(Box::new(TornSolver::new(&problem, preconditioner).map_err(size)?))
+            }
             SolverKind::Direct => Solver::Direct(Box::new(DirectSolver::new(&problem).map_err(size)?)),
         };
-        Ok(Self { problem, solver })
+        Ok(Self { problem, solver, kind })
     }
 
     /// The discrete problem.
@@ -185,13 +192,27 @@ impl StateSolver for ContactShape {
         self.check_dimension(control)?;
         let tolerance = RESIDUAL_SHARE * accuracy.tolerance();
         let controls = control.as_slice();
+        let mut contraction = None;
         let (solution, forces, work, load) = match (&self.solver, start) {
             (Solver::Torn(solver), start) => {
                 let start = match start {
                     Some(ContactWarmStart::Multipliers(multipliers)) => Some(multipliers.as_slice()),
                     _ => None,
                 };
-                let (state, forces, work) = solver.solve(&self.problem, controls, start, tolerance).map_err(oracle)?;
+                let (state, forces, work) = if self.kind == SolverKind::AugmentedLagrangian {
+                    let settings = AugmentedLagrangianSettings::to(tolerance);
+                    let mut counts = AugmentedLagrangianCounts::default();
+                    let solved = solver.solve_by(&self.problem, controls, |contact| {
+                        let (solution, work) = contact.solve_by_successive_approximations(start, &settings)?;
+                        counts = work;
+                        Ok(solution)
+                    });
+                    contraction = Some(counts.contraction).filter(|factor| *factor > 0.0);
+                    solved.map(|(state, forces, work)| (state, forces, with_counts(work, &counts)))
+                } else {
+                    solver.solve(&self.problem, controls, start, tolerance)
+                }
+                .map_err(oracle)?;
                 let load = state.load();
                 (Solution::Torn(Box::new(state)), forces, work, load)
             }
@@ -206,7 +227,7 @@ impl StateSolver for ContactShape {
             }
         };
         let error = forces.residuals.newton * load;
-        Ok(ContactState { forces, work, adjoint_applications: AtomicUsize::new(0), error, solution })
+        Ok(ContactState { forces, contraction, work, adjoint_applications: AtomicUsize::new(0), error, solution })
     }
 
     fn warm_start(&self, state: &ContactState) -> ContactWarmStart {
@@ -243,6 +264,18 @@ impl Coderivative for ContactShape {
             }
         };
         Ok(Vector::from_vec(self.problem.height_map.pull_back(&heights)))
+    }
+}
+
+/// Step counts of the paper's path in the common record.
+fn with_counts(work: Work, counts: &AugmentedLagrangianCounts) -> Work {
+    Work {
+        newton_steps: 0,
+        fixed_point_steps: counts.fixed_point_steps,
+        cg_steps: counts.cg_steps,
+        expansion_steps: counts.expansion_steps,
+        proportioning_steps: counts.proportioning_steps,
+        ..work
     }
 }
 

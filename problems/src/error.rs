@@ -127,4 +127,19 @@ pub enum ContactError {
         /// Which quantity.
         what: &'static str,
     },
+    /// The map from slip bounds to slip bounds does not contract: friction is too large for successive approximations.
+    #[error(
+        "successive approximations do not contract: estimated factor {factor:.3} after {} steps; \
+         use the Newton solver or a smaller friction coefficient",
+        history.len()
+    )]
+    NoContraction {
+        /// Estimated contraction factor.
+        factor: f64,
+        /// Relative change of the slip bound in every step.
+        history: Vec<f64>,
+    },
+    /// The dual quadratic program was not solved.
+    #[error("dual problem: {0}")]
+    DualProblem(#[from] crate::qp::QpError),
 }

@@ -9,6 +9,7 @@ pub mod elasticity;
 pub mod error;
 pub mod linear;
 pub mod mesh;
+pub mod qp;
 pub mod scalar;
 pub mod scene;
 pub mod shape;

@@ -64,7 +64,7 @@ pub struct Arguments {
     #[arg(long, value_name = "F")]
     pub load_factor: Option<f64>,
     /// Contact solver.
-    #[arg(long, value_parser = parse_solver, default_value = "newton", value_name = "newton|direct")]
+    #[arg(long, value_parser = parse_solver, default_value = "newton", value_name = "newton|direct|augmented-lagrangian")]
     pub solver: SolverKind,
     /// Preconditioner of the dual operator.
     #[arg(long, value_parser = parse_preconditioner, default_value = "dirichlet", value_name = "dirichlet|lumped|none")]
@@ -205,7 +205,8 @@ fn parse_solver(text: &str) -> Result<SolverKind, String> {
     match text {
         "newton" => Ok(SolverKind::Newton),
         "direct" => Ok(SolverKind::Direct),
-        _ => Err("allowed: newton, direct".into()),
+        "augmented-lagrangian" => Ok(SolverKind::AugmentedLagrangian),
+        _ => Err("allowed: newton, direct, augmented-lagrangian".into()),
     }
 }
 

@@ -20,6 +20,8 @@ struct Evaluated {
     kink: Kink,
     residuals: Residuals,
     work: crate::contact::Work,
+    /// Contraction factor of the successive approximations; null for the other solvers.
+    contraction: Option<f64>,
     seconds: Seconds,
     left_out: Vec<&'static str>,
 }
@@ -49,6 +51,7 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
         kink: state.forces.kink,
         residuals: state.forces.residuals,
         work: state.work(),
+        contraction: state.contraction,
         seconds: Seconds { state: state_seconds, subgradient: subgradient_seconds },
         left_out: shape.left_out(),
     };
@@ -105,6 +108,14 @@ impl fmt::Display for Evaluated {
             "seconds              state {:.3}, subgradient {:.3}",
             self.seconds.state, self.seconds.subgradient
         )?;
+        if work.fixed_point_steps > 0 {
+            let contraction = self.contraction.map_or_else(|| "unknown".to_owned(), |factor| format!("{factor:.3}"));
+            writeln!(
+                f,
+                "dual QPs             {} Tresca problems, {} cg, {} expansion, {} proportioning steps, contraction {contraction}",
+                work.fixed_point_steps, work.cg_steps, work.expansion_steps, work.proportioning_steps
+            )?;
+        }
         writeln!(f, "left out             {}", self.left_out.join("; "))
     }
 }

@@ -13,7 +13,8 @@ pub struct Residuals {
     pub complementarity: f64,
     /// Largest excess of |λ_T| over 𝓕λ_N, over the total load.
     pub friction_cone: f64,
-    /// Largest violation of λ_T·slip ≥ 0 and of alignment, c·|slip|·(1 − cos) in slip and c·|slip| in stick, over the load.
+    /// Largest defect of the dissipation, c·|𝓕λ_N|slip| − λ_T·slip| over the square of the load: zero in stick (no slip) and
+    /// in aligned slip.
     pub dissipation: f64,
     /// |(c (B_E u − c_E), λ − Π(λ + c(B u − g)))|₂ over the total load: what the Newton iteration drives to zero.
     pub newton: f64,
@@ -104,15 +105,14 @@ pub fn law_residuals(
             if force[0] > 0.0 {
                 let power: f64 = force[1..].iter().zip(&jump[1..]).map(|(f, j)| f * j * stiffness).sum();
                 // In contact λ_T·s = 𝓕λ_N|s|; both stick (s = 0) and slip (aligned) satisfy it.
-                let defect = if bound > 0.0 { (bound * slip - power).abs() / bound } else { 0.0 };
-                residuals.dissipation = residuals.dissipation.max(defect);
+                residuals.dissipation = residuals.dissipation.max((bound * slip - power).abs());
             }
         }
     }
     if load > 0.0 {
         residuals.complementarity /= load;
         residuals.friction_cone /= load;
-        residuals.dissipation /= load;
+        residuals.dissipation /= load * load;
     }
     residuals
 }

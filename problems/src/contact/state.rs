@@ -6,8 +6,16 @@ use serde::{Deserialize, Serialize};
 /// Work spent on one state and its subgradient.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Work {
-    /// Semismooth Newton steps.
+    /// Semismooth Newton steps; for the descent, derivatives taken (one per product with F).
     pub newton_steps: usize,
+    /// Tresca problems of the successive approximations.
+    pub fixed_point_steps: usize,
+    /// Conjugate gradient steps of the dual QP solver.
+    pub cg_steps: usize,
+    /// Expansion steps of the dual QP solver.
+    pub expansion_steps: usize,
+    /// Proportioning steps of the dual QP solver.
+    pub proportioning_steps: usize,
     /// Products with the dual operator F (0 for direct condensation).
     pub dual_operator_applications: usize,
     /// Of these, products spent on the adjoint.

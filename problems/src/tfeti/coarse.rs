@@ -20,6 +20,7 @@ pub struct CoarseSpace {
     /// e = Rᵀ f.
     pub resultants: Vec<f64>,
     fixed_part: Mat<f64>,
+    equality_count: usize,
 }
 
 impl CoarseSpace {
@@ -65,7 +66,21 @@ impl CoarseSpace {
                 }
             }
         }
-        Self { transposed: rows.transpose(), rows, resultants, fixed_part }
+        let equality_count = model.constraints.equality_count;
+        Self { transposed: rows.transpose(), rows, resultants, fixed_part, equality_count }
+    }
+
+    /// G Gᵀ over all rows, with the grounded motions.
+    pub(crate) fn gram(&self) -> Mat<f64> {
+        let mut matrix = self.fixed_part.clone();
+        for row in self.equality_count..self.rows.row_count() {
+            for (i, left) in self.rows.row(row) {
+                for (j, right) in self.rows.row(row) {
+                    matrix[(j, i)] += left * right;
+                }
+            }
+        }
+        matrix
     }
 
     /// G_E G_Eᵀ with the grounded motions: the part of the coarse matrix that all active sets share.

@@ -5,6 +5,7 @@
 //! ```
 
 mod adjoint;
+mod augmented_lagrangian;
 mod coarse;
 pub mod communication;
 mod constraints;
@@ -15,12 +16,14 @@ mod local_pattern;
 mod model;
 mod newton;
 mod preconditioner;
+mod projected_dual;
 mod recycling;
 mod reduced;
 mod rigid_modes;
 mod solver;
 
 pub use adjoint::TornAdjoint;
+pub use augmented_lagrangian::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
 pub use coarse::{CoarseProblem, CoarseSpace};
 pub use communication::{Communication, InProcess};
 pub use constraints::Constraints;

@@ -204,14 +204,14 @@ impl TornContact<'_> {
     }
 
     /// All contact rows glued, solved roughly: the start that Newton converges from.
-    fn bonded(&self, pairs: &mut Recycled) -> Result<Iterate, ContactError> {
+    pub(crate) fn bonded(&self, pairs: &mut Recycled) -> Result<Iterate, ContactError> {
         let rows = self.reduced(vec![Linearization::Stick; self.boundary.points.len()]);
         let zero = vec![0.0; self.operator.model.constraints.row_count()];
         self.linear_solve(&rows, &zero, |start| BONDED_REDUCTION * start, BONDED_KRYLOV, pairs)
     }
 
     /// Multipliers of a similar problem, corrected to the new resultants; amplitudes by least squares on the held rows.
-    fn restart(&self, multipliers: &[f64]) -> Result<Iterate, ContactError> {
+    pub(crate) fn restart(&self, multipliers: &[f64]) -> Result<Iterate, ContactError> {
         let equality = self.operator.model.constraints.equality_count;
         let guess = |held_slip: bool| -> Vec<Linearization> {
             let points = self.boundary.points.iter();

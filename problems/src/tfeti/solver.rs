@@ -1,7 +1,7 @@
 //! From a shape to its contact state and coderivative by TFETI: what the framework's traits need.
 
 use crate::contact::certificate::law_residuals;
-use crate::contact::law::Linearization;
+use crate::contact::law::{self, Linearization};
 use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, StageSeconds, Work};
 use crate::error::ContactError;
 use crate::linear::vector::norm;
@@ -105,6 +105,19 @@ impl TornSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(TornState, ContactForces, Work), ContactError> {
+        self.solve_by(problem, controls, |contact| contact.solve(start, &NewtonSettings::to(tolerance)))
+    }
+
+    /// Solves one shape by any method on the torn contact problem.
+    ///
+    /// # Errors
+    /// [`ContactError`]: inverted elements, no equilibrium, and what the method returns.
+    pub fn solve_by(
+        &self,
+        problem: &ContactProblem,
+        controls: &[f64],
+        method: impl FnOnce(&TornContact<'_>) -> Result<TornSolution, ContactError>,
+    ) -> Result<(TornState, ContactForces, Work), ContactError> {
         let mut clock = Clock::start();
         let mut seconds = StageSeconds::default();
         let blocks = problem.blocks(controls)?;
@@ -135,7 +148,7 @@ impl TornSolver {
                 stiffness,
                 load: if load > 0.0 { load } else { 1.0 },
             };
-            let solution = contact.solve(start, &NewtonSettings::to(tolerance))?;
+            let solution = method(&contact)?;
             seconds.newton = clock.lap();
             let iterate = &solution.iterate;
             let displacement = operator.displacement(&iterate.multipliers, &iterate.amplitudes, true);
@@ -145,8 +158,8 @@ impl TornSolver {
         let work = Work {
             newton_steps: solution.steps,
             dual_operator_applications: operator.applications(),
-            adjoint_applications: 0,
             factorizations: system.factorizations,
+            ..Work::default()
         };
         seconds.recovery = clock.lap();
         let state = TornState { blocks, space, solution, displacement, stiffness, load, system, seconds };
@@ -225,6 +238,7 @@ impl TornSolver {
             .map(|(force, jump)| force + state.stiffness * jump)
             .collect();
         let kink = Kink::of(&problem.boundary, &arguments);
+        let forces = admissible_forces(problem, &forces);
         ContactForces::unpack(&problem.boundary, &forces, &jumps, status, residuals, kink)
     }
 
@@ -302,6 +316,16 @@ impl TornSolver {
             })
             .collect()
     }
+}
+
+/// Forces brought into the friction cone: what the iteration leaves outside is of the size of its residual.
+fn admissible_forces(problem: &ContactProblem, forces: &[f64]) -> Vec<f64> {
+    let mut admissible = vec![0.0; forces.len()];
+    for point in &problem.boundary.points {
+        let rows = point.start..point.start + point.row_count();
+        law::project(&forces[rows.clone()], problem.boundary.friction, &mut admissible[rows]);
+    }
+    admissible
 }
 
 impl TornState {

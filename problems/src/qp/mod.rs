@@ -1,0 +1,30 @@
+//! Convex quadratic programs over separable sets with linear equalities; no mechanics here.
+//!
+//! ```text
+//! min ½ xᵀHx − xᵀb   s.t.   C x = e,   x ∈ Ω = free entries × half-lines × discs
+//! ```
+//! [`mpgp`]: gradient projection with conjugate gradients in the face, for Ω alone. [`smalse`]: an augmented Lagrangian loop
+//! around it for C x = e. [`kkt`]: residuals of a claimed solution.
+//!
+//! References: Dostál, *Optimal quadratic programming algorithms* (2009); Dostál, Kozubek, *Math. Program.* 135 (2012)
+//! (separable convex constraints); Dostál, Kučera, *SIAM J. Optim.* 20 (2010) (with equalities); Kučera, *Optim. Methods
+//! Softw.* 22 (2007) (reduced gradients).
+
+mod error;
+mod face;
+pub mod kkt;
+mod lanczos;
+pub mod mpgp;
+mod operator;
+mod program;
+mod separable_set;
+pub mod smalse;
+
+pub use error::QpError;
+pub use face::Face;
+pub use lanczos::largest_eigenvalue;
+pub use mpgp::{FacePreconditioner, Mpgp, MpgpSettings, Point, StepCounts};
+pub use operator::{DenseRows, DenseSymmetric, LinearEqualities, SymmetricOperator};
+pub use program::{Progress, QuadraticProgram, SmalseSettings, SmalseSolution, WarmStart};
+pub use separable_set::{Block, SeparableSet};
+pub use smalse::Smalse;
