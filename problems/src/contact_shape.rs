@@ -9,6 +9,7 @@
 use crate::contact::{ContactForces, ContactProblem, Work};
 use crate::direct::{DirectSolver, DirectState};
 use crate::error::{ContactError, SceneError};
+use crate::memory;
 use crate::scene::Scene;
 use crate::tfeti::{AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornSolver, TornState};
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
@@ -97,6 +98,8 @@ impl ContactShape {
         kind: SolverKind,
         preconditioner: PreconditionerKind,
     ) -> Result<Self, SceneError> {
+        scene.validate()?;
+        memory::check(&scene, kind, preconditioner)?;
         let problem = ContactProblem::new(scene)?;
         let size = |error: ContactError| SceneError::out_of_range("mesh", error, "a size that can be factored");
         let solver = match kind {
