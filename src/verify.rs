@@ -39,7 +39,7 @@ pub struct TaylorTest {
     pub directional_derivative: f64,
     /// Rows in the order of the steps.
     pub rows: Vec<TaylorRow>,
-    /// Slope fitted over the rows whose remainder lies above the rounding of Θ: 2 for a smooth Θ and a right ξ, 1 for a wrong
+    /// Slope fitted over the rows whose remainder lies above rounding and the promised errors of Θ: 2 for a smooth Θ and a right ξ, 1 for a wrong
     /// ξ or across a kink; none if fewer than two rows can be used.
     pub fitted_slope: Option<f64>,
     /// The smallest derivative error of all rows.
@@ -84,8 +84,11 @@ pub fn taylor_test<O: NonsmoothObjective>(
         return Err(InputError::Dimension { what: "subgradient", expected, found }.into());
     }
     let derivative = here.subgradient.dot(&direction);
-    let value = |h: f64| -> Result<f64, VerifyError> {
-        Ok(objective.evaluate(&Request::tight(&(x + &direction * h)))?.into_evaluation().value)
+    let mut noise = 1e3 * f64::EPSILON * here.value.abs() + here.error_bound;
+    let mut value = |h: f64| -> Result<f64, VerifyError> {
+        let evaluation = objective.evaluate(&Request::tight(&(x + &direction * h)))?.into_evaluation();
+        noise = noise.max(1e3 * f64::EPSILON * here.value.abs() + here.error_bound + evaluation.error_bound);
+        Ok(evaluation.value)
     };
     let mut rows: Vec<TaylorRow> = vec![];
     for &step in steps {
@@ -99,7 +102,7 @@ pub fn taylor_test<O: NonsmoothObjective>(
     }
     Ok(TaylorTest {
         directional_derivative: derivative,
-        fitted_slope: fitted_slope(&rows, 1e3 * f64::EPSILON * here.value.abs()),
+        fitted_slope: fitted_slope(&rows, noise),
         best_derivative_error: rows.iter().map(|row| row.derivative_error).fold(f64::INFINITY, f64::min),
         rows,
     })

@@ -11,7 +11,7 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut, Par, Side};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Elimination order and fill of one pattern.
 #[derive(Debug)]
@@ -26,6 +26,7 @@ pub struct SymbolicFactor {
 pub struct NumericFactor {
     symbolic: Arc<SymbolicFactor>,
     values: Vec<f64>,
+    single: OnceLock<Vec<f32>>,
 }
 
 impl SymbolicFactor {
@@ -78,7 +79,7 @@ impl SymbolicFactor {
                 Default::default(),
             )
             .map_err(|error| failure("Cholesky factorisation", format!("{error:?}: not positive definite")))?;
-        Ok(NumericFactor { symbolic: Arc::clone(self), values: factor })
+        Ok(NumericFactor { symbolic: Arc::clone(self), values: factor, single: OnceLock::new() })
     }
 }
 
@@ -91,6 +92,21 @@ impl NumericFactor {
         LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
             Conj::No,
             MatMut::from_column_major_slice_mut(b, rows, columns),
+            threads,
+            MemStack::new(&mut memory),
+        );
+    }
+
+    /// As [`NumericFactor::solve_in_place`] for one right-hand side, with factor and vector in single precision. The rounded
+    /// factor is made at the first call and kept.
+    pub fn solve_in_place_single(&self, b: &mut [f32], threads: Par) {
+        let values = self.single.get_or_init(|| self.values.iter().map(|&value| value as f32).collect());
+        let symbolic = &self.symbolic.symbolic;
+        let rows = self.symbolic.pattern.dimension();
+        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f32>(1, threads));
+        LltRef::new(symbolic, values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(b, rows, 1),
             threads,
             MemStack::new(&mut memory),
         );

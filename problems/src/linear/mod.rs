@@ -5,5 +5,6 @@ pub mod csr;
 pub mod dense;
 pub mod gmres;
 pub mod ordering;
+pub mod pcg;
 pub mod symmetric;
 pub mod vector;

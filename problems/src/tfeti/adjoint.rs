@@ -4,13 +4,15 @@
 //! K p + Bᵀ Q q = 0,   Tᵀ B p − Δ q = Tᵀ j      ⇔      (Tᵀ F Q + Δ) q − G_Tᵀ b = −Tᵀ j,   Gq q = 0,   p = −K⁺ Bᵀ Q q + R b
 //! dJ = −pᵀ (∂K u − ∂f) + (Q q)ᵀ ∂g
 //! ```
-//! The transpose of the Newton system (method.md section 5); symmetric without friction.
+//! The transpose of the Newton system (method.md section 5): GMRES with friction; without it the system is symmetric and
+//! conjugate gradients do.
 
 use crate::contact::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::gmres::gmres;
+use crate::linear::pcg::pcg;
 use crate::linear::vector::{add_scaled, norm};
-use crate::tfeti::TornContact;
+use crate::tfeti::{Precision, TornContact};
 
 /// The adjoint state.
 #[derive(Debug, Clone)]
@@ -23,7 +25,11 @@ pub struct TornAdjoint {
     pub residual: f64,
 }
 
-/// Krylov iterations allowed.
+/// Cycles of GMRES: each recomputes the residual, so that what rounding took from one the next gives back.
+const MAX_CYCLES: usize = 6;
+/// Residual reduction asked of a cycle with single precision products.
+const CYCLE_REDUCTION: f64 = 3e-5;
+/// Krylov iterations allowed per cycle.
 const MAX_KRYLOV: usize = 600;
 
 impl TornContact<'_> {
@@ -43,39 +49,56 @@ impl TornContact<'_> {
         let mut projected = right.clone();
         coarse.project_adjoint(&mut projected);
         let start = norm(&projected);
-        let apply = |z: &[f64]| {
-            let mut product = rows.restrict(&self.operator.apply(&rows.expand(z, false)), true);
+        let apply = |z: &[f64], precision: Precision| {
+            let product = self.operator.apply_direction(&rows.expand(z, false), precision);
+            let mut product = rows.restrict(&product, true);
             rows.add_compliance(z, &mut product, 1.0);
             product
         };
         let mut unknowns = vec![0.0; rows.dimension];
-        let mut rest = right;
+        let mut rest = right.clone();
         let mut residual = start;
-        // A second pass recomputes the residual: what rounding took from the first, it gives back.
-        for _pass in 0..2 {
+        for _cycle in 0..MAX_CYCLES {
             if residual <= tolerance * start {
                 break;
             }
-            let krylov = gmres(
-                &projected,
-                0.5 * tolerance * start,
-                MAX_KRYLOV,
-                |v| self.precondition(&rows, v, |z| coarse.project_adjoint(z)),
-                |z| {
-                    let product = apply(z);
-                    let mut reduced = product.clone();
-                    coarse.project_adjoint(&mut reduced);
-                    (reduced, product)
-                },
-            );
-            for ((coefficient, z), product) in krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
-            {
-                add_scaled(&mut unknowns, *coefficient, z);
-                add_scaled(&mut rest, -coefficient, product);
+            let reduction = match self.precision {
+                Precision::Double => 0.0,
+                Precision::Mixed => CYCLE_REDUCTION,
+            };
+            let target = (0.5 * tolerance * start).max(reduction * residual);
+            let precondition = |v: &[f64]| self.precondition(&rows, v, |z| coarse.project_adjoint(z));
+            let product = |z: &[f64]| {
+                let product = apply(z, self.precision);
+                let mut reduced = product.clone();
+                coarse.project_adjoint(&mut reduced);
+                (reduced, product)
+            };
+            if self.boundary.has_friction() {
+                let krylov = gmres(&projected, target, MAX_KRYLOV, precondition, product);
+                for ((coefficient, z), product) in
+                    krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
+                {
+                    add_scaled(&mut unknowns, *coefficient, z);
+                    add_scaled(&mut rest, -coefficient, product);
+                }
+            } else {
+                let krylov = pcg(&projected, target, MAX_KRYLOV, precondition, product);
+                add_scaled(&mut unknowns, 1.0, &krylov.solution);
+                add_scaled(&mut rest, -1.0, &krylov.image);
+            }
+            if self.precision == Precision::Mixed {
+                // Residual replacement by one product in double precision.
+                rest.clone_from(&right);
+                add_scaled(&mut rest, -1.0, &apply(&unknowns, Precision::Double));
             }
             projected.copy_from_slice(&rest);
             coarse.project_adjoint(&mut projected);
+            let previous = residual;
             residual = norm(&projected);
+            if residual > 0.5 * previous {
+                break;
+            }
         }
         if residual.is_nan() || residual > ACCEPTABLE.max(tolerance) * start {
             return Err(ContactError::NotConverged {

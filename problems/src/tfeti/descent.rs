@@ -11,16 +11,19 @@
 use crate::contact::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
-use crate::tfeti::ReducedRows;
 use crate::tfeti::coarse::CoarseProblem;
 use crate::tfeti::newton::{Iterate, NewtonSettings, TornContact, balancing_amplitudes, stagnates};
 use crate::tfeti::recycling::Recycled;
+use crate::tfeti::{Precision, ReducedRows};
 
 /// Residual reduction after which the projector is renewed although the active set has stayed.
 const RENEWAL: f64 = 0.01;
 
+/// Residual reduction after which single precision images are replaced.
+const REPLACEMENT: f64 = 1e-4;
+
 /// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
-const STAGNATION: usize = 12;
+const STAGNATION: usize = 10;
 
 impl TornContact<'_> {
     /// Brings the residual of an iterate down to the tolerance, or as far as it falls; appends to the history.
@@ -33,6 +36,7 @@ impl TornContact<'_> {
         history: &mut Vec<f64>,
     ) -> Result<f64, ContactError> {
         let mut residual = directions.combine(self, iterate, start);
+        let mut replaced = residual;
         while residual > settings.tolerance && directions.len() < 2 * settings.max_krylov {
             let rows = self.reduced(self.linearize(iterate));
             let coarse = self.coarse(&rows, true)?;
@@ -40,6 +44,10 @@ impl TornContact<'_> {
             loop {
                 self.extend(iterate, &rows, &coarse, directions);
                 residual = directions.combine(self, iterate, residual);
+                if self.precision == Precision::Mixed && residual <= settings.tolerance.max(REPLACEMENT * replaced) {
+                    residual = self.replace_image(iterate);
+                    replaced = residual;
+                }
                 history.push(residual);
                 let done = residual <= settings.tolerance || stagnates(history, STAGNATION);
                 if done || residual <= renewal || !same_status(&rows.linearizations, &self.linearize(iterate)) {
@@ -51,6 +59,14 @@ impl TornContact<'_> {
             }
         }
         Ok(residual)
+    }
+
+    /// Residual replacement: the image of the multipliers by a product in double precision.
+    fn replace_image(&self, iterate: &mut Iterate) -> f64 {
+        let image = self.operator.apply(&iterate.multipliers);
+        *iterate =
+            self.iterate(std::mem::take(&mut iterate.multipliers), image, std::mem::take(&mut iterate.amplitudes));
+        self.residual(iterate)
     }
 
     /// One more direction, and the rigid motion that balances the iterate.
@@ -68,7 +84,7 @@ impl TornContact<'_> {
         let defect: Vec<f64> = self.space.resultant(&direction).iter().map(|value| -value).collect();
         coarse.enforce(&mut step, &defect);
         add_scaled(&mut direction, 1.0, &rows.expand(&step, true));
-        let image = self.operator.apply(&direction);
+        let image = self.operator.apply_direction(&direction, self.precision);
         let amplitudes = balancing_amplitudes(rows, coarse, &rows.initial(&direction), &image);
         directions.push(self, direction, image, amplitudes);
     }

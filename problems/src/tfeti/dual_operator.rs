@@ -6,6 +6,18 @@ use faer::Par;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Precision of the products with F inside Krylov spaces; residuals and certificates are always double.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Precision {
+    /// All products in double precision.
+    Double,
+    /// Subdomain solves of search directions in single precision (1.3 to 1.7 times faster), residuals replaced by double
+    /// products whenever they have fallen by four digits.
+    #[default]
+    Mixed,
+}
+
 /// The dual operator of one shape; counts its applications.
 #[doc(alias = "Delassus")]
 #[derive(Debug)]
@@ -15,17 +27,18 @@ pub struct DualOperator<'a> {
     /// The factored subdomains.
     pub system: &'a TornSystem,
     applications: AtomicUsize,
+    single_applications: AtomicUsize,
 }
 
 impl<'a> DualOperator<'a> {
     /// The operator of a factored system.
     pub fn new(model: &'a TornModel, system: &'a TornSystem) -> Self {
-        Self { model, system, applications: AtomicUsize::new(0) }
+        Self { model, system, applications: AtomicUsize::new(0), single_applications: AtomicUsize::new(0) }
     }
 
-    /// Products F·x so far.
+    /// Products F·x so far, in either precision.
     pub fn applications(&self) -> usize {
-        self.applications.load(Ordering::Relaxed)
+        self.applications.load(Ordering::Relaxed) + self.single_applications()
     }
 
     /// F λ.
@@ -34,6 +47,37 @@ impl<'a> DualOperator<'a> {
         let mut torn = self.scatter(multipliers);
         self.solve_subdomains(&mut torn);
         self.gather(&torn)
+    }
+
+    /// F of a search direction, in the precision asked for.
+    pub fn apply_direction(&self, direction: &[f64], precision: Precision) -> Vec<f64> {
+        match precision {
+            Precision::Double => self.apply(direction),
+            Precision::Mixed => self.apply_single(direction),
+        }
+    }
+
+    /// F λ with the subdomain solves in single precision: relative error near 1e-6, half the memory traffic.
+    pub fn apply_single(&self, multipliers: &[f64]) -> Vec<f64> {
+        self.single_applications.fetch_add(1, Ordering::Relaxed);
+        let mut torn = self.scatter(multipliers);
+        self.for_each_subdomain(&mut torn, |factors, part| {
+            // Brought to size one, so that no unit system leaves the range of single precision.
+            let size = part.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+            if size > 0.0 {
+                let mut single: Vec<f32> = part.iter().map(|&entry| (entry / size) as f32).collect();
+                factors.inverse.solve_in_place_single(&mut single, Par::Seq);
+                for (entry, single) in part.iter_mut().zip(single) {
+                    *entry = size * f64::from(single);
+                }
+            }
+        });
+        self.gather(&torn)
+    }
+
+    /// Products with F in single precision so far.
+    pub fn single_applications(&self) -> usize {
+        self.single_applications.load(Ordering::Relaxed)
     }
 
     /// Bᵀ λ over torn dofs.

@@ -27,7 +27,7 @@ pub use augmented_lagrangian::{AugmentedLagrangianCounts, AugmentedLagrangianSet
 pub use coarse::{CoarseProblem, CoarseSpace};
 pub use communication::{Communication, InProcess};
 pub use constraints::Constraints;
-pub use dual_operator::DualOperator;
+pub use dual_operator::{DualOperator, Precision};
 pub use factors::{SubdomainFactors, SubdomainRigid};
 pub use local_pattern::LocalPattern;
 pub use model::{TornModel, TornSystem};

@@ -15,7 +15,7 @@ use crate::linear::gmres::{Combination, gmres};
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::coarse::{CoarseProblem, CoarseSpace};
 use crate::tfeti::recycling::Recycled;
-use crate::tfeti::{DualOperator, Preconditioner, ReducedRows};
+use crate::tfeti::{DualOperator, Precision, Preconditioner, ReducedRows};
 
 /// Everything the iteration works with, for one shape.
 #[derive(Debug)]
@@ -34,6 +34,8 @@ pub struct TornContact<'a> {
     pub stiffness: f64,
     /// Force that residuals are relative to, N.
     pub load: f64,
+    /// Precision of products with search directions.
+    pub precision: Precision,
 }
 
 /// When to stop.
@@ -341,7 +343,7 @@ impl TornContact<'_> {
 }
 
 /// Tightest relative residual aimed at: below it rounding decides.
-const TIGHTEST: f64 = 1e-12;
+const TIGHTEST: f64 = 2e-13;
 /// Relative reduction of the bonded start.
 const BONDED_REDUCTION: f64 = 0.1;
 /// Krylov iterations of the bonded start.

@@ -8,7 +8,7 @@ use crate::linear::vector::norm;
 use crate::mesh::Block;
 use crate::shape_sensitivity::column_sensitivities;
 use crate::tfeti::{
-    CoarseSpace, Communication, DualOperator, InProcess, NewtonSettings, Preconditioner, PreconditionerKind,
+    CoarseSpace, Communication, DualOperator, InProcess, NewtonSettings, Precision, Preconditioner, PreconditionerKind,
     TornContact, TornModel, TornSolution, TornSystem,
 };
 use rayon::prelude::*;
@@ -20,6 +20,7 @@ use std::time::Instant;
 pub struct TornSolver {
     model: TornModel,
     preconditioner: PreconditionerKind,
+    precision: Precision,
 }
 
 /// A solved shape with all that its coderivative needs.
@@ -86,7 +87,14 @@ impl TornSolver {
         communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
         let model = TornModel::new(&problem.scene, &problem.boundary, preconditioner, communication)?;
-        Ok(Self { model, preconditioner })
+        Ok(Self { model, preconditioner, precision: Precision::default() })
+    }
+
+    /// The same solver with another precision of search directions.
+    #[must_use]
+    pub fn with_precision(mut self, precision: Precision) -> Self {
+        self.precision = precision;
+        self
     }
 
     /// The torn model.
@@ -147,6 +155,7 @@ impl TornSolver {
                 boundary: &problem.boundary,
                 stiffness,
                 load: if load > 0.0 { load } else { 1.0 },
+                precision: self.precision,
             };
             let solution = method(&contact)?;
             seconds.newton = clock.lap();
@@ -264,6 +273,7 @@ impl TornSolver {
             boundary: &problem.boundary,
             stiffness: state.stiffness,
             load: state.load,
+            precision: self.precision,
         };
         let constraints = &self.model.constraints;
         let equality = constraints.equality_count;
