@@ -1,11 +1,16 @@
 //! Runs the collection of test problems with one setting and prints evaluations beside the best peers.
 //!
-//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME]`
+//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K]`
+//!
+//! `--jitter K` adds K runs per problem from starts moved by about a tenth of their size.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 use serde::Serialize;
 use std::cell::RefCell;
 use testset::{Family, Problem};
+
+/// Evaluations that an unsolved run counts as in the penalised mean.
+const UNSOLVED: usize = 1000;
 
 const LEVELS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 
@@ -36,6 +41,8 @@ struct Summary {
     solved_constrained: (usize, usize),
     geometric_mean_to_mpbngc: f64,
     compared: usize,
+    /// The same over all runs; an unsolved one counts as 1000 evaluations, and so does a missing MPBNGC.
+    penalised_mean: f64,
     /// Sum over the unconstrained problems that all nine peers solve.
     common_sum: usize,
     common_mpbngc: usize,
@@ -51,7 +58,11 @@ fn main() {
     let scale: f64 = value("--scale").and_then(|text| text.parse().ok()).unwrap_or(1.0);
     let only = value("--only");
     let problems = testset::all().into_iter().filter(|problem| only.as_ref().is_none_or(|name| *name == problem.name));
-    let rows: Vec<Row> = problems.map(|problem| run(&problem, scale)).collect();
+    let jitter: u64 = value("--jitter").and_then(|text| text.parse().ok()).unwrap_or(0);
+    let rows: Vec<Row> = problems
+        .flat_map(|problem| (0..=jitter).map(move |seed| jittered(&problem, seed)))
+        .map(|problem| run(&problem, scale))
+        .collect();
     let summary = summarize(&rows, scale);
     if args.iter().any(|arg| arg == "--json") {
         let text = serde_json::to_string_pretty(&serde_json::json!({ "summary": summary, "problems": rows }));
@@ -60,6 +71,18 @@ fn main() {
         rows.iter().for_each(print_row);
         print_summary(&summary);
     }
+}
+
+/// The problem with another start; the original one for seed 0.
+fn jittered(problem: &Problem, seed: u64) -> Problem {
+    let mut moved = problem.clone();
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ problem.dimension as u64;
+    for x in moved.start.iter_mut().filter(|_| seed > 0) {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let uniform = (state >> 11) as f64 / (1_u64 << 53) as f64;
+        *x += 0.1 * (2.0 * uniform - 1.0) * x.abs().max(1.0);
+    }
+    moved
 }
 
 /// Minimises f(x/scale) from scale·x0 and reads the counts off the sequence of evaluations.
@@ -124,6 +147,10 @@ fn summarize(rows: &[Row], scale: f64) -> Summary {
     };
     let pairs: Vec<f64> =
         rows.iter().filter_map(|row| Some((row.evaluations[2]? as f64 / row.mpbngc? as f64).ln())).collect();
+    let penalised = rows.iter().map(|row| {
+        let peer = row.mpbngc.or(row.best_peer).unwrap_or(UNSOLVED);
+        (row.evaluations[2].unwrap_or(UNSOLVED) as f64 / peer as f64).ln()
+    });
     let common = || rows.iter().filter(|row| row.all_peers_solve && !row.constrained);
     Summary {
         scale,
@@ -131,6 +158,7 @@ fn summarize(rows: &[Row], scale: f64) -> Summary {
         solved_constrained: count(true),
         geometric_mean_to_mpbngc: (pairs.iter().sum::<f64>() / pairs.len().max(1) as f64).exp(),
         compared: pairs.len(),
+        penalised_mean: (penalised.sum::<f64>() / rows.len().max(1) as f64).exp(),
         common_mpbngc: common().filter_map(|row| row.mpbngc).sum(),
         common_sum: common().filter_map(|row| row.evaluations[2]).sum(),
         common_unsolved: common().filter(|row| row.evaluations[2].is_none()).count(),
@@ -162,7 +190,7 @@ fn print_row(row: &Row) {
 
 fn print_summary(summary: &Summary) {
     println!(
-        "solved {}/{} unconstrained, {}/{} constrained; geometric mean to MPBNGC {:.3} over {}; common sum {} (MPBNGC {}, {} unsolved); \
+        "solved {}/{} unconstrained, {}/{} constrained; geometric mean to MPBNGC {:.3} over {} (penalised {:.3}); common sum {} (MPBNGC {}, {} unsolved); \
          infeasible evaluations {}; aborted {}; stationary but not solved {}",
         summary.solved_unconstrained.0,
         summary.solved_unconstrained.1,
@@ -170,6 +198,7 @@ fn print_summary(summary: &Summary) {
         summary.solved_constrained.1,
         summary.geometric_mean_to_mpbngc,
         summary.compared,
+        summary.penalised_mean,
         summary.common_sum,
         summary.common_mpbngc,
         summary.common_unsolved,

@@ -17,9 +17,10 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
         let serious = may_be_serious && comparison.is_serious(&self.method.config);
         self.state.failures = 0;
+        self.keep_record(&proposal, &comparison, serious);
         self.watch_noise(&proposal, &evaluation);
         let kind = if serious {
-            weight::after_serious(&mut self.state, &self.method.config, &comparison);
+            weight::after_serious(&mut self.state, &self.method.config, &proposal, &comparison);
             if -comparison.change > self.tolerance() {
                 self.state.restarts = 0;
             }

@@ -39,7 +39,7 @@ pub struct Run<'r, 'o, O: NonsmoothObjective> {
     pub(super) set: Polyhedron,
     pub(super) state: State,
     pub(super) warm_start: Option<O::WarmStart>,
-    solver: EpigraphQpSolver,
+    pub(super) solver: EpigraphQpSolver,
     /// The last subproblem's answer, as long as center and bundle are those it was solved for.
     pub(super) proposal: Option<Proposal>,
     pub(super) termination: Option<Termination>,
@@ -105,6 +105,7 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         // A resumed run has no memory of earlier subproblems; neither has this one, so both go the same way bit by bit.
         self.solver.forget();
         let proposal = self.propose()?;
+        let proposal = self.compete(proposal);
         if self.center_is_too_coarse(&proposal) {
             return self.refine_center(&proposal);
         }

@@ -42,7 +42,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     }
 
     /// Predicted decrease that counts as small: tolerance, rounding or noise.
-    fn small(&self) -> f64 {
+    pub(super) fn small(&self) -> f64 {
         self.tolerance().max(self.noise_level())
     }
 

@@ -1,6 +1,7 @@
 //! The first evaluation: admissible start, norm, first weight.
 
 use super::config::AccuracyPolicy;
+use super::curvature::CurvatureRecord;
 use super::cut::{Bundle, Cut};
 use super::norm::ScaledNorm;
 use super::oracle::{Outcome, evaluate};
@@ -77,6 +78,7 @@ pub(super) fn first_evaluation<O: NonsmoothObjective>(
         nonconvex: false,
         noise: 0.0,
         failures: 0,
+        curvature: CurvatureRecord::new(weight),
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],
         seconds_before: 0.0,

@@ -1,5 +1,6 @@
 //! Everything a run carries from step to step; what a snapshot stores.
 
+use super::curvature::CurvatureRecord;
 use super::cut::{Bundle, Cut, IDLE};
 use super::norm::ScaledNorm;
 use crate::report::{Counts, IterationRecord};
@@ -34,6 +35,8 @@ pub(crate) struct State {
     pub noise: f64,
     /// Failed evaluations in a row.
     pub failures: usize,
+    /// What the curved model is worth.
+    pub curvature: CurvatureRecord,
     pub counts: Counts,
     pub history: Vec<IterationRecord>,
     /// Seconds spent before the last resume.

@@ -6,6 +6,7 @@
 //! ẽ = −v − u‖d‖² = Σ λ_i a_i + slack of the active constraints ≥ 0      aggregate error
 //! ```
 
+use super::curvature::{CurvedModel, Origin};
 use super::model::Model;
 use super::state::State;
 use crate::qp::{EpigraphQp, EpigraphQpSolver, Metric, QpError, QpSolution, project};
@@ -35,6 +36,10 @@ pub(crate) struct Proposal {
     pub weight: f64,
     /// Relative violation of the set at the trial point.
     pub violation: f64,
+    /// The model behind it.
+    pub origin: Origin,
+    /// Changes that the plain and the curved model predict at the trial point.
+    pub predictions: Option<(f64, f64)>,
 }
 
 /// Trial points violate the set by at most this much, relative to each side.
@@ -60,19 +65,8 @@ pub(crate) fn solve(
 ) -> Result<Proposal, SubproblemError> {
     let weight = state.weight;
     let diagonal = state.norm.weights() * weight;
-    let at_center = set.rows() * &state.center;
-    let terms = set.rows().abs() * state.center.abs();
-    let solution = solver.solve(&EpigraphQp {
-        metric: Metric::Diagonal(&diagonal),
-        slopes: &model.slopes,
-        offsets: &model.offsets,
-        cut_ids: &model.ids,
-        rows: set.rows(),
-        row_lower: &slack(set.row_lower(), &at_center, &terms, f64::min),
-        row_upper: &slack(set.row_upper(), &at_center, &terms, f64::max),
-        lower: &(set.lower() - &state.center),
-        upper: &(set.upper() - &state.center),
-    })?;
+    let solution =
+        solve_qp(solver, set, state, Metric::Diagonal(&diagonal), (&model.slopes, &model.offsets, &model.ids))?;
     let proposal = interpret(solution, state, model);
     // Every solution has −v ≥ u‖d‖²; one that promises less is not a solution.
     let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
@@ -80,6 +74,54 @@ pub(crate) fn solve(
         return Err(SubproblemError::Unusable);
     }
     make_feasible(proposal, set, state)
+}
+
+/// Solves the subproblem of a model with curvature and a weight beside it. Certificate quantities and multipliers stay those
+/// of the plain proposal.
+pub(crate) fn solve_curved(
+    solver: &mut EpigraphQpSolver,
+    set: &Polyhedron,
+    state: &State,
+    model: &CurvedModel,
+    (plain, weight): (&Proposal, f64),
+) -> Result<Proposal, SubproblemError> {
+    let mut metric = model.matrix.clone();
+    for (i, scale) in state.norm.weights().iter().enumerate() {
+        metric[(i, i)] += weight * scale;
+    }
+    let cuts = (&model.slopes[..], &model.offsets[..], &model.ids[..]);
+    let step = solve_qp(solver, set, state, Metric::Dense(&metric), cuts)?.step;
+    let proposal = Proposal { trial: &state.center + &step, weight, violation: 0.0, ..plain.clone() };
+    let mut proposal = make_feasible(Proposal { step, ..proposal }, set, state)?;
+    proposal.predicted_decrease = -model.change(&proposal.step);
+    if proposal.predicted_decrease > 0.0 && proposal.step_length.is_finite() {
+        Ok(proposal)
+    } else {
+        Err(SubproblemError::Unusable)
+    }
+}
+
+/// The quadratic program of slopes, offsets and identities of cuts.
+fn solve_qp(
+    solver: &mut EpigraphQpSolver,
+    set: &Polyhedron,
+    state: &State,
+    metric: Metric<'_>,
+    (slopes, offsets, cut_ids): (&[Vector], &[f64], &[u64]),
+) -> Result<QpSolution, QpError> {
+    let at_center = set.rows() * &state.center;
+    let terms = set.rows().abs() * state.center.abs();
+    solver.solve(&EpigraphQp {
+        metric,
+        slopes,
+        offsets,
+        cut_ids,
+        rows: set.rows(),
+        row_lower: &slack(set.row_lower(), &at_center, &terms, f64::min),
+        row_upper: &slack(set.row_upper(), &at_center, &terms, f64::max),
+        lower: &(set.lower() - &state.center),
+        upper: &(set.upper() - &state.center),
+    })
 }
 
 /// Sides of the rows as seen from the center; what is rounding of the center counts as zero, so that d = 0 is admissible.
@@ -114,6 +156,8 @@ fn interpret(mut solution: QpSolution, state: &State, model: &Model) -> Proposal
         convexification: model.convexification,
         weight: state.weight,
         violation: 0.0,
+        origin: Origin::Plain,
+        predictions: None,
     }
 }
 

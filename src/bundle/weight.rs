@@ -8,6 +8,7 @@
 //! ```
 //! Reference: \[Kiwiel1990\] (proximity control); SS/NS tests: \[SchrammZowe1992\].
 
+use super::curvature::{Origin, missing_weight};
 use super::state::State;
 use super::subproblem::Proposal;
 use crate::{BundleTrustConfig, Vector};
@@ -49,7 +50,15 @@ impl Comparison {
 }
 
 /// Weight after a serious step; call before the center moves.
-pub(crate) fn after_serious(state: &mut State, config: &BundleTrustConfig, comparison: &Comparison) {
+pub(crate) fn after_serious(
+    state: &mut State,
+    config: &BundleTrustConfig,
+    proposal: &Proposal,
+    comparison: &Comparison,
+) {
+    if proposal.origin != Origin::Plain {
+        return curved_after_serious(state, config, proposal, comparison);
+    }
     let u = state.weight;
     let mut changed = false;
     if state.streak > 0 && comparison.change <= config.good_fraction * comparison.model_change {
@@ -64,6 +73,9 @@ pub(crate) fn after_serious(state: &mut State, config: &BundleTrustConfig, compa
 
 /// Weight after a null step.
 pub(crate) fn after_null(state: &mut State, config: &BundleTrustConfig, proposal: &Proposal, comparison: &Comparison) {
+    if proposal.origin != Origin::Plain {
+        return curved_after_null(state, config, proposal, comparison);
+    }
     let u = state.weight;
     let seen = proposal.aggregate_norm + proposal.cut_error;
     let variation = state.variation.map_or(seen, |variation| variation.min(seen));
@@ -79,6 +91,25 @@ pub(crate) fn after_null(state: &mut State, config: &BundleTrustConfig, proposal
         state.streak = if changed { -1 } else { (state.streak - 1).min(-1) };
     } else {
         state.streak = (state.streak - 1).min(-1);
+    }
+}
+
+/// The weight beside B after a serious step: down to what the observed change asks for. Explorations leave it alone.
+fn curved_after_serious(state: &mut State, config: &BundleTrustConfig, proposal: &Proposal, comparison: &Comparison) {
+    let u = state.curvature.weight;
+    if proposal.origin == Origin::Curved && comparison.change <= config.good_fraction * comparison.model_change {
+        let next = missing_weight(comparison, proposal.step_length).max(u / config.weight_decrease).min(u);
+        state.curvature.weight = next.max(state.first_weight / config.weight_range);
+    }
+}
+
+/// The same after a null step: up at once, as the next matrix B knows the new point already.
+fn curved_after_null(state: &mut State, config: &BundleTrustConfig, proposal: &Proposal, comparison: &Comparison) {
+    let u = state.curvature.weight;
+    if proposal.origin == Origin::Curved {
+        let range = (2.0_f64.min(config.weight_increase) * u, config.weight_increase * u);
+        let next = missing_weight(comparison, proposal.step_length).clamp(range.0, range.1);
+        state.curvature.weight = next.min(state.first_weight * config.weight_range);
     }
 }
 
