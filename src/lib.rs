@@ -13,6 +13,7 @@ pub mod objective;
 pub mod problem;
 pub mod qp;
 pub mod reduced;
+pub mod reparametrized;
 pub mod report;
 pub mod verify;
 
@@ -30,6 +31,7 @@ pub use linalg::{Matrix, Vector};
 pub use objective::{Answer, Evaluation, FnObjective, NonsmoothObjective, Request};
 pub use problem::{Coderivative, Cost, CostGradient, StateSolver};
 pub use reduced::ReducedObjective;
+pub use reparametrized::Reparametrized;
 pub use report::{
     Certificate, CertificateCheck, Counts, IterationRecord, Observer, Report, StepKind, StopRule, TablePrinter,
     Termination,

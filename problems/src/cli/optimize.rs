@@ -2,12 +2,15 @@
 
 use crate::cli::output::{self, Folder};
 use crate::cli::{Arguments, ContactObjective, Failure, controls, evaluate};
-use nonsmooth::{Accuracy, BundleTrust, BundleTrustConfig, Report, StateSolver, TablePrinter, Termination, Vector};
+use nonsmooth::{
+    Accuracy, BundleTrust, BundleTrustConfig, Matrix, Reparametrized, Report, StateSolver, TablePrinter, Termination,
+    Vector,
+};
 use serde::Serialize;
 use std::time::Instant;
 
 /// Evaluations allowed unless the user says otherwise.
-const DEFAULT_EVALUATIONS: usize = 300;
+const DEFAULT_EVALUATIONS: usize = 150;
 
 /// What `optimize` reports; the keys of its JSON.
 #[derive(Debug, Serialize)]
@@ -52,15 +55,18 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
     let shape = objective.solver();
     let start = controls::load(shape, arguments.start_controls.as_deref())?;
     let clock = Instant::now();
+    let first_step = first_step(objective, &start);
     let config = BundleTrustConfig {
         max_evaluations: arguments.max_evaluations.unwrap_or(DEFAULT_EVALUATIONS),
-        first_step: first_step(objective, &start),
+        first_step: Some(first_step),
         ..BundleTrustConfig::default()
     };
-    let report = BundleTrust::new(config)?
-        .constraints(shape.problem().admissible.polyhedron().clone())
+    let scaled = Reparametrized::new(objective, mean_height_coordinates(&start, first_step))?;
+    let mut report = BundleTrust::new(config)?
+        .constraints(scaled.transformed_set(shape.problem().admissible.polyhedron())?)
         .observer(TablePrinter::new(std::io::stderr()))
-        .minimize(objective, start.clone())?;
+        .minimize(&scaled, scaled.transformed(&start))?;
+    report.solution = scaled.original(&report.solution);
     let seconds = clock.elapsed().as_secs_f64();
     let initial = shape.solve(&start, None, Accuracy::TIGHTEST)?;
     let optimal = shape.solve(&report.solution, None, Accuracy::TIGHTEST)?;
@@ -78,13 +84,23 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
     Ok(if arguments.json { json } else { page(&report, objective, peaks) })
 }
 
-/// A third of the mean distance between the starting surface and its counterpart: the length on which contact changes.
-fn first_step(objective: &ContactObjective, start: &Vector) -> Option<f64> {
+/// Half of the mean distance between the starting surface and its counterpart: the length on which contact changes, mm. A
+/// hundredth of the height where they coincide.
+fn first_step(objective: &ContactObjective, start: &Vector) -> f64 {
     let problem = objective.solver().problem();
-    let block = problem.lower_block(start.as_slice()).ok()?;
-    let gaps = problem.gaps(&block);
-    let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (3 * gaps.len()) as f64;
-    (length > 0.0).then_some(length)
+    let gaps = problem.lower_block(start.as_slice()).map(|block| problem.gaps(&block)).unwrap_or_default();
+    let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (2 * gaps.len().max(1)) as f64;
+    if length > 0.0 { length } else { 0.01 * start.amax() }
+}
+
+/// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first step:
+/// bodies that contact holds follow the surface as a whole, so that Θ hardly depends on its mean height.
+///
+/// M = I + (κ − 1)/n · 1 1ᵀ stretches the mean by κ and leaves differences alone.
+fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
+    let count = start.len();
+    let stretch = (start.mean().abs() / first_step).max(1.0);
+    Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
 }
 
 fn summary<'a>(report: &'a Report, objective: &ContactObjective, peaks: [f64; 2], seconds: f64) -> Optimized<'a> {
