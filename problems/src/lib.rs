@@ -10,6 +10,7 @@ pub mod error;
 pub mod linear;
 pub mod mesh;
 pub mod scalar;
+pub mod scaling;
 pub mod scene;
 pub mod shape;
 pub mod shape_load;
