@@ -10,7 +10,7 @@ use std::time::Instant;
 /// A solver of one scene.
 pub enum Engine {
     /// TFETI.
-    Torn(TornSolver),
+    Torn(Box<TornSolver>),
     /// Direct condensation.
     Direct(Box<DirectSolver>),
 }
@@ -38,7 +38,7 @@ impl Engine {
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn new(problem: &ContactProblem, variant: Variant) -> Result<Self, ContactError> {
         Ok(match variant.preconditioner() {
-            Some(kind) => Self::Torn(TornSolver::new(problem, kind)?),
+            Some(kind) => Self::Torn(Box::new(TornSolver::new(problem, kind)?)),
             None => Self::Direct(Box::new(DirectSolver::new(problem)?)),
         })
     }

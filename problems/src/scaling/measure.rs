@@ -114,12 +114,12 @@ fn counted(
 
 /// The repetition of median time; one alone when it takes long.
 pub fn median(mut run: impl FnMut() -> Result<Sample, ContactError>) -> Result<Sample, ContactError> {
-    let mut best = vec![run()?];
-    while best.len() < REPETITIONS && best[0].seconds() < ONCE {
-        best.push(run()?);
+    let mut samples = vec![run()?];
+    while samples.len() < REPETITIONS && samples[0].seconds() < ONCE {
+        samples.push(run()?);
     }
-    best.sort_by(|a, b| a.seconds().total_cmp(&b.seconds()));
-    Ok(best.swap_remove(best.len() / 2))
+    samples.sort_by(|a, b| a.seconds().total_cmp(&b.seconds()));
+    Ok(samples.swap_remove(samples.len() / 2))
 }
 
 /// A solver's reason as a failed command.
