@@ -12,6 +12,7 @@ pub mod memory;
 pub mod mesh;
 pub mod qp;
 pub mod scalar;
+pub mod scaling;
 pub mod scene;
 pub mod shape;
 pub mod shape_load;

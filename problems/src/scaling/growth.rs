@@ -1,0 +1,104 @@
+//! How counts and times grow with the number of subdomains at fixed H/h.
+
+use crate::scaling::cases::RATIO;
+use crate::scaling::{Row, SceneName, Start, Variant};
+use serde::{Deserialize, Serialize};
+
+/// Growth of one solver at H/h = 7.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Growth {
+    /// The scene.
+    pub scene: SceneName,
+    /// The solver.
+    pub variant: Variant,
+    /// Least-squares slope of log(seconds of cold state and subgradient) over log(dofs).
+    pub cold_exponent: Option<f64>,
+    /// The same from s = 3 on, where the fixed costs weigh less.
+    pub cold_exponent_large: Option<f64>,
+    /// The same for warm states, all s.
+    pub warm_exponent: Option<f64>,
+    /// Cold counts per tolerance and their growth.
+    pub counts: Vec<CountGrowth>,
+}
+
+/// Products with F of a cold state, relative to s = 3.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct CountGrowth {
+    /// Relative residual of the states.
+    pub tolerance: f64,
+    /// s and count(s) / count(3) − 1, per s > 3.
+    pub growth: Vec<(usize, f64)>,
+}
+
+/// Tolerances whose counts are compared.
+const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
+/// s that the others are compared with.
+const REFERENCE: usize = 3;
+
+impl Growth {
+    /// Growth per scene and variant, where at least two rows have H/h = 7.
+    pub fn of(rows: &[Row]) -> Vec<Self> {
+        let mut growth = Vec::new();
+        let fixed: Vec<&Row> = rows.iter().filter(|row| row.case.ratio() == RATIO).collect();
+        for (index, row) in fixed.iter().enumerate() {
+            let alike = |other: &&&Row| other.scene == row.scene && other.variant == row.variant;
+            if fixed[..index].iter().any(|other| alike(&other)) {
+                continue;
+            }
+            let series: Vec<&Row> = fixed.iter().filter(alike).copied().collect();
+            if series.len() > 1 {
+                growth.push(Self::of_series(&series));
+            }
+        }
+        growth
+    }
+
+    fn of_series(series: &[&Row]) -> Self {
+        let cold = |row: &&Row| Some([row.dofs as f64, row.cold.seconds()]);
+        let warm = |row: &&Row| row.warm.as_ref().map(|warm| [row.dofs as f64, warm.seconds()]);
+        let large = |row: &&&Row| row.case.subdomains >= REFERENCE;
+        Self {
+            scene: series[0].scene,
+            variant: series[0].variant,
+            cold_exponent: exponent(series.iter().filter_map(cold)),
+            cold_exponent_large: exponent(series.iter().filter(large).filter_map(cold)),
+            warm_exponent: exponent(series.iter().filter_map(warm)),
+            counts: TOLERANCES.iter().map(|&tolerance| count_growth(series, tolerance)).collect(),
+        }
+    }
+}
+
+fn count_growth(series: &[&Row], tolerance: f64) -> CountGrowth {
+    let counts: Vec<(usize, f64)> = series
+        .iter()
+        .filter_map(|row| Some((row.case.subdomains, row.solve(Start::Cold, tolerance)?.applications as f64)))
+        .collect();
+    let reference = counts.iter().find(|(s, count)| *s == REFERENCE && *count > 0.0);
+    let growth = reference.map_or_else(Vec::new, |(_, reference)| {
+        counts.iter().filter(|(s, _)| *s > REFERENCE).map(|(s, count)| (*s, count / reference - 1.0)).collect()
+    });
+    CountGrowth { tolerance, growth }
+}
+
+/// Least-squares slope of log y over log x; none for fewer than two points.
+fn exponent(points: impl Iterator<Item = [f64; 2]>) -> Option<f64> {
+    let logs: Vec<[f64; 2]> = points.map(|point| point.map(f64::ln)).collect();
+    let count = logs.len() as f64;
+    let mean = |axis: usize| logs.iter().map(|log| log[axis]).sum::<f64>() / count;
+    let (x, y) = (mean(0), mean(1));
+    let variance: f64 = logs.iter().map(|log| (log[0] - x).powi(2)).sum();
+    let covariance: f64 = logs.iter().map(|log| (log[0] - x) * (log[1] - y)).sum();
+    (logs.len() > 1 && variance > 0.0).then(|| covariance / variance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::exponent;
+
+    #[test]
+    fn a_power_law_gives_its_exponent() {
+        let points = [1.0_f64, 3.0, 10.0, 50.0].map(|x| [x, 7.0 * x.powf(1.25)]);
+        assert!((exponent(points.into_iter()).expect("four points") - 1.25).abs() < 1e-12);
+        assert_eq!(exponent([[2.0, 3.0]].into_iter()), None);
+    }
+}

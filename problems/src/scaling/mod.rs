@@ -1,0 +1,28 @@
+//! How work, time and memory grow with the mesh: the study behind `docs/scaling.md`.
+//!
+//! ```text
+//! cli ─ cases ─┬─ children: one process per case and variant, so that each has its own peak memory
+//!              └─ measure ─ engine, bandwidth, memory ─ Row
+//! rows ─ growth ─ table (Markdown) or JSON
+//! ```
+//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
+//! stdout and nothing else there.
+
+mod bandwidth;
+mod cases;
+mod children;
+mod cli;
+mod engine;
+mod growth;
+mod measure;
+mod memory;
+mod row;
+mod table;
+mod threads;
+
+pub use bandwidth::Bandwidth;
+pub use cases::{Case, Extent, SceneName, Variant};
+pub use cli::{Arguments, run};
+pub use growth::Growth;
+pub use row::{Adjoint, Report, Row, Sample, Solve, Start};
+pub use threads::{ThreadSample, Threads};
