@@ -87,10 +87,10 @@ pub fn measure(
 
 /// Bytes of the values of all factors of K⁺; the analysis is repeated, because a factor does not tell its size.
 fn factor_bytes(model: &TornModel, system: &TornSystem) -> Result<f64, Failure> {
-    let Some(factors) = system.factors.first() else { return Ok(0.0) };
+    let Some(factors) = system.parts.first().and_then(|part| part.factors.as_ref()) else { return Ok(0.0) };
     let symbolic = SymbolicFactor::new(Arc::clone(&model.pattern.pattern), factors.inverse.order().to_vec());
     let values = symbolic.map_err(failure)?.value_count();
-    Ok((values * size_of::<f64>() * system.factors.len()) as f64)
+    Ok((values * size_of::<f64>() * system.parts.len()) as f64)
 }
 
 /// Median seconds of a call.
