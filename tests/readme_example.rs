@@ -1,0 +1,16 @@
+//! The README's example of the framework, as it stands there.
+
+use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Polyhedron, Vector};
+
+#[test]
+fn closure_over_a_box() -> Result<(), Box<dyn std::error::Error>> {
+    let theta = FnObjective::new(2, |x: &Vector| {
+        let (bowl, plane) = (x.norm_squared(), 4.0 - x[0] - x[1]);
+        if bowl > plane { (bowl, x * 2.0) } else { (plane, Vector::from_element(2, -1.0)) }
+    });
+    let set = Polyhedron::boxed(Vector::zeros(2), Vector::from_element(2, 3.0))?;
+    let report = BundleTrust::new(BundleTrustConfig::default())?.constraints(set).minimize(&theta, Vector::zeros(2))?;
+    // x = y with 2x² = 4 − 2x: x = 1, Θ = 2.
+    assert!((report.value - 2.0).abs() < 1e-6, "{report}");
+    Ok(())
+}
