@@ -1,6 +1,7 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
 use crate::cli::output::{self, Folder};
+use crate::cli::picture::pressure_map;
 use crate::cli::{Arguments, ContactObjective, Failure, controls};
 use crate::contact::{Kink, Residuals, StatusCounts};
 use crate::contact_shape::ContactState;
@@ -59,6 +60,8 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
     if let Some(folder) = folder {
         folder.write("evaluation.json", &json)?;
         folder.write("pressure.csv", &pressure_table(objective, &state))?;
+        let title = format!("{}: contact pressure", shape.problem().scene.name);
+        folder.write("pressure.svg", &pressure_picture(objective, &state, &title, result.peak_pressure))?;
     }
     Ok(if arguments.json { json } else { result.to_string() })
 }
@@ -75,6 +78,24 @@ pub fn pressure_table(objective: &ContactObjective, state: &ContactState) -> Str
         table += &format!("{x1},{x2},{pressure},{},{},{opening},{status:?}\n", traction[0], traction[1]);
     }
     table
+}
+
+/// The contact pressures as a map, on a scale up to `largest`.
+pub fn pressure_picture(objective: &ContactObjective, state: &ContactState, title: &str, largest: f64) -> String {
+    let problem = objective.solver().problem();
+    let pressures = objective.cost().pressures(state);
+    let nodes: Vec<(f64, f64, f64)> = problem
+        .boundary
+        .points
+        .iter()
+        .zip(pressures)
+        .map(|(point, pressure)| {
+            let [x1, x2] = problem.grid.position(point.position[0], point.position[1]);
+            (x1, x2, pressure)
+        })
+        .collect();
+    let [n1, n2, _] = problem.grid.nodes();
+    pressure_map(title, problem.grid.size, [n1, n2], &nodes, largest)
 }
 
 impl fmt::Display for Evaluated {

@@ -80,6 +80,11 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
         folder.write("history.csv", &history_table(&report))?;
         folder.write("pressure_initial.csv", &evaluate::pressure_table(objective, &initial))?;
         folder.write("pressure_optimal.csv", &evaluate::pressure_table(objective, &optimal))?;
+        for (name, state) in [("initial", &initial), ("optimal", &optimal)] {
+            let title = format!("{}: contact pressure, {name} shape", shape.problem().scene.name);
+            let picture = evaluate::pressure_picture(objective, state, &title, peaks[0].max(peaks[1]));
+            folder.write(&format!("pressure_{name}.svg"), &picture)?;
+        }
     }
     Ok(if arguments.json { json } else { page(&report, objective, peaks) })
 }
