@@ -21,6 +21,7 @@ use crate::error::SceneError;
 use crate::scene::Scene;
 use clap::Parser;
 use nonsmooth::ReducedObjective;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Θ of a scene.
@@ -31,7 +32,8 @@ pub fn run(scene: Result<Scene, SceneError>) -> ExitCode {
     let arguments = Arguments::parse();
     match execute(scene, &arguments) {
         Ok(text) => {
-            print!("{text}");
+            // A reader that closes the pipe early has seen what it wanted.
+            let _ = std::io::stdout().write_all(text.as_bytes());
             ExitCode::SUCCESS
         }
         Err(failure) => {
