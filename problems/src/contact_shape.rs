@@ -70,8 +70,8 @@ pub enum ContactWarmStart {
     Displacements(Vec<f64>),
 }
 
-/// Relative residual of the state per relative accuracy asked of Θ: pressures are up to seventy times, Θ about as accurate as
-/// the residual says (measured on the reference cases).
+/// Relative residual of the state per relative accuracy asked of Θ: a safety factor, since single pressures are less accurate
+/// than the residual.
 const RESIDUAL_SHARE: f64 = 0.1;
 
 /// Residual per accuracy of the adjoint.

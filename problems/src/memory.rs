@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn estimates_are_near_the_measured_peaks() {
-        // Measured: 35/5 0.53 GB, 63/9 3.6 GB, direct 35 about 2 GB.
+        // Measured: 35/5 0.53 GB (before single precision factors, which add a fifth), 63/9 3.6 GB.
         for (mesh, subdomains, kind, measured) in
             [(35, 5, SolverKind::Newton, 0.53e9), (63, 9, SolverKind::Newton, 3.6e9)]
         {

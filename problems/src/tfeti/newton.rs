@@ -79,7 +79,8 @@ pub enum Recycling {
     Off,
 }
 
-/// Coarse unknowns up to which recycling pays (measured: 7³ subdomains and 2·5³ gain, 9³ lose).
+/// Coarse unknowns up to which recycling is used: up to 7³ subdomains its coarse factorisations were seen to be affordable;
+/// beyond, their cubic cost is expected to outweigh the products saved (not measured).
 const RECYCLING_PAYS: usize = 2100;
 
 impl Recycling {
