@@ -211,7 +211,7 @@ impl StateSolver for ContactShape {
                         Ok(solution)
                     });
                     contraction = Some(counts.contraction).filter(|factor| *factor > 0.0);
-                    solved.map(|(state, forces, work)| (state, forces, with_counts(work, &counts)))
+                    solved.map(|(state, forces, work)| (state, forces, counts.added_to(work)))
                 } else {
                     solver.solve(&self.problem, controls, start, tolerance)
                 }
@@ -267,18 +267,6 @@ impl Coderivative for ContactShape {
             }
         };
         Ok(Vector::from_vec(self.problem.height_map.pull_back(&heights)))
-    }
-}
-
-/// Step counts of the paper's path in the common record.
-fn with_counts(work: Work, counts: &AugmentedLagrangianCounts) -> Work {
-    Work {
-        newton_steps: 0,
-        fixed_point_steps: counts.fixed_point_steps,
-        cg_steps: counts.cg_steps,
-        expansion_steps: counts.expansion_steps,
-        proportioning_steps: counts.proportioning_steps,
-        ..work
     }
 }
 

@@ -22,7 +22,7 @@ fn cold_counts(row: &Value) -> Vec<u64> {
     let mut solves: Vec<&Value> = others.iter().chain([&row["cold"]["state"]]).collect();
     solves.retain(|solve| solve["start"] == "cold");
     solves.sort_by(|a, b| b["tolerance"].as_f64().unwrap().total_cmp(&a["tolerance"].as_f64().unwrap()));
-    solves.iter().map(|solve| solve["applications"].as_u64().unwrap()).collect()
+    solves.iter().map(|solve| solve["work"]["dual_operator_applications"].as_u64().unwrap()).collect()
 }
 
 #[test]
@@ -32,7 +32,7 @@ fn a_tiny_case_prints_its_keys_and_counts() {
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     let rows = report["rows"].as_array().unwrap();
     let variants: Vec<&str> = rows.iter().map(|row| row["variant"].as_str().unwrap()).collect();
-    assert_eq!(variants, ["dirichlet", "lumped", "none", "direct"]);
+    assert_eq!(variants, ["dirichlet", "lumped", "none", "augmented-lagrangian", "direct"]);
     assert!(report["failures"].as_array().unwrap().is_empty());
     let row = &rows[0];
     for key in ["mesh", "subdomains", "setup_seconds", "cold", "warm", "others", "threads", "bandwidth"] {
@@ -53,11 +53,18 @@ fn a_tiny_case_prints_its_keys_and_counts() {
     for (count, bound) in counts.iter().zip(COLD_BOUNDS) {
         assert!(*count <= bound, "{counts:?}");
     }
-    assert!(row["warm"]["state"]["applications"].as_u64().unwrap() <= WARM_BOUND, "{}", row["warm"]);
+    assert!(
+        row["warm"]["state"]["work"]["dual_operator_applications"].as_u64().unwrap() <= WARM_BOUND,
+        "{}",
+        row["warm"]
+    );
     assert!(row["cold"]["adjoint"]["applications"].as_u64().unwrap() <= ADJOINT_BOUND, "{}", row["cold"]);
-    // Both paths find the same pressures.
-    let [torn, direct] = [0, 3].map(|index: usize| rows[index]["cold"]["state"]["objective"].as_f64().unwrap());
-    assert!((torn / direct - 1.0).abs() < 1e-5, "{torn} {direct}");
+    // All paths find the same pressures.
+    let [torn, paper, direct] =
+        [0, 3, 4].map(|index: usize| rows[index]["cold"]["state"]["objective"].as_f64().unwrap());
+    assert!((torn / direct - 1.0).abs() < 1e-5 && (paper / direct - 1.0).abs() < 1e-5, "{torn} {paper} {direct}");
+    let work = &rows[3]["cold"]["state"]["work"];
+    assert!(work["fixed_point_steps"].as_u64().unwrap() > 1 && work["cg_steps"].as_u64().unwrap() > 0, "{work}");
 }
 
 #[test]

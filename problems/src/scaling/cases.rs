@@ -36,6 +36,10 @@ pub enum Variant {
     Lumped,
     /// Newton on TFETI, no preconditioner.
     None,
+    /// The paper's path: successive approximations over dual QPs, Dirichlet preconditioner in the faces.
+    AugmentedLagrangian,
+    /// Newton on TFETI, Dirichlet preconditioner, every step with a GMRES of its own; measured when asked for by name.
+    Gmres,
     /// Newton on directly condensed bodies.
     Direct,
 }
@@ -95,6 +99,7 @@ impl Case {
         if self.subdomains <= UNPRECONDITIONED {
             variants.push(Variant::None);
         }
+        variants.push(Variant::AugmentedLagrangian);
         if self.mesh <= largest_direct {
             variants.push(Variant::Direct);
         }
@@ -142,7 +147,7 @@ impl Variant {
     /// The preconditioner; none for direct condensation.
     pub fn preconditioner(self) -> Option<PreconditionerKind> {
         match self {
-            Self::Dirichlet => Some(PreconditionerKind::Dirichlet),
+            Self::Dirichlet | Self::AugmentedLagrangian | Self::Gmres => Some(PreconditionerKind::Dirichlet),
             Self::Lumped => Some(PreconditionerKind::Lumped),
             Self::None => Some(PreconditionerKind::None),
             Self::Direct => None,

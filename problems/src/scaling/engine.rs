@@ -1,18 +1,31 @@
 //! The contact solvers behind one face, with tolerances as relative residuals. A new solver is added here.
 
-use crate::contact::{ContactForces, ContactProblem};
+use crate::contact::{ContactForces, ContactProblem, Work};
 use crate::direct::{DirectSolver, DirectState};
 use crate::error::ContactError;
 use crate::scaling::{Adjoint, Solve, Start, Variant};
-use crate::tfeti::{TornSolver, TornState};
+use crate::tfeti::{
+    AugmentedLagrangianCounts, AugmentedLagrangianSettings, NewtonSettings, Recycling, TornSolver, TornState,
+};
 use std::time::Instant;
 
 /// A solver of one scene.
 pub enum Engine {
     /// TFETI.
-    Torn(Box<TornSolver>),
+    Torn(Box<TornSolver>, Method),
     /// Direct condensation.
     Direct(Box<DirectSolver>),
+}
+
+/// What is iterated on the torn problem.
+#[derive(Clone, Copy)]
+pub enum Method {
+    /// Newton with the recycling that pays.
+    Newton,
+    /// Newton with a GMRES of its own per step.
+    Gmres,
+    /// Successive approximations.
+    AugmentedLagrangian,
 }
 
 /// A solved shape.
@@ -38,7 +51,7 @@ impl Engine {
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn new(problem: &ContactProblem, variant: Variant) -> Result<Self, ContactError> {
         Ok(match variant.preconditioner() {
-            Some(kind) => Self::Torn(Box::new(TornSolver::new(problem, kind)?)),
+            Some(kind) => Self::Torn(Box::new(TornSolver::new(problem, kind)?), Method::of(variant)),
             None => Self::Direct(Box::new(DirectSolver::new(problem)?)),
         })
     }
@@ -46,7 +59,7 @@ impl Engine {
     /// The TFETI solver, if it is one.
     pub fn torn(&self) -> Option<&TornSolver> {
         match self {
-            Self::Torn(solver) => Some(solver),
+            Self::Torn(solver, _) => Some(solver),
             Self::Direct(_) => None,
         }
     }
@@ -54,7 +67,7 @@ impl Engine {
     /// Degrees of freedom and multipliers.
     pub fn sizes(&self, problem: &ContactProblem) -> [usize; 2] {
         match self {
-            Self::Torn(solver) => [solver.model().dof_count, solver.model().constraints.row_count()],
+            Self::Torn(solver, _) => [solver.model().dof_count, solver.model().constraints.row_count()],
             Self::Direct(_) => {
                 let nodes: usize = problem.grid.cells.iter().map(|cells| cells + 1).product();
                 [3 * nodes * problem.bodies().count(), problem.boundary.row_count]
@@ -75,8 +88,8 @@ impl Engine {
     ) -> Result<Solved, ContactError> {
         let clock = Instant::now();
         let (state, forces, work, stages) = match self {
-            Self::Torn(solver) => {
-                let (state, forces, work) = solver.solve(problem, controls, start, tolerance)?;
+            Self::Torn(solver, method) => {
+                let (state, forces, work) = method.solve(solver, problem, controls, start, tolerance)?;
                 let stages = state.seconds();
                 (State::Torn(Box::new(state)), forces, work, Some(stages))
             }
@@ -89,8 +102,7 @@ impl Engine {
             start: if start.is_some() { Start::Warm } else { Start::Cold },
             tolerance,
             residual: forces.residuals.newton,
-            newton_steps: work.newton_steps,
-            applications: work.dual_operator_applications,
+            work,
             objective: pressures(problem, &forces).map(|(pressure, _)| pressure.powi(EXPONENT)).sum(),
             seconds: clock.elapsed().as_secs_f64(),
             stages,
@@ -115,7 +127,7 @@ impl Engine {
         let direction = problem.boundary.pack(&dual);
         let clock = Instant::now();
         match (self, &solved.state) {
-            (Self::Torn(solver), State::Torn(state)) => {
+            (Self::Torn(solver, _), State::Torn(state)) => {
                 let result = solver.sensitivities(problem, state, &direction, tolerance)?;
                 let adjoint = Adjoint {
                     tolerance,
@@ -134,6 +146,43 @@ impl Engine {
                 what: "adjoint".into(),
                 reason: "the state was found by another kind of contact solver".into(),
             }),
+        }
+    }
+}
+
+impl Method {
+    fn of(variant: Variant) -> Self {
+        match variant {
+            Variant::AugmentedLagrangian => Self::AugmentedLagrangian,
+            Variant::Gmres => Self::Gmres,
+            _ => Self::Newton,
+        }
+    }
+
+    fn solve(
+        self,
+        solver: &TornSolver,
+        problem: &ContactProblem,
+        controls: &[f64],
+        start: Option<&[f64]>,
+        tolerance: f64,
+    ) -> Result<(TornState, ContactForces, Work), ContactError> {
+        match self {
+            Self::Newton => solver.solve(problem, controls, start, tolerance),
+            Self::Gmres => {
+                let settings = NewtonSettings { recycling: Recycling::Off, ..NewtonSettings::to(tolerance) };
+                solver.solve_by(problem, controls, |contact| contact.solve(start, &settings))
+            }
+            Self::AugmentedLagrangian => {
+                let settings = AugmentedLagrangianSettings::to(tolerance);
+                let mut counts = AugmentedLagrangianCounts::default();
+                let (state, forces, work) = solver.solve_by(problem, controls, |contact| {
+                    let (solution, spent) = contact.solve_by_successive_approximations(start, &settings)?;
+                    counts = spent;
+                    Ok(solution)
+                })?;
+                Ok((state, forces, counts.added_to(work)))
+            }
         }
     }
 }

@@ -71,7 +71,7 @@ impl Growth {
 fn count_growth(series: &[&Row], tolerance: f64) -> CountGrowth {
     let counts: Vec<(usize, f64)> = series
         .iter()
-        .filter_map(|row| Some((row.case.subdomains, row.solve(Start::Cold, tolerance)?.applications as f64)))
+        .filter_map(|row| Some((row.case.subdomains, row.solve(Start::Cold, tolerance)?.applications() as f64)))
         .collect();
     let reference = counts.iter().find(|(s, count)| *s == REFERENCE && *count > 0.0);
     let growth = reference.map_or_else(Vec::new, |(_, reference)| {

@@ -56,7 +56,9 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, change: &[f64]) -> Re
     let thorough = matches!(variant, Variant::Dirichlet | Variant::Direct);
     let threads = if thorough { Some(threads::measure(&problem, variant, &controls)?) } else { None };
     let bandwidth = match engine.torn() {
-        Some(solver) if variant != Variant::None => bandwidth::measure(&problem, solver.model(), variant, &controls)?,
+        Some(solver) if matches!(variant, Variant::Dirichlet | Variant::Lumped) => {
+            bandwidth::measure(&problem, solver.model(), variant, &controls)?
+        }
         _ => Vec::new(),
     };
     let contact_nodes = problem.boundary.points.len();

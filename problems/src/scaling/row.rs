@@ -1,6 +1,6 @@
 //! What is measured: the keys of the JSON output.
 
-use crate::contact::StageSeconds;
+use crate::contact::{StageSeconds, Work};
 use crate::scaling::{Bandwidth, Case, Growth, SceneName, Threads, Variant};
 use serde::{Deserialize, Serialize};
 
@@ -23,10 +23,8 @@ pub struct Solve {
     pub tolerance: f64,
     /// Relative Newton residual reached.
     pub residual: f64,
-    /// Newton steps.
-    pub newton_steps: usize,
-    /// Products with the dual operator; 0 for direct condensation.
-    pub applications: usize,
+    /// Steps and products.
+    pub work: Work,
     /// Σσ⁴, MPa⁴.
     pub objective: f64,
     /// Wall-clock seconds.
@@ -55,6 +53,13 @@ pub struct Sample {
     pub state: Solve,
     /// The subgradient.
     pub adjoint: Adjoint,
+}
+
+impl Solve {
+    /// Products with the dual operator; 0 for direct condensation.
+    pub fn applications(&self) -> usize {
+        self.work.dual_operator_applications
+    }
 }
 
 impl Sample {

@@ -15,7 +15,7 @@ pub fn progress(row: &Row) -> String {
         word(&row.variant),
         row.dofs,
         row.cold.seconds(),
-        row.cold.state.applications
+        row.cold.state.applications()
     )
 }
 
@@ -24,6 +24,7 @@ pub fn markdown(report: &Report) -> String {
     let parts = [
         format!("{} threads run at once on this machine.\n", report.machine_threads),
         section("Counts (products with the dual operator)", &counts(report)),
+        section("The paper's path: steps of the cold state to 1e-8, products and error of Σσ⁴ at 1e-6", &paper(report)),
         section("Seconds and memory (state to 1e-8 and subgradient to 1e-8)", &seconds(report)),
         section("Threads (cold state and subgradient)", &threads(report)),
         section("Dual operator and memory bandwidth", &bandwidth(report)),
@@ -76,16 +77,41 @@ fn counts(report: &Report) -> String {
         "adjoint 1e-8",
     ]);
     for row in report.rows.iter().filter(|row| row.variant != Variant::Direct) {
-        let count = |start, tolerance| or_dash(row.solve(start, tolerance), |solve| solve.applications.to_string());
+        let count = |start, tolerance| or_dash(row.solve(start, tolerance), |solve| solve.applications().to_string());
         let mut cells = name(row).to_vec();
-        cells
-            .extend([row.dofs, row.multipliers, row.contact_nodes, row.cold.state.newton_steps].map(|n| n.to_string()));
+        cells.extend(
+            [row.dofs, row.multipliers, row.contact_nodes, row.cold.state.work.newton_steps].map(|n| n.to_string()),
+        );
         cells.extend([COLD[0], TIMED, COLD[1]].map(|tolerance| count(Start::Cold, tolerance)));
         cells.extend([TIMED, COLD[1]].map(|tolerance| count(Start::Warm, tolerance)));
         cells.push(row.cold.adjoint.applications.to_string());
         text += &line(&cells);
     }
     text
+}
+
+fn paper(report: &Report) -> String {
+    let mut text =
+        head(&["N/S", "H/h", "Tresca problems", "cg", "expansion", "proportioning", "products, 1e-6", "error of Σσ⁴"]);
+    for row in report.rows.iter().filter(|row| row.variant == Variant::AugmentedLagrangian) {
+        let newton = alike(report, row, Variant::Dirichlet).and_then(|row| row.solve(Start::Cold, COLD[1]));
+        let coarse = row.solve(Start::Cold, COLD[0]);
+        let work = row.cold.state.work;
+        let mut cells = vec![row.case.to_string(), row.case.ratio().to_string()];
+        let steps = [work.fixed_point_steps, work.cg_steps, work.expansion_steps, work.proportioning_steps];
+        cells.extend(steps.map(|count| count.to_string()));
+        cells.push(or_dash(coarse, |solve| solve.applications().to_string()));
+        cells.push(or_dash(coarse.zip(newton), |(paper, newton)| {
+            format!("{:.1e}", (paper.objective / newton.objective - 1.0).abs())
+        }));
+        text += &line(&cells);
+    }
+    text
+}
+
+/// The row of the same case with another solver.
+fn alike<'a>(report: &'a Report, row: &Row, variant: Variant) -> Option<&'a Row> {
+    report.rows.iter().find(|other| other.case == row.case && other.scene == row.scene && other.variant == variant)
 }
 
 fn seconds(report: &Report) -> String {
@@ -162,12 +188,8 @@ fn bandwidth(report: &Report) -> String {
 
 fn direct(report: &Report) -> String {
     let mut text = head(&["N/S", "direct cold, s", "warm", "TFETI (dirichlet) cold, s", "warm", "ratio cold", "warm"]);
-    let find = |row: &Row, variant| {
-        let alike = |other: &&Row| other.case == row.case && other.scene == row.scene && other.variant == variant;
-        report.rows.iter().find(alike)
-    };
     for direct in report.rows.iter().filter(|row| row.variant == Variant::Direct) {
-        let Some(torn) = find(direct, Variant::Dirichlet) else { continue };
+        let Some(torn) = alike(report, direct, Variant::Dirichlet) else { continue };
         let warm = |row: &Row| row.warm.as_ref().map(|warm| warm.seconds());
         let times = [Some(direct.cold.seconds()), warm(direct), Some(torn.cold.seconds()), warm(torn)];
         let mut cells = vec![direct.case.to_string()];

@@ -7,6 +7,7 @@
 //! The orthonormalised homogenised problem in the unshifted multipliers: P λ₀ = 0, so that the bounds stay where they are.
 //! Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ that it brings about.
 
+use crate::contact::Work;
 use crate::contact::certificate::projection_residual;
 use crate::contact::law::{Linearization, tangential_norm};
 use crate::error::ContactError;
@@ -66,6 +67,20 @@ pub struct AugmentedLagrangianCounts {
     pub refreshed_gradients: usize,
     /// Estimated contraction factor of Ψ ↦ 𝓕λ_N(Ψ); 0 without friction or with fewer than three steps.
     pub contraction: f64,
+}
+
+impl AugmentedLagrangianCounts {
+    /// These counts in the record that all contact solvers share.
+    pub fn added_to(&self, work: Work) -> Work {
+        Work {
+            newton_steps: 0,
+            fixed_point_steps: self.fixed_point_steps,
+            cg_steps: self.cg_steps,
+            expansion_steps: self.expansion_steps,
+            proportioning_steps: self.proportioning_steps,
+            ..work
+        }
+    }
 }
 
 /// Smallest tolerance that rounding allows to ask for.
