@@ -34,7 +34,8 @@ pub struct Evaluation<W> {
     pub value: f64,
     /// One element of the Clarke subdifferential (`dimension()` entries), up to the same relative error.
     pub subgradient: Vector,
-    /// Bound or estimate of |value − Θ(point)| in units of Θ; 0 means exact up to rounding.
+    /// Bound or estimate of |value − Θ(point)| in units of Θ; 0 means exact up to rounding. Not used in an
+    /// [`Answer::NoDescent`], whose cut is certified to hold.
     pub error_bound: f64,
     /// Restart data for evaluations nearby.
     pub warm_start: W,

@@ -165,7 +165,7 @@ impl CurvedModel {
             let bent = &model.matrix * &p;
             let half = 0.5 * p.dot(&bent);
             let error = center.linearization_error(&cut.point, cut.value);
-            if cut.id != center.id && error - half <= CONTRADICTION * (half + error.abs()) {
+            if cut.id != center.id && !cut.lower_bound && error - half <= CONTRADICTION * (half + error.abs()) {
                 continue;
             }
             model.slopes.push(slope + bent);
@@ -193,7 +193,7 @@ fn secant_matrix(state: &State) -> Matrix {
     let Some(center) = state.bundle.cut(state.center_id) else { return matrix };
     let distance = |cut: &Cut| state.norm.squared_distance(&state.center, &cut.point);
     let mut cuts: Vec<(f64, &Cut)> = state.bundle.cuts().iter().map(|cut| (distance(cut), cut)).collect();
-    cuts.retain(|(distance, cut)| cut.id != center.id && *distance > 0.0);
+    cuts.retain(|(distance, cut)| cut.id != center.id && !cut.lower_bound && *distance > 0.0);
     cuts.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.id.cmp(&b.1.id)));
     for (_, cut) in cuts {
         let s = &cut.point - &center.point;

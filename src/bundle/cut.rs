@@ -20,8 +20,11 @@ pub struct Cut {
     pub value: f64,
     /// One subgradient of Θ at y.
     pub subgradient: Vector,
-    /// Error that the oracle promised for `value`.
+    /// How far `value` may lie above Θ(y), as the oracle promised; 0 for a certified lower bound.
     pub error_bound: f64,
+    /// Whether `value` is a certified lower bound only: the cut holds, but tells nothing about Θ(y) from above.
+    #[serde(default)]
+    pub lower_bound: bool,
     /// Multiplier in the last subproblem.
     pub multiplier: f64,
     /// Subproblems in a row in which the multiplier was zero.
@@ -125,7 +128,7 @@ impl Bundle {
             for i in 0..j {
                 let (a, b) = (&self.cuts[i], &self.cuts[j]);
                 let squared_distance = norm.squared_distance(&a.point, &b.point);
-                for (from, to) in [(a, b), (b, a)] {
+                for (from, to) in [(a, b), (b, a)].into_iter().filter(|(_, to)| !to.lower_bound) {
                     let error = from.linearization_error(&to.point, to.value);
                     if error < 0.0 {
                         let allowance = from.error_bound + to.error_bound + 1e-9 * (from.value.abs() + to.value.abs());

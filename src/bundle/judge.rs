@@ -18,7 +18,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let serious = may_be_serious && comparison.is_serious(&self.method.config);
         self.state.failures = 0;
         self.keep_record(&proposal, &comparison, serious);
-        self.watch_noise(&proposal, &evaluation);
+        if may_be_serious {
+            self.watch_noise(&proposal, &evaluation);
+        }
         let kind = if serious {
             weight::after_serious(&mut self.state, &self.method.config, &proposal, &comparison);
             if -comparison.change > self.tolerance() {
@@ -31,7 +33,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             self.state.counts.null += 1;
             if may_be_serious { StepKind::Null } else { StepKind::NoDescent }
         };
-        self.add_cut(proposal.trial.clone(), &evaluation);
+        self.add_cut(proposal.trial.clone(), &evaluation, !may_be_serious);
         if serious {
             self.move_center(proposal.trial.clone(), evaluation, accuracy);
         }
@@ -58,7 +60,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
     }
 
-    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>) {
+    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>, lower_bound: bool) {
         let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + 15).min(150));
         let state = &mut self.state;
         state.bundle.make_room(size, state.center_id);
@@ -67,7 +69,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             point,
             value: evaluation.value,
             subgradient: evaluation.subgradient.clone(),
-            error_bound: evaluation.error_bound,
+            error_bound: if lower_bound { 0.0 } else { evaluation.error_bound },
+            lower_bound,
             multiplier: 0.0,
             idle: 0,
         });

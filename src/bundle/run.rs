@@ -206,7 +206,7 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
             Outcome::Answer(Answer::Accurate(evaluation)) => {
                 let value = evaluation.value;
                 let old = self.state.center_id;
-                self.add_cut(center.clone(), &evaluation);
+                self.add_cut(center.clone(), &evaluation, false);
                 self.move_center(center, evaluation, accuracy);
                 self.state.bundle.retain(|cut| cut.id != old);
                 (Some(value), None)

@@ -93,6 +93,10 @@ const ROUNDING: f64 = 1e-9;
 const TARGET_SHARE: f64 = 0.5;
 /// Relative change of the slip bound below which rounding blurs the contraction.
 const BLURRED: f64 = 1e-8;
+/// Factor on what is aimed at when the recovered state misses the tolerance.
+const RENEWED_AIM: f64 = 0.25;
+/// Share of the tolerance beyond which renewing the aim has not helped.
+const MOST_RENEWED: f64 = 0.01;
 /// Share of the tolerance that the inner solver may leave.
 const INNER_SHARE: f64 = 0.1;
 
@@ -126,23 +130,26 @@ impl TornContact<'_> {
         };
         let mut state = self.first(&first, &coarse);
         let mut history = Vec::new();
-        loop {
-            let solution = self.tresca(&coarse, &dual, &linear, settings, &state)?;
+        let mut aim = settings.tolerance;
+        let (iterate, residual) = loop {
+            let solution = self.tresca(&coarse, &dual, &linear, settings, aim, &state)?;
             let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
             history.push(residual);
-            let exhausted = !solution.converged && residual <= acceptable;
-            let target = TARGET_SHARE * settings.tolerance;
+            let exhausted = (!solution.converged && residual <= acceptable)
+                || history.len() >= settings.max_fixed_point_steps
+                || (aim < MOST_RENEWED * settings.tolerance && residual <= acceptable);
             self.count(&mut state.counts, &solution);
             self.advance(&mut state, solution)?;
-            if residual <= target || exhausted || !self.boundary.has_friction() {
-                break;
+            if residual <= TARGET_SHARE * aim || exhausted || !self.boundary.has_friction() {
+                let iterate = self.recover(&state.warm.x, &state.bounds)?;
+                let residual = self.residual(&iterate);
+                if residual <= settings.tolerance || exhausted || !residual.is_finite() {
+                    break (iterate, residual);
+                }
+                // The recovered amplitudes left more than their share: the dual problem has to leave less.
+                aim *= RENEWED_AIM;
             }
-            if history.len() >= settings.max_fixed_point_steps {
-                break;
-            }
-        }
-        let iterate = self.recover(&state.warm.x, &state.bounds)?;
-        let residual = self.residual(&iterate);
+        };
         if residual.is_nan() || residual > acceptable {
             return Err(ContactError::NotConverged {
                 solver: "successive approximations",
@@ -192,6 +199,7 @@ impl TornContact<'_> {
         dual: &ProjectedDual<'_>,
         linear: &[f64],
         settings: &AugmentedLagrangianSettings,
+        aim: f64,
         state: &FixedPoint,
     ) -> Result<SmalseSolution, ContactError> {
         let set = self.feasible_set(&state.bounds)?;
@@ -204,13 +212,13 @@ impl TornContact<'_> {
         if settings.precondition {
             solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
         }
-        let floor = INNER_SHARE * settings.tolerance * self.load / self.stiffness;
+        let floor = INNER_SHARE * aim * self.load / self.stiffness;
         let solution = solver.run(&warm, floor, &mut |progress| {
             let error = self.stiffness * progress.reduced_gradient + progress.infeasibility;
             let residual = self.coulomb_residual(progress.x, progress.gradient, progress.infeasibility);
             let change = difference(&self.slip_bounds(progress.x), &state.bounds);
             let deserved = (settings.adaptivity * change).max(2.0 * floor * self.stiffness);
-            residual <= TARGET_SHARE * settings.tolerance || (self.boundary.has_friction() && error <= deserved)
+            residual <= TARGET_SHARE * aim || (self.boundary.has_friction() && error <= deserved)
         })?;
         Ok(solution)
     }
