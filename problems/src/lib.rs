@@ -8,6 +8,7 @@ pub mod direct;
 pub mod elasticity;
 pub mod error;
 pub mod linear;
+pub mod membrane;
 pub mod memory;
 pub mod mesh;
 pub mod qp;

@@ -9,7 +9,7 @@ mod evaluate;
 mod failure;
 mod optimize;
 mod output;
-mod picture;
+pub mod picture;
 mod verify;
 
 pub use arguments::{Arguments, Command};

@@ -16,6 +16,20 @@ pub fn pressure_map(
     nodes: &[(f64, f64, f64)],
     largest: f64,
 ) -> String {
+    field_map(title, "MPa", size, counts, nodes, largest)
+}
+
+/// A map of any field that is not negative, with its unit.
+pub fn field_map(
+    title: &str,
+    unit: &str,
+    size: [f64; 2],
+    counts: [usize; 2],
+    nodes: &[(f64, f64, f64)],
+    largest: f64,
+) -> String {
+    let decimals =
+        if largest >= 100.0 { 0 } else { (3.0 - largest.max(1e-12).log10().ceil()).clamp(0.0, 9.0) as usize };
     let scale = WIDTH / size[0];
     let height = size[1] * scale;
     let (dx, dy) = (WIDTH / (counts[0] - 1) as f64, height / (counts[1] - 1) as f64);
@@ -42,7 +56,7 @@ pub fn pressure_map(
         let _ = writeln!(
             svg,
             "<rect x=\"{:.0}\" y=\"{top:.1}\" width=\"18\" height=\"{:.1}\" fill=\"{}\"/>\
-             <text x=\"{:.0}\" y=\"{:.1}\">{:.0}</text>",
+             <text x=\"{:.0}\" y=\"{:.1}\">{:.decimals$}</text>",
             WIDTH + 32.0,
             (height - 20.0) / 10.0 + 1.0,
             colour(share),
@@ -51,7 +65,8 @@ pub fn pressure_map(
             share * largest
         );
     }
-    let _ = writeln!(svg, "<text x=\"20\" y=\"{:.0}\">x1 to the right, x2 upwards; MPa</text>\n</svg>", height + 56.0);
+    let _ =
+        writeln!(svg, "<text x=\"20\" y=\"{:.0}\">x1 to the right, x2 upwards; {unit}</text>\n</svg>", height + 56.0);
     svg
 }
 

@@ -1,0 +1,140 @@
+//! Minimises the membrane over an obstacle with the bundle-trust engine.
+
+use clap::Parser;
+use nonsmooth::{
+    Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
+};
+use problems::cli::Failure;
+use problems::cli::picture::field_map;
+use problems::membrane::{MembraneObjective, MembraneState, PATCHES, admissible_loads, example};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Loads a membrane over a dome so that it takes a wanted shape without pressing on the dome.
+/// Exit status: 0 a report was printed, 1 the computation failed, 2 bad input.
+#[derive(Debug, Parser)]
+#[command(version)]
+struct Arguments {
+    /// Grid cells per edge
+    #[arg(long, value_name = "N", default_value_t = 48, value_parser = clap::value_parser!(u16).range(2..=512))]
+    cells: u16,
+    /// Evaluations allowed
+    #[arg(long, value_name = "K", default_value_t = 400)]
+    max_evaluations: usize,
+    /// Print one line per evaluation on stderr
+    #[arg(long)]
+    table: bool,
+    /// Print one JSON object instead of the page
+    #[arg(long)]
+    json: bool,
+    /// Write report and pictures of displacement and reaction before and after
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+fn main() -> ExitCode {
+    match run(&Arguments::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            // A closed stderr leaves the exit status as the message.
+            let _ = writeln!(io::stderr(), "error: {failure}");
+            failure.exit_code()
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(folder) = &arguments.out {
+        let refused = |error| Failure::Input(format!("--out {}: {error}", folder.display()));
+        std::fs::create_dir_all(folder).map_err(refused)?;
+        write(folder, ".writable", "")?;
+        let _ = std::fs::remove_file(folder.join(".writable"));
+    }
+    let theta = example(usize::from(arguments.cells)).map_err(computation)?;
+    let config = BundleTrustConfig { max_evaluations: arguments.max_evaluations, ..Default::default() };
+    let mut method = BundleTrust::new(config)?.constraints(admissible_loads());
+    if arguments.table {
+        method = method.observer(TablePrinter::new(io::stderr()));
+    }
+    let start = Vector::zeros(PATCHES * PATCHES);
+    let report = method.minimize(&theta, start.clone())?;
+    if let Some(folder) = &arguments.out {
+        let states = [solve(&theta, &start)?, solve(&theta, &report.solution)?];
+        pictures(folder, &theta, &states)?;
+        write(folder, "report.json", &serde_json::to_string_pretty(&report).map_err(computation)?)?;
+    }
+    print(arguments, &theta, &report)
+}
+
+fn print(arguments: &Arguments, theta: &MembraneObjective, report: &Report) -> Result<(), Failure> {
+    let text = if arguments.json {
+        serde_json::to_string_pretty(report).map_err(computation)?
+    } else {
+        let state = solve(theta, &report.solution)?;
+        let (pressing, touching) = contact(theta, &state);
+        let nodes = state.active.len();
+        let value = theta.evaluate(&Request::tight(&report.solution))?.into_evaluation().value;
+        format!(
+            "Θ = {value:.6e}; of {nodes} nodes {pressing} are pressed by the dome and {touching} just touch it \
+             (gap below {TOUCHING:e} of the largest height)\n{report}"
+        )
+    };
+    writeln!(io::stdout(), "{}", text.trim_end()).map_err(computation)
+}
+
+/// Gap, relative to the largest height, that counts as none.
+const TOUCHING: f64 = 1e-6;
+
+/// Numbers of nodes on which the obstacle presses, and of others that touch it: those are at the kink.
+fn contact(theta: &MembraneObjective, state: &MembraneState) -> (usize, usize) {
+    let largest = state.displacement.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
+    let gaps = state.displacement.iter().zip(theta.solver().obstacle()).map(|(u, psi)| u - psi);
+    let touching = gaps.zip(&state.active).filter(|(gap, active)| !**active && *gap <= TOUCHING * largest).count();
+    (state.active.iter().filter(|&&active| active).count(), touching)
+}
+
+fn solve(theta: &MembraneObjective, loads: &Vector) -> Result<MembraneState, Failure> {
+    Ok(theta.solver().solve(loads, None, Accuracy::TIGHTEST)?)
+}
+
+/// One value per inner node.
+type Field = fn(&MembraneState) -> &[f64];
+
+/// Displacements and reactions before and after, each pair on one scale.
+fn pictures(folder: &Path, theta: &MembraneObjective, states: &[MembraneState; 2]) -> Result<(), Failure> {
+    let grid = theta.solver().grid();
+    let fields: [(&str, &str, Field); 2] = [
+        ("displacement", "length", |state| &state.displacement),
+        ("reaction", "load per area", |state| &state.reaction),
+    ];
+    for (name, unit, field) in fields {
+        let lowest = states.iter().flat_map(field).fold(0.0_f64, |lowest, &value| lowest.min(value));
+        let largest = states.iter().flat_map(field).fold(0.0_f64, |largest, &value| largest.max(value)) - lowest;
+        for (state, moment) in states.iter().zip(["start", "optimum"]) {
+            let values = field(state).iter().enumerate();
+            let nodes: Vec<(f64, f64, f64)> = values
+                .map(|(i, value)| {
+                    let [x, y] = grid.node(i);
+                    (x - grid.origin[0], y - grid.origin[1], value - lowest)
+                })
+                .collect();
+            let title = match lowest {
+                0.0 => format!("{name}, {moment}"),
+                _ => format!("{name} above {lowest:.4}, {moment}"),
+            };
+            let svg = field_map(&title, unit, [grid.length; 2], [grid.cells + 1; 2], &nodes, largest);
+            write(folder, &format!("{name}_{moment}.svg"), &svg)?;
+        }
+    }
+    Ok(())
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
+    let path = folder.join(name);
+    std::fs::write(&path, text).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
+}
+
+fn computation(error: impl std::fmt::Display) -> Failure {
+    Failure::Computation(error.to_string())
+}

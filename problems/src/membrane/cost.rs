@@ -1,0 +1,54 @@
+//! What is wanted of a membrane: a shape, little load, no pressure on the obstacle.
+//!
+//! ```text
+//! J(α, u, λ) = ½ h² Σ (u − u_d)² + (ν/2) w Σ α_k² + κ h² Σ λ          w: area of a patch
+//! ```
+
+use crate::membrane::{MembraneGrid, MembraneState};
+use nonsmooth::{Cost, CostGradient, Vector};
+
+/// Weights of the wishes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MembraneWishes {
+    /// ν.
+    pub load_weight: f64,
+    /// κ.
+    pub reaction_weight: f64,
+}
+
+/// J.
+#[derive(Debug, Clone)]
+pub struct MembraneCost {
+    wanted: Vec<f64>,
+    area: f64,
+    total: f64,
+    wishes: MembraneWishes,
+}
+
+impl MembraneCost {
+    /// The cost with a wanted shape u_d.
+    pub fn new(grid: &MembraneGrid, wanted: impl Fn([f64; 2]) -> f64, wishes: MembraneWishes) -> Self {
+        let wanted = (0..grid.node_count()).map(|index| wanted(grid.node(index))).collect();
+        Self { wanted, area: grid.width() * grid.width(), total: grid.length * grid.length, wishes }
+    }
+}
+
+impl Cost<MembraneState> for MembraneCost {
+    fn value(&self, control: &Vector, state: &MembraneState) -> f64 {
+        let off: f64 = state.displacement.iter().zip(&self.wanted).map(|(u, wanted)| (u - wanted).powi(2)).sum();
+        let patch = self.total / control.len() as f64;
+        0.5 * self.area * off
+            + 0.5 * self.wishes.load_weight * patch * control.norm_squared()
+            + self.wishes.reaction_weight * self.area * state.reaction.iter().sum::<f64>()
+    }
+
+    fn gradient(&self, control: &Vector, state: &MembraneState) -> CostGradient {
+        let count = self.wanted.len();
+        let toward = Vector::from_fn(2 * count, |i, _| match i.checked_sub(count) {
+            None => self.area * (state.displacement[i] - self.wanted[i]),
+            Some(_) => self.wishes.reaction_weight * self.area,
+        });
+        let patch = self.total / control.len() as f64;
+        CostGradient { control: control * (self.wishes.load_weight * patch), state: toward }
+    }
+}

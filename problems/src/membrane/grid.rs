@@ -1,0 +1,101 @@
+//! Differences on a square grid.
+//!
+//! ```text
+//! (A u)_i = 4u_i − Σ u_neighbours ≈ h² (−Δu)(x_i)
+//! ```
+
+use crate::error::ContactError;
+use crate::linear::cholesky::SymbolicFactor;
+use crate::linear::ordering::nested_dissection;
+use crate::linear::symmetric::LowerPattern;
+use std::sync::Arc;
+
+/// A square with N × N cells; unknowns are the (N − 1)² inner nodes, i·(N − 1) + j with i along x₁.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MembraneGrid {
+    /// N ≥ 2.
+    pub cells: usize,
+    /// Lower left corner.
+    pub origin: [f64; 2],
+    /// Edge length.
+    pub length: f64,
+}
+
+impl MembraneGrid {
+    /// A grid of at least two cells per edge.
+    ///
+    /// # Panics
+    /// When `cells < 2` or the length is not positive: a grid without nodes is a mistake of the program.
+    pub fn new(cells: usize, origin: [f64; 2], length: f64) -> Self {
+        assert!(
+            cells >= 2 && length > 0.0,
+            "a membrane needs at least 2 cells per edge (found {cells}) and a length > 0"
+        );
+        Self { cells, origin, length }
+    }
+
+    /// h.
+    pub fn width(&self) -> f64 {
+        self.length / self.cells as f64
+    }
+
+    /// Inner nodes per edge.
+    pub fn inner(&self) -> usize {
+        self.cells - 1
+    }
+
+    /// Number of unknowns.
+    pub fn node_count(&self) -> usize {
+        self.inner() * self.inner()
+    }
+
+    /// Position of the grid point with indices 0 … N.
+    pub fn point(&self, indices: [usize; 2]) -> [f64; 2] {
+        std::array::from_fn(|axis| self.origin[axis] + indices[axis] as f64 * self.width())
+    }
+
+    /// Position of an inner node.
+    pub fn node(&self, index: usize) -> [f64; 2] {
+        self.point([index / self.inner() + 1, index % self.inner() + 1])
+    }
+
+    /// The inner neighbours of an inner node.
+    pub fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
+        let n = self.inner();
+        let (i, j) = (index / n, index % n);
+        let candidates = [
+            (i > 0, index.wrapping_sub(n)),
+            (j > 0, index.wrapping_sub(1)),
+            (j + 1 < n, index + 1),
+            (i + 1 < n, index + n),
+        ];
+        candidates.into_iter().filter(|(inside, _)| *inside).map(|(_, neighbour)| neighbour)
+    }
+
+    /// A u for inner values, with zero on the boundary.
+    pub fn multiply(&self, u: &[f64]) -> Vec<f64> {
+        (0..u.len()).map(|i| 4.0 * u[i] - self.neighbours(i).map(|k| u[k]).sum::<f64>()).collect()
+    }
+
+    /// Sum of the boundary values next to every inner node.
+    pub(super) fn boundary_sums(&self, value: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
+        let inside = |k: usize| (1..self.cells).contains(&k);
+        (0..self.node_count())
+            .map(|index| {
+                let (i, j) = (index / self.inner() + 1, index % self.inner() + 1);
+                let around = [[i - 1, j], [i, j - 1], [i, j + 1], [i + 1, j]];
+                around.into_iter().filter(|k| !inside(k[0]) || !inside(k[1])).map(|k| value(self.point(k))).sum()
+            })
+            .collect()
+    }
+
+    /// Pattern and elimination order of A.
+    pub(super) fn analyse(&self) -> Result<(Arc<LowerPattern>, Arc<SymbolicFactor>), ContactError> {
+        let pattern = Arc::new(LowerPattern::from_columns(
+            (0..self.node_count()).map(|index| self.neighbours(index).collect()).collect(),
+        ));
+        let order = nested_dissection([self.inner(), self.inner(), 1]);
+        let symbolic = Arc::new(SymbolicFactor::new(Arc::clone(&pattern), order)?);
+        Ok((pattern, symbolic))
+    }
+}
