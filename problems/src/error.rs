@@ -143,3 +143,19 @@ pub enum ContactError {
     #[error("dual problem: {0}")]
     DualProblem(#[from] crate::qp::QpError),
 }
+
+impl ContactError {
+    /// The kind of the error: the name of its variant.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::InvertedElement { .. } => "InvertedElement",
+            Self::NoEquilibrium { .. } => "NoEquilibrium",
+            Self::Unheld { .. } => "Unheld",
+            Self::Factorization { .. } => "Factorization",
+            Self::NotConverged { .. } => "NotConverged",
+            Self::NotFinite { .. } => "NotFinite",
+            Self::NoContraction { .. } => "NoContraction",
+            Self::DualProblem(_) => "DualProblem",
+        }
+    }
+}

@@ -93,6 +93,9 @@ pub struct Arguments {
     /// Threads for the work on subdomains.
     #[arg(long, value_name = "T")]
     pub threads: Option<usize>,
+    /// With evaluate: contraction factor and condition at the state (costs some ten adjoint solves; not done unless asked).
+    #[arg(long)]
+    pub diagnose: bool,
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
@@ -117,6 +120,9 @@ impl Arguments {
         }
         if !optimizing && self.max_evaluations.is_some() {
             return wrong("--max-evaluations", "with optimize only");
+        }
+        if self.diagnose && self.command != Command::Evaluate {
+            return wrong("--diagnose", "with evaluate only");
         }
         if self.max_evaluations == Some(0) {
             return Err(SceneError::out_of_range("--max-evaluations", 0, "a number ≥ 1").into());

@@ -20,6 +20,15 @@ pub struct Residuals {
     pub newton: f64,
 }
 
+impl Residuals {
+    /// The largest of all residuals; NaN if one is not a number.
+    pub fn largest(&self) -> f64 {
+        [self.equilibrium, self.complementarity, self.friction_cone, self.dissipation, self.newton]
+            .into_iter()
+            .fold(0.0, |largest: f64, value| if value.is_nan() || largest.is_nan() { f64::NAN } else { largest.max(value) })
+    }
+}
+
 /// Numbers of nodes per status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct StatusCounts {

@@ -191,11 +191,20 @@ impl CondensedContact<'_> {
 
     /// The solution of the equations linearised with the given derivatives at u.
     fn newton_candidate(&self, u: &[f64], linearizations: &[Linearization]) -> Vec<f64> {
+        let matrix = self.newton_matrix(linearizations, self.boundary.friction);
+        let mut right = self.linear_residual(u, linearizations);
+        DenseLu::new(&matrix).solve_in_place(&mut right);
+        u.iter().zip(&right).map(|(u, step)| u - step).collect()
+    }
+
+    /// Derivative of the residual with respect to u, grounded motions included. `coupling`: 𝓕 for Coulomb's law, 0 for
+    /// slip bounds that do not follow λ_N (Tresca).
+    pub fn newton_matrix(&self, linearizations: &[Linearization], coupling: f64) -> Mat<f64> {
         let size = self.size();
         let total = size * self.bodies.len();
         let mut matrix = Mat::<f64>::zeros(total, total);
         let coefficient = |body: usize, dof: usize, other: usize| -self.bodies[body].schur[(dof, other)];
-        let law_rows = self.law_coefficients(linearizations);
+        let law_rows = self.law_coefficients(linearizations, coupling);
         let rows = self.rows_by_dof();
         let decoupled: Vec<bool> = (0..size).map(|dof| self.bodies.len() == 2 && self.upper_decoupled(dof)).collect();
         for column in 0..size {
@@ -230,9 +239,7 @@ impl CondensedContact<'_> {
             }
         }
         self.ground(&mut matrix);
-        let mut right = self.linear_residual(u, linearizations);
-        DenseLu::new(&matrix).solve_in_place(&mut right);
-        u.iter().zip(&right).map(|(u, step)| u - step).collect()
+        matrix
     }
 
     /// Adds −s m mᵀ for motions that nothing holds: their resultant is zero, so they stay at rest.
@@ -247,11 +254,11 @@ impl CondensedContact<'_> {
     }
 
     /// Per packed row: (dof, factor of dλ, factor of c·djump) of λ − Π(x), i.e. (I − D) dλ − c D djump.
-    fn law_coefficients(&self, linearizations: &[Linearization]) -> Vec<Vec<(usize, f64, f64)>> {
+    fn law_coefficients(&self, linearizations: &[Linearization], coupling: f64) -> Vec<Vec<(usize, f64, f64)>> {
         let mut coefficients = vec![Vec::new(); self.boundary.row_count];
         for ((index, point), linearization) in self.boundary.points.iter().enumerate().zip(linearizations) {
             let rows: Vec<(usize, usize)> = Self::rows_of(index, point).collect();
-            let derivative = linearization.derivative(rows.len(), self.boundary.friction);
+            let derivative = linearization.derivative(rows.len(), coupling);
             for (i, &(_, row)) in rows.iter().enumerate() {
                 for (j, &(dof, _)) in rows.iter().enumerate() {
                     let d = derivative[i][j];

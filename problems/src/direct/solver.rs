@@ -1,7 +1,7 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
 use crate::contact::certificate::law_residuals;
-use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, Work, modes};
+use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Work, modes};
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::newton::{CondensedContact, CondensedSolution};
 use crate::error::ContactError;
@@ -120,8 +120,24 @@ impl DirectSolver {
         }
     }
 
+    /// Contraction factor and condition at a solved shape.
+    ///
+    /// # Errors
+    /// [`ContactError::NotFinite`].
+    pub fn diagnose(&self, problem: &ContactProblem, state: &DirectState) -> Result<Diagnosis, ContactError> {
+        self.contact(problem, &state.system).diagnose(&state.solution.linearizations)
+    }
+
     /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed rows.
-    pub fn sensitivities(&self, problem: &ContactProblem, state: &DirectState, direction: &[f64]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`ContactError::NotFinite`] when the adjoint matrix is singular.
+    pub fn sensitivities(
+        &self,
+        problem: &ContactProblem,
+        state: &DirectState,
+        direction: &[f64],
+    ) -> Result<Vec<f64>, ContactError> {
         let contact = self.contact(problem, &state.system);
         let (p, eta) = contact.adjoint(&state.solution.linearizations, direction);
         let size = contact.size();
@@ -148,7 +164,10 @@ impl DirectSolver {
         for (height, point) in heights.iter_mut().zip(&problem.boundary.points) {
             *height -= eta[point.start];
         }
-        heights
+        if heights.iter().any(|height| !height.is_finite()) {
+            return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
+        }
+        Ok(heights)
     }
 }
 

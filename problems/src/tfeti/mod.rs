@@ -10,6 +10,7 @@ mod coarse;
 pub mod communication;
 mod constraints;
 mod descent;
+mod diagnosis;
 mod dual_operator;
 mod factors;
 mod local_pattern;

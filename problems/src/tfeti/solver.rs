@@ -2,7 +2,7 @@
 
 use crate::contact::certificate::law_residuals;
 use crate::contact::law::{self, Linearization};
-use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, StageSeconds, Work};
+use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, StageSeconds, Work};
 use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::mesh::Block;
@@ -251,6 +251,36 @@ impl TornSolver {
         ContactForces::unpack(&problem.boundary, &forces, &jumps, status, residuals, kink)
     }
 
+    /// Contraction factor at a solved shape.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`], [`ContactError::Unheld`].
+    pub fn diagnose(&self, problem: &ContactProblem, state: &TornState) -> Result<Diagnosis, ContactError> {
+        let operator = DualOperator::new(&self.model, &state.system);
+        let preconditioner = Preconditioner::new(&operator, self.preconditioner, state.stiffness);
+        self.linearised(problem, state, &operator, &preconditioner).diagnose(&state.solution.linearizations)
+    }
+
+    /// The contact problem of a solved shape for linear systems at its derivatives (its constant is not needed).
+    fn linearised<'a>(
+        &self,
+        problem: &'a ContactProblem,
+        state: &'a TornState,
+        operator: &'a DualOperator<'a>,
+        preconditioner: &'a Preconditioner<'a>,
+    ) -> TornContact<'a> {
+        TornContact {
+            constant: Vec::new(),
+            operator,
+            space: &state.space,
+            preconditioner,
+            boundary: &problem.boundary,
+            stiffness: state.stiffness,
+            load: state.load,
+            precision: self.precision,
+        }
+    }
+
     /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed physical rows.
     ///
     /// # Errors
@@ -265,16 +295,7 @@ impl TornSolver {
         let mut clock = Clock::start();
         let operator = DualOperator::new(&self.model, &state.system);
         let preconditioner = Preconditioner::new(&operator, self.preconditioner, state.stiffness);
-        let contact = TornContact {
-            constant: Vec::new(),
-            operator: &operator,
-            space: &state.space,
-            preconditioner: &preconditioner,
-            boundary: &problem.boundary,
-            stiffness: state.stiffness,
-            load: state.load,
-            precision: self.precision,
-        };
+        let contact = self.linearised(problem, state, &operator, &preconditioner);
         let constraints = &self.model.constraints;
         let equality = constraints.equality_count;
         let mut scaled = vec![0.0; constraints.row_count()];
