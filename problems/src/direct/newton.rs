@@ -56,6 +56,8 @@ const TIGHTEST: f64 = 1e-12;
 const MAX_STEPS: usize = 60;
 /// Step halvings allowed.
 const MAX_HALVINGS: usize = 8;
+/// Times its rounding floor that a residual is seen to reach.
+const FLOOR_REACHED: f64 = 100.0;
 /// Residual accepted when rounding stops all progress.
 const ACCEPTABLE: f64 = 1e-9;
 
@@ -98,7 +100,12 @@ impl CondensedContact<'_> {
                 break;
             }
         }
-        if residual > tolerance.max(ACCEPTABLE) {
+        if residual.is_nan() || residual > tolerance.max(ACCEPTABLE) {
+            let floor = self.rounding_floor(&u);
+            if FLOOR_REACHED * floor > tolerance.max(ACCEPTABLE) {
+                let what = "displacements (bodies, gaps or loads of very different size)";
+                return Err(ContactError::BeyondPrecision { what, floor, residual, tolerance: ACCEPTABLE });
+            }
             return Err(ContactError::NotConverged {
                 solver: "semismooth Newton on condensed bodies",
                 residual,
@@ -110,6 +117,25 @@ impl CondensedContact<'_> {
         let (forces, jumps) = self.packed(&u);
         let linearizations = self.linearize(&u);
         Ok(CondensedSolution { displacement: u, forces, jumps, linearizations, residual, steps: history.len() - 1 })
+    }
+
+    /// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.
+    pub fn at_rest(&self) -> CondensedSolution {
+        let displacement = vec![0.0; self.size() * self.bodies.len()];
+        let (forces, jumps) = self.packed(&displacement);
+        let linearizations = self.linearize(&displacement);
+        CondensedSolution { displacement, forces, jumps, linearizations, residual: 0.0, steps: 0 }
+    }
+
+    /// Relative residual that rounding of S u and of c (u₁ − u₂ − g) causes.
+    fn rounding_floor(&self, u: &[f64]) -> f64 {
+        let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let parts = self.bodies.iter().zip(u.chunks_exact(self.size()));
+        let products = parts.map(|(body, u)| {
+            let diagonal = (0..self.size()).map(|dof| body.schur[(dof, dof)].abs()).fold(0.0, f64::max);
+            diagonal * largest(u)
+        });
+        f64::EPSILON * products.fold(self.stiffness * largest(&self.gaps), f64::max) / self.load
     }
 
     /// φ of every body.

@@ -1,6 +1,7 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
 use crate::contact::certificate::law_residuals;
+use crate::contact::law::Linearization;
 use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Work, modes};
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::newton::{CondensedContact, CondensedSolution};
@@ -83,9 +84,10 @@ impl DirectSolver {
             grounded,
             gaps,
             stiffness,
-            load: if load > 0.0 { load } else { 1.0 },
+            load,
         };
-        let solution = self.contact(problem, &system).solve(start, tolerance)?;
+        let contact = self.contact(problem, &system);
+        let solution = if load > 0.0 { contact.solve(start, tolerance)? } else { contact.at_rest() };
         let work = Work { newton_steps: solution.steps, factorizations, ..Work::default() };
         let state = DirectState { system, solution };
         let forces = unpack(problem, &state);
@@ -125,6 +127,9 @@ impl DirectSolver {
     /// # Errors
     /// [`ContactError::NotFinite`].
     pub fn diagnose(&self, problem: &ContactProblem, state: &DirectState) -> Result<Diagnosis, ContactError> {
+        if state.system.load == 0.0 {
+            return Ok(Diagnosis { contraction: 0.0, condition: None });
+        }
         self.contact(problem, &state.system).diagnose(&state.solution.linearizations)
     }
 
@@ -138,6 +143,10 @@ impl DirectSolver {
         state: &DirectState,
         direction: &[f64],
     ) -> Result<Vec<f64>, ContactError> {
+        if state.system.load == 0.0 {
+            // Bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
+            return Ok(vec![0.0; problem.grid.column_count()]);
+        }
         let contact = self.contact(problem, &state.system);
         let (p, eta) = contact.adjoint(&state.solution.linearizations, direction);
         let size = contact.size();
@@ -192,9 +201,15 @@ fn unpack(problem: &ContactProblem, state: &DirectState) -> ContactForces {
     let law = law_residuals(boundary, &solution.forces, &solution.jumps, stiffness, state.system.load);
     // Equilibrium holds through the equations φ₁ + φ₂ = 0, whose residual is part of Newton's.
     let residuals = Residuals { equilibrium: solution.residual, newton: solution.residual, ..law };
+    let mut forces = solution.forces.clone();
+    for (point, linearization) in boundary.points.iter().zip(&solution.linearizations) {
+        if *linearization == Linearization::Open {
+            forces[point.start..point.start + point.row_count()].fill(0.0);
+        }
+    }
     ContactForces::unpack(
         boundary,
-        &solution.forces,
+        &forces,
         &solution.jumps,
         status,
         residuals,

@@ -14,9 +14,8 @@ pub enum Expected {
     Solved,
     /// All paths refuse with an error of this kind.
     Refused(&'static str),
-    /// TFETI refuses with an error of the first kind, direct condensation does what the second says (a kind, or none for a
-    /// state); the cause.
-    Limit(&'static str, Option<&'static str>, &'static str),
+    /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause.
+    Limit([Option<&'static str>; 2], &'static str),
 }
 
 /// A finding about a solved state, or what is wrong with it.
@@ -60,8 +59,8 @@ impl ContactCase {
 
     /// Expects a known limit.
     #[must_use]
-    pub fn limit(mut self, torn: &'static str, direct: Option<&'static str>, cause: &'static str) -> Self {
-        self.expected = Expected::Limit(torn, direct, cause);
+    pub fn limit(mut self, kinds: [Option<&'static str>; 2], cause: &'static str) -> Self {
+        self.expected = Expected::Limit(kinds, cause);
         self
     }
 

@@ -39,7 +39,7 @@ pub fn record(group: &'static str, name: String, case: &ContactCase) -> Record {
             Err(remark) => (Outcome::Broken, remark),
         },
         Expected::Refused(kind) => refused(kind, &record.paths),
-        Expected::Limit(torn, direct, cause) => limit(&[Some(*torn), *direct], cause, &record.paths),
+        Expected::Limit(kinds, cause) => limit(kinds, cause, &record.paths),
     };
     if let Some((path, found)) = paper {
         let text = match (&found, &torn) {

@@ -15,6 +15,7 @@ use crate::qp::{
     Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
     SmalseSolution, WarmStart,
 };
+use crate::tfeti::holding::LinearAccuracy;
 use crate::tfeti::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
 use crate::tfeti::recycling::Recycled;
 use crate::tfeti::{Iterate, TornContact, TornSolution};
@@ -107,7 +108,7 @@ impl TornContact<'_> {
         let linear = dual.homogenised(&self.constant);
         let first = match start {
             Some(multipliers) => self.restart(multipliers)?,
-            None => self.bonded(&mut Recycled::default())?,
+            None => self.bonded(LinearAccuracy::START, &mut Recycled::default())?,
         };
         let mut state = self.first(&first, &coarse);
         let mut history = Vec::new();

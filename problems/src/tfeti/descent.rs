@@ -38,8 +38,8 @@ impl TornContact<'_> {
         let mut residual = directions.combine(self, iterate, start);
         let mut replaced = residual;
         while residual > settings.tolerance && directions.len() < 2 * settings.max_krylov {
-            let rows = self.reduced(self.linearize(iterate));
-            let coarse = self.coarse(&rows, true)?;
+            let (rows, coarse) = self.held_at(iterate)?;
+            let held = self.linearize(iterate);
             let renewal = RENEWAL * residual;
             loop {
                 self.extend(iterate, &rows, &coarse, directions);
@@ -50,7 +50,7 @@ impl TornContact<'_> {
                 }
                 history.push(residual);
                 let done = residual <= settings.tolerance || stagnates(history, STAGNATION);
-                if done || residual <= renewal || !same_status(&rows.linearizations, &self.linearize(iterate)) {
+                if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
                     break;
                 }
             }

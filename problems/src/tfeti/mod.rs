@@ -13,6 +13,8 @@ mod descent;
 mod diagnosis;
 mod dual_operator;
 mod factors;
+mod holding;
+mod limits;
 mod local_pattern;
 mod model;
 mod newton;

@@ -149,6 +149,7 @@ impl TornSolver {
             let preconditioner = Preconditioner::new(&operator, self.preconditioner, stiffness);
             let contact = TornContact {
                 constant: self.constant(&operator, problem, &gaps),
+                gaps: &gaps,
                 operator: &operator,
                 space: &space,
                 preconditioner: &preconditioner,
@@ -157,7 +158,7 @@ impl TornSolver {
                 load: if load > 0.0 { load } else { 1.0 },
                 precision: self.precision,
             };
-            let solution = method(&contact)?;
+            let solution = if load > 0.0 { method(&contact)? } else { contact.at_rest() };
             seconds.newton = clock.lap();
             let iterate = &solution.iterate;
             let displacement = operator.displacement(&iterate.multipliers, &iterate.amplitudes, true);
@@ -247,7 +248,7 @@ impl TornSolver {
             .map(|(force, jump)| force + state.stiffness * jump)
             .collect();
         let kink = Kink::of(&problem.boundary, &arguments);
-        let forces = admissible_forces(problem, &forces);
+        let forces = admissible_forces(problem, &forces, &state.solution.linearizations);
         ContactForces::unpack(&problem.boundary, &forces, &jumps, status, residuals, kink)
     }
 
@@ -256,6 +257,9 @@ impl TornSolver {
     /// # Errors
     /// [`ContactError::NotConverged`], [`ContactError::Unheld`].
     pub fn diagnose(&self, problem: &ContactProblem, state: &TornState) -> Result<Diagnosis, ContactError> {
+        if state.load == 0.0 {
+            return Ok(Diagnosis { contraction: 0.0, condition: None });
+        }
         let operator = DualOperator::new(&self.model, &state.system);
         let preconditioner = Preconditioner::new(&operator, self.preconditioner, state.stiffness);
         self.linearised(problem, state, &operator, &preconditioner).diagnose(&state.solution.linearizations)
@@ -271,6 +275,7 @@ impl TornSolver {
     ) -> TornContact<'a> {
         TornContact {
             constant: Vec::new(),
+            gaps: &[],
             operator,
             space: &state.space,
             preconditioner,
@@ -293,6 +298,11 @@ impl TornSolver {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
         let mut clock = Clock::start();
+        if state.load == 0.0 {
+            // Bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
+            let heights = vec![0.0; problem.grid.column_count()];
+            return Ok(Sensitivities { heights, applications: 0, adjoint_seconds: 0.0, shape_seconds: clock.lap() });
+        }
         let operator = DualOperator::new(&self.model, &state.system);
         let preconditioner = Preconditioner::new(&operator, self.preconditioner, state.stiffness);
         let contact = self.linearised(problem, state, &operator, &preconditioner);
@@ -349,12 +359,15 @@ impl TornSolver {
     }
 }
 
-/// Forces brought into the friction cone: what the iteration leaves outside is of the size of its residual.
-fn admissible_forces(problem: &ContactProblem, forces: &[f64]) -> Vec<f64> {
+/// Forces brought into the friction cone, and to zero at open nodes: what the iteration leaves outside is of the size of its
+/// residual.
+fn admissible_forces(problem: &ContactProblem, forces: &[f64], linearizations: &[Linearization]) -> Vec<f64> {
     let mut admissible = vec![0.0; forces.len()];
-    for point in &problem.boundary.points {
-        let rows = point.start..point.start + point.row_count();
-        law::project(&forces[rows.clone()], problem.boundary.friction, &mut admissible[rows]);
+    for (point, linearization) in problem.boundary.points.iter().zip(linearizations) {
+        if *linearization != Linearization::Open {
+            let rows = point.start..point.start + point.row_count();
+            law::project(&forces[rows.clone()], problem.boundary.friction, &mut admissible[rows]);
+        }
     }
     admissible
 }
