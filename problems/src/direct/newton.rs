@@ -219,7 +219,7 @@ impl CondensedContact<'_> {
     fn newton_candidate(&self, u: &[f64], linearizations: &[Linearization]) -> Vec<f64> {
         let matrix = self.newton_matrix(linearizations, self.boundary.friction);
         let mut right = self.linear_residual(u, linearizations);
-        DenseLu::new(&matrix).solve_in_place(&mut right);
+        DenseLu::new(&matrix).solve_refined(&matrix, &mut right);
         u.iter().zip(&right).map(|(u, step)| u - step).collect()
     }
 
