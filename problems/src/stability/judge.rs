@@ -14,7 +14,7 @@ const AGREEMENT: f64 = 1e-6;
 /// Largest difference of shape sensitivities.
 const SUBGRADIENT_AGREEMENT: f64 = 1e-4;
 
-/// Share of load over height that is zero for a sensitivity.
+/// Share of a brick's stiffness that is zero for a sensitivity.
 const NEGLIGIBLE: f64 = 1e-6;
 
 /// Runs a contact case.
@@ -42,8 +42,15 @@ pub fn record(group: &'static str, name: String, case: &ContactCase) -> Record {
             Err(remark) => (Outcome::Broken, remark),
         },
         Expected::Refused(kind) => refused(kind, &record.paths),
-        Expected::Limit(kinds, cause) => limit(kinds, cause, &record.paths),
+        Expected::Limit(kinds, cause) => {
+            let found = torn.as_ref().or(direct.as_ref());
+            limit(kinds, cause, &record, found.map(|found| checked(&problem, case, found)))
+        }
     };
+    if record.contraction.is_some_and(|factor| factor >= 1.0) {
+        let warning = "Φ does not contract: uniqueness is not proved, other equilibria may exist";
+        record.remark = join(&record.remark, warning);
+    }
     if let Some((path, found)) = paper {
         let text = match (&found, &torn) {
             (Some(found), Some(torn)) => {
@@ -92,11 +99,34 @@ fn refused(kind: &str, paths: &[Path]) -> (Outcome, String) {
     (Outcome::Broken, reasons(paths))
 }
 
-fn limit(kinds: &[Option<&str>; 2], cause: &str, paths: &[Path]) -> (Outcome, String) {
-    if paths.iter().zip(kinds).all(|(path, kind)| path.refusal.as_deref() == *kind) {
-        return (Outcome::Limit, format!("{cause} ({})", reasons(paths)));
+fn limit(
+    kinds: &[Option<&str>; 2],
+    cause: &str,
+    record: &Record,
+    found: Option<Result<String, String>>,
+) -> (Outcome, String) {
+    let paths = &record.paths;
+    let certified = record.largest_residual().is_none_or(|residual| residual <= CERTIFICATE);
+    if !certified || paths.iter().zip(kinds).any(|(path, kind)| path.refusal.as_deref() != *kind) {
+        return (Outcome::Broken, reasons(paths));
     }
-    (Outcome::Broken, reasons(paths))
+    match found.transpose() {
+        Ok(finding) => {
+            (Outcome::Limit, join(&format!("{cause} ({})", reasons(paths)), &finding.unwrap_or_default()))
+        }
+        Err(wrong) => (Outcome::Broken, join(&wrong, &reasons(paths))),
+    }
+}
+
+/// Finite numbers and the case's own check.
+fn checked(problem: &ContactProblem, case: &ContactCase, found: &Found) -> Result<String, String> {
+    if !finite(&found.forces) {
+        return Err("a result is not finite".into());
+    }
+    match &case.check {
+        Some(check) => check(problem, &found.forces),
+        None => Ok(String::new()),
+    }
 }
 
 /// Certificates, agreement, finite numbers, and the case's own check.
@@ -108,11 +138,8 @@ fn solved(
     direct: Option<&Found>,
 ) -> Result<String, String> {
     let (Some(torn), Some(direct)) = (torn, direct) else { return Err(reasons(&record.paths)) };
-    for found in [torn, direct] {
-        if !finite(&found.forces) {
-            return Err("a result is not finite".into());
-        }
-    }
+    let finding = checked(problem, case, torn)?;
+    checked(problem, case, direct)?;
     let certificate = record.largest_residual().unwrap_or(f64::NAN);
     if certificate.is_nan() || certificate > CERTIFICATE {
         return Err(format!("certificate {certificate:.1e}"));
@@ -126,8 +153,9 @@ fn solved(
     let [first, second] = heights;
     let (first, second) = (first?, second?);
     if torn.forces.kink.weakly_active == 0 && direct.forces.kink.weakly_active == 0 {
-        // Where equilibrium alone determines the forces, sensitivities vanish up to rounding of load over height.
-        let floor = NEGLIGIBLE * load(problem, case)? / problem.scene.start_height;
+        // Where equilibrium alone determines the forces, sensitivities vanish up to rounding of a brick's stiffness.
+        let brick = problem.grid.size[0] / problem.grid.cells[0] as f64;
+        let floor = NEGLIGIBLE * problem.scene.lower.material.young_modulus() * brick;
         let difference = difference_over(first, second, floor);
         record.subgradient_difference = Some(difference);
         if difference.is_nan() || difference > SUBGRADIENT_AGREEMENT {
@@ -136,10 +164,7 @@ fn solved(
     } else if first.iter().chain(second).any(|value| !value.is_finite()) {
         return Err("a subgradient is not finite".into());
     }
-    match &case.check {
-        Some(check) => check(problem, &torn.forces),
-        None => Ok(String::new()),
-    }
+    Ok(finding)
 }
 
 fn finite(forces: &ContactForces) -> bool {
@@ -155,20 +180,13 @@ pub fn force_difference(first: &ContactForces, second: &ContactForces) -> f64 {
     relative_difference(&all(first), &all(second))
 }
 
-/// Total load of a case, N.
-fn load(problem: &ContactProblem, case: &ContactCase) -> Result<f64, String> {
-    let start = vec![problem.scene.start_height; problem.scene.control_points.iter().product()];
-    let blocks = problem.blocks(case.controls.as_ref().unwrap_or(&start)).map_err(|error| error.to_string())?;
-    Ok(problem.rigid_scene(&blocks).total_load())
-}
-
 /// |a − b|∞/|b|∞; 0 if both vanish.
 pub fn relative_difference(a: &[f64], b: &[f64]) -> f64 {
     difference_over(a, b, 0.0)
 }
 
 /// |a − b|∞ over the larger of |a|∞, |b|∞ and a floor; 0 if all vanish, NaN if a number is not finite.
-fn difference_over(a: &[f64], b: &[f64], floor: f64) -> f64 {
+pub fn difference_over(a: &[f64], b: &[f64], floor: f64) -> f64 {
     let (mut largest, mut difference) = (floor, 0.0_f64);
     for (a, b) in a.iter().zip(b) {
         if !a.is_finite() || !b.is_finite() {

@@ -34,7 +34,11 @@ pub fn cases() -> Vec<Case> {
         let ratio = 10.0_f64.powi(exponent);
         let scene = with_materials(pair(), &[(7.0e4, 0.35), (7.0e4 * ratio, 0.29)]);
         let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
-        let case = ContactCase::new(scene).at(controls);
+        let mut case = ContactCase::new(scene).at(controls);
+        if exponent == 8 {
+            let cause = "condensation rounds the rigid motion of the upper body at its own stiffness; TFETI keeps it apart";
+            case = case.limit([None, Some("BeyondPrecision")], cause);
+        }
         cases.push(case.case(STIFFNESS, format!("upper E = 1e{exponent} · lower E")));
     }
     cases

@@ -9,7 +9,7 @@ use crate::elasticity::Material;
 use crate::error::SceneError;
 use crate::scene::{CounterSurface, Scene};
 use crate::stability::contact::{Attempt, by_condensation, by_tfeti};
-use crate::stability::judge::{force_difference, relative_difference};
+use crate::stability::judge::{difference_over, force_difference, relative_difference};
 use crate::stability::scenes::{block, footed, pair, stacked, wavy, with_loads};
 use crate::stability::{Case, Outcome, Record};
 
@@ -58,6 +58,11 @@ fn openings(forces: &ContactForces, length: f64) -> Vec<f64> {
     forces.opening.iter().map(|opening| opening / length).collect()
 }
 
+/// Strain that the normal forces stand for: openings of closed nodes are zero compared with it.
+fn strain(scene: &Scene, forces: &ContactForces) -> f64 {
+    forces.total_normal_force() / (scene.lower.material.young_modulus() * scene.size[0] * scene.size[1])
+}
+
 fn compare(record: &mut Record, scene: &Scene, s: f64, amplitude: f64) -> Result<(Outcome, String), SceneError> {
     let mut worst = 0.0_f64;
     for direct in [false, true] {
@@ -69,7 +74,11 @@ fn compare(record: &mut Record, scene: &Scene, s: f64, amplitude: f64) -> Result
             return Ok((if alike { Outcome::Refused } else { Outcome::Broken }, text));
         };
         let forces = force_difference(&first.forces, &second.forces);
-        let gaps = relative_difference(&openings(&first.forces, length), &openings(&second.forces, other_length));
+        let (openings, floor) = (
+            [openings(&first.forces, length), openings(&second.forces, other_length)],
+            strain(scene, &first.forces),
+        );
+        let gaps = difference_over(&openings[0], &openings[1], floor);
         // Sensitivities are forces per length.
         let times = |heights: &Result<Vec<f64>, String>, length: f64| -> Vec<f64> {
             heights.as_ref().map(|heights| heights.iter().map(|value| value * length).collect()).unwrap_or_default()

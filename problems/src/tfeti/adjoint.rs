@@ -26,9 +26,11 @@ pub struct TornAdjoint {
 }
 
 /// Cycles of GMRES: each recomputes the residual, so that what rounding took from one the next gives back.
-const MAX_CYCLES: usize = 6;
+const MAX_CYCLES: usize = 12;
 /// Residual reduction asked of a cycle with single precision products.
 const CYCLE_REDUCTION: f64 = 3e-5;
+/// Reduction by a cycle above which products are made in double precision.
+const SLOW: f64 = 0.1;
 /// Krylov iterations allowed per cycle.
 const MAX_KRYLOV: usize = 600;
 
@@ -97,11 +99,11 @@ impl TornContact<'_> {
             coarse.project_adjoint(&mut projected);
             let previous = residual;
             residual = norm(&projected);
-            if residual.is_nan() || residual > 0.5 * previous {
-                if precision == Precision::Double {
+            if residual.is_nan() || residual > SLOW * previous && residual > tolerance * start {
+                // Single precision has little to say about a system as ill conditioned as this.
+                if precision == Precision::Double && (residual.is_nan() || residual > 0.5 * previous) {
                     break;
                 }
-                // Single precision has nothing to say about a system as ill conditioned as this.
                 precision = Precision::Double;
                 if residual.is_nan() || residual > previous {
                     unknowns.fill(0.0);
