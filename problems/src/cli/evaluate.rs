@@ -117,11 +117,7 @@ impl fmt::Display for Evaluated {
             self.kink.smallest_margin, self.kink.weakly_active
         )?;
         let r = &self.residuals;
-        writeln!(
-            f,
-            "relative residuals   equilibrium {:.1e}, complementarity {:.1e}, friction cone {:.1e}, dissipation {:.1e}",
-            r.equilibrium, r.complementarity, r.friction_cone, r.dissipation
-        )?;
+        writeln!(f, "relative residuals   {r}")?;
         let work = &self.work;
         writeln!(
             f,

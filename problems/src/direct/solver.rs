@@ -77,15 +77,7 @@ impl DirectSolver {
         let stiffness = contact_stiffness(&lower, upper.as_deref());
         let penetration: f64 = gaps.iter().map(|gap| (-gap).max(0.0)).sum();
         let load = rigid.total_load() + stiffness * penetration;
-        let system = CondensedSystem {
-            block: blocks.swap_remove(0),
-            lower,
-            upper,
-            grounded,
-            gaps,
-            stiffness,
-            load,
-        };
+        let system = CondensedSystem { block: blocks.swap_remove(0), lower, upper, grounded, gaps, stiffness, load };
         let contact = self.contact(problem, &system);
         let solution = if load > 0.0 { contact.solve(start, tolerance)? } else { contact.at_rest() };
         let work = Work { newton_steps: solution.steps, factorizations, ..Work::default() };
@@ -207,14 +199,7 @@ fn unpack(problem: &ContactProblem, state: &DirectState) -> ContactForces {
             forces[point.start..point.start + point.row_count()].fill(0.0);
         }
     }
-    ContactForces::unpack(
-        boundary,
-        &forces,
-        &solution.jumps,
-        status,
-        residuals,
-        Kink::of(boundary, &arguments),
-    )
+    ContactForces::unpack(boundary, &forces, &solution.jumps, status, residuals, Kink::of(boundary, &arguments))
 }
 
 /// Mean normal stiffness of the contact nodes, bodies in series, N/mm.

@@ -228,7 +228,9 @@ mod tests {
         for dof in 0..DOFS {
             let exact: f64 = gauss_points(&nodes)
                 .iter()
-                .map(|point| point.volume * (0..3).map(|j| sigma[dof % 3][j] * point.gradients[dof / 3][j]).sum::<f64>())
+                .map(|point| {
+                    point.volume * (0..3).map(|j| sigma[dof % 3][j] * point.gradients[dof / 3][j]).sum::<f64>()
+                })
                 .sum();
             for force in [standard[dof], mean[dof]] {
                 assert!((force - exact).abs() < 1e-12 * 150.0, "{force} {exact}");

@@ -4,6 +4,8 @@ use crate::stability::{
     Record, contacts, friction, geometry, kinks, loads, locking, materials, optimizer, tearing, units,
 };
 
+use std::time::Instant;
+
 /// One line of the matrix.
 pub struct Case {
     /// Group of cases.
@@ -23,11 +25,7 @@ impl std::fmt::Debug for Case {
 
 impl Case {
     /// A case of the fast subset.
-    pub fn new(
-        group: &'static str,
-        name: impl Into<String>,
-        run: impl Fn() -> Record + Send + Sync + 'static,
-    ) -> Self {
+    pub fn new(group: &'static str, name: impl Into<String>, run: impl Fn() -> Record + Send + Sync + 'static) -> Self {
         Self { group, name: name.into(), quick: true, run: Box::new(run) }
     }
 
@@ -39,7 +37,9 @@ impl Case {
 
     /// Runs it.
     pub fn run(&self) -> Record {
-        (self.run)()
+        let clock = Instant::now();
+        let record = (self.run)();
+        Record { seconds: clock.elapsed().as_secs_f64(), ..record }
     }
 }
 

@@ -14,7 +14,8 @@ pub enum Expected {
     Solved,
     /// All paths refuse with an error of this kind.
     Refused(&'static str),
-    /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause.
+    /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause. Solved by both is
+    /// as good: rounding decides at the edge.
     Limit([Option<&'static str>; 2], &'static str),
 }
 
@@ -33,7 +34,7 @@ pub struct ContactCase {
 /// Relative residual asked of the states.
 const TOLERANCE: f64 = 1e-12;
 /// Relative residual asked of the successive approximations.
-const PAPER_TOLERANCE: f64 = 1e-8;
+const PAPER_TOLERANCE: f64 = 1e-7;
 /// Relative residual asked of adjoints.
 const ADJOINT_TOLERANCE: f64 = 1e-10;
 
@@ -150,8 +151,7 @@ pub fn by_condensation(problem: &ContactProblem, controls: &[f64]) -> Attempt {
     let attempt = || {
         let solver = DirectSolver::new(problem)?;
         let (state, forces, work) = solver.solve(problem, controls, None, TOLERANCE)?;
-        let heights =
-            solver.sensitivities(problem, &state, &packed_dual(problem)).map_err(|error| error.to_string());
+        let heights = solver.sensitivities(problem, &state, &packed_dual(problem)).map_err(|error| error.to_string());
         let diagnosis = Some(solver.diagnose(problem, &state).map_err(|error| error.to_string()));
         Ok((path("direct", work, &forces), Some(Found { forces, heights, diagnosis })))
     };

@@ -22,7 +22,9 @@ fn reported(least: usize) -> impl Fn(&ContactProblem, &ContactForces) -> Result<
 
 pub fn cases() -> Vec<Case> {
     vec![
-        ContactCase::new(with_loads(footed(0.0), 0.0)).check(reported(25)).case(GROUP, "λ_N = 0 with closed gap: no load"),
+        ContactCase::new(with_loads(footed(0.0), 0.0))
+            .check(reported(25))
+            .case(GROUP, "λ_N = 0 with closed gap: no load"),
         ContactCase::new(stacked(0.3, 1.0, 0.3))
             .check(reported(25))
             .case(GROUP, "|λ_T| = 𝓕λ_N with zero slip at all nodes, upper body held by contact only"),

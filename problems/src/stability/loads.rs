@@ -12,7 +12,12 @@ const SUPPORTS: &str = "supports";
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for factor in [0.0, 1e-12, 1e-8, 1e-4, 1e4, 1e8, 1e12] {
-        for (name, scene) in [("block held by contact", block()), ("held base, gap 0", footed(0.0)), ("stacked", stacked(0.3, 1.0, 0.1)), ("two bodies", pair())] {
+        for (name, scene) in [
+            ("block held by contact", block()),
+            ("held base, gap 0", footed(0.0)),
+            ("stacked", stacked(0.3, 1.0, 0.1)),
+            ("two bodies", pair()),
+        ] {
             let case = ContactCase::new(with_loads(scene, factor));
             cases.push(case.case(LOADS, format!("load × {factor:e}, {name}")));
         }
@@ -29,16 +34,20 @@ pub fn cases() -> Vec<Case> {
             Scene { friction, ..scene }
         })
     };
-    cases.push(ContactCase::new(without(0.3, [0.0, 0.0, 3000.0])).case(SUPPORTS, "no support but contact and friction"));
+    cases
+        .push(ContactCase::new(without(0.3, [0.0, 0.0, 3000.0])).case(SUPPORTS, "no support but contact and friction"));
     cases.push(
-        ContactCase::new(without(0.3, [500.0, 0.0, 3000.0])).case(SUPPORTS, "no support, pushed sideways within friction"),
+        ContactCase::new(without(0.3, [500.0, 0.0, 3000.0]))
+            .case(SUPPORTS, "no support, pushed sideways within friction"),
     );
     cases.push(
         ContactCase::new(without(0.05, [2000.0, 0.0, 3000.0]))
             .refused("NoEquilibrium")
             .case(SUPPORTS, "no support, pushed sideways beyond friction"),
     );
-    cases.push(ContactCase::new(without(0.0, [0.0, 0.0, 3000.0])).case(SUPPORTS, "no support, no friction, wavy obstacle"));
+    cases.push(
+        ContactCase::new(without(0.0, [0.0, 0.0, 3000.0])).case(SUPPORTS, "no support, no friction, wavy obstacle"),
+    );
     let flat = without(0.0, [0.0, 0.0, 3000.0])
         .map(|scene| Scene { counter_surface: CounterSurface::Plane { height: 101.0 }, ..scene });
     cases.push(ContactCase::new(flat).case(SUPPORTS, "no support, no friction, plane: free motions grounded"));
@@ -58,6 +67,8 @@ pub fn cases() -> Vec<Case> {
         }
         scene
     });
-    cases.push(ContactCase::new(moment).refused("NoEquilibrium").case(SUPPORTS, "moment beyond the edge of the contact"));
+    cases.push(
+        ContactCase::new(moment).refused("NoEquilibrium").case(SUPPORTS, "moment beyond the edge of the contact"),
+    );
     cases
 }

@@ -39,13 +39,9 @@ fn field([x, y, z]: [f64; 3]) -> ([f64; 3], [f64; 3]) {
     let square_second = |t: f64| 2.0 * PI * PI * (2.0 * PI * t).cos();
     let double = |t: f64| (2.0 * PI * t).sin();
     let height = (PI * z).sin();
-    let laplacian = |p: f64, q: f64| {
-        (square_second(p) * double(q) - (4.0 + 1.0) * PI * PI * square(p) * double(q)) * height
-    };
-    (
-        [square(x) * double(y) * height, -double(x) * square(y) * height, 0.0],
-        [-laplacian(x, y), laplacian(y, x), 0.0],
-    )
+    let laplacian =
+        |p: f64, q: f64| (square_second(p) * double(q) - (4.0 + 1.0) * PI * PI * square(p) * double(q)) * height;
+    ([square(x) * double(y) * height, -double(x) * square(y) * height, 0.0], [-laplacian(x, y), laplacian(y, x), 0.0])
 }
 
 /// Relative error of the displacements (2-norm over the nodes) on n³ bricks of the unit cube.
@@ -96,7 +92,9 @@ fn brick_load(nodes: &Nodes<f64>, shear_modulus: f64) -> [f64; DOFS] {
         let abscissa = 1.0 / 3.0_f64.sqrt();
         let sign = |bit: usize| if bit == 1 { 1.0 } else { -1.0 };
         let shape: [f64; 8] = std::array::from_fn(|a| {
-            (0..3).map(|axis| 0.5 * (1.0 + sign(a >> (2 - axis) & 1) * sign(index >> (2 - axis) & 1) * abscissa)).product()
+            (0..3)
+                .map(|axis| 0.5 * (1.0 + sign(a >> (2 - axis) & 1) * sign(index >> (2 - axis) & 1) * abscissa))
+                .product()
         });
         let place: [f64; 3] = std::array::from_fn(|axis| shape.iter().zip(nodes).map(|(n, x)| n * x[axis]).sum());
         let load = field(place).1;
@@ -128,7 +126,8 @@ fn record(name: String, poisson_ratio: f64, formulation: Formulation) -> Record 
 
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for (formulation, label) in [(Formulation::Standard, "standard"), (Formulation::MeanDilatation, "mean dilatation")] {
+    for (formulation, label) in [(Formulation::Standard, "standard"), (Formulation::MeanDilatation, "mean dilatation")]
+    {
         for poisson_ratio in [0.3, 0.499, 0.4999, 0.499_999] {
             let name = format!("ν = {poisson_ratio}, {label}, divergence-free field");
             let label = name.clone();

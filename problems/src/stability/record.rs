@@ -61,6 +61,8 @@ pub struct Record {
     pub condition: Option<f64>,
     /// Evaluations of the optimizer.
     pub evaluations: Option<usize>,
+    /// Seconds of the case, all paths.
+    pub seconds: f64,
 }
 
 impl Record {
@@ -77,6 +79,7 @@ impl Record {
             contraction: None,
             condition: None,
             evaluations: None,
+            seconds: 0.0,
         }
     }
 

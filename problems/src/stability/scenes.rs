@@ -43,11 +43,7 @@ pub fn stacked(friction: f64, pressure: f64, shear: f64) -> Result<Scene, SceneE
         size: [10.0, 10.0],
         mesh: [4; 3],
         subdomains: [2; 3],
-        lower: BodyScene {
-            material,
-            supports: vec![Support { face: Face::Bottom, components: HELD }],
-            loads: sides(),
-        },
+        lower: BodyScene { material, supports: vec![Support { face: Face::Bottom, components: HELD }], loads: sides() },
         upper: Some(UpperBody { body: BodyScene { material, supports: vec![], loads: upper_loads }, top: 20.0 }),
         counter_surface: CounterSurface::Plane { height: 10.0 },
         friction,

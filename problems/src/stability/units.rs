@@ -74,10 +74,8 @@ fn compare(record: &mut Record, scene: &Scene, s: f64, amplitude: f64) -> Result
             return Ok((if alike { Outcome::Refused } else { Outcome::Broken }, text));
         };
         let forces = force_difference(&first.forces, &second.forces);
-        let (openings, floor) = (
-            [openings(&first.forces, length), openings(&second.forces, other_length)],
-            strain(scene, &first.forces),
-        );
+        let (openings, floor) =
+            ([openings(&first.forces, length), openings(&second.forces, other_length)], strain(scene, &first.forces));
         let gaps = difference_over(&openings[0], &openings[1], floor);
         // Sensitivities are forces per length.
         let times = |heights: &Result<Vec<f64>, String>, length: f64| -> Vec<f64> {

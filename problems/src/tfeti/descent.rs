@@ -62,7 +62,7 @@ impl TornContact<'_> {
     }
 
     /// Residual replacement: the image of the multipliers by a product in double precision.
-    fn replace_image(&self, iterate: &mut Iterate) -> f64 {
+    pub(super) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
         let image = self.operator.apply(&iterate.multipliers);
         *iterate =
             self.iterate(std::mem::take(&mut iterate.multipliers), image, std::mem::take(&mut iterate.amplitudes));

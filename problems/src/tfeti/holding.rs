@@ -10,10 +10,10 @@
 use crate::contact::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::gmres::PATIENCE;
+use crate::tfeti::ReducedRows;
 use crate::tfeti::coarse::CoarseProblem;
 use crate::tfeti::newton::{Iterate, TornContact, TornSolution};
 use crate::tfeti::recycling::Recycled;
-use crate::tfeti::ReducedRows;
 
 /// c·gap over load up to which a node may start closed.
 const REACH: f64 = 100.0;
@@ -70,8 +70,7 @@ impl TornContact<'_> {
             changed = true;
         }
         let priority = priority();
-        let mut order: Vec<usize> =
-            (0..enlarged.len()).filter(|&node| enlarged[node] == Linearization::Open).collect();
+        let mut order: Vec<usize> = (0..enlarged.len()).filter(|&node| enlarged[node] == Linearization::Open).collect();
         order.sort_by(|&a, &b| priority[b].total_cmp(&priority[a]));
         let mut closed = 0;
         loop {

@@ -124,7 +124,8 @@ pub struct TornSolution {
 
 impl TornContact<'_> {
     /// Solves from given multipliers of a similar problem, or from the bonded problem. Where inexact steps do not converge, a
-    /// second run solves every linear system as accurately as rounding allows.
+    /// second run solves every linear system as accurately as rounding allows. The residual that decides, and that certifies
+    /// the state, comes from a fresh product with F.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],
@@ -145,14 +146,16 @@ impl TornContact<'_> {
             residual = self.descend(&mut iterate, &mut pairs, residual, settings, &mut history)?;
         }
         pairs.clear();
-        if residual > settings.tolerance {
-            (iterate, residual) = self.newton_steps(iterate, residual, false, settings, &mut history)?;
+        if residual > settings.tolerance || self.precision == Precision::Double {
+            (iterate, _) = self.newton_steps(iterate, residual, false, settings, &mut history)?;
+            residual = self.replace_image(&mut iterate);
         }
         if residual.is_nan() || residual > settings.acceptable {
             let exact = self.bonded(LinearAccuracy::EXACT, &mut pairs)?;
             let start = self.residual(&exact);
             history.push(start);
-            (iterate, residual) = self.newton_steps(exact, start, true, settings, &mut history)?;
+            (iterate, _) = self.newton_steps(exact, start, true, settings, &mut history)?;
+            residual = self.replace_image(&mut iterate);
         }
         if residual.is_nan() || residual > settings.acceptable {
             return Err(self.not_converged(residual, settings, history));

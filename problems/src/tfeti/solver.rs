@@ -210,7 +210,7 @@ impl TornSolver {
         diagonals.chunks_exact(2).map(series).sum::<f64>() / problem.boundary.points.len() as f64
     }
 
-    /// Recomputes the residuals from the multipliers with a fresh product F λ.
+    /// Residuals of the final iterate, whose image is a fresh product F λ.
     fn certify(&self, problem: &ContactProblem, contact: &TornContact<'_>, solution: &TornSolution) -> Residuals {
         let equality = self.model.constraints.equality_count;
         let iterate = &solution.iterate;
