@@ -50,9 +50,11 @@ fn the_subproblem_solver_knows_no_optimizer() {
 
 #[test]
 fn mechanics_name_the_framework_in_few_places() {
-    let allowed = ["contact_shape", "cost", "toy", "membrane", "cli", "scaling", "error.rs", "admissible.rs"];
+    let allowed =
+        ["contact_shape", "cost", "toy", "membrane", "cli", "scaling", "stability", "error.rs", "admissible.rs"];
     assert_eq!(naming("problems/src", &["nonsmooth::"], &allowed), Vec::<String>::new());
-    assert_eq!(naming("problems/src", &["BundleTrust"], &["cli", "toy", "bin/"]), Vec::<String>::new());
+    let optimizing = ["cli", "toy", "stability", "bin/"];
+    assert_eq!(naming("problems/src", &["BundleTrust"], &optimizing), Vec::<String>::new());
 }
 
 #[test]

@@ -6,7 +6,7 @@
 //! The only file that knows both the framework and the mechanics. Dual of the state: the normal forces of all contact nodes,
 //! then, with friction, two tangential forces per node ([`crate::contact::ContactBoundary::dual_dimension`] entries).
 
-use crate::contact::{ContactForces, ContactProblem, Work};
+use crate::contact::{ContactForces, ContactProblem, Diagnosis, Work};
 use crate::direct::{DirectSolver, DirectState};
 use crate::error::{ContactError, SceneError};
 use crate::memory;
@@ -119,6 +119,21 @@ impl ContactShape {
     /// The controls the scene starts from.
     pub fn start(&self) -> Vector {
         Vector::from_element(self.control_dimension(), self.problem.scene.start_height)
+    }
+
+    /// Contraction and condition at a solved shape; see [`Diagnosis`].
+    ///
+    /// # Errors
+    /// [`OracleError::Failed`] and [`OracleError::NotConverged`] from the linear systems, or when the state was found by
+    /// another kind of solver.
+    pub fn diagnose(&self, state: &ContactState) -> Result<Diagnosis, OracleError> {
+        match (&self.solver, &state.solution) {
+            (Solver::Torn(solver), Solution::Torn(torn)) => solver.diagnose(&self.problem, torn).map_err(oracle),
+            (Solver::Direct(solver), Solution::Direct(direct)) => {
+                solver.diagnose(&self.problem, direct).map_err(oracle)
+            }
+            _ => Err(OracleError::Failed("the state was found by another kind of contact solver".into())),
+        }
     }
 
     /// What this scene did not need, in words.
@@ -261,7 +276,9 @@ impl Coderivative for ContactShape {
                 state.adjoint_applications.fetch_add(result.applications, Ordering::Relaxed);
                 result.heights
             }
-            (Solver::Direct(solver), Solution::Direct(direct)) => solver.sensitivities(&self.problem, direct, &packed),
+            (Solver::Direct(solver), Solution::Direct(direct)) => {
+                solver.sensitivities(&self.problem, direct, &packed).map_err(oracle)?
+            }
             _ => {
                 return Err(OracleError::Failed("the state was found by another kind of contact solver".into()));
             }

@@ -121,6 +121,21 @@ pub enum ContactError {
         /// Relative residual after every iteration.
         history: Vec<f64>,
     },
+    /// The data do not determine the answer to the accuracy asked for in double precision.
+    #[error(
+        "beyond double precision: rounding of the {what}: relative residuals below {floor:.1e} mean nothing \
+         (reached {residual:.1e}, asked for {tolerance:.1e})"
+    )]
+    BeyondPrecision {
+        /// Which data, and how they matter.
+        what: &'static str,
+        /// Relative residual that rounding alone causes.
+        floor: f64,
+        /// Relative residual reached.
+        residual: f64,
+        /// Relative residual that would have been accepted.
+        tolerance: f64,
+    },
     /// A result is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -142,4 +157,21 @@ pub enum ContactError {
     /// The dual quadratic program was not solved.
     #[error("dual problem: {0}")]
     DualProblem(#[from] crate::qp::QpError),
+}
+
+impl ContactError {
+    /// The kind of the error: the name of its variant.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::InvertedElement { .. } => "InvertedElement",
+            Self::NoEquilibrium { .. } => "NoEquilibrium",
+            Self::Unheld { .. } => "Unheld",
+            Self::Factorization { .. } => "Factorization",
+            Self::NotConverged { .. } => "NotConverged",
+            Self::BeyondPrecision { .. } => "BeyondPrecision",
+            Self::NotFinite { .. } => "NotFinite",
+            Self::NoContraction { .. } => "NoContraction",
+            Self::DualProblem(_) => "DualProblem",
+        }
+    }
 }

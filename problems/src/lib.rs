@@ -18,5 +18,6 @@ pub mod scene;
 pub mod shape;
 pub mod shape_load;
 pub mod shape_sensitivity;
+pub mod stability;
 pub mod tfeti;
 pub mod toy;

@@ -73,6 +73,29 @@ fn signorini_evaluates_the_published_case() {
 }
 
 #[test]
+fn diagnosis_is_given_when_asked_for() {
+    let plain = json("signorini3d", &["evaluate", "--mesh", "4", "--json"]);
+    assert!(plain["diagnosis"].is_null());
+    let asked = json("signorini3d", &["evaluate", "--mesh", "4", "--diagnose", "--solver", "direct", "--json"]);
+    let contraction = asked["diagnosis"]["contraction"].as_f64().unwrap();
+    assert!((0.05..0.2).contains(&contraction), "{contraction}");
+    assert!(asked["diagnosis"]["condition"].as_f64().unwrap() >= 1.0);
+    refused("signorini3d", &["verify", "--diagnose"], 2, &["--diagnose"]);
+}
+
+#[test]
+fn mean_dilatation_is_selected_by_an_option() {
+    let options = ["evaluate", "--mesh", "4", "--poisson-ratio", "0.4999", "--json"];
+    let standard = json("hertz3d", &options);
+    let mean = json("hertz3d", &[&options[..], &["--formulation", "mean-dilatation"]].concat());
+    let [standard, mean] = [standard, mean].map(|result| result["objective"].as_f64().unwrap());
+    assert!(standard > 1.5 * mean, "locked {standard:.3e}, mean dilatation {mean:.3e}");
+    let result = json("hertz3d", &["verify", "--mesh", "4", "--formulation", "mean-dilatation", "--json"]);
+    assert!((result["fitted_slope"].as_f64().unwrap() - 2.0).abs() < 0.1, "{result}");
+    refused("hertz3d", &["evaluate", "--formulation", "locked"], 2, &["mean-dilatation"]);
+}
+
+#[test]
 fn signorini_without_friction_has_no_tangential_multiplier() {
     let result = json("signorini3d", &["evaluate", "--friction", "0", "--json"]);
     close(&result["objective"], 4.2337567508e17, 1e-9);

@@ -3,7 +3,7 @@
 use crate::cli::Failure;
 use crate::contact_shape::SolverKind;
 use crate::cost::PressureMeasure;
-use crate::elasticity::Material;
+use crate::elasticity::{Formulation, Material};
 use crate::error::SceneError;
 use crate::scene::Scene;
 use crate::shape::SplineKind;
@@ -60,6 +60,9 @@ pub struct Arguments {
     /// Young's modulus of the lower body, MPa.
     #[arg(long, value_name = "E")]
     pub young_modulus: Option<f64>,
+    /// How bricks of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials.
+    #[arg(long, value_parser = parse_formulation, value_name = "standard|mean-dilatation")]
+    pub formulation: Option<Formulation>,
     /// Factor on all loads (negative: reversed).
     #[arg(long, value_name = "F")]
     pub load_factor: Option<f64>,
@@ -90,6 +93,9 @@ pub struct Arguments {
     /// Threads for the work on subdomains.
     #[arg(long, value_name = "T")]
     pub threads: Option<usize>,
+    /// With evaluate: contraction factor and condition at the state (costs some ten adjoint solves; not done unless asked).
+    #[arg(long)]
+    pub diagnose: bool,
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
@@ -114,6 +120,9 @@ impl Arguments {
         }
         if !optimizing && self.max_evaluations.is_some() {
             return wrong("--max-evaluations", "with optimize only");
+        }
+        if self.diagnose && self.command != Command::Evaluate {
+            return wrong("--diagnose", "with evaluate only");
         }
         if self.max_evaluations == Some(0) {
             return Err(SceneError::out_of_range("--max-evaluations", 0, "a number ≥ 1").into());
@@ -148,12 +157,17 @@ impl Arguments {
             scene.lower.material = Material::new(
                 self.young_modulus.unwrap_or(material.young_modulus()),
                 self.poisson_ratio.unwrap_or(material.poisson_ratio()),
-            )?;
+            )?
+            .with_formulation(material.formulation());
         }
-        if let Some(factor) = self.load_factor {
-            let bodies = std::iter::once(&mut scene.lower).chain(scene.upper.as_mut().map(|upper| &mut upper.body));
-            for load in bodies.flat_map(|body| &mut body.loads) {
-                load.traction = load.traction.map(|traction| factor * traction);
+        for body in scene.bodies_mut() {
+            if let Some(formulation) = self.formulation {
+                body.material = body.material.with_formulation(formulation);
+            }
+            if let Some(factor) = self.load_factor {
+                for load in &mut body.loads {
+                    load.traction = load.traction.map(|traction| factor * traction);
+                }
             }
         }
         Ok(scene)
@@ -207,6 +221,14 @@ fn parse_solver(text: &str) -> Result<SolverKind, String> {
         "direct" => Ok(SolverKind::Direct),
         "augmented-lagrangian" => Ok(SolverKind::AugmentedLagrangian),
         _ => Err("allowed: newton, direct, augmented-lagrangian".into()),
+    }
+}
+
+fn parse_formulation(text: &str) -> Result<Formulation, String> {
+    match text {
+        "standard" => Ok(Formulation::Standard),
+        "mean-dilatation" => Ok(Formulation::MeanDilatation),
+        _ => Err("allowed: standard, mean-dilatation".into()),
     }
 }
 

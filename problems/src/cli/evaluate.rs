@@ -3,7 +3,7 @@
 use crate::cli::output::{self, Folder};
 use crate::cli::picture::pressure_map;
 use crate::cli::{Arguments, ContactObjective, Failure, controls};
-use crate::contact::{Kink, Residuals, StatusCounts};
+use crate::contact::{Diagnosis, Kink, Residuals, StatusCounts};
 use crate::contact_shape::ContactState;
 use nonsmooth::{Accuracy, StateSolver};
 use serde::Serialize;
@@ -21,8 +21,10 @@ struct Evaluated {
     kink: Kink,
     residuals: Residuals,
     work: crate::contact::Work,
-    /// Contraction factor of the successive approximations; null for the other solvers.
+    /// Contraction factor seen by the successive approximations; null for the other solvers.
     contraction: Option<f64>,
+    /// Contraction and condition at the state, with --diagnose.
+    diagnosis: Option<Diagnosis>,
     seconds: Seconds,
     left_out: Vec<&'static str>,
 }
@@ -43,6 +45,7 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
     let clock = Instant::now();
     let evaluation = objective.differentiate(&control, &state)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
+    let diagnosis = if arguments.diagnose { Some(shape.diagnose(&state)?) } else { None };
     let result = Evaluated {
         objective: evaluation.value,
         subgradient: evaluation.subgradient.as_slice().to_vec(),
@@ -53,6 +56,7 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
         residuals: state.forces.residuals,
         work: state.work(),
         contraction: state.contraction,
+        diagnosis,
         seconds: Seconds { state: state_seconds, subgradient: subgradient_seconds },
         left_out: shape.left_out(),
     };
@@ -113,11 +117,7 @@ impl fmt::Display for Evaluated {
             self.kink.smallest_margin, self.kink.weakly_active
         )?;
         let r = &self.residuals;
-        writeln!(
-            f,
-            "relative residuals   equilibrium {:.1e}, complementarity {:.1e}, friction cone {:.1e}, dissipation {:.1e}",
-            r.equilibrium, r.complementarity, r.friction_cone, r.dissipation
-        )?;
+        writeln!(f, "relative residuals   {r}")?;
         let work = &self.work;
         writeln!(
             f,
@@ -136,6 +136,9 @@ impl fmt::Display for Evaluated {
                 "dual QPs             {} Tresca problems, {} cg, {} expansion, {} proportioning steps, contraction {contraction}",
                 work.fixed_point_steps, work.cg_steps, work.expansion_steps, work.proportioning_steps
             )?;
+        }
+        if let Some(diagnosis) = &self.diagnosis {
+            writeln!(f, "diagnosis            {diagnosis}")?;
         }
         writeln!(f, "left out             {}", self.left_out.join("; "))
     }

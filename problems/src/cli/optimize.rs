@@ -2,6 +2,7 @@
 
 use crate::cli::output::{self, Folder};
 use crate::cli::{Arguments, ContactObjective, Failure, controls, evaluate};
+use crate::contact::{ContactForces, Kink, Residuals};
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, Matrix, Reparametrized, Report, StateSolver, TablePrinter, Termination,
     Vector,
@@ -27,6 +28,10 @@ struct Optimized<'a> {
     history: Vec<Option<f64>>,
     seconds: f64,
     peak_pressure: [f64; 2],
+    /// Certificates of the contact states at the start and at the end.
+    residuals: [Residuals; 2],
+    /// Their distances to the nearest kink.
+    kinks: [Kink; 2],
     left_out: Vec<&'static str>,
 }
 
@@ -71,10 +76,11 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
     let initial = shape.solve(&start, None, Accuracy::TIGHTEST)?;
     let optimal = shape.solve(&report.solution, None, Accuracy::TIGHTEST)?;
     let peaks = [&initial, &optimal].map(|state| output::peak_pressure(objective, state));
-    let json = output::json(&summary(&report, objective, peaks, seconds))?;
+    let states = [&initial.forces, &optimal.forces];
+    let json = output::json(&summary(&report, objective, peaks, states, seconds))?;
     if let Some(folder) = folder {
         folder.write("report.json", &json)?;
-        folder.write("report.txt", &page(&report, objective, peaks))?;
+        folder.write("report.txt", &page(&report, objective, peaks, states))?;
         folder.write("controls.json", &output::json(&report.solution.as_slice())?)?;
         folder.write("certificate.json", &output::json(&report.certificate)?)?;
         folder.write("history.csv", &history_table(&report))?;
@@ -86,7 +92,7 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
             folder.write(&format!("pressure_{name}.svg"), &picture)?;
         }
     }
-    Ok(if arguments.json { json } else { page(&report, objective, peaks) })
+    Ok(if arguments.json { json } else { page(&report, objective, peaks, states) })
 }
 
 /// Half of the mean distance between the starting surface and its counterpart: the length on which contact changes, mm. A
@@ -108,7 +114,13 @@ fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
     Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
 }
 
-fn summary<'a>(report: &'a Report, objective: &ContactObjective, peaks: [f64; 2], seconds: f64) -> Optimized<'a> {
+fn summary<'a>(
+    report: &'a Report,
+    objective: &ContactObjective,
+    peaks: [f64; 2],
+    states: [&ContactForces; 2],
+    seconds: f64,
+) -> Optimized<'a> {
     let active = |multipliers: &Vector| multipliers.iter().filter(|multiplier| **multiplier != 0.0).count();
     Optimized {
         objective_start: report.start_value,
@@ -136,17 +148,22 @@ fn summary<'a>(report: &'a Report, objective: &ContactObjective, peaks: [f64; 2]
         history: report.history.iter().map(|record| record.value).collect(),
         seconds,
         peak_pressure: peaks,
+        residuals: states.map(|forces| forces.residuals),
+        kinks: states.map(|forces| forces.kink),
         left_out: objective.solver().left_out(),
     }
 }
 
 /// The one-page report.
-fn page(report: &Report, objective: &ContactObjective, peaks: [f64; 2]) -> String {
+fn page(report: &Report, objective: &ContactObjective, peaks: [f64; 2], states: [&ContactForces; 2]) -> String {
     let scene = &objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { 2 } else { 1 };
     format!(
         "{}: {} bodies of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}\n\
-         reduction:   {:.4} times, peak pressure {:.1} -> {:.1} MPa\n{report}left out:    {}\n",
+         reduction:   {:.4} times, peak pressure {:.1} -> {:.1} MPa\n{report}\
+         state:       relative residuals at the solution: {}\n\
+         \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
+         left out:    {}\n",
         scene.name,
         bodies,
         scene.mesh[0],
@@ -159,6 +176,9 @@ fn page(report: &Report, objective: &ContactObjective, peaks: [f64; 2]) -> Strin
         report.start_value / report.value,
         peaks[0],
         peaks[1],
+        states[1].residuals,
+        states[1].kink.smallest_margin,
+        states[1].kink.weakly_active,
         objective.solver().left_out().join("; "),
     )
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::output;
 use crate::cli::{Arguments, ContactObjective, Failure, controls};
-use crate::contact::ContactStatus;
+use crate::contact::{ContactStatus, Residuals};
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use serde::Serialize;
@@ -27,6 +27,8 @@ struct Verified {
     smooth_step: f64,
     smallest_margin: f64,
     weakly_active: usize,
+    /// Certificates of the state that the test is made around.
+    residuals: Residuals,
 }
 
 pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String, Failure> {
@@ -49,13 +51,15 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
         smooth_step: step,
         smallest_margin: here.forces.kink.smallest_margin,
         weakly_active: here.forces.kink.weakly_active,
+        residuals: here.forces.residuals,
     };
     if arguments.json {
         return output::json(&result);
     }
     Ok(format!(
-        "{}no contact node changes its status up to the step {:.1e} mm (nearest kink: relative margin {:.1e}, {} nodes weakly active)\n",
-        result.test, step, result.smallest_margin, result.weakly_active
+        "{}no contact node changes its status up to the step {:.1e} mm (nearest kink: relative margin {:.1e}, {} nodes weakly active)\n\
+         relative residuals of the state: {}\n",
+        result.test, step, result.smallest_margin, result.weakly_active, result.residuals
     ))
 }
 

@@ -3,6 +3,7 @@
 use crate::contact::law::{self, tangential_norm};
 use crate::contact::{ContactBoundary, ContactStatus};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// Relative residuals of (3.1)–(3.3), recomputed from the final state; dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -18,6 +19,26 @@ pub struct Residuals {
     pub dissipation: f64,
     /// |(c (B_E u − c_E), λ − Π(λ + c(B u − g)))|₂ over the total load: what the Newton iteration drives to zero.
     pub newton: f64,
+}
+
+impl Residuals {
+    /// The largest of all residuals; NaN if one is not a number.
+    pub fn largest(&self) -> f64 {
+        [self.equilibrium, self.complementarity, self.friction_cone, self.dissipation, self.newton].into_iter().fold(
+            0.0,
+            |largest: f64, value| if value.is_nan() || largest.is_nan() { f64::NAN } else { largest.max(value) },
+        )
+    }
+}
+
+impl fmt::Display for Residuals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "equilibrium {:.1e}, complementarity {:.1e}, friction cone {:.1e}, dissipation {:.1e}, Newton {:.1e}",
+            self.equilibrium, self.complementarity, self.friction_cone, self.dissipation, self.newton
+        )
+    }
 }
 
 /// Numbers of nodes per status.

@@ -1,5 +1,6 @@
 //! Unilateral contact with Coulomb friction: boundary, law, state.
 
+pub mod diagnosis;
 pub mod law;
 pub mod modes;
 
@@ -10,6 +11,7 @@ mod state;
 
 pub use boundary::{ContactBoundary, ContactPoint};
 pub use certificate::{Kink, Residuals, StatusCounts};
+pub use diagnosis::Diagnosis;
 pub use problem::ContactProblem;
 pub use state::{ContactForces, StageSeconds, Work};
 

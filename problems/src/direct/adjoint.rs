@@ -42,7 +42,7 @@ impl CondensedContact<'_> {
             }
         }
         self.ground(&mut matrix);
-        DenseLu::new(&matrix).solve_in_place(&mut right);
+        DenseLu::new(&matrix).solve_refined(&matrix, &mut right);
         let eta = self.packed_reactions(&right);
         (right, eta)
     }

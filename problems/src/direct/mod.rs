@@ -7,6 +7,7 @@
 
 mod adjoint;
 mod condensation;
+mod diagnosis;
 mod newton;
 mod solver;
 

@@ -56,6 +56,8 @@ const TIGHTEST: f64 = 1e-12;
 const MAX_STEPS: usize = 60;
 /// Step halvings allowed.
 const MAX_HALVINGS: usize = 8;
+/// Times its rounding floor that a residual is seen to reach.
+const FLOOR_REACHED: f64 = 100.0;
 /// Residual accepted when rounding stops all progress.
 const ACCEPTABLE: f64 = 1e-9;
 
@@ -98,7 +100,12 @@ impl CondensedContact<'_> {
                 break;
             }
         }
-        if residual > tolerance.max(ACCEPTABLE) {
+        if residual.is_nan() || residual > tolerance.max(ACCEPTABLE) {
+            let floor = self.rounding_floor(&u);
+            if FLOOR_REACHED * floor > tolerance.max(ACCEPTABLE) {
+                let what = "displacements (bodies, gaps or loads of very different size)";
+                return Err(ContactError::BeyondPrecision { what, floor, residual, tolerance: ACCEPTABLE });
+            }
             return Err(ContactError::NotConverged {
                 solver: "semismooth Newton on condensed bodies",
                 residual,
@@ -110,6 +117,25 @@ impl CondensedContact<'_> {
         let (forces, jumps) = self.packed(&u);
         let linearizations = self.linearize(&u);
         Ok(CondensedSolution { displacement: u, forces, jumps, linearizations, residual, steps: history.len() - 1 })
+    }
+
+    /// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.
+    pub fn at_rest(&self) -> CondensedSolution {
+        let displacement = vec![0.0; self.size() * self.bodies.len()];
+        let (forces, jumps) = self.packed(&displacement);
+        let linearizations = self.linearize(&displacement);
+        CondensedSolution { displacement, forces, jumps, linearizations, residual: 0.0, steps: 0 }
+    }
+
+    /// Relative residual that rounding of S u and of c (u₁ − u₂ − g) causes.
+    fn rounding_floor(&self, u: &[f64]) -> f64 {
+        let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let parts = self.bodies.iter().zip(u.chunks_exact(self.size()));
+        let products = parts.map(|(body, u)| {
+            let diagonal = (0..self.size()).map(|dof| body.schur[(dof, dof)].abs()).fold(0.0, f64::max);
+            diagonal * largest(u)
+        });
+        f64::EPSILON * products.fold(self.stiffness * largest(&self.gaps), f64::max) / self.load
     }
 
     /// φ of every body.
@@ -191,11 +217,20 @@ impl CondensedContact<'_> {
 
     /// The solution of the equations linearised with the given derivatives at u.
     fn newton_candidate(&self, u: &[f64], linearizations: &[Linearization]) -> Vec<f64> {
+        let matrix = self.newton_matrix(linearizations, self.boundary.friction);
+        let mut right = self.linear_residual(u, linearizations);
+        DenseLu::new(&matrix).solve_refined(&matrix, &mut right);
+        u.iter().zip(&right).map(|(u, step)| u - step).collect()
+    }
+
+    /// Derivative of the residual with respect to u, grounded motions included. `coupling`: 𝓕 for Coulomb's law, 0 for
+    /// slip bounds that do not follow λ_N (Tresca).
+    pub fn newton_matrix(&self, linearizations: &[Linearization], coupling: f64) -> Mat<f64> {
         let size = self.size();
         let total = size * self.bodies.len();
         let mut matrix = Mat::<f64>::zeros(total, total);
         let coefficient = |body: usize, dof: usize, other: usize| -self.bodies[body].schur[(dof, other)];
-        let law_rows = self.law_coefficients(linearizations);
+        let law_rows = self.law_coefficients(linearizations, coupling);
         let rows = self.rows_by_dof();
         let decoupled: Vec<bool> = (0..size).map(|dof| self.bodies.len() == 2 && self.upper_decoupled(dof)).collect();
         for column in 0..size {
@@ -230,9 +265,7 @@ impl CondensedContact<'_> {
             }
         }
         self.ground(&mut matrix);
-        let mut right = self.linear_residual(u, linearizations);
-        DenseLu::new(&matrix).solve_in_place(&mut right);
-        u.iter().zip(&right).map(|(u, step)| u - step).collect()
+        matrix
     }
 
     /// Adds −s m mᵀ for motions that nothing holds: their resultant is zero, so they stay at rest.
@@ -247,11 +280,11 @@ impl CondensedContact<'_> {
     }
 
     /// Per packed row: (dof, factor of dλ, factor of c·djump) of λ − Π(x), i.e. (I − D) dλ − c D djump.
-    fn law_coefficients(&self, linearizations: &[Linearization]) -> Vec<Vec<(usize, f64, f64)>> {
+    fn law_coefficients(&self, linearizations: &[Linearization], coupling: f64) -> Vec<Vec<(usize, f64, f64)>> {
         let mut coefficients = vec![Vec::new(); self.boundary.row_count];
         for ((index, point), linearization) in self.boundary.points.iter().enumerate().zip(linearizations) {
             let rows: Vec<(usize, usize)> = Self::rows_of(index, point).collect();
-            let derivative = linearization.derivative(rows.len(), self.boundary.friction);
+            let derivative = linearization.derivative(rows.len(), coupling);
             for (i, &(_, row)) in rows.iter().enumerate() {
                 for (j, &(dof, _)) in rows.iter().enumerate() {
                     let d = derivative[i][j];

@@ -1,7 +1,8 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
 use crate::contact::certificate::law_residuals;
-use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, Work, modes};
+use crate::contact::law::Linearization;
+use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Work, modes};
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::newton::{CondensedContact, CondensedSolution};
 use crate::error::ContactError;
@@ -76,16 +77,9 @@ impl DirectSolver {
         let stiffness = contact_stiffness(&lower, upper.as_deref());
         let penetration: f64 = gaps.iter().map(|gap| (-gap).max(0.0)).sum();
         let load = rigid.total_load() + stiffness * penetration;
-        let system = CondensedSystem {
-            block: blocks.swap_remove(0),
-            lower,
-            upper,
-            grounded,
-            gaps,
-            stiffness,
-            load: if load > 0.0 { load } else { 1.0 },
-        };
-        let solution = self.contact(problem, &system).solve(start, tolerance)?;
+        let system = CondensedSystem { block: blocks.swap_remove(0), lower, upper, grounded, gaps, stiffness, load };
+        let contact = self.contact(problem, &system);
+        let solution = if load > 0.0 { contact.solve(start, tolerance)? } else { contact.at_rest() };
         let work = Work { newton_steps: solution.steps, factorizations, ..Work::default() };
         let state = DirectState { system, solution };
         let forces = unpack(problem, &state);
@@ -120,8 +114,31 @@ impl DirectSolver {
         }
     }
 
+    /// Contraction factor and condition at a solved shape.
+    ///
+    /// # Errors
+    /// [`ContactError::NotFinite`].
+    pub fn diagnose(&self, problem: &ContactProblem, state: &DirectState) -> Result<Diagnosis, ContactError> {
+        if state.system.load == 0.0 {
+            return Ok(Diagnosis { contraction: 0.0, condition: None });
+        }
+        self.contact(problem, &state.system).diagnose(&state.solution.linearizations)
+    }
+
     /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed rows.
-    pub fn sensitivities(&self, problem: &ContactProblem, state: &DirectState, direction: &[f64]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`ContactError::NotFinite`] when the adjoint matrix is singular.
+    pub fn sensitivities(
+        &self,
+        problem: &ContactProblem,
+        state: &DirectState,
+        direction: &[f64],
+    ) -> Result<Vec<f64>, ContactError> {
+        if state.system.load == 0.0 {
+            // Bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
+            return Ok(vec![0.0; problem.grid.column_count()]);
+        }
         let contact = self.contact(problem, &state.system);
         let (p, eta) = contact.adjoint(&state.solution.linearizations, direction);
         let size = contact.size();
@@ -148,7 +165,10 @@ impl DirectSolver {
         for (height, point) in heights.iter_mut().zip(&problem.boundary.points) {
             *height -= eta[point.start];
         }
-        heights
+        if heights.iter().any(|height| !height.is_finite()) {
+            return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
+        }
+        Ok(heights)
     }
 }
 
@@ -173,14 +193,13 @@ fn unpack(problem: &ContactProblem, state: &DirectState) -> ContactForces {
     let law = law_residuals(boundary, &solution.forces, &solution.jumps, stiffness, state.system.load);
     // Equilibrium holds through the equations φ₁ + φ₂ = 0, whose residual is part of Newton's.
     let residuals = Residuals { equilibrium: solution.residual, newton: solution.residual, ..law };
-    ContactForces::unpack(
-        boundary,
-        &solution.forces,
-        &solution.jumps,
-        status,
-        residuals,
-        Kink::of(boundary, &arguments),
-    )
+    let mut forces = solution.forces.clone();
+    for (point, linearization) in boundary.points.iter().zip(&solution.linearizations) {
+        if *linearization == Linearization::Open {
+            forces[point.start..point.start + point.row_count()].fill(0.0);
+        }
+    }
+    ContactForces::unpack(boundary, &forces, &solution.jumps, status, residuals, Kink::of(boundary, &arguments))
 }
 
 /// Mean normal stiffness of the contact nodes, bodies in series, N/mm.

@@ -4,9 +4,10 @@
 //! K_ab = ∫ λ ∇N_a ∇N_bᵀ + μ ∇N_b ∇N_aᵀ + μ (∇N_a·∇N_b) I                                    (2×2×2 Gauss points)
 //! ∂(qᵀK u)/∂x₃ᵛ = Σ det [ (σ(u):∇q) G₃ᵥ − Σ σ(u)_ji ∂₃q_j G_iᵥ − Σ σ(q)_ji ∂₃u_j G_iᵥ ]       method.md (5.2)
 //! ```
-//! Nodes of a brick are ordered a = 4i + 2j + k with i, j, k ∈ {0, 1} along x₁, x₂, x₃; dof 3a + component.
+//! With [`Formulation::MeanDilatation`] the Gauss points carry the deviatoric part only (λ = −⅔μ) and
+//! [`mean_dilatation`] adds the volumetric one. Nodes of a brick are ordered a = 4i + 2j + k with i, j, k ∈ {0, 1} along x₁, x₂, x₃; dof 3a + component.
 
-use crate::elasticity::Material;
+use crate::elasticity::{Formulation, Material, mean_dilatation};
 use crate::scalar::Scalar;
 
 /// Coordinates of the eight nodes, mm.
@@ -74,11 +75,20 @@ fn invert<T: Scalar>(m: &[[T; 3]; 3]) -> ([[T; 3]; 3], T) {
     (std::array::from_fn(|k| std::array::from_fn(|i| cofactor(i, k) / determinant)), determinant)
 }
 
+/// λ at the Gauss points: of the whole material, or of its deviatoric part.
+fn pointwise_lambda(material: &Material) -> f64 {
+    match material.formulation() {
+        Formulation::Standard => material.lame_lambda(),
+        Formulation::MeanDilatation => -2.0 / 3.0 * material.shear_modulus(),
+    }
+}
+
 /// Stiffness matrix of a brick, 24 × 24 row major (symmetric), N/mm.
 pub fn stiffness<T: Scalar>(nodes: &Nodes<T>, material: &Material) -> [[T; DOFS]; DOFS] {
-    let (lambda, mu) = (T::constant(material.lame_lambda()), T::constant(material.shear_modulus()));
+    let (lambda, mu) = (T::constant(pointwise_lambda(material)), T::constant(material.shear_modulus()));
     let mut matrix = [[T::zero(); DOFS]; DOFS];
-    for point in gauss_points(nodes) {
+    let points = gauss_points(nodes);
+    for point in &points {
         let g = &point.gradients;
         for a in 0..8 {
             for b in 0..=a {
@@ -93,6 +103,9 @@ pub fn stiffness<T: Scalar>(nodes: &Nodes<T>, material: &Material) -> [[T; DOFS]
             }
         }
     }
+    if material.formulation() == Formulation::MeanDilatation {
+        mean_dilatation::add_stiffness(&points, material.bulk_modulus(), &mut matrix);
+    }
     for row in 0..DOFS {
         for column in row + 1..DOFS {
             matrix[row][column] = matrix[column][row];
@@ -104,9 +117,11 @@ pub fn stiffness<T: Scalar>(nodes: &Nodes<T>, material: &Material) -> [[T; DOFS]
 /// ∂(qᵀK u)/∂x₃ of each of the eight nodes; method.md (5.2). `u`, `q`: 24 dofs each.
 pub fn height_derivative(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS], q: &[f64; DOFS]) -> [f64; 8] {
     let mut result = [0.0; 8];
-    for point in gauss_points(nodes) {
-        let (grad_u, grad_q) = (displacement_gradient(&point, u), displacement_gradient(&point, q));
-        let (stress_u, stress_q) = (stress(&grad_u, material), stress(&grad_q, material));
+    let lame = (pointwise_lambda(material), material.shear_modulus());
+    let points = gauss_points(nodes);
+    for point in &points {
+        let (grad_u, grad_q) = (displacement_gradient(point, u), displacement_gradient(point, q));
+        let (stress_u, stress_q) = (stress(&grad_u, lame), stress(&grad_q, lame));
         let energy: f64 = (0..3).map(|i| (0..3).map(|j| stress_u[i][j] * grad_q[i][j]).sum::<f64>()).sum();
         let mut flux = [0.0; 3];
         for (i, flux) in flux.iter_mut().enumerate() {
@@ -118,6 +133,9 @@ pub fn height_derivative(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS
             let moved = flux[0] * gradient[0] + flux[1] * gradient[1] + flux[2] * gradient[2];
             *node += point.volume * (energy * gradient[2] - moved);
         }
+    }
+    if material.formulation() == Formulation::MeanDilatation {
+        mean_dilatation::add_height_derivative(&points, material.bulk_modulus(), u, q, &mut result);
     }
     result
 }
@@ -135,10 +153,9 @@ pub fn displacement_gradient(point: &GaussPoint<f64>, u: &[f64; DOFS]) -> [[f64;
     gradient
 }
 
-/// Cauchy stress of a displacement gradient, MPa.
-pub fn stress(gradient: &[[f64; 3]; 3], material: &Material) -> [[f64; 3]; 3] {
-    let volumetric = material.lame_lambda() * (gradient[0][0] + gradient[1][1] + gradient[2][2]);
-    let mu = material.shear_modulus();
+/// Stress λ tr(ε) I + 2 μ ε of a displacement gradient at a Gauss point, MPa.
+fn stress(gradient: &[[f64; 3]; 3], (lambda, mu): (f64, f64)) -> [[f64; 3]; 3] {
+    let volumetric = lambda * (gradient[0][0] + gradient[1][1] + gradient[2][2]);
     std::array::from_fn(|i| {
         std::array::from_fn(|j| mu * (gradient[i][j] + gradient[j][i]) + if i == j { volumetric } else { 0.0 })
     })
@@ -156,26 +173,67 @@ mod tests {
         })
     }
 
-    fn material() -> Material {
-        Material::new(1.1e5, 0.33).expect("valid material")
+    /// Both formulations of one material.
+    fn materials() -> [Material; 2] {
+        let material = Material::new(1.1e5, 0.33).expect("valid material");
+        [material, material.with_formulation(Formulation::MeanDilatation)]
     }
 
     fn vector(seed: f64) -> [f64; DOFS] {
         std::array::from_fn(|i| (seed * (i as f64 + 1.0)).sin())
     }
 
+    /// K u.
+    fn product(matrix: &[[f64; DOFS]; DOFS], u: &[f64; DOFS]) -> [f64; DOFS] {
+        std::array::from_fn(|i| matrix[i].iter().zip(u).map(|(k, u)| k * u).sum())
+    }
+
     #[test]
     fn rigid_motions_carry_no_force() {
-        let (nodes, matrix) = (distorted(), stiffness(&distorted(), &material()));
-        for axis in 0..3 {
-            let mut rotation = [0.0; DOFS];
-            for (a, x) in nodes.iter().enumerate() {
-                rotation[3 * a + (axis + 1) % 3] = -x[(axis + 2) % 3];
-                rotation[3 * a + (axis + 2) % 3] = x[(axis + 1) % 3];
+        for material in materials() {
+            let (nodes, matrix) = (distorted(), stiffness(&distorted(), &material));
+            for axis in 0..3 {
+                let mut rotation = [0.0; DOFS];
+                for (a, x) in nodes.iter().enumerate() {
+                    rotation[3 * a + (axis + 1) % 3] = -x[(axis + 2) % 3];
+                    rotation[3 * a + (axis + 2) % 3] = x[(axis + 1) % 3];
+                }
+                let translation: [f64; DOFS] = std::array::from_fn(|dof| f64::from(u8::from(dof % 3 == axis)));
+                for force in product(&matrix, &rotation).into_iter().chain(product(&matrix, &translation)) {
+                    assert!(force.abs() < 1e-13 * material.young_modulus() * 6.0, "{force}");
+                }
             }
-            for row in &matrix {
-                let force: f64 = row.iter().zip(&rotation).map(|(k, u)| k * u).sum();
-                assert!(force.abs() < 1e-9 * material().young_modulus(), "{force}");
+        }
+    }
+
+    #[test]
+    fn rigid_motions_are_the_whole_kernel() {
+        for material in materials() {
+            let matrix = stiffness(&distorted(), &material);
+            let dense = nalgebra::DMatrix::from_fn(DOFS, DOFS, |i, j| matrix[i][j]);
+            let mut values: Vec<f64> = dense.symmetric_eigen().eigenvalues.iter().copied().collect();
+            values.sort_by(f64::total_cmp);
+            assert!(values[5].abs() < 1e-12 * values[23] && values[6] > 1e-4 * values[23], "{values:?}");
+        }
+    }
+
+    #[test]
+    fn constant_strain_gives_the_forces_of_its_constant_stress() {
+        // u = H x: nodal forces ∫ σ ∇N_a dV, the same in both formulations.
+        let h = [[1e-3, 2e-4, -3e-4], [5e-4, -7e-4, 1e-4], [0.0, 6e-4, 4e-4]];
+        let nodes = distorted();
+        let u: [f64; DOFS] = std::array::from_fn(|dof| (0..3).map(|j| h[dof % 3][j] * nodes[dof / 3][j]).sum());
+        let [standard, mean] = materials().map(|material| product(&stiffness(&nodes, &material), &u));
+        let sigma = stress(&h, (materials()[0].lame_lambda(), materials()[0].shear_modulus()));
+        for dof in 0..DOFS {
+            let exact: f64 = gauss_points(&nodes)
+                .iter()
+                .map(|point| {
+                    point.volume * (0..3).map(|j| sigma[dof % 3][j] * point.gradients[dof / 3][j]).sum::<f64>()
+                })
+                .sum();
+            for force in [standard[dof], mean[dof]] {
+                assert!((force - exact).abs() < 1e-12 * 150.0, "{force} {exact}");
             }
         }
     }
@@ -183,18 +241,20 @@ mod tests {
     #[test]
     fn height_derivative_equals_that_of_dual_numbers() {
         let (nodes, u, q) = (distorted(), vector(0.7), vector(1.3));
-        let closed = height_derivative(&nodes, &material(), &u, &q);
-        for (node, closed) in closed.iter().enumerate() {
-            let mut moved = nodes.map(|x| x.map(Dual::constant));
-            moved[node][2].derivative = 1.0;
-            let matrix = stiffness(&moved, &material());
-            let mut exact = 0.0;
-            for (i, row) in matrix.iter().enumerate() {
-                for (j, entry) in row.iter().enumerate() {
-                    exact += q[i] * entry.derivative * u[j];
+        for material in materials() {
+            let closed = height_derivative(&nodes, &material, &u, &q);
+            for (node, closed) in closed.iter().enumerate() {
+                let mut moved = nodes.map(|x| x.map(Dual::constant));
+                moved[node][2].derivative = 1.0;
+                let matrix = stiffness(&moved, &material);
+                let mut exact = 0.0;
+                for (i, row) in matrix.iter().enumerate() {
+                    for (j, entry) in row.iter().enumerate() {
+                        exact += q[i] * entry.derivative * u[j];
+                    }
                 }
+                assert!((closed - exact).abs() < 1e-12 * exact.abs().max(1e5), "{closed} {exact}");
             }
-            assert!((closed - exact).abs() < 1e-12 * exact.abs().max(1e5), "{closed} {exact}");
         }
     }
 }

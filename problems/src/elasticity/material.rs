@@ -1,12 +1,25 @@
-//! Isotropic linear elasticity: σ = λ tr(ε) I + 2 μ ε.
+//! Isotropic linear elasticity: σ = λ tr(ε) I + 2 μ ε, and how bricks discretise its volumetric part.
 
 use crate::error::SceneError;
 
-/// Young's modulus and Poisson's ratio of an isotropic material.
+/// How a trilinear brick sees the change of volume.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Formulation {
+    /// At every Gauss point. Locks when ν approaches ½.
+    #[default]
+    Standard,
+    /// As the mean over the brick (B-bar with mean dilatation): the remedy against volumetric locking.
+    MeanDilatation,
+}
+
+/// Young's modulus and Poisson's ratio of an isotropic material, and the formulation of its bricks.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Material {
     young_modulus: f64,
     poisson_ratio: f64,
+    #[serde(default)]
+    formulation: Formulation,
 }
 
 impl Material {
@@ -21,7 +34,18 @@ impl Material {
         if !(poisson_ratio > -1.0 && poisson_ratio < 0.5) {
             return Err(SceneError::out_of_range("Poisson's ratio", poisson_ratio, "−1 < ν < 0.5"));
         }
-        Ok(Self { young_modulus, poisson_ratio })
+        Ok(Self { young_modulus, poisson_ratio, formulation: Formulation::default() })
+    }
+
+    /// The same material with bricks of another formulation.
+    #[must_use]
+    pub fn with_formulation(self, formulation: Formulation) -> Self {
+        Self { formulation, ..self }
+    }
+
+    /// How bricks of this material see the change of volume.
+    pub fn formulation(&self) -> Formulation {
+        self.formulation
     }
 
     /// Young's modulus E in MPa.
@@ -43,5 +67,10 @@ impl Material {
     /// Shear modulus μ in MPa.
     pub fn shear_modulus(&self) -> f64 {
         self.young_modulus / (2.0 * (1.0 + self.poisson_ratio))
+    }
+
+    /// Bulk modulus κ = λ + ⅔μ in MPa.
+    pub fn bulk_modulus(&self) -> f64 {
+        self.young_modulus / (3.0 * (1.0 - 2.0 * self.poisson_ratio))
     }
 }

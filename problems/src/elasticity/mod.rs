@@ -4,5 +4,6 @@ pub mod hex8;
 pub mod traction;
 
 mod material;
+mod mean_dilatation;
 
-pub use material::Material;
+pub use material::{Formulation, Material};

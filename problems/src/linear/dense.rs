@@ -1,5 +1,6 @@
 //! Dense LU factorisation with partial pivoting, by faer.
 
+use crate::linear::vector::norm;
 use faer::linalg::solvers::{PartialPivLu, SolveCore};
 use faer::{Conj, Mat, MatMut, Par};
 
@@ -37,6 +38,23 @@ impl DenseLu {
         self.factors.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(b, rows, 1));
     }
 
+    /// Solves A x = b in place with one step of iterative refinement against the matrix that was factored; the correction is
+    /// taken if it lowers the residual.
+    pub fn solve_refined(&self, matrix: &Mat<f64>, b: &mut [f64]) {
+        let right = b.to_vec();
+        self.solve_in_place(b);
+        let rest = |x: &[f64]| -> Vec<f64> {
+            multiply(matrix, x).iter().zip(&right).map(|(product, right)| right - product).collect()
+        };
+        let mut correction = rest(b);
+        let before = norm(&correction);
+        self.solve_in_place(&mut correction);
+        let refined: Vec<f64> = b.iter().zip(&correction).map(|(x, correction)| x + correction).collect();
+        if norm(&rest(&refined)) < before {
+            b.copy_from_slice(&refined);
+        }
+    }
+
     /// Solves Aᵀ x = b in place.
     pub fn solve_transpose_in_place(&self, b: &mut [f64]) {
         let rows = b.len();
@@ -55,6 +73,22 @@ pub fn multiply(matrix: &Mat<f64>, x: &[f64]) -> Vec<f64> {
     y
 }
 
+/// Largest over smallest singular value after the rows are brought to equal length; infinite for a singular matrix, none
+/// when the singular values cannot be found.
+pub fn spectral_condition(matrix: &Mat<f64>) -> Option<f64> {
+    let mut scaled = matrix.clone();
+    for row in 0..scaled.nrows() {
+        let length = scaled.row(row).iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+        if length > 0.0 {
+            scaled.row_mut(row).iter_mut().for_each(|entry| *entry /= length);
+        }
+    }
+    let values = scaled.singular_values().ok()?;
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    if values.is_empty() { Some(1.0) } else { Some(largest / smallest).filter(|condition| !condition.is_nan()) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,6 +103,14 @@ mod tests {
         let mut x = vec![11.0, 4.0, 10.0];
         lu.solve_transpose_in_place(&mut x);
         assert!(x.iter().zip([1.0, 2.0, 3.0]).all(|(x, y)| (x - y).abs() < 1e-14), "{x:?}");
+    }
+
+    #[test]
+    fn condition_does_not_see_the_units_of_the_rows() {
+        let a = Mat::from_fn(2, 2, |i, j| if i == j { [1.0, 1e9][i] } else { 0.0 });
+        assert!((spectral_condition(&a).expect("finite") - 1.0).abs() < 1e-12);
+        let a = Mat::from_fn(2, 2, |_, j| 1.0 + j as f64);
+        assert!(spectral_condition(&a).expect("finite") > 1e15);
     }
 
     #[test]

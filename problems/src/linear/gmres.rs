@@ -21,17 +21,18 @@ pub struct Combination<P> {
     pub residual: f64,
 }
 
-/// Iterations in which the residual must at least halve; otherwise rounding has stopped the iteration.
-const STALL_WINDOW: usize = 40;
+/// Iterations in which the residual usually halves, if rounding does not stop it.
+pub const PATIENCE: usize = 40;
 
 /// Minimises |r − A x| over growing Krylov spaces until the norm falls to `target`, `max_iterations` is reached, or the norm
-/// stalls; the caller judges the residual.
+/// does not halve in `patience` iterations; the caller judges the residual.
 ///
 /// `precondition(v)` returns z = M v; `apply(z)` returns (A z, payload).
 pub fn gmres<P>(
     residual: &[f64],
     target: f64,
     max_iterations: usize,
+    patience: usize,
     mut precondition: impl FnMut(&[f64]) -> Vec<f64>,
     mut apply: impl FnMut(&[f64]) -> (Vec<f64>, P),
 ) -> Combination<P> {
@@ -62,7 +63,7 @@ pub fn gmres<P>(
         history.push(result.residual);
         // A vanishing new vector means the solution is exact in this space; NaN ends the loop as well.
         let scale = triangle.last_column_norm();
-        let stalled = history.len() > STALL_WINDOW && result.residual > 0.5 * history[history.len() - 1 - STALL_WINDOW];
+        let stalled = history.len() > patience && result.residual > 0.5 * history[history.len() - 1 - patience];
         if length.is_nan() || length <= 1e-14 * scale || stalled {
             break;
         }
@@ -132,7 +133,7 @@ mod tests {
         let multiply = |x: &[f64]| a.iter().map(|row| dot(row, x)).collect::<Vec<_>>();
         let expected = [1.0, -2.0, 3.0];
         let b = multiply(&expected);
-        let result = gmres(&b, 1e-13 * norm(&b), 10, |v| v.to_vec(), |z| (multiply(z), ()));
+        let result = gmres(&b, 1e-13 * norm(&b), 10, PATIENCE, |v| v.to_vec(), |z| (multiply(z), ()));
         let mut x = vec![0.0; 3];
         for (c, z) in result.coefficients.iter().zip(&result.directions) {
             add_scaled(&mut x, *c, z);

@@ -167,6 +167,11 @@ impl Scene {
         Ok(())
     }
 
+    /// The bodies, lower first, for changes.
+    pub fn bodies_mut(&mut self) -> impl Iterator<Item = &mut BodyScene> {
+        std::iter::once(&mut self.lower).chain(self.upper.as_mut().map(|upper| &mut upper.body))
+    }
+
     /// The spline surface of the contact boundary.
     ///
     /// # Errors

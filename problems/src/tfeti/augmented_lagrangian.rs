@@ -16,6 +16,7 @@ use crate::qp::{
     Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
     SmalseSolution, WarmStart,
 };
+use crate::tfeti::holding::LinearAccuracy;
 use crate::tfeti::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
 use crate::tfeti::recycling::Recycled;
 use crate::tfeti::{Iterate, TornContact, TornSolution};
@@ -85,6 +86,8 @@ impl AugmentedLagrangianCounts {
 
 /// Smallest tolerance that rounding allows to ask for.
 const SMALLEST_TOLERANCE: f64 = 1e-12;
+/// Mean factor over many steps beyond which the iteration is said not to contract.
+const LOST: f64 = 0.9;
 /// Consecutive steps without contraction that end the iteration.
 const PATIENCE: usize = 4;
 /// Relative residual that is accepted when rounding stops all progress.
@@ -126,7 +129,7 @@ impl TornContact<'_> {
         let linear = dual.homogenised(&self.constant);
         let first = match start {
             Some(multipliers) => self.restart(multipliers)?,
-            None => self.bonded(&mut Recycled::default())?,
+            None => self.bonded(LinearAccuracy::START, &mut Recycled::default())?,
         };
         let mut state = self.first(&first, &coarse);
         let mut history = Vec::new();
@@ -151,6 +154,10 @@ impl TornContact<'_> {
             }
         };
         if residual.is_nan() || residual > acceptable {
+            let factor = overall_contraction(&state.changes);
+            if factor > LOST {
+                return Err(ContactError::NoContraction { factor, history: state.changes });
+            }
             return Err(ContactError::NotConverged {
                 solver: "successive approximations",
                 residual,
@@ -322,6 +329,17 @@ fn contraction(changes: &[f64]) -> f64 {
     (recent.iter().map(|ratio| ratio.ln()).sum::<f64>() / recent.len() as f64).exp()
 }
 
+/// Geometric mean of the ratios in the second half of the changes: what remains of an iteration that oscillates.
+fn overall_contraction(changes: &[f64]) -> f64 {
+    let half = &changes[changes.len() / 2..];
+    match (half.first(), half.last()) {
+        (Some(&first), Some(&last)) if half.len() > PATIENCE && last > BLURRED => {
+            (last / first).powf(1.0 / (half.len() - 1) as f64)
+        }
+        _ => 0.0,
+    }
+}
+
 /// Whether the last changes do not fall although they are far above rounding.
 fn diverges(changes: &[f64]) -> bool {
     let recent = &changes[changes.len().saturating_sub(PATIENCE + 1)..];
@@ -338,6 +356,7 @@ mod tests {
         assert!((contraction(&changes) - 0.1).abs() < 1e-12);
         assert!(!diverges(&changes));
         assert_eq!(contraction(&changes[..2]), 0.0);
+        assert!((overall_contraction(&[1.0, 0.9, 0.7, 1.0, 0.7, 1.0, 0.7, 1.0, 0.7, 1.0]) - 1.0).abs() < 0.2);
     }
 
     #[test]

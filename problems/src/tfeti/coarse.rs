@@ -107,14 +107,14 @@ impl CoarseSpace {
 #[derive(Debug)]
 pub struct CoarseProblem<'a> {
     space: &'a CoarseSpace,
-    rows: &'a ReducedRows<'a>,
+    rows: ReducedRows<'a>,
     factors: DenseLu,
     coulomb: bool,
 }
 
 impl<'a> CoarseProblem<'a> {
     /// Factors G_T Gqᵀ (with `coulomb`) or Gq Gqᵀ.
-    pub fn new(space: &'a CoarseSpace, rows: &'a ReducedRows<'a>, coulomb: bool) -> Self {
+    pub fn new(space: &'a CoarseSpace, rows: ReducedRows<'a>, coulomb: bool) -> Self {
         let mut matrix = space.fixed_part.clone();
         let combine = |column: &[(usize, f64)]| {
             let mut combined: Vec<(usize, f64)> = Vec::with_capacity(48);

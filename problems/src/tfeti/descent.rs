@@ -38,8 +38,8 @@ impl TornContact<'_> {
         let mut residual = directions.combine(self, iterate, start);
         let mut replaced = residual;
         while residual > settings.tolerance && directions.len() < 2 * settings.max_krylov {
-            let rows = self.reduced(self.linearize(iterate));
-            let coarse = self.coarse(&rows, true)?;
+            let (rows, coarse) = self.held_at(iterate)?;
+            let held = self.linearize(iterate);
             let renewal = RENEWAL * residual;
             loop {
                 self.extend(iterate, &rows, &coarse, directions);
@@ -50,7 +50,7 @@ impl TornContact<'_> {
                 }
                 history.push(residual);
                 let done = residual <= settings.tolerance || stagnates(history, STAGNATION);
-                if done || residual <= renewal || !same_status(&rows.linearizations, &self.linearize(iterate)) {
+                if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
                     break;
                 }
             }
@@ -62,7 +62,7 @@ impl TornContact<'_> {
     }
 
     /// Residual replacement: the image of the multipliers by a product in double precision.
-    fn replace_image(&self, iterate: &mut Iterate) -> f64 {
+    pub(super) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
         let image = self.operator.apply(&iterate.multipliers);
         *iterate =
             self.iterate(std::mem::take(&mut iterate.multipliers), image, std::mem::take(&mut iterate.amplitudes));

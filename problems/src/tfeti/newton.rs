@@ -14,6 +14,7 @@ use crate::error::ContactError;
 use crate::linear::gmres::{Combination, gmres};
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::coarse::{CoarseProblem, CoarseSpace};
+use crate::tfeti::holding::LinearAccuracy;
 use crate::tfeti::recycling::Recycled;
 use crate::tfeti::{DualOperator, Precision, Preconditioner, ReducedRows};
 
@@ -30,6 +31,8 @@ pub struct TornContact<'a> {
     pub boundary: &'a ContactBoundary,
     /// d = B K⁺ f − g over all rows.
     pub constant: Vec<f64>,
+    /// Initial gaps of the contact nodes, mm.
+    pub gaps: &'a [f64],
     /// c, N/mm.
     pub stiffness: f64,
     /// Force that residuals are relative to, N.
@@ -120,16 +123,22 @@ pub struct TornSolution {
 }
 
 impl TornContact<'_> {
-    /// Solves from given multipliers of a similar problem, or from the bonded problem.
+    /// Solves from given multipliers of a similar problem, or from the bonded problem. Where inexact steps do not converge, a
+    /// second run solves every linear system as accurately as rounding allows. The residual that decides, and that certifies
+    /// the state, comes from a fresh product with F.
     ///
     /// # Errors
-    /// [`ContactError::NotConverged`] with the residual history, [`ContactError::NotFinite`],
-    /// [`ContactError::Unheld`] when an active set leaves a motion free.
+    /// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],
+    /// [`ContactError::NotFinite`], [`ContactError::Unheld`] when an active set leaves a motion free.
     pub fn solve(&self, start: Option<&[f64]>, settings: &NewtonSettings) -> Result<TornSolution, ContactError> {
         let mut pairs = Recycled::default();
         let mut iterate = match start {
-            Some(multipliers) => self.restart(multipliers)?,
-            None => self.bonded(&mut pairs)?,
+            Some(multipliers) => match self.restart(multipliers) {
+                // Forces that hold the old shape but not the new one are no start.
+                Err(ContactError::Unheld { .. }) => self.bonded(LinearAccuracy::START, &mut pairs)?,
+                other => other?,
+            },
+            None => self.bonded(LinearAccuracy::START, &mut pairs)?,
         };
         let mut residual = self.residual(&iterate);
         let mut history = vec![residual];
@@ -137,14 +146,48 @@ impl TornContact<'_> {
             residual = self.descend(&mut iterate, &mut pairs, residual, settings, &mut history)?;
         }
         pairs.clear();
+        if residual > settings.tolerance || self.precision == Precision::Double {
+            (iterate, _) = self.newton_steps(iterate, residual, false, settings, &mut history)?;
+            residual = self.replace_image(&mut iterate);
+        }
+        if residual.is_nan() || residual > settings.acceptable {
+            let exact = self.bonded(LinearAccuracy::EXACT, &mut pairs)?;
+            let start = self.residual(&exact);
+            history.push(start);
+            (iterate, _) = self.newton_steps(exact, start, true, settings, &mut history)?;
+            residual = self.replace_image(&mut iterate);
+        }
+        if residual.is_nan() || residual > settings.acceptable {
+            return Err(self.not_converged(residual, settings, history));
+        }
+        let linearizations = self.linearize(&iterate);
+        Ok(TornSolution { iterate, linearizations, residual, steps: history.len() - 1 })
+    }
+
+    /// Newton steps until the residual is small, rounding stops them, or they lead nowhere.
+    fn newton_steps(
+        &self,
+        mut iterate: Iterate,
+        mut residual: f64,
+        exact: bool,
+        settings: &NewtonSettings,
+        history: &mut Vec<f64>,
+    ) -> Result<(Iterate, f64), ContactError> {
+        let first = history.len() - 1;
+        let budget = self.operator.applications() + MAX_PRODUCTS;
         let mut forcing = FIRST_FORCING;
-        let steps_allowed = history.len() + settings.max_steps;
-        while residual > settings.tolerance && history.len() < steps_allowed {
-            if residual <= settings.acceptable && stagnates(&history, 1) {
+        while residual > settings.tolerance && history.len() - first <= settings.max_steps {
+            if (residual <= settings.acceptable && stagnates(history, 1))
+                || circles(&history[first..])
+                || self.operator.applications() > budget
+            {
                 break;
             }
-            let target = forcing.max(0.3 * settings.tolerance / residual);
-            let candidate = self.step(&iterate, target, residual, settings, &mut pairs)?;
+            let target = forcing.max(0.3 * settings.tolerance / residual) * residual * self.load / self.stiffness;
+            let accuracy = if exact { LinearAccuracy::EXACT } else { LinearAccuracy::to(target, settings.max_krylov) };
+            let (rows, coarse) = self.held_at(&iterate)?;
+            let candidate =
+                self.linear_solve(&rows, &coarse, &iterate.multipliers, accuracy, &mut Recycled::default())?;
             let (next, length) = self.search(iterate, candidate, residual);
             iterate = next;
             let previous = residual;
@@ -155,17 +198,7 @@ impl TornContact<'_> {
             history.push(residual);
             forcing = eisenstat_walker(residual, previous, length);
         }
-        if residual > settings.acceptable {
-            return Err(ContactError::NotConverged {
-                solver: "semismooth Newton on TFETI",
-                residual,
-                tolerance: settings.tolerance,
-                iterations: history.len() - 1,
-                history,
-            });
-        }
-        let linearizations = self.linearize(&iterate);
-        Ok(TornSolution { iterate, linearizations, residual, steps: history.len() - 1 })
+        Ok((iterate, residual))
     }
 
     /// |(c w_E, λ − Π(λ + c w))|₂ over the load.
@@ -206,13 +239,6 @@ impl TornContact<'_> {
         ReducedRows::new(self.boundary, equality, linearizations, self.stiffness)
     }
 
-    /// All contact rows glued, solved roughly: the start that Newton converges from.
-    pub(crate) fn bonded(&self, pairs: &mut Recycled) -> Result<Iterate, ContactError> {
-        let rows = self.reduced(vec![Linearization::Stick; self.boundary.points.len()]);
-        let zero = vec![0.0; self.operator.model.constraints.row_count()];
-        self.linear_solve(&rows, &zero, |start| BONDED_REDUCTION * start, BONDED_KRYLOV, pairs)
-    }
-
     /// Multipliers of a similar problem, corrected to the new resultants; amplitudes by least squares on the held rows.
     pub(crate) fn restart(&self, multipliers: &[f64]) -> Result<Iterate, ContactError> {
         let equality = self.operator.model.constraints.equality_count;
@@ -248,7 +274,8 @@ impl TornContact<'_> {
     }
 
     /// The coarse problem of an active set; refused if a rigid motion is left free.
-    pub fn coarse<'b>(&'b self, rows: &'b ReducedRows<'b>, coulomb: bool) -> Result<CoarseProblem<'b>, ContactError> {
+    pub fn coarse(&self, rows: &ReducedRows<'_>, coulomb: bool) -> Result<CoarseProblem<'_>, ContactError> {
+        let rows = self.reduced(rows.linearizations.clone());
         let coarse = CoarseProblem::new(self.space, rows, coulomb && self.boundary.has_friction());
         if coarse.pivot_ratio() < SINGULAR {
             return Err(ContactError::Unheld {
@@ -259,66 +286,66 @@ impl TornContact<'_> {
         Ok(coarse)
     }
 
-    /// One Newton candidate.
-    fn step(
-        &self,
-        iterate: &Iterate,
-        forcing: f64,
-        residual: f64,
-        settings: &NewtonSettings,
-        pairs: &mut Recycled,
-    ) -> Result<Iterate, ContactError> {
-        let rows = self.reduced(self.linearize(iterate));
-        let target = forcing * residual * self.load / self.stiffness;
-        self.linear_solve(&rows, &iterate.multipliers, |_| target, settings.max_krylov, pairs)
-    }
-
     /// Solves the reduced system for an active set, starting from given multipliers; its Krylov pairs join the others.
-    fn linear_solve(
+    pub(super) fn linear_solve(
         &self,
         rows: &ReducedRows<'_>,
+        coarse: &CoarseProblem<'_>,
         start: &[f64],
-        target: impl Fn(f64) -> f64,
-        max_krylov: usize,
+        accuracy: LinearAccuracy,
         pairs: &mut Recycled,
     ) -> Result<Iterate, ContactError> {
-        let coarse = self.coarse(rows, true)?;
         let mut unknowns = rows.initial(start);
-        coarse.enforce(&mut unknowns, &self.space.resultants);
-        let mut image = self.operator.apply(&rows.expand(&unknowns, true));
-        let rest: Vec<f64> = self.constant.iter().zip(&image).map(|(d, image)| d - image).collect();
-        let mut residual = rows.restrict(&rest, false);
-        rows.add_compliance(&unknowns, &mut residual, -1.0);
-        let mut projected = residual.clone();
-        coarse.project(&mut projected);
-        let krylov: Combination<Vec<f64>> = gmres(
-            &projected,
-            target(norm(&projected)),
-            max_krylov,
-            |v| self.precondition(rows, v, |z| coarse.project(z)),
-            |z| {
-                let product = self.operator.apply(&rows.expand(z, true));
-                let mut reduced = rows.restrict(&product, false);
-                rows.add_compliance(z, &mut reduced, 1.0);
-                coarse.project(&mut reduced);
-                (reduced, product)
-            },
-        );
-        for ((coefficient, direction), product) in
-            krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
-        {
-            add_scaled(&mut unknowns, *coefficient, direction);
-            add_scaled(&mut image, *coefficient, product);
+        let (mut first, mut last) = (None, f64::INFINITY);
+        let mut image = Vec::new();
+        for _cycle in 0..accuracy.cycles {
+            coarse.enforce(&mut unknowns, &self.space.resultants);
+            image = self.operator.apply(&rows.expand(&unknowns, true));
+            let mut projected = self.reduced_residual(rows, &unknowns, &image);
+            coarse.project(&mut projected);
+            let size = norm(&projected);
+            let target = accuracy.target.max(accuracy.reduction * *first.get_or_insert(size));
+            if size <= target || size > REFINEMENT_PAYS * last {
+                break;
+            }
+            last = size;
+            let krylov: Combination<Vec<f64>> = gmres(
+                &projected,
+                target,
+                accuracy.max_krylov,
+                accuracy.patience,
+                |v| self.precondition(rows, v, |z| coarse.project(z)),
+                |z| {
+                    let product = self.operator.apply(&rows.expand(z, true));
+                    let mut reduced = rows.restrict(&product, false);
+                    rows.add_compliance(z, &mut reduced, 1.0);
+                    coarse.project(&mut reduced);
+                    (reduced, product)
+                },
+            );
+            for ((coefficient, direction), product) in
+                krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
+            {
+                add_scaled(&mut unknowns, *coefficient, direction);
+                add_scaled(&mut image, *coefficient, product);
+            }
+            if accuracy.cycles == 1 {
+                for (direction, product) in krylov.directions.iter().zip(krylov.payloads) {
+                    let amplitudes = balancing_amplitudes(rows, coarse, direction, &product);
+                    pairs.push(self, rows.expand(direction, true), product, amplitudes);
+                }
+            }
         }
-        let rest: Vec<f64> = self.constant.iter().zip(&image).map(|(d, image)| d - image).collect();
-        let mut residual = rows.restrict(&rest, false);
-        rows.add_compliance(&unknowns, &mut residual, -1.0);
-        let amplitudes = coarse.amplitudes(&residual);
-        for (direction, product) in krylov.directions.iter().zip(krylov.payloads) {
-            let amplitudes = balancing_amplitudes(rows, &coarse, direction, &product);
-            pairs.push(self, rows.expand(direction, true), product, amplitudes);
-        }
+        let amplitudes = coarse.amplitudes(&self.reduced_residual(rows, &unknowns, &image));
         Ok(self.iterate(rows.expand(&unknowns, true), image, amplitudes))
+    }
+
+    /// Qᵀ(d − F T y) − Δ y.
+    fn reduced_residual(&self, rows: &ReducedRows<'_>, unknowns: &[f64], image: &[f64]) -> Vec<f64> {
+        let rest: Vec<f64> = self.constant.iter().zip(image).map(|(d, image)| d - image).collect();
+        let mut residual = rows.restrict(&rest, false);
+        rows.add_compliance(unknowns, &mut residual, -1.0);
+        residual
     }
 
     /// Projected preconditioner: P (Qᵀ M Q + Z) v.
@@ -345,16 +372,18 @@ impl TornContact<'_> {
 
 /// Tightest relative residual aimed at: below it rounding decides.
 const TIGHTEST: f64 = 2e-13;
-/// Relative reduction of the bonded start.
-const BONDED_REDUCTION: f64 = 0.1;
-/// Krylov iterations of the bonded start.
-const BONDED_KRYLOV: usize = 200;
 /// First forcing term.
 const FIRST_FORCING: f64 = 0.3;
 /// Forcing after a shortened step.
 const SHORTENED_FORCING: f64 = 0.01;
 /// Pivot ratio of a coarse matrix that counts as singular.
 const SINGULAR: f64 = 1e-13;
+/// Products with F that one run of Newton steps may take.
+const MAX_PRODUCTS: usize = 20_000;
+/// Reduction that another cycle of iterative refinement must have brought.
+const REFINEMENT_PAYS: f64 = 0.5;
+/// Newton steps in which the best residual must at least halve.
+const CIRCLING: usize = 16;
 /// Step halvings.
 const MAX_HALVINGS: usize = 6;
 /// Decrease asked of a step.
@@ -363,6 +392,15 @@ const SUFFICIENT_DECREASE: f64 = 1e-4;
 /// Whether the residual has not halved in the last `window` steps.
 pub fn stagnates(history: &[f64], window: usize) -> bool {
     history.len() > window && history[history.len() - 1] > 0.5 * history[history.len() - 1 - window]
+}
+
+/// Whether the best residual of the last steps is no better than half of the best before.
+fn circles(history: &[f64]) -> bool {
+    let best = |part: &[f64]| part.iter().copied().fold(f64::INFINITY, f64::min);
+    history.len() > 2 * CIRCLING && {
+        let (before, last) = history.split_at(history.len() - CIRCLING);
+        best(last) > 0.5 * best(before)
+    }
 }
 
 /// Forcing term of the next step.

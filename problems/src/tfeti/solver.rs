@@ -2,7 +2,7 @@
 
 use crate::contact::certificate::law_residuals;
 use crate::contact::law::{self, Linearization};
-use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, StageSeconds, Work};
+use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, StageSeconds, Work};
 use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::mesh::Block;
@@ -149,6 +149,7 @@ impl TornSolver {
             let preconditioner = Preconditioner::new(&operator, self.preconditioner, stiffness);
             let contact = TornContact {
                 constant: self.constant(&operator, problem, &gaps),
+                gaps: &gaps,
                 operator: &operator,
                 space: &space,
                 preconditioner: &preconditioner,
@@ -157,7 +158,7 @@ impl TornSolver {
                 load: if load > 0.0 { load } else { 1.0 },
                 precision: self.precision,
             };
-            let solution = method(&contact)?;
+            let solution = if load > 0.0 { method(&contact)? } else { contact.at_rest() };
             seconds.newton = clock.lap();
             let iterate = &solution.iterate;
             let displacement = operator.displacement(&iterate.multipliers, &iterate.amplitudes, true);
@@ -209,7 +210,7 @@ impl TornSolver {
         diagonals.chunks_exact(2).map(series).sum::<f64>() / problem.boundary.points.len() as f64
     }
 
-    /// Recomputes the residuals from the multipliers with a fresh product F λ.
+    /// Residuals of the final iterate, whose image is a fresh product F λ.
     fn certify(&self, problem: &ContactProblem, contact: &TornContact<'_>, solution: &TornSolution) -> Residuals {
         let equality = self.model.constraints.equality_count;
         let iterate = &solution.iterate;
@@ -247,8 +248,42 @@ impl TornSolver {
             .map(|(force, jump)| force + state.stiffness * jump)
             .collect();
         let kink = Kink::of(&problem.boundary, &arguments);
-        let forces = admissible_forces(problem, &forces);
+        let forces = admissible_forces(problem, &forces, &state.solution.linearizations);
         ContactForces::unpack(&problem.boundary, &forces, &jumps, status, residuals, kink)
+    }
+
+    /// Contraction factor at a solved shape.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`], [`ContactError::Unheld`].
+    pub fn diagnose(&self, problem: &ContactProblem, state: &TornState) -> Result<Diagnosis, ContactError> {
+        if state.load == 0.0 {
+            return Ok(Diagnosis { contraction: 0.0, condition: None });
+        }
+        let operator = DualOperator::new(&self.model, &state.system);
+        let preconditioner = Preconditioner::new(&operator, self.preconditioner, state.stiffness);
+        self.linearised(problem, state, &operator, &preconditioner).diagnose(&state.solution.linearizations)
+    }
+
+    /// The contact problem of a solved shape for linear systems at its derivatives (its constant is not needed).
+    fn linearised<'a>(
+        &self,
+        problem: &'a ContactProblem,
+        state: &'a TornState,
+        operator: &'a DualOperator<'a>,
+        preconditioner: &'a Preconditioner<'a>,
+    ) -> TornContact<'a> {
+        TornContact {
+            constant: Vec::new(),
+            gaps: &[],
+            operator,
+            space: &state.space,
+            preconditioner,
+            boundary: &problem.boundary,
+            stiffness: state.stiffness,
+            load: state.load,
+            precision: self.precision,
+        }
     }
 
     /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed physical rows.
@@ -263,18 +298,14 @@ impl TornSolver {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
         let mut clock = Clock::start();
+        if state.load == 0.0 {
+            // Bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
+            let heights = vec![0.0; problem.grid.column_count()];
+            return Ok(Sensitivities { heights, applications: 0, adjoint_seconds: 0.0, shape_seconds: clock.lap() });
+        }
         let operator = DualOperator::new(&self.model, &state.system);
         let preconditioner = Preconditioner::new(&operator, self.preconditioner, state.stiffness);
-        let contact = TornContact {
-            constant: Vec::new(),
-            operator: &operator,
-            space: &state.space,
-            preconditioner: &preconditioner,
-            boundary: &problem.boundary,
-            stiffness: state.stiffness,
-            load: state.load,
-            precision: self.precision,
-        };
+        let contact = self.linearised(problem, state, &operator, &preconditioner);
         let constraints = &self.model.constraints;
         let equality = constraints.equality_count;
         let mut scaled = vec![0.0; constraints.row_count()];
@@ -328,12 +359,15 @@ impl TornSolver {
     }
 }
 
-/// Forces brought into the friction cone: what the iteration leaves outside is of the size of its residual.
-fn admissible_forces(problem: &ContactProblem, forces: &[f64]) -> Vec<f64> {
+/// Forces brought into the friction cone, and to zero at open nodes: what the iteration leaves outside is of the size of its
+/// residual.
+fn admissible_forces(problem: &ContactProblem, forces: &[f64], linearizations: &[Linearization]) -> Vec<f64> {
     let mut admissible = vec![0.0; forces.len()];
-    for point in &problem.boundary.points {
-        let rows = point.start..point.start + point.row_count();
-        law::project(&forces[rows.clone()], problem.boundary.friction, &mut admissible[rows]);
+    for (point, linearization) in problem.boundary.points.iter().zip(linearizations) {
+        if *linearization != Linearization::Open {
+            let rows = point.start..point.start + point.row_count();
+            law::project(&forces[rows.clone()], problem.boundary.friction, &mut admissible[rows]);
+        }
     }
     admissible
 }

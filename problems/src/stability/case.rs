@@ -1,0 +1,61 @@
+//! A case: its place in the matrix and how it is run.
+
+use crate::stability::{
+    Record, contacts, friction, geometry, kinks, loads, locking, materials, optimizer, tearing, units,
+};
+
+use std::time::Instant;
+
+/// One line of the matrix.
+pub struct Case {
+    /// Group of cases.
+    pub group: &'static str,
+    /// Name within the group.
+    pub name: String,
+    /// Whether the fast subset contains it.
+    pub quick: bool,
+    run: Box<dyn Fn() -> Record + Send + Sync>,
+}
+
+impl std::fmt::Debug for Case {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Case").field("group", &self.group).field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+impl Case {
+    /// A case of the fast subset.
+    pub fn new(group: &'static str, name: impl Into<String>, run: impl Fn() -> Record + Send + Sync + 'static) -> Self {
+        Self { group, name: name.into(), quick: true, run: Box::new(run) }
+    }
+
+    /// The same case outside the fast subset.
+    #[must_use]
+    pub fn slow(self) -> Self {
+        Self { quick: false, ..self }
+    }
+
+    /// Runs it.
+    pub fn run(&self) -> Record {
+        let clock = Instant::now();
+        let record = (self.run)();
+        Record { seconds: clock.elapsed().as_secs_f64(), ..record }
+    }
+}
+
+/// The whole matrix, in the order of the page.
+pub fn all() -> Vec<Case> {
+    let groups = [
+        materials::cases(),
+        locking::cases(),
+        geometry::cases(),
+        friction::cases(),
+        contacts::cases(),
+        loads::cases(),
+        kinks::cases(),
+        units::cases(),
+        tearing::cases(),
+        optimizer::cases(),
+    ];
+    groups.into_iter().flatten().collect()
+}

@@ -1,0 +1,36 @@
+//! Stiff and extreme cases: the study behind `docs/stability.md`.
+//!
+//! ```text
+//! cli ─ cases ─┬─ contact: scene → TornSolver, DirectSolver, (successive approximations) → certificates → Record
+//!              ├─ units, locking: scenes and fields compared with each other → Record
+//!              └─ optimizer: bundle method on hostile oracles → Record
+//! records ─ table (Markdown) or JSON
+//! ```
+//! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a named
+//! kind, or a limit with its cause. Anything else is *broken* and makes the exit status 1.
+//! Contract (kept stable): exit status 0 as expected, 1 a case is broken, 2 bad input; `--json` prints one JSON object on
+//! stdout and nothing else there.
+
+mod case;
+mod cli;
+mod contact;
+mod contacts;
+mod friction;
+mod geometry;
+mod judge;
+mod kinks;
+mod loads;
+mod locking;
+mod materials;
+mod optimizer;
+mod oracle;
+mod record;
+mod scenes;
+mod table;
+mod tearing;
+mod units;
+
+pub use case::{Case, all};
+pub use cli::{Arguments, run};
+pub use locking::{LockingError, field_error};
+pub use record::{Counts, Outcome, Path, Record, Report};
