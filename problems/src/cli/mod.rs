@@ -1,7 +1,7 @@
-//! The command line shared by `hertz3d` and `signorini3d`: parse, compute, print.
+//! The command line shared by the contact binaries: parse, compute, print.
 //!
-//! Contract (kept stable): `NAME [optimize|evaluate|verify] [options]`; exit status 0 success, 1 the computation failed,
-//! 2 bad input; `--json` prints one JSON object on stdout and nothing else there.
+//! Contract (kept stable): `NAME [optimize|evaluate|verify] [options]`, for `contact3d` with a scene file before it; exit
+//! status 0 success, 1 the computation failed, 2 bad input; `--json` prints one JSON object on stdout and nothing else there.
 
 mod arguments;
 mod controls;
@@ -10,27 +10,54 @@ mod failure;
 mod optimize;
 mod output;
 mod picture;
+mod source;
 mod verify;
 
 pub use arguments::{Arguments, Command};
 pub use failure::Failure;
+pub use source::Source;
 
 use crate::contact_shape::ContactShape;
 use crate::cost::PressureCost;
-use crate::error::SceneError;
-use crate::scene::Scene;
+use crate::scene_file::{Case, schema};
 use clap::Parser;
 use nonsmooth::ReducedObjective;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Θ of a scene.
 pub type ContactObjective = ReducedObjective<ContactShape, PressureCost>;
 
-/// Runs a binary on its default scene.
-pub fn run(scene: Result<Scene, SceneError>) -> ExitCode {
+/// Arguments of the binary that takes any scene.
+#[derive(Debug, Parser)]
+#[command(version, about, allow_negative_numbers = true)]
+struct AnyScene {
+    /// Scene file (docs/scenes.md; examples in problems/scenes).
+    #[arg(value_name = "SCENE.toml")]
+    scene: Option<PathBuf>,
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+/// Runs a binary on its own scene, the text of a scene file.
+pub fn run(name: &str, text: &str) -> ExitCode {
     let arguments = Arguments::parse();
-    match execute(scene, &arguments) {
+    finish(Source::embedded(name, text).map_err(Failure::from).and_then(|source| execute(source, &arguments)))
+}
+
+/// Runs the binary that takes any scene.
+pub fn run_any() -> ExitCode {
+    let AnyScene { scene, arguments } = AnyScene::parse();
+    finish(match scene {
+        Some(file) => Source::file(&file).map_err(Failure::from).and_then(|source| execute(source, &arguments)),
+        None if arguments.print_schema => output::json(schema()),
+        None => Err(Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into())),
+    })
+}
+
+fn finish(result: Result<String, Failure>) -> ExitCode {
+    match result {
         Ok(text) => {
             // A reader that closes the pipe early has seen what it wanted.
             let _ = std::io::stdout().write_all(text.as_bytes());
@@ -47,19 +74,34 @@ pub fn run(scene: Result<Scene, SceneError>) -> ExitCode {
 ///
 /// # Errors
 /// [`Failure`] with its exit status.
-pub fn execute(scene: Result<Scene, SceneError>, arguments: &Arguments) -> Result<String, Failure> {
+pub fn execute(source: Source, arguments: &Arguments) -> Result<String, Failure> {
+    if arguments.print_schema {
+        return output::json(schema());
+    }
     arguments.check()?;
+    let source = source.map(|file| arguments.apply(file));
+    let case = source.case()?;
+    if arguments.print_scene {
+        return Ok(source.scene.print()?);
+    }
     if let Some(threads) = arguments.threads {
         // A second call in one process keeps the first pool; results do not depend on it.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
-    let scene = arguments.apply(scene?)?;
-    let shape = ContactShape::with_preconditioner(scene, arguments.solver, arguments.preconditioner)?;
-    let cost = PressureCost::new(arguments.measure(), &shape.problem().boundary)?;
-    let objective = ReducedObjective::new(shape, cost);
+    let objective = objective(&case)?;
     match arguments.command {
-        Command::Optimize => optimize::run(&objective, arguments),
-        Command::Evaluate => evaluate::run(&objective, arguments),
-        Command::Verify => verify::run(&objective, arguments),
+        Command::Optimize => optimize::run(&objective, &case, arguments),
+        Command::Evaluate => evaluate::run(&objective, &case, arguments),
+        Command::Verify => verify::run(&objective, &case, arguments),
     }
+}
+
+/// Θ of a case.
+///
+/// # Errors
+/// [`Failure::Input`] naming the field.
+pub fn objective(case: &Case) -> Result<ContactObjective, Failure> {
+    let shape = ContactShape::with_preconditioner(case.scene.clone(), case.solver, case.preconditioner)?;
+    let cost = PressureCost::new(case.measure, &shape.problem().boundary)?;
+    Ok(ReducedObjective::new(shape, cost))
 }

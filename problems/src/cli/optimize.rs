@@ -2,15 +2,13 @@
 
 use crate::cli::output::{self, Folder};
 use crate::cli::{Arguments, ContactObjective, Failure, controls, evaluate};
+use crate::scene_file::Case;
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, Matrix, Reparametrized, Report, StateSolver, TablePrinter, Termination,
     Vector,
 };
 use serde::Serialize;
 use std::time::Instant;
-
-/// Evaluations allowed unless the user says otherwise.
-const DEFAULT_EVALUATIONS: usize = 150;
 
 /// What `optimize` reports; the keys of its JSON.
 #[derive(Debug, Serialize)]
@@ -50,14 +48,14 @@ struct Summary {
     noise: f64,
 }
 
-pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = Folder::prepare(arguments.out.as_deref())?;
+pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
+    let folder = Folder::prepare(case.output.folder.as_deref())?;
     let shape = objective.solver();
-    let start = controls::load(shape, arguments.start_controls.as_deref())?;
+    let start = controls::load(shape, case, arguments.start_controls.as_deref())?;
     let clock = Instant::now();
     let first_step = first_step(objective, &start);
     let config = BundleTrustConfig {
-        max_evaluations: arguments.max_evaluations.unwrap_or(DEFAULT_EVALUATIONS),
+        max_evaluations: case.optimizer.max_evaluations,
         first_step: Some(first_step),
         ..BundleTrustConfig::default()
     };

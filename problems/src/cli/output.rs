@@ -14,8 +14,8 @@ impl Folder {
     ///
     /// # Errors
     /// [`SceneError::File`] with the system's reason.
-    pub fn prepare(path: Option<&Path>) -> Result<Option<Self>, SceneError> {
-        let Some(path) = path else { return Ok(None) };
+    pub fn prepare(path: Option<&str>) -> Result<Option<Self>, SceneError> {
+        let Some(path) = path.map(Path::new) else { return Ok(None) };
         let failed = |error: std::io::Error| SceneError::File {
             path: path.display().to_string(),
             reason: format!("cannot write there: {error}"),
