@@ -14,6 +14,7 @@ mod source;
 mod verify;
 
 pub use arguments::{Arguments, Command};
+pub use controls::parse as parse_controls;
 pub use failure::Failure;
 pub use source::Source;
 
