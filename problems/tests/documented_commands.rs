@@ -68,3 +68,8 @@ fn run_all(page: &str) {
 fn commands_about_scenes() {
     run_all("scenes.md");
 }
+
+#[test]
+fn commands_about_long_runs() {
+    run_all("long_runs.md");
+}

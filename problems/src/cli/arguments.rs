@@ -19,7 +19,7 @@ pub enum Command {
 }
 
 /// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa).
-#[derive(Debug, Clone, Parser)]
+#[derive(Debug, Clone, PartialEq, Parser)]
 #[command(version, allow_negative_numbers = true)]
 pub struct Arguments {
     /// What to do.
@@ -71,9 +71,18 @@ pub struct Arguments {
     /// Largest number of evaluations of the optimization.
     #[arg(long, value_name = "K")]
     pub max_evaluations: Option<usize>,
-    /// Folder for the report, controls, history and pressures.
+    /// Longest time of this run in seconds; the evaluation under way is finished.
+    #[arg(long, value_name = "SECONDS")]
+    pub time_limit: Option<f64>,
+    /// Optimize on growing meshes with so many bricks per edge, each starting from the last optimum.
+    #[arg(long, value_name = "N1,N2,...", value_delimiter = ',')]
+    pub continuation: Option<Vec<usize>>,
+    /// Folder for the report, controls, history and pressures; an optimization can be resumed from there.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --json only).
+    #[arg(long, value_name = "DIR")]
+    pub resume: Option<PathBuf>,
     /// Threads for the work on subdomains.
     #[arg(long, value_name = "T")]
     pub threads: Option<usize>,
@@ -105,6 +114,25 @@ impl Arguments {
         if !optimizing && self.max_evaluations.is_some() {
             return wrong("--max-evaluations", "with optimize only");
         }
+        for (option, given) in [
+            ("--time-limit", self.time_limit.is_some()),
+            ("--continuation", self.continuation.is_some()),
+            ("--resume", self.resume.is_some()),
+        ] {
+            if !optimizing && given {
+                return wrong(option, "with optimize only");
+            }
+        }
+        if let Some(limit) = self.time_limit.filter(|limit| !(*limit > 0.0 && limit.is_finite())) {
+            return Err(SceneError::out_of_range("--time-limit", limit, "a finite number of seconds > 0").into());
+        }
+        if let Some(bricks) = self.continuation.iter().flatten().find(|bricks| !(1..=400).contains(*bricks)) {
+            return Err(SceneError::out_of_range("--continuation", bricks, "meshes of 1 to 400 bricks per edge").into());
+        }
+        if self.continuation.is_some() && self.mesh.is_some() {
+            return wrong("--mesh", "without --continuation, which names the meshes");
+        }
+        self.check_resume()?;
         if self.max_evaluations == Some(0) {
             return Err(SceneError::out_of_range("--max-evaluations", 0, "a number ≥ 1").into());
         }
@@ -115,6 +143,27 @@ impl Arguments {
             return wrong("--exponent", "with --objective pressure-norm only");
         }
         Ok(())
+    }
+
+    /// A run that is continued has its scene and its options from its folder, apart from limits.
+    fn check_resume(&self) -> Result<(), Failure> {
+        if self.resume.is_none() {
+            return Ok(());
+        }
+        let Ok(nothing) = Self::try_parse_from(["resume"]) else { return Ok(()) };
+        let allowed = Self {
+            resume: self.resume.clone(),
+            max_evaluations: self.max_evaluations,
+            time_limit: self.time_limit,
+            threads: self.threads,
+            json: self.json,
+            ..nothing
+        };
+        if *self == allowed {
+            return Ok(());
+        }
+        let allowed = "with --max-evaluations, --time-limit, --threads, --json only: all else is in the folder";
+        Err(SceneError::out_of_range("--resume", "given with other options", allowed).into())
     }
 
     /// The scene file with the options put in; checked when it becomes a case.
@@ -154,6 +203,10 @@ impl Arguments {
         }
         file.objective.exponent = self.exponent.or(file.objective.exponent);
         file.optimizer.max_evaluations = self.max_evaluations.unwrap_or(file.optimizer.max_evaluations);
+        file.optimizer.time_limit = self.time_limit.or(file.optimizer.time_limit);
+        if let Some(meshes) = &self.continuation {
+            file.optimizer.continuation.clone_from(meshes);
+        }
         if let Some(folder) = &self.out {
             file.output.folder = Some(folder.display().to_string());
         }

@@ -83,7 +83,7 @@ pub enum PreconditionerName {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OptimizerSection {
-    /// Largest number of evaluations of objective and subgradient.
+    /// Largest number of evaluations of objective and subgradient, on every mesh.
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub max_evaluations: usize,
     /// Predicted decrease, relative to the objective, at which the run ends.
@@ -103,7 +103,7 @@ pub struct OptimizerSection {
     pub bundle_size: Option<usize>,
     /// Accuracy asked of the contact solver: always the tightest, or as the predicted decrease demands.
     pub accuracy: AccuracyName,
-    /// Meshes of a coarse-to-fine optimization, bricks per edge, each but the first larger than the one before; empty for one run on the mesh of the scene.
+    /// Growing meshes of a coarse-to-fine optimization, bricks along the axis that has most, the others in proportion; empty for one run on the mesh of the scene.
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub continuation: Vec<usize>,
 }
