@@ -1,4 +1,4 @@
-//! Mutated scene, control and grid files: every one is accepted or refused with an error, none panics or hangs.
+//! Mutated scene, control, grid and journal files: every one is accepted or refused with an error, none panics or hangs.
 //!
 //! `FUZZ_INPUTS=100000 cargo test --release -p problems --test fuzz -- --nocapture` runs 100 000 inputs; without the variable
 //! a few thousand. Inputs are a function of their number alone. Nothing is solved: reading, conversion, validation, the
@@ -6,7 +6,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
-use problems::cli::parse_controls;
+use problems::cli::{long_run, parse_controls};
 use problems::contact::ContactProblem;
 use problems::cost::PressureCost;
 use problems::error::SceneError;
@@ -196,6 +196,7 @@ struct Corpus {
     scenes: Vec<String>,
     controls: String,
     grid: String,
+    journal: String,
     folder: PathBuf,
 }
 
@@ -212,7 +213,18 @@ impl Corpus {
         std::fs::create_dir_all(&scratch).unwrap();
         std::fs::copy(folder.join("flat_punch.csv"), scratch.join("flat_punch.csv")).unwrap();
         let controls = format!("[{}]", heights.join(", "));
-        Self { scenes, controls, grid: read("flat_punch.csv"), folder: scratch }
+        let answer =
+            "{\"answer\":{\"value\":4e17,\"subgradient\":[1.5,-2e-3],\"error_bound\":0.0,\"no_descent\":false}}";
+        let entry = |number: usize, outcome: &str| {
+            let point = "[100.0,99.5]";
+            format!(
+                "{{\"evaluation\":{number},\"point\":{point},\"accuracy\":1e-12,\"seconds\":0.5,\"outcome\":{outcome}}}\n"
+            )
+        };
+        let failure = "{\"failure\":\"an element is inverted\"}";
+        let journal = format!("{{\"journal\":1}}\n{}{}{}", entry(1, answer), entry(2, failure), entry(3, answer));
+        assert_eq!(long_run::parse_journal(journal.as_bytes()).unwrap().0.len(), 3);
+        Self { scenes, controls, grid: read("flat_punch.csv"), journal, folder: scratch }
     }
 
     /// Input `number` and whether it was accepted.
@@ -230,6 +242,11 @@ impl Corpus {
                 std::fs::write(&file, &text).unwrap();
                 let with_grid = self.scenes[3].replace("flat_punch.csv", "grid.csv");
                 (text, catch_unwind(AssertUnwindSafe(|| scene(&with_grid, &self.folder).is_ok())))
+            }
+            3 => {
+                let text = mutate(&self.journal, &mut random);
+                let result = catch_unwind(|| long_run::parse_journal(text.as_bytes()).is_ok());
+                (text, result)
             }
             _ => {
                 let text = mutate(&self.scenes[random.below(self.scenes.len())], &mut random);

@@ -19,6 +19,6 @@ mod warm_start;
 
 pub use folder::RunFolder;
 pub use interrupt::{STATUS, interrupted, watch_interrupts};
-pub use journal::{Entry, Journal, Outcome};
+pub use journal::{Entry, Journal, Outcome, parse as parse_journal};
 pub use journaled::{Journaled, Kept};
 pub use progress::Progress;
