@@ -245,6 +245,12 @@ impl StateSolver for ContactShape {
             }
         };
         let error = forces.residuals.newton * load;
+        tracing::debug!(
+            newton_steps = work.newton_steps,
+            products = work.dual_operator_applications,
+            residual = forces.residuals.newton,
+            "contact state"
+        );
         Ok(ContactState { forces, contraction, work, adjoint_applications: AtomicUsize::new(0), error, solution })
     }
 

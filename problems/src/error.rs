@@ -16,6 +16,38 @@ pub enum SceneError {
         /// What is allowed.
         allowed: String,
     },
+    /// A field of a scene file is missing, of another type or outside its range.
+    #[error("{file}: {path} = {value} is not allowed; allowed: {allowed}")]
+    Field {
+        /// The file.
+        file: String,
+        /// Path of the field in the file.
+        path: String,
+        /// Value found, or `missing`.
+        value: String,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// A scene file has a field that no scene has.
+    #[error("{file}: there is no field `{path}`{suggestion}; allowed: {allowed}")]
+    UnknownField {
+        /// The file.
+        file: String,
+        /// Path of the field in the file.
+        path: String,
+        /// The nearest name, as a question, or nothing.
+        suggestion: String,
+        /// All names at this place.
+        allowed: String,
+    },
+    /// What a scene file says cannot be computed.
+    #[error("{file}: {source}")]
+    InFile {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        source: Box<SceneError>,
+    },
     /// A list has the wrong length.
     #[error("{what}: {found} numbers found, {expected} expected")]
     WrongCount {

@@ -15,6 +15,7 @@ pub mod qp;
 pub mod scalar;
 pub mod scaling;
 pub mod scene;
+pub mod scene_file;
 pub mod shape;
 pub mod shape_load;
 pub mod shape_sensitivity;

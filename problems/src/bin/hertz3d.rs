@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    problems::cli::run(problems::scene::hertz())
+    problems::cli::run("hertz.toml", include_str!("../../scenes/hertz.toml"))
 }

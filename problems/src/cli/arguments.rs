@@ -1,13 +1,11 @@
-//! Options of the two contact binaries.
+//! Options of the contact binaries: what to do, and which fields of the scene file they override.
 
 use crate::cli::Failure;
-use crate::contact_shape::SolverKind;
-use crate::cost::PressureMeasure;
-use crate::elasticity::{Formulation, Material};
 use crate::error::SceneError;
-use crate::scene::Scene;
+use crate::scene_file::{
+    FormulationName, MeasureName, PreconditionerName, SceneFile, SolverName, SplineName, default_subdomains,
+};
 use crate::shape::SplineKind;
-use crate::tfeti::PreconditionerKind;
 use clap::{Parser, ValueEnum};
 use std::path::PathBuf;
 
@@ -22,17 +20,8 @@ pub enum Command {
     Verify,
 }
 
-/// Which function of the contact pressure is minimised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum ObjectiveName {
-    /// Σσ^p.
-    PressureNorm,
-    /// max σ.
-    PeakPressure,
-}
-
 /// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa).
-#[derive(Debug, Clone, Parser)]
+#[derive(Debug, Clone, PartialEq, Parser)]
 #[command(version, allow_negative_numbers = true)]
 pub struct Arguments {
     /// What to do.
@@ -62,19 +51,19 @@ pub struct Arguments {
     pub young_modulus: Option<f64>,
     /// How bricks of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials.
     #[arg(long, value_parser = parse_formulation, value_name = "standard|mean-dilatation")]
-    pub formulation: Option<Formulation>,
+    pub formulation: Option<FormulationName>,
     /// Factor on all loads (negative: reversed).
     #[arg(long, value_name = "F")]
     pub load_factor: Option<f64>,
     /// Contact solver.
-    #[arg(long, value_parser = parse_solver, default_value = "newton", value_name = "newton|direct|augmented-lagrangian")]
-    pub solver: SolverKind,
+    #[arg(long, value_parser = parse_solver, value_name = "newton|direct|augmented-lagrangian")]
+    pub solver: Option<SolverName>,
     /// Preconditioner of the dual operator.
-    #[arg(long, value_parser = parse_preconditioner, default_value = "dirichlet", value_name = "dirichlet|lumped|none")]
-    pub preconditioner: PreconditionerKind,
+    #[arg(long, value_parser = parse_preconditioner, value_name = "dirichlet|lumped|none")]
+    pub preconditioner: Option<PreconditionerName>,
     /// What is minimised.
-    #[arg(long, value_enum, default_value_t = ObjectiveName::PressureNorm)]
-    pub objective: ObjectiveName,
+    #[arg(long, value_enum)]
+    pub objective: Option<MeasureName>,
     /// Exponent p of the pressure norm.
     #[arg(long, value_name = "P")]
     pub exponent: Option<f64>,
@@ -87,9 +76,18 @@ pub struct Arguments {
     /// Largest number of evaluations of the optimization.
     #[arg(long, value_name = "K")]
     pub max_evaluations: Option<usize>,
-    /// Folder for the report, controls, history and pressures.
+    /// Longest time of this run in seconds; the evaluation under way is finished.
+    #[arg(long, value_name = "SECONDS")]
+    pub time_limit: Option<f64>,
+    /// Optimize on growing meshes with so many bricks per edge, each starting from the last optimum.
+    #[arg(long, value_name = "N1,N2,...", value_delimiter = ',')]
+    pub continuation: Option<Vec<usize>>,
+    /// Folder for the report, controls, history and pressures; an optimization can be resumed from there.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --json only).
+    #[arg(long, value_name = "DIR")]
+    pub resume: Option<PathBuf>,
     /// Threads for the work on subdomains.
     #[arg(long, value_name = "T")]
     pub threads: Option<usize>,
@@ -99,10 +97,13 @@ pub struct Arguments {
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
+    /// Print the scene, options included, as a complete commented file, and do nothing else.
+    #[arg(long)]
+    pub print_scene: bool,
+    /// Print the JSON schema of scene files for editors, and do nothing else.
+    #[arg(long)]
+    pub print_schema: bool,
 }
-
-/// Exponent of the paper's norm.
-const DEFAULT_EXPONENT: f64 = 4.0;
 
 impl Arguments {
     /// Refuses options that do not go together.
@@ -124,74 +125,108 @@ impl Arguments {
         if self.diagnose && self.command != Command::Evaluate {
             return wrong("--diagnose", "with evaluate only");
         }
+        for (option, given) in [
+            ("--time-limit", self.time_limit.is_some()),
+            ("--continuation", self.continuation.is_some()),
+            ("--resume", self.resume.is_some()),
+        ] {
+            if !optimizing && given {
+                return wrong(option, "with optimize only");
+            }
+        }
+        if let Some(limit) = self.time_limit.filter(|limit| !(*limit > 0.0 && limit.is_finite())) {
+            return Err(SceneError::out_of_range("--time-limit", limit, "a finite number of seconds > 0").into());
+        }
+        if let Some(bricks) = self.continuation.iter().flatten().find(|bricks| !(1..=400).contains(*bricks)) {
+            return Err(SceneError::out_of_range("--continuation", bricks, "meshes of 1 to 400 bricks per edge").into());
+        }
+        if self.continuation.is_some() && self.mesh.is_some() {
+            return wrong("--mesh", "without --continuation, which names the meshes");
+        }
+        self.check_resume()?;
         if self.max_evaluations == Some(0) {
             return Err(SceneError::out_of_range("--max-evaluations", 0, "a number ≥ 1").into());
         }
         if self.threads == Some(0) {
             return Err(SceneError::out_of_range("--threads", 0, "a number ≥ 1").into());
         }
-        if self.exponent.is_some() && self.objective == ObjectiveName::PeakPressure {
+        if self.exponent.is_some() && self.objective == Some(MeasureName::PeakPressure) {
             return wrong("--exponent", "with --objective pressure-norm only");
         }
         Ok(())
     }
 
-    /// The scene with the options put in.
-    ///
-    /// # Errors
-    /// [`SceneError`] for a bad material; the rest is checked with the scene.
-    pub fn apply(&self, mut scene: Scene) -> Result<Scene, SceneError> {
-        if let Some(mesh) = self.mesh {
-            scene.mesh = [mesh; 3];
+    /// A run that is continued has its scene and its options from its folder, apart from limits.
+    fn check_resume(&self) -> Result<(), Failure> {
+        if self.resume.is_none() {
+            return Ok(());
         }
-        if let Some(subdomains) = self.subdomains {
-            scene.subdomains = [subdomains; 3];
-        } else if self.mesh.is_some_and(|mesh| mesh > 0 && mesh % scene.subdomains[0] != 0) {
-            scene.subdomains = [default_subdomains(self.mesh.unwrap_or(1)); 3];
+        let Ok(nothing) = Self::try_parse_from(["resume"]) else { return Ok(()) };
+        let allowed = Self {
+            resume: self.resume.clone(),
+            max_evaluations: self.max_evaluations,
+            time_limit: self.time_limit,
+            threads: self.threads,
+            json: self.json,
+            ..nothing
+        };
+        if *self == allowed {
+            return Ok(());
         }
-        scene.friction = self.friction.unwrap_or(scene.friction);
-        scene.surface = self.surface.unwrap_or(scene.surface);
-        scene.control_points = self.control_points.unwrap_or(scene.control_points);
-        if self.poisson_ratio.is_some() || self.young_modulus.is_some() {
-            let material = scene.lower.material;
-            scene.lower.material = Material::new(
-                self.young_modulus.unwrap_or(material.young_modulus()),
-                self.poisson_ratio.unwrap_or(material.poisson_ratio()),
-            )?
-            .with_formulation(material.formulation());
-        }
-        for body in scene.bodies_mut() {
-            if let Some(formulation) = self.formulation {
-                body.material = body.material.with_formulation(formulation);
-            }
-            if let Some(factor) = self.load_factor {
-                for load in &mut body.loads {
-                    load.traction = load.traction.map(|traction| factor * traction);
-                }
-            }
-        }
-        Ok(scene)
+        let allowed = "with --max-evaluations, --time-limit, --threads, --json only: all else is in the folder";
+        Err(SceneError::out_of_range("--resume", "given with other options", allowed).into())
     }
 
-    /// What is minimised.
-    pub fn measure(&self) -> PressureMeasure {
-        match self.objective {
-            ObjectiveName::PressureNorm => {
-                PressureMeasure::Norm { exponent: self.exponent.unwrap_or(DEFAULT_EXPONENT) }
-            }
-            ObjectiveName::PeakPressure => PressureMeasure::Peak,
+    /// The scene file with the options put in; checked when it becomes a case.
+    pub fn apply(&self, mut file: SceneFile) -> SceneFile {
+        let mesh = &mut file.mesh;
+        if let Some(bricks) = self.mesh {
+            mesh.bricks = [bricks; 3];
+            // Subdomains of the file that do not fit the new mesh give way to those that do.
+            let fits = |counts: [usize; 3]| counts.iter().all(|&count| count > 0 && bricks % count == 0);
+            mesh.subdomains =
+                Some(mesh.subdomains.filter(|&counts| fits(counts)).unwrap_or([default_subdomains(bricks); 3]));
         }
+        mesh.subdomains = self.subdomains.map(|count| [count; 3]).or(mesh.subdomains);
+        file.friction = self.friction.unwrap_or(file.friction);
+        if let Some(kind) = self.surface {
+            (file.surface.spline, file.surface.degree) = match kind {
+                SplineKind::BSpline(degree) => (SplineName::Bspline, Some(degree)),
+                SplineKind::Bezier => (SplineName::Bezier, None),
+            };
+        }
+        file.surface.control_points = self.control_points.unwrap_or(file.surface.control_points);
+        let material = &mut file.lower.material;
+        material.young_modulus = self.young_modulus.unwrap_or(material.young_modulus);
+        material.poisson_ratio = self.poisson_ratio.unwrap_or(material.poisson_ratio);
+        if let Some(formulation) = self.formulation {
+            let upper = file.upper.iter_mut().map(|upper| &mut upper.material);
+            std::iter::once(&mut file.lower.material).chain(upper).for_each(|m| m.formulation = formulation);
+        }
+        if let Some(factor) = self.load_factor {
+            let upper = file.upper.iter_mut().flat_map(|upper| &mut upper.loads);
+            for load in file.lower.loads.iter_mut().chain(upper) {
+                load.traction = load.traction.map(|traction| factor * traction);
+            }
+        }
+        file.solver.kind = self.solver.unwrap_or(file.solver.kind);
+        file.solver.preconditioner = self.preconditioner.unwrap_or(file.solver.preconditioner);
+        if let Some(measure) = self.objective {
+            file.objective.measure = measure;
+            // The file's exponent belongs to the file's measure.
+            file.objective.exponent = None;
+        }
+        file.objective.exponent = self.exponent.or(file.objective.exponent);
+        file.optimizer.max_evaluations = self.max_evaluations.unwrap_or(file.optimizer.max_evaluations);
+        file.optimizer.time_limit = self.time_limit.or(file.optimizer.time_limit);
+        if let Some(meshes) = &self.continuation {
+            file.optimizer.continuation.clone_from(meshes);
+        }
+        if let Some(folder) = &self.out {
+            file.output.folder = Some(folder.display().to_string());
+        }
+        file
     }
-}
-
-/// The divisor of the mesh that leaves closest to six bricks per subdomain and edge.
-fn default_subdomains(mesh: usize) -> usize {
-    let divisors = (1..=mesh).filter(|count| mesh.is_multiple_of(*count));
-    let distance = |count: &usize| {
-        let bricks = (mesh / count) as f64 / 6.0;
-        bricks.max(1.0 / bricks)
-    };
-    divisors.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(1)
 }
 
 fn parse_surface(text: &str) -> Result<SplineKind, String> {
@@ -215,28 +250,28 @@ fn parse_counts(text: &str) -> Result<[usize; 2], String> {
     }
 }
 
-fn parse_solver(text: &str) -> Result<SolverKind, String> {
+fn parse_solver(text: &str) -> Result<SolverName, String> {
     match text {
-        "newton" => Ok(SolverKind::Newton),
-        "direct" => Ok(SolverKind::Direct),
-        "augmented-lagrangian" => Ok(SolverKind::AugmentedLagrangian),
+        "newton" => Ok(SolverName::Newton),
+        "direct" => Ok(SolverName::Direct),
+        "augmented-lagrangian" => Ok(SolverName::AugmentedLagrangian),
         _ => Err("allowed: newton, direct, augmented-lagrangian".into()),
     }
 }
 
-fn parse_formulation(text: &str) -> Result<Formulation, String> {
+fn parse_formulation(text: &str) -> Result<FormulationName, String> {
     match text {
-        "standard" => Ok(Formulation::Standard),
-        "mean-dilatation" => Ok(Formulation::MeanDilatation),
+        "standard" => Ok(FormulationName::Standard),
+        "mean-dilatation" => Ok(FormulationName::MeanDilatation),
         _ => Err("allowed: standard, mean-dilatation".into()),
     }
 }
 
-fn parse_preconditioner(text: &str) -> Result<PreconditionerKind, String> {
+fn parse_preconditioner(text: &str) -> Result<PreconditionerName, String> {
     match text {
-        "dirichlet" => Ok(PreconditionerKind::Dirichlet),
-        "lumped" => Ok(PreconditionerKind::Lumped),
-        "none" => Ok(PreconditionerKind::None),
+        "dirichlet" => Ok(PreconditionerName::Dirichlet),
+        "lumped" => Ok(PreconditionerName::Lumped),
+        "none" => Ok(PreconditionerName::None),
         _ => Err("allowed: dirichlet, lumped, none".into()),
     }
 }
@@ -244,11 +279,6 @@ fn parse_preconditioner(text: &str) -> Result<PreconditionerKind, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn tearing_of_meshes_that_two_does_not_divide() {
-        assert_eq!([35, 25, 9, 7, 13].map(default_subdomains), [5, 5, 1, 1, 1]);
-    }
 
     #[test]
     fn surfaces_and_counts_are_parsed_or_refused() {

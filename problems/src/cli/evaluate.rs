@@ -5,6 +5,7 @@ use crate::cli::picture::pressure_map;
 use crate::cli::{Arguments, ContactObjective, Failure, controls};
 use crate::contact::{Diagnosis, Kink, Residuals, StatusCounts};
 use crate::contact_shape::ContactState;
+use crate::scene_file::Case;
 use nonsmooth::{Accuracy, StateSolver};
 use serde::Serialize;
 use std::fmt;
@@ -35,10 +36,10 @@ struct Seconds {
     subgradient: f64,
 }
 
-pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = Folder::prepare(arguments.out.as_deref())?;
+pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
+    let folder = Folder::prepare(case.output.folder.as_deref())?;
     let shape = objective.solver();
-    let control = controls::load(shape, arguments.controls.as_deref())?;
+    let control = controls::load(shape, case, arguments.controls.as_deref())?;
     let clock = Instant::now();
     let state = shape.solve(&control, None, Accuracy::TIGHTEST)?;
     let state_seconds = clock.elapsed().as_secs_f64();

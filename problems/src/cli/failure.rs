@@ -16,14 +16,25 @@ pub enum Failure {
     /// The computation failed: exit status 1.
     #[error("{0}")]
     Computation(String),
+    /// There is a result for stdout, and something to say about it.
+    #[error("{reason}")]
+    Incomplete {
+        /// The result.
+        text: String,
+        /// What is to be said.
+        reason: String,
+        /// Exit status.
+        status: u8,
+    },
 }
 
 impl Failure {
-    /// 2 for bad input, 1 for a failed computation.
+    /// 2 for bad input, 1 for a failed computation, 130 for an interrupted one.
     pub fn exit_code(&self) -> ExitCode {
         match self {
             Self::Input(_) => ExitCode::from(2),
             Self::Computation(_) => ExitCode::from(1),
+            Self::Incomplete { status, .. } => ExitCode::from(*status),
         }
     }
 }

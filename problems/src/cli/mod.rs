@@ -1,65 +1,134 @@
-//! The command line shared by `hertz3d` and `signorini3d`: parse, compute, print.
+//! The command line shared by the contact binaries: parse, compute, print.
 //!
-//! Contract (kept stable): `NAME [optimize|evaluate|verify] [options]`; exit status 0 success, 1 the computation failed,
-//! 2 bad input; `--json` prints one JSON object on stdout and nothing else there.
+//! Contract (kept stable): `NAME [optimize|evaluate|verify] [options]`, for `contact3d` with a scene file before it; exit
+//! status 0 success, 1 the computation failed (or its files could not be written), 2 bad input, 130 interrupted, with a report;
+//! `--json` prints one JSON object on stdout and nothing else there.
 
 mod arguments;
 mod controls;
 mod evaluate;
 mod failure;
+pub mod long_run;
 mod optimize;
+mod optimized;
 mod output;
 pub mod picture;
+mod source;
+mod stages;
 mod verify;
 
 pub use arguments::{Arguments, Command};
+pub use controls::parse as parse_controls;
 pub use failure::Failure;
+pub use output::Folder;
+pub use source::Source;
 
 use crate::contact_shape::ContactShape;
 use crate::cost::PressureCost;
-use crate::error::SceneError;
-use crate::scene::Scene;
+use crate::scene_file::{Case, schema};
 use clap::Parser;
 use nonsmooth::ReducedObjective;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
+use tracing_subscriber::EnvFilter;
 
 /// Θ of a scene.
 pub type ContactObjective = ReducedObjective<ContactShape, PressureCost>;
 
-/// Runs a binary on its default scene.
-pub fn run(scene: Result<Scene, SceneError>) -> ExitCode {
+/// Arguments of the binary that takes any scene.
+#[derive(Debug, Parser)]
+#[command(version, about, allow_negative_numbers = true)]
+struct AnyScene {
+    /// Scene file (docs/scenes.md; examples in problems/scenes).
+    #[arg(value_name = "SCENE.toml")]
+    scene: Option<PathBuf>,
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+/// Runs a binary on its own scene, the text of a scene file.
+pub fn run(name: &str, text: &str) -> ExitCode {
     let arguments = Arguments::parse();
-    match execute(scene, &arguments) {
+    finish(execute(|| Ok(Source::embedded(name, text)?), &arguments))
+}
+
+/// Runs the binary that takes any scene.
+pub fn run_any() -> ExitCode {
+    let AnyScene { scene, arguments } = AnyScene::parse();
+    let missing = || Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into());
+    if arguments.resume.is_some() && scene.is_some() {
+        let failure =
+            Failure::Input("SCENE.toml and --resume together: a resumed run has its scene in its folder".into());
+        return finish(Err(failure));
+    }
+    finish(execute(|| Ok(Source::file(scene.as_ref().ok_or_else(missing)?)?), &arguments))
+}
+
+fn finish(result: Result<String, Failure>) -> ExitCode {
+    // A reader that closes the pipe early has seen what it wanted.
+    let print = |text: &str| drop(std::io::stdout().write_all(text.as_bytes()));
+    match result {
         Ok(text) => {
-            // A reader that closes the pipe early has seen what it wanted.
-            let _ = std::io::stdout().write_all(text.as_bytes());
+            print(&text);
             ExitCode::SUCCESS
         }
         Err(failure) => {
+            if let Failure::Incomplete { text, .. } = &failure {
+                print(text);
+            }
             eprintln!("error: {failure}");
             failure.exit_code()
         }
     }
 }
 
-/// Computes what the arguments ask for; the text belongs on stdout.
+/// Computes what the arguments ask for, on the scene that `open` finds unless they name another; the text belongs on stdout.
 ///
 /// # Errors
 /// [`Failure`] with its exit status.
-pub fn execute(scene: Result<Scene, SceneError>, arguments: &Arguments) -> Result<String, Failure> {
+pub fn execute(open: impl FnOnce() -> Result<Source, Failure>, arguments: &Arguments) -> Result<String, Failure> {
+    if arguments.print_schema {
+        return output::json(schema());
+    }
     arguments.check()?;
+    log_as_asked()?;
+    let source = match &arguments.resume {
+        Some(folder) => long_run::RunFolder::scene(folder)?,
+        None => open()?,
+    };
+    let source = source.map(|file| arguments.apply(file));
+    let case = source.case()?;
+    if arguments.print_scene {
+        return Ok(source.scene.print()?);
+    }
     if let Some(threads) = arguments.threads {
         // A second call in one process keeps the first pool; results do not depend on it.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
-    let scene = arguments.apply(scene?)?;
-    let shape = ContactShape::with_preconditioner(scene, arguments.solver, arguments.preconditioner)?;
-    let cost = PressureCost::new(arguments.measure(), &shape.problem().boundary)?;
-    let objective = ReducedObjective::new(shape, cost);
     match arguments.command {
-        Command::Optimize => optimize::run(&objective, arguments),
-        Command::Evaluate => evaluate::run(&objective, arguments),
-        Command::Verify => verify::run(&objective, arguments),
+        Command::Optimize => optimize::run(&source, &case, arguments),
+        Command::Evaluate => evaluate::run(&objective(&case)?, &case, arguments),
+        Command::Verify => verify::run(&objective(&case)?, &case, arguments),
     }
+}
+
+/// Logs on stderr if the environment variable RUST_LOG asks for it.
+fn log_as_asked() -> Result<(), Failure> {
+    let Ok(filter) = std::env::var(EnvFilter::DEFAULT_ENV) else { return Ok(()) };
+    let filter =
+        EnvFilter::try_new(&filter).map_err(|error| Failure::Input(format!("RUST_LOG = {filter}: {error}")))?;
+    // A program that has its own subscriber keeps it.
+    let _ = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).try_init();
+    Ok(())
+}
+
+/// Θ of a case.
+///
+/// # Errors
+/// [`Failure::Input`] naming the field.
+pub fn objective(case: &Case) -> Result<ContactObjective, Failure> {
+    let shape = ContactShape::with_preconditioner(case.scene.clone(), case.solver, case.preconditioner)?;
+    let cost = PressureCost::new(case.measure, &shape.problem().boundary)?;
+    Ok(ReducedObjective::new(shape, cost))
 }

@@ -1,98 +1,161 @@
-//! `optimize`: the shape of least contact pressure measure.
+//! `optimize`: the shape of least contact pressure measure, on one mesh or on growing ones, kept on disk if asked for.
 
-use crate::cli::output::{self, Folder};
-use crate::cli::{Arguments, ContactObjective, Failure, controls, evaluate};
-use crate::contact::{ContactForces, Kink, Residuals};
+use crate::cli::long_run::{Entry, Journal, Journaled, Progress, RunFolder, STATUS, interrupted, watch_interrupts};
+use crate::cli::optimized::{Finished, history_table, page, peak_pressures, stages_page, summary};
+use crate::cli::stages::{Stage, stages};
+use crate::cli::{Arguments, ContactObjective, Failure, Source, controls, evaluate, objective, output};
+use crate::scene_file::{AccuracyName, Case};
 use nonsmooth::{
-    Accuracy, BundleTrust, BundleTrustConfig, Matrix, Reparametrized, Report, StateSolver, TablePrinter, Termination,
-    Vector,
+    Accuracy, AccuracyPolicy, BundleTrust, BundleTrustConfig, Matrix, NonsmoothObjective, Reparametrized, Report,
+    StateSolver, Termination, Vector,
 };
-use serde::Serialize;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Evaluations allowed unless the user says otherwise.
-const DEFAULT_EVALUATIONS: usize = 150;
+/// First step on every mesh but the first, in first steps of the first mesh. The gap at a coarse optimum says nothing about the
+/// changes that the finer mesh asks for, since the bodies have followed the surface; steps from a fourteenth to a third of the
+/// first were measured to do about equally well (docs/long_runs.md).
+const LATER_STEP: f64 = 0.2;
 
-/// What `optimize` reports; the keys of its JSON.
-#[derive(Debug, Serialize)]
-struct Optimized<'a> {
-    objective_start: f64,
-    objective: f64,
-    controls: &'a [f64],
-    evaluations: usize,
-    serious_steps: usize,
-    null_steps: usize,
-    termination: Ending<'a>,
-    certificate: Option<Summary>,
-    largest_constraint_violation: f64,
-    history: Vec<Option<f64>>,
-    seconds: f64,
-    peak_pressure: [f64; 2],
-    /// Certificates of the contact states at the start and at the end.
-    residuals: [Residuals; 2],
-    /// Their distances to the nearest kink.
-    kinks: [Kink; 2],
-    left_out: Vec<&'static str>,
-}
-
-#[derive(Debug, Serialize)]
-struct Ending<'a> {
-    reason: &'a Termination,
-    text: String,
-    confirmed: bool,
-}
-
-/// The certificate without its cuts, which go to a file.
-#[derive(Debug, Serialize)]
-struct Summary {
-    aggregate_norm: f64,
-    aggregate_error: f64,
-    predicted_decrease: f64,
-    active_cuts: usize,
-    active_radius: f64,
-    active_rows: usize,
-    active_bounds: usize,
-    noise: f64,
-}
-
-pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = Folder::prepare(arguments.out.as_deref())?;
-    let shape = objective.solver();
-    let start = controls::load(shape, arguments.start_controls.as_deref())?;
+pub fn run(source: &Source, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
     let clock = Instant::now();
-    let first_step = first_step(objective, &start);
-    let config = BundleTrustConfig {
-        max_evaluations: arguments.max_evaluations.unwrap_or(DEFAULT_EVALUATIONS),
-        first_step: Some(first_step),
-        ..BundleTrustConfig::default()
+    let stages = stages(case);
+    let resumed = arguments.resume.is_some();
+    let folder = case.output.folder.as_deref();
+    let folder = folder.map(|path| RunFolder::open(path, room(&stages), resumed)).transpose()?;
+    let first = objective(&stages[0].case)?;
+    // A resumed run has its start in its folder.
+    let mut start = match &arguments.resume {
+        Some(_) => first.solver().start(),
+        None => controls::load(first.solver(), case, arguments.start_controls.as_deref())?,
     };
-    let scaled = Reparametrized::new(objective, mean_height_coordinates(&start, first_step))?;
-    let mut report = BundleTrust::new(config)?
-        .constraints(scaled.transformed_set(shape.problem().admissible.polyhedron())?)
-        .observer(TablePrinter::new(std::io::stderr()))
-        .minimize(&scaled, scaled.transformed(&start))?;
-    report.solution = scaled.original(&report.solution);
-    let seconds = clock.elapsed().as_secs_f64();
-    let initial = shape.solve(&start, None, Accuracy::TIGHTEST)?;
-    let optimal = shape.solve(&report.solution, None, Accuracy::TIGHTEST)?;
-    let peaks = [&initial, &optimal].map(|state| output::peak_pressure(objective, state));
-    let states = [&initial.forces, &optimal.forces];
-    let json = output::json(&summary(&report, objective, peaks, states, seconds))?;
-    if let Some(folder) = folder {
-        folder.write("report.json", &json)?;
-        folder.write("report.txt", &page(&report, objective, peaks, states))?;
-        folder.write("controls.json", &output::json(&report.solution.as_slice())?)?;
-        folder.write("certificate.json", &output::json(&report.certificate)?)?;
-        folder.write("history.csv", &history_table(&report))?;
-        folder.write("pressure_initial.csv", &evaluate::pressure_table(objective, &initial))?;
-        folder.write("pressure_optimal.csv", &evaluate::pressure_table(objective, &optimal))?;
-        for (name, state) in [("initial", &initial), ("optimal", &optimal)] {
-            let title = format!("{}: contact pressure, {name} shape", shape.problem().scene.name);
-            let picture = evaluate::pressure_picture(objective, state, &title, peaks[0].max(peaks[1]));
-            folder.write(&format!("pressure_{name}.svg"), &picture)?;
+    if let Some(folder) = &folder {
+        start = Vector::from_vec(folder.begin(source, start.as_slice())?);
+        first.solver().problem().admissible.check(&start)?;
+    }
+    watch_interrupts();
+    let mut finished: Vec<Finished> = Vec::new();
+    let optimizer = &case.optimizer;
+    let mut step = optimizer.first_step.unwrap_or_else(|| first_step(&first, &start));
+    let mut first = Some(first);
+    for stage in &stages {
+        let objective = match first.take() {
+            Some(objective) => objective,
+            None => objective(&stage.case)?,
+        };
+        let left =
+            case.optimizer.time_limit.map(|limit| (limit - clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE));
+        let kept = folder.as_ref().map(|folder| folder.journal(stage.name.as_deref())).transpose()?;
+        let result = run_stage(&objective, stage, (&start, step), left, kept)?;
+        if finished.is_empty() {
+            step *= LATER_STEP;
+        }
+        start = result.report.solution.clone();
+        let ended = matches!(result.report.termination, Termination::TimeLimit) || interrupted();
+        finished.push(result.finished(objective));
+        if ended {
+            break;
         }
     }
-    Ok(if arguments.json { json } else { page(&report, objective, peaks, states) })
+    deliver(&finished, stages.len(), folder.as_ref(), case, arguments)
+}
+
+/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, and the rest.
+fn room(stages: &[Stage]) -> u64 {
+    let dofs = stages.iter().map(|stage| {
+        let scene = &stage.case.scene;
+        let torn = scene.mesh.iter().zip(&scene.subdomains).map(|(cells, count)| (cells + count) as u64);
+        torn.product::<u64>() * 3 * if scene.upper.is_some() { 2 } else { 1 }
+    });
+    3 * 8 * dofs.max().unwrap_or(0) + (4 << 20)
+}
+
+struct Optimized {
+    report: Report,
+    replayed: usize,
+    name: Option<String>,
+    start: Vector,
+}
+
+impl Optimized {
+    fn finished(self, objective: ContactObjective) -> Finished {
+        let Self { report, replayed, name, start } = self;
+        Finished { objective, report, replayed, name, start }
+    }
+}
+
+/// Optimizes on one mesh, from a start with a first step, with a journal if there is one.
+fn run_stage(
+    objective: &ContactObjective,
+    stage: &Stage,
+    (start, first_step): (&Vector, f64),
+    time_limit: Option<f64>,
+    kept: Option<(PathBuf, Journal, Vec<Entry>)>,
+) -> Result<Optimized, Failure> {
+    let optimizer = &stage.case.optimizer;
+    let accuracy = match optimizer.accuracy {
+        AccuracyName::Tightest => AccuracyPolicy::Tightest,
+        AccuracyName::OnDemand => AccuracyPolicy::ON_DEMAND,
+    };
+    let config = BundleTrustConfig {
+        max_evaluations: optimizer.max_evaluations,
+        tolerance: optimizer.tolerance,
+        max_seconds: time_limit,
+        first_step: Some(first_step),
+        bundle_size: optimizer.bundle_size,
+        accuracy,
+        ..BundleTrustConfig::default()
+    };
+    let label = stage.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+    let matrix = mean_height_coordinates(start, first_step);
+    let set = objective.solver().problem().admissible.polyhedron();
+    let set = Reparametrized::new(objective, matrix.clone())?.transformed_set(set)?;
+    let replayed = kept.as_ref().map_or(0, |(_, _, entries)| entries.len());
+    let progress = Progress::new(&label, config.max_evaluations, time_limit, replayed);
+    let method = BundleTrust::new(config)?.constraints(set).observer(progress);
+    let report = match kept {
+        None => minimize(method, &Reparametrized::new(objective, matrix)?, start, None)?,
+        Some((folder, mut journal, entries)) => {
+            let seconds: Vec<f64> = entries.iter().map(|entry| entry.seconds).collect();
+            let journaled = Journaled::new(objective, &mut journal, entries);
+            let scaled = Reparametrized::new(&journaled, matrix)?;
+            let mut report = minimize(method, &scaled, start, Some(&folder.join("snapshot.json")))?;
+            report.warnings.extend(journaled.into_warnings());
+            add_earlier_seconds(&mut report, &seconds);
+            report
+        }
+    };
+    Ok(Optimized { report, replayed, name: stage.name.clone(), start: start.clone() })
+}
+
+/// Runs the optimizer; the solution is in the original coordinates.
+fn minimize<O: NonsmoothObjective>(
+    mut method: BundleTrust<'_>,
+    scaled: &Reparametrized<O>,
+    start: &Vector,
+    snapshot: Option<&Path>,
+) -> Result<Report, Failure> {
+    if let Some(file) = snapshot {
+        method = method.checkpoint(file);
+    }
+    let mut run = method.start(scaled, scaled.transformed(start))?;
+    while run.step().is_continue() {}
+    let written = snapshot.map(|file| run.snapshot().write(file));
+    let mut report = run.finish();
+    if let Some(Err(error)) = written {
+        report.warnings.push(format!("snapshot not written: {error}"));
+    }
+    report.solution = scaled.original(&report.solution);
+    Ok(report)
+}
+
+/// The time of a resumed run includes that of its earlier parts.
+fn add_earlier_seconds(report: &mut Report, earlier: &[f64]) {
+    let before = earlier.last().copied().unwrap_or(0.0);
+    for (index, record) in report.history.iter_mut().enumerate() {
+        record.seconds = earlier.get(index).copied().unwrap_or(before + record.seconds);
+    }
+    report.seconds += before;
 }
 
 /// Half of the mean distance between the starting surface and its counterpart: the length on which contact changes, mm. A
@@ -114,90 +177,61 @@ fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
     Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
 }
 
-fn summary<'a>(
-    report: &'a Report,
-    objective: &ContactObjective,
-    peaks: [f64; 2],
-    states: [&ContactForces; 2],
-    seconds: f64,
-) -> Optimized<'a> {
-    let active = |multipliers: &Vector| multipliers.iter().filter(|multiplier| **multiplier != 0.0).count();
-    Optimized {
-        objective_start: report.start_value,
-        objective: report.value,
-        controls: report.solution.as_slice(),
-        evaluations: report.counts.evaluations,
-        serious_steps: report.counts.serious,
-        null_steps: report.counts.null,
-        termination: Ending {
-            reason: &report.termination,
-            text: report.termination.to_string(),
-            confirmed: report.termination.is_confirmed(),
-        },
-        certificate: report.certificate.as_ref().map(|certificate| Summary {
-            aggregate_norm: certificate.aggregate_norm,
-            aggregate_error: certificate.aggregate_error,
-            predicted_decrease: certificate.predicted_decrease,
-            active_cuts: certificate.active_cuts().count(),
-            active_radius: certificate.active_radius,
-            active_rows: active(&certificate.row_multipliers),
-            active_bounds: active(&certificate.bound_multipliers),
-            noise: certificate.noise,
-        }),
-        largest_constraint_violation: report.largest_violation,
-        history: report.history.iter().map(|record| record.value).collect(),
-        seconds,
-        peak_pressure: peaks,
-        residuals: states.map(|forces| forces.residuals),
-        kinks: states.map(|forces| forces.kink),
-        left_out: objective.solver().left_out(),
+/// The report on stdout and, if asked for, in files; what cannot be written does not take the report along.
+fn deliver(
+    finished: &[Finished],
+    asked: usize,
+    folder: Option<&RunFolder>,
+    case: &Case,
+    arguments: &Arguments,
+) -> Result<String, Failure> {
+    let Some(last) = finished.last() else { return Err(Failure::Computation("no stage was run".into())) };
+    let shape = last.objective.solver();
+    let initial = shape.solve(&last.start, None, Accuracy::TIGHTEST)?;
+    let optimal = shape.solve(&last.report.solution, None, Accuracy::TIGHTEST)?;
+    let peaks = peak_pressures(&last.objective, [&initial, &optimal]);
+    let json = output::json(&summary(finished, [&initial, &optimal]))?;
+    let mut text = page(last, [&initial, &optimal]);
+    text += &stages_page(finished, asked);
+    if let Some(folder) = folder.filter(|_| can_continue(&last.report, finished.len() < asked)) {
+        text += &format!("to continue: --resume {}\n", folder.folder().path().display());
     }
+    let printed = if arguments.json { json.clone() } else { text.clone() };
+    if let Some(folder) = folder {
+        let folder = folder.folder();
+        let write = || -> Result<(), Failure> {
+            folder.write("controls.json", &output::json(last.report.solution.as_slice())?)?;
+            folder.write("certificate.json", &output::json(&last.report.certificate)?)?;
+            folder.write("history.csv", &history_table(&last.report))?;
+            folder.write("pressure_initial.csv", &evaluate::pressure_table(&last.objective, &initial))?;
+            folder.write("pressure_optimal.csv", &evaluate::pressure_table(&last.objective, &optimal))?;
+            for (name, state) in
+                [("initial", &initial), ("optimal", &optimal)].into_iter().filter(|_| case.output.pictures)
+            {
+                let title = format!("{}: contact pressure, {name} shape", case.scene.name);
+                let picture = evaluate::pressure_picture(&last.objective, state, &title, peaks[0].max(peaks[1]));
+                folder.write(&format!("pressure_{name}.svg"), &picture)?;
+            }
+            folder.write("report.txt", &text)?;
+            folder.replace("report.json", &json)
+        };
+        if let Err(failure) = write() {
+            let reason = format!("{failure}; the report above is complete");
+            return Err(Failure::Incomplete { text: printed, reason, status: 1 });
+        }
+    }
+    if interrupted() {
+        let hint = match folder {
+            Some(folder) => format!("continue with --resume {}", folder.folder().path().display()),
+            None => "nothing was kept; with --out DIR a run can be continued".to_owned(),
+        };
+        return Err(Failure::Incomplete { text: printed, reason: format!("interrupted; {hint}"), status: STATUS });
+    }
+    Ok(printed)
 }
 
-/// The one-page report.
-fn page(report: &Report, objective: &ContactObjective, peaks: [f64; 2], states: [&ContactForces; 2]) -> String {
-    let scene = &objective.solver().problem().scene;
-    let bodies = if scene.upper.is_some() { 2 } else { 1 };
-    format!(
-        "{}: {} bodies of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}\n\
-         reduction:   {:.4} times, peak pressure {:.1} -> {:.1} MPa\n{report}\
-         state:       relative residuals at the solution: {}\n\
-         \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
-         left out:    {}\n",
-        scene.name,
-        bodies,
-        scene.mesh[0],
-        scene.mesh[1],
-        scene.mesh[2],
-        scene.subdomains[0],
-        scene.subdomains[1],
-        scene.subdomains[2],
-        scene.friction,
-        report.start_value / report.value,
-        peaks[0],
-        peaks[1],
-        states[1].residuals,
-        states[1].kink.smallest_margin,
-        states[1].kink.weakly_active,
-        objective.solver().left_out().join("; "),
-    )
-}
-
-fn history_table(report: &Report) -> String {
-    let mut table =
-        String::from("evaluation,kind,value,center_value,predicted_decrease,aggregate_norm,aggregate_error,seconds\n");
-    for record in &report.history {
-        let value = record.value.map_or_else(String::new, |value| value.to_string());
-        table += &format!(
-            "{},{},{value},{},{},{},{},{}\n",
-            record.evaluation,
-            record.kind,
-            record.center_value,
-            record.predicted_decrease,
-            record.aggregate_norm,
-            record.aggregate_error,
-            record.seconds
-        );
-    }
-    table
+/// Whether a run ended for want of evaluations, time or patience.
+fn can_continue(report: &Report, stages_left: bool) -> bool {
+    let limits = [Termination::EvaluationLimit, Termination::TimeLimit, Termination::StoppedByObserver];
+    stages_left || limits.contains(&report.termination)
 }

@@ -4,27 +4,51 @@ use crate::cli::{ContactObjective, Failure};
 use crate::contact_shape::ContactState;
 use crate::error::SceneError;
 use serde::Serialize;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// An output folder that was found writable before the work began.
+#[derive(Debug)]
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Creates the folder and proves that it can be written to.
+    /// Creates the folder and proves that it can be written to; none if none is asked for.
     ///
     /// # Errors
     /// [`SceneError::File`] with the system's reason.
-    pub fn prepare(path: Option<&Path>) -> Result<Option<Self>, SceneError> {
-        let Some(path) = path else { return Ok(None) };
+    pub fn prepare(path: Option<&str>) -> Result<Option<Self>, SceneError> {
+        path.map(|path| Self::with_room(Path::new(path), 1)).transpose()
+    }
+
+    /// As [`prepare`](Self::prepare), for files of so many bytes.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] with the system's reason.
+    pub fn with_room(path: &Path, bytes: u64) -> Result<Self, SceneError> {
         let failed = |error: std::io::Error| SceneError::File {
             path: path.display().to_string(),
-            reason: format!("cannot write there: {error}"),
+            reason: format!("cannot write {bytes} bytes there: {error}"),
         };
         std::fs::create_dir_all(path).map_err(failed)?;
-        let probe = path.join(".nonsmooth-probe");
-        std::fs::write(&probe, "").map_err(failed)?;
-        std::fs::remove_file(&probe).map_err(failed)?;
-        Ok(Some(Self(path.to_owned())))
+        let probe = path.join(format!(".nonsmooth-probe-{}", std::process::id()));
+        let written = std::fs::File::create(&probe).and_then(|mut file| {
+            let block = vec![0_u8; 1 << 16];
+            let mut left = bytes;
+            while left > 0 {
+                let now = left.min(block.len() as u64);
+                file.write_all(&block[..now as usize])?;
+                left -= now;
+            }
+            file.sync_all()
+        });
+        let removed = std::fs::remove_file(&probe);
+        written.and(removed).map_err(failed)?;
+        Ok(Self(path.to_owned()))
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.0
     }
 
     /// Writes one file.
@@ -35,13 +59,25 @@ impl Folder {
         let path = self.0.join(name);
         std::fs::write(&path, text).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
     }
+
+    /// Writes one file at once: it holds the old text or the new one, never a part.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn replace(&self, name: &str, text: &str) -> Result<(), Failure> {
+        let (path, temporary) = (self.0.join(name), self.0.join(format!("{name}.tmp")));
+        let written = std::fs::File::create(&temporary)
+            .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
+            .and_then(|()| std::fs::rename(&temporary, &path));
+        written.map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
+    }
 }
 
 /// One line-wrapped JSON object.
 ///
 /// # Errors
 /// [`Failure::Computation`] if a value cannot be written.
-pub fn json(value: &impl Serialize) -> Result<String, Failure> {
+pub fn json(value: &(impl Serialize + ?Sized)) -> Result<String, Failure> {
     serde_json::to_string_pretty(value).map(|text| text + "\n").map_err(|error| Failure::Computation(error.to_string()))
 }
 

@@ -3,6 +3,7 @@
 use crate::cli::output;
 use crate::cli::{Arguments, ContactObjective, Failure, controls};
 use crate::contact::{ContactStatus, Residuals};
+use crate::scene_file::Case;
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use serde::Serialize;
@@ -31,9 +32,9 @@ struct Verified {
     residuals: Residuals,
 }
 
-pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String, Failure> {
+pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
     let shape = objective.solver();
-    let control = controls::load(shape, arguments.controls.as_deref())?;
+    let control = controls::load(shape, case, arguments.controls.as_deref())?;
     let direction = nonsmooth::verify::seeded_direction(control.len(), SEED);
     let here = shape.solve(&control, None, Accuracy::TIGHTEST)?;
     let height = control.iter().map(|height| height.abs()).sum::<f64>() / control.len() as f64;

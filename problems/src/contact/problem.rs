@@ -35,7 +35,7 @@ impl ContactProblem {
         let grid = scene.grid();
         let surface = scene.spline_surface()?;
         let boundary = ContactBoundary::new(&scene, &grid);
-        let counter = scene.counter_surface;
+        let counter = &scene.counter_surface;
         let admissible = AdmissibleSet::new(&surface, &grid, &scene.bounds, |x1, x2| counter.height(x1, x2))?;
         let counter_heights: Vec<f64> = grid
             .columns()

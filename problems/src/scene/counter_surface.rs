@@ -1,9 +1,10 @@
 //! F²(x₁, x₂): the obstacle, or the lower surface of the upper body.
 
+use crate::scene::HeightGrid;
 use serde::{Deserialize, Serialize};
 
-/// Analytic surfaces of the paper and a plane.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Analytic surfaces of the paper, a plane, and heights on a grid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum CounterSurface {
     /// `base + first·sin(2πx₁/period) + second·cos(2πx₂/period)`, paper (5.3).
     Waves {
@@ -28,18 +29,21 @@ pub enum CounterSurface {
         /// Its height, mm.
         height: f64,
     },
+    /// Heights on a grid over the base.
+    Grid(HeightGrid),
 }
 
 impl CounterSurface {
     /// Height at (x₁, x₂), mm; NaN outside a sphere.
     pub fn height(&self, x1: f64, x2: f64) -> f64 {
-        match *self {
-            Self::Waves { base, first, second, period } => {
+        match self {
+            &Self::Waves { base, first, second, period } => {
                 let angle = 2.0 * std::f64::consts::PI / period;
                 first * (angle * x1).sin() + second * (angle * x2).cos() + base
             }
-            Self::Sphere { apex, radius } => apex + radius - (radius * radius - x1 * x1 - x2 * x2).sqrt(),
-            Self::Plane { height } => height,
+            &Self::Sphere { apex, radius } => apex + radius - (radius * radius - x1 * x1 - x2 * x2).sqrt(),
+            &Self::Plane { height } => height,
+            Self::Grid(grid) => grid.height(x1, x2),
         }
     }
 }

@@ -1,9 +1,11 @@
 //! A scene: bodies, materials, supports, loads, obstacle, friction, mesh, shape. Units: N, mm, MPa.
 
 mod counter_surface;
+mod height_grid;
 mod presets;
 
 pub use counter_surface::CounterSurface;
+pub use height_grid::HeightGrid;
 pub use presets::{hertz, signorini};
 
 use crate::elasticity::Material;

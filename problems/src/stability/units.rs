@@ -33,6 +33,7 @@ fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
         }
         CounterSurface::Sphere { apex, radius } => CounterSurface::Sphere { apex: s * apex, radius: s * radius },
         CounterSurface::Plane { height } => CounterSurface::Plane { height: s * height },
+        CounterSurface::Grid(grid) => CounterSurface::Grid(grid.scaled(s)),
     };
     for body in scene.bodies_mut() {
         let material = body.material;

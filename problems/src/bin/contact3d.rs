@@ -1,0 +1,7 @@
+//! `contact3d`: contact shape optimization of any scene file; see `--help`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    problems::cli::run_any()
+}

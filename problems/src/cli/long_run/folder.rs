@@ -1,0 +1,140 @@
+//! The folder of a run: what was asked for, so that the run can be continued from the folder alone.
+
+use crate::cli::long_run::journal::{Entry, Journal};
+use crate::cli::{Failure, Folder, Source, output};
+use crate::error::SceneError;
+use crate::scene_file::{CounterSection, SceneFile, StartSection};
+use std::path::{Path, PathBuf};
+
+const SCENE: &str = "scene.toml";
+const START: &str = "start.json";
+const REPORT: &str = "report.json";
+
+/// A folder in which a run is kept.
+#[derive(Debug)]
+pub struct RunFolder {
+    folder: Folder,
+    /// Whether the run continues what the folder holds.
+    resumed: bool,
+}
+
+impl RunFolder {
+    /// The scene of a run that is to be continued.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] if the folder holds no run.
+    pub fn scene(folder: &Path) -> Result<Source, SceneError> {
+        if !folder.join(SCENE).exists() || !folder.join(START).exists() {
+            let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
+            return Err(SceneError::File { path: folder.display().to_string(), reason });
+        }
+        let path = folder.display().to_string();
+        Ok(Source::file(&folder.join(SCENE))?.map(|mut scene| {
+            scene.output.folder = Some(path);
+            scene
+        }))
+    }
+
+    /// Prepares the folder for a run; `bytes` must fit into it.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] if the folder cannot be written to, or holds another run that has not ended.
+    pub fn open(path: &str, bytes: u64, resumed: bool) -> Result<Self, SceneError> {
+        let folder = Folder::with_room(Path::new(path), bytes)?;
+        let this = Self { folder, resumed };
+        if !resumed && !this.journals()?.is_empty() && !this.path(REPORT).exists() {
+            let reason = "holds a run that has not ended; continue it with --resume, or remove the folder".to_owned();
+            return Err(SceneError::File { path: path.to_owned(), reason });
+        }
+        Ok(this)
+    }
+
+    /// Folders with a journal: this one, and those of its stages.
+    fn journals(&self) -> Result<Vec<PathBuf>, SceneError> {
+        let failed = |error: std::io::Error| SceneError::File {
+            path: self.folder.path().display().to_string(),
+            reason: error.to_string(),
+        };
+        let mut found = vec![self.folder.path().to_owned()];
+        for entry in std::fs::read_dir(self.folder.path()).map_err(failed)? {
+            let path = entry.map_err(failed)?.path();
+            if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("stage_")) {
+                found.push(path);
+            }
+        }
+        found.retain(|path| Journal::exists(path));
+        Ok(found)
+    }
+
+    /// Control heights that the run starts from: those kept in the folder, or `given`, which are kept from now on.
+    ///
+    /// # Errors
+    /// [`Failure`] if a file cannot be written or read.
+    pub fn begin(&self, source: &Source, given: &[f64]) -> Result<Vec<f64>, Failure> {
+        // From here on a folder without report is that of a run that has not ended.
+        let _absent = std::fs::remove_file(self.path(REPORT));
+        let mut scene = source.scene.clone();
+        if self.resumed {
+            self.folder.replace(SCENE, &scene.print()?)?;
+            let path = self.path(START).display().to_string();
+            let failed = |reason: String| SceneError::File { path: path.clone(), reason };
+            let text = std::fs::read_to_string(self.path(START)).map_err(|error| failed(error.to_string()))?;
+            return Ok(crate::cli::parse_controls(&text, &path, given.len())?.as_slice().to_vec());
+        }
+        // No journal may ever stand beside a scene that is not its own.
+        for path in self.journals()? {
+            Journal::remove(&path)
+                .map_err(|error| SceneError::File { path: path.display().to_string(), reason: error.to_string() })?;
+        }
+        self.keep_grids(&mut scene, source.folder())?;
+        self.folder.replace(START, &output::json(&given)?)?;
+        self.folder.replace(SCENE, &scene.print()?)?;
+        Ok(given.to_vec())
+    }
+
+    /// Copies the grids that the scene names, and names the copies.
+    fn keep_grids(&self, scene: &mut SceneFile, from: &Path) -> Result<(), Failure> {
+        let copy = |file: &mut String, name: &str| {
+            let path = from.join(&*file);
+            let text = std::fs::read_to_string(&path)
+                .map_err(|error| SceneError::File { path: path.display().to_string(), reason: error.to_string() })?;
+            *file = name.to_owned();
+            self.folder.replace(name, &text)
+        };
+        if let CounterSection::Grid { file } = &mut scene.counter_surface {
+            copy(file, "counter_surface.csv")?;
+        }
+        if let StartSection::Grid { file } = &mut scene.surface.start {
+            copy(file, "start.csv")?;
+        }
+        Ok(())
+    }
+
+    /// The journal of the run or of one of its stages, with the evaluations that it holds already.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for a folder that cannot be written to or a journal that cannot be read.
+    pub fn journal(&self, stage: Option<&str>) -> Result<(PathBuf, Journal, Vec<Entry>), Failure> {
+        let path = stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage));
+        let failed = |error: std::io::Error| SceneError::File {
+            path: path.display().to_string(),
+            reason: format!("cannot write there: {error}"),
+        };
+        std::fs::create_dir_all(&path).map_err(failed)?;
+        if self.resumed && Journal::exists(&path) {
+            let (journal, entries) = Journal::open(&path)?;
+            return Ok((path, journal, entries));
+        }
+        let journal = Journal::create(&path).map_err(failed)?;
+        Ok((path, journal, vec![]))
+    }
+
+    /// The folder for the files of the report.
+    pub fn folder(&self) -> &Folder {
+        &self.folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+}

@@ -1,0 +1,74 @@
+//! A surface given by heights on a uniform grid, bilinear in between.
+
+use crate::error::SceneError;
+use serde::{Deserialize, Serialize};
+
+/// Heights on a uniform grid over a base, its edges included.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HeightGrid {
+    size: [f64; 2],
+    counts: [usize; 2],
+    heights: Vec<f64>,
+}
+
+impl HeightGrid {
+    /// The same surface in another unit of length: all lengths multiplied.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            size: self.size.map(|length| factor * length),
+            counts: self.counts,
+            heights: self.heights.iter().map(|height| factor * height).collect(),
+        }
+    }
+
+    /// Heights (mm) at `counts` places along x₁, x₂ of a base of `size` mm; row major, index i·n₂ + j with i along x₁.
+    ///
+    /// # Errors
+    /// [`SceneError`] unless there are at least two places per axis, a height for each, and all heights are finite.
+    pub fn new(size: [f64; 2], counts: [usize; 2], heights: Vec<f64>) -> Result<Self, SceneError> {
+        if let Some(count) = counts.iter().find(|count| **count < 2) {
+            return Err(SceneError::out_of_range("heights per axis of a grid", count, "at least 2"));
+        }
+        let expected = counts[0].saturating_mul(counts[1]);
+        if heights.len() != expected {
+            return Err(SceneError::WrongCount { what: "heights of a grid".into(), expected, found: heights.len() });
+        }
+        match heights.iter().find(|height| !height.is_finite()) {
+            Some(height) => Err(SceneError::out_of_range("height of a grid", height, "finite numbers (mm)")),
+            None => Ok(Self { size, counts, heights }),
+        }
+    }
+
+    /// Height at (x₁, x₂), mm; beyond the base that of its edge.
+    pub fn height(&self, x1: f64, x2: f64) -> f64 {
+        let [(i, s), (j, t)] = [self.place(0, x1), self.place(1, x2)];
+        let at = |i: usize, j: usize| self.heights[i * self.counts[1] + j];
+        (1.0 - s) * ((1.0 - t) * at(i, j) + t * at(i, j + 1)) + s * ((1.0 - t) * at(i + 1, j) + t * at(i + 1, j + 1))
+    }
+
+    /// Cell along an axis and the position in it.
+    fn place(&self, axis: usize, x: f64) -> (usize, f64) {
+        let last = self.counts[axis] - 1;
+        let position = (x / self.size[axis]).clamp(0.0, 1.0) * last as f64;
+        let cell = (position as usize).min(last - 1);
+        (cell, position - cell as f64)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bilinear_surface_is_reproduced() {
+        let surface = |x: f64, y: f64| 3.0 + 0.5 * x - 0.25 * y + 0.125 * x * y;
+        let heights =
+            (0..3).flat_map(|i| (0..5).map(move |j| surface(2.0 * f64::from(i), 0.5 * f64::from(j)))).collect();
+        let grid = HeightGrid::new([4.0, 2.0], [3, 5], heights).expect("valid");
+        for (x, y) in [(0.0, 0.0), (4.0, 2.0), (1.3, 0.7), (3.9, 1.99)] {
+            assert!((grid.height(x, y) - surface(x, y)).abs() < 1e-13);
+        }
+        assert!(HeightGrid::new([1.0, 1.0], [2, 2], vec![0.0; 3]).is_err());
+    }
+}
