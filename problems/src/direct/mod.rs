@@ -10,4 +10,5 @@ mod condensation;
 mod newton;
 mod solver;
 
+pub use condensation::{CondensationPattern, CondensedBody};
 pub use solver::{DirectSolver, DirectState};
