@@ -1,5 +1,6 @@
 //! State problems for the nonsmooth framework.
 
+pub mod accuracy;
 pub mod cli;
 pub mod contact;
 pub mod contact_shape;

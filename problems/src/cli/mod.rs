@@ -20,8 +20,11 @@ mod verify;
 pub use arguments::{Arguments, Command};
 pub use controls::parse as parse_controls;
 pub use failure::Failure;
+pub(crate) use optimize::{first_step, mean_height_coordinates};
 pub use output::Folder;
+pub(crate) use output::json;
 pub use source::Source;
+pub(crate) use verify::smooth_step;
 
 use crate::contact_shape::ContactShape;
 use crate::cost::PressureCost;

@@ -8,7 +8,9 @@
 mod adjoint;
 mod condensation;
 mod diagnosis;
+mod error_estimate;
 mod newton;
 mod solver;
 
+pub use condensation::{CondensationPattern, CondensedBody};
 pub use solver::{DirectSolver, DirectState};

@@ -2,7 +2,7 @@
 
 use crate::contact::certificate::law_residuals;
 use crate::contact::law::Linearization;
-use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Work, modes};
+use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, ValueError, Work, modes};
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::newton::{CondensedContact, CondensedSolution};
 use crate::error::ContactError;
@@ -125,7 +125,7 @@ impl DirectSolver {
         self.contact(problem, &state.system).diagnose(&state.solution.linearizations)
     }
 
-    /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed rows.
+    /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed rows, and what the state's residual does to J.
     ///
     /// # Errors
     /// [`ContactError::NotFinite`] when the adjoint matrix is singular.
@@ -134,13 +134,15 @@ impl DirectSolver {
         problem: &ContactProblem,
         state: &DirectState,
         direction: &[f64],
-    ) -> Result<Vec<f64>, ContactError> {
+    ) -> Result<(Vec<f64>, ValueError), ContactError> {
         if state.system.load == 0.0 {
             // Bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
-            return Ok(vec![0.0; problem.grid.column_count()]);
+            return Ok((vec![0.0; problem.grid.column_count()], ValueError::default()));
         }
         let contact = self.contact(problem, &state.system);
         let (p, eta) = contact.adjoint(&state.solution.linearizations, direction);
+        let terms = contact.weighted_residuals(&state.solution, &p, &eta, direction);
+        let value_error = ValueError::from_terms(&terms, direction, &state.solution.forces);
         let size = contact.size();
         let spread = |packed: &[f64]| {
             let mut forces = vec![0.0; size];
@@ -168,7 +170,7 @@ impl DirectSolver {
         if heights.iter().any(|height| !height.is_finite()) {
             return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
         }
-        Ok(heights)
+        Ok((heights, value_error))
     }
 }
 

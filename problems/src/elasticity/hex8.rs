@@ -28,10 +28,13 @@ pub struct GaussPoint<T> {
 /// 1/√3, the abscissa of the two-point Gauss rule.
 const ABSCISSA: f64 = 0.577_350_269_189_625_8;
 
-/// Values of the eight shape functions' reference gradients at one of the eight Gauss points.
-fn reference_gradients(point: usize) -> [[f64; 3]; 8] {
-    let sign = |bit: usize| if bit == 1 { 1.0 } else { -1.0 };
-    let xi = [sign(point >> 2 & 1) * ABSCISSA, sign(point >> 1 & 1) * ABSCISSA, sign(point & 1) * ABSCISSA];
+/// −1 or 1 for the two ends of an edge.
+fn sign(bit: usize) -> f64 {
+    if bit == 1 { 1.0 } else { -1.0 }
+}
+
+/// Reference gradients of the eight shape functions at ξ ∈ [−1, 1]³.
+fn reference_gradients(xi: [f64; 3]) -> [[f64; 3]; 8] {
     std::array::from_fn(|a| {
         let s = [sign(a >> 2 & 1), sign(a >> 1 & 1), sign(a & 1)];
         let f = [1.0 + s[0] * xi[0], 1.0 + s[1] * xi[1], 1.0 + s[2] * xi[2]];
@@ -39,30 +42,41 @@ fn reference_gradients(point: usize) -> [[f64; 3]; 8] {
     })
 }
 
+/// Values of the eight shape functions at ξ ∈ [−1, 1]³.
+pub fn shape_values(xi: [f64; 3]) -> [f64; 8] {
+    std::array::from_fn(|a| {
+        let s = [sign(a >> 2 & 1), sign(a >> 1 & 1), sign(a & 1)];
+        (1.0 + s[0] * xi[0]) * (1.0 + s[1] * xi[1]) * (1.0 + s[2] * xi[2]) / 8.0
+    })
+}
+
 /// The eight Gauss points of a brick. A `volume` ≤ 0 marks an inverted element.
 pub fn gauss_points<T: Scalar>(nodes: &Nodes<T>) -> [GaussPoint<T>; 8] {
-    std::array::from_fn(|point| {
-        let reference = reference_gradients(point);
-        let mut jacobian = [[T::zero(); 3]; 3];
-        for (node, gradient) in nodes.iter().zip(&reference) {
-            for (i, row) in jacobian.iter_mut().enumerate() {
-                for (entry, &derivative) in row.iter_mut().zip(gradient) {
-                    *entry += node[i] * T::constant(derivative);
-                }
+    std::array::from_fn(|point| sample(nodes, [2, 1, 0].map(|shift| sign(point >> shift & 1) * ABSCISSA)))
+}
+
+/// Gradients at ξ ∈ [−1, 1]³, with det(∂x/∂ξ) as `volume`.
+pub fn sample<T: Scalar>(nodes: &Nodes<T>, xi: [f64; 3]) -> GaussPoint<T> {
+    let reference = reference_gradients(xi);
+    let mut jacobian = [[T::zero(); 3]; 3];
+    for (node, gradient) in nodes.iter().zip(&reference) {
+        for (i, row) in jacobian.iter_mut().enumerate() {
+            for (entry, &derivative) in row.iter_mut().zip(gradient) {
+                *entry += node[i] * T::constant(derivative);
             }
         }
-        let (inverse, volume) = invert(&jacobian);
-        let gradients = std::array::from_fn(|a| {
-            std::array::from_fn(|i| {
-                let mut sum = T::zero();
-                for (k, &derivative) in reference[a].iter().enumerate() {
-                    sum += inverse[k][i] * T::constant(derivative);
-                }
-                sum
-            })
-        });
-        GaussPoint { gradients, volume }
-    })
+    }
+    let (inverse, volume) = invert(&jacobian);
+    let gradients = std::array::from_fn(|a| {
+        std::array::from_fn(|i| {
+            let mut sum = T::zero();
+            for (k, &derivative) in reference[a].iter().enumerate() {
+                sum += inverse[k][i] * T::constant(derivative);
+            }
+            sum
+        })
+    });
+    GaussPoint { gradients, volume }
 }
 
 /// Inverse and determinant of a 3×3 matrix `m[i][k] = ∂x_i/∂ξ_k`; the inverse is `[k][i] = ∂ξ_k/∂x_i`.
@@ -153,8 +167,8 @@ pub fn displacement_gradient(point: &GaussPoint<f64>, u: &[f64; DOFS]) -> [[f64;
     gradient
 }
 
-/// Stress λ tr(ε) I + 2 μ ε of a displacement gradient at a Gauss point, MPa.
-fn stress(gradient: &[[f64; 3]; 3], (lambda, mu): (f64, f64)) -> [[f64; 3]; 3] {
+/// Stress λ tr(ε) I + 2 μ ε of a displacement gradient and (λ, μ) at a Gauss point, MPa.
+pub fn stress(gradient: &[[f64; 3]; 3], (lambda, mu): (f64, f64)) -> [[f64; 3]; 3] {
     let volumetric = lambda * (gradient[0][0] + gradient[1][1] + gradient[2][2]);
     std::array::from_fn(|i| {
         std::array::from_fn(|j| mu * (gradient[i][j] + gradient[j][i]) + if i == j { volumetric } else { 0.0 })

@@ -30,6 +30,11 @@ pub struct NumericFactor {
     single: OnceLock<Vec<f32>>,
 }
 
+/// One thread, for callers that do not name the factorisation library.
+pub fn sequential() -> Par {
+    Par::Seq
+}
+
 impl SymbolicFactor {
     /// Analyses a pattern for the elimination order `order[new] = old`, a permutation of all indices.
     ///

@@ -151,7 +151,10 @@ pub fn by_condensation(problem: &ContactProblem, controls: &[f64]) -> Attempt {
     let attempt = || {
         let solver = DirectSolver::new(problem)?;
         let (state, forces, work) = solver.solve(problem, controls, None, TOLERANCE)?;
-        let heights = solver.sensitivities(problem, &state, &packed_dual(problem)).map_err(|error| error.to_string());
+        let heights = solver
+            .sensitivities(problem, &state, &packed_dual(problem))
+            .map(|(heights, _)| heights)
+            .map_err(|error| error.to_string());
         let diagnosis = Some(solver.diagnose(problem, &state).map_err(|error| error.to_string()));
         Ok((path("direct", work, &forces), Some(Found { forces, heights, diagnosis })))
     };

@@ -32,6 +32,12 @@ fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
             CounterSurface::Waves { base: s * base, first: s * first, second: s * second, period: s * period }
         }
         CounterSurface::Sphere { apex, radius } => CounterSurface::Sphere { apex: s * apex, radius: s * radius },
+        CounterSurface::SphereAt { apex, radius, centre } => {
+            CounterSurface::SphereAt { apex: s * apex, radius: s * radius, centre: centre.map(|x| s * x) }
+        }
+        CounterSurface::Punch { height, half_width, relief } => {
+            CounterSurface::Punch { height: s * height, half_width: s * half_width, relief: s * relief }
+        }
         CounterSurface::Plane { height } => CounterSurface::Plane { height: s * height },
         CounterSurface::Grid(grid) => CounterSurface::Grid(grid.scaled(s)),
     };

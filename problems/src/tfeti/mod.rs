@@ -12,6 +12,7 @@ mod constraints;
 mod descent;
 mod diagnosis;
 mod dual_operator;
+mod error_estimate;
 mod factors;
 mod holding;
 mod limits;

@@ -1,0 +1,43 @@
+//! Contact patch test: a block pressed flat onto a plane has the pressure of its load at every node, when each node stands for
+//! its tributary area: whole inside, half on edges, a quarter in corners.
+
+use crate::setting::{THIRD, block, load, pressures, solve, support};
+use problems::contact_shape::SolverKind;
+use problems::elasticity::Material;
+use problems::mesh::Face;
+use problems::scene::{BodyScene, CounterSurface, Scene, UpperBody};
+
+const PRESSURE: f64 = 250.0;
+
+/// A block of unequal edges on bricks of unequal edges.
+fn one_body() -> Scene {
+    let material = Material::new(1.1e5, 0.33).unwrap();
+    let mut scene = block([60.0, 20.0], 30.0, [6, 4, 4], material, CounterSurface::Plane { height: 30.0 });
+    scene.subdomains = [3, 2, 2];
+    scene.lower.loads = vec![load(Face::Bottom, [0.0, 0.0, PRESSURE])];
+    scene
+}
+
+fn two_bodies() -> Scene {
+    let mut scene = one_body();
+    scene.lower.loads.clear();
+    scene.lower.supports = vec![support(Face::Bottom, THIRD)];
+    let material = Material::new(7.0e4, 0.2).unwrap();
+    let loads = vec![load(Face::Top, [0.0, 0.0, -PRESSURE])];
+    scene.upper = Some(UpperBody { body: BodyScene { material, supports: vec![], loads }, top: 45.0 });
+    scene
+}
+
+#[test]
+fn uniform_pressure() {
+    for (name, scene) in [("one body", one_body()), ("two bodies", two_bodies())] {
+        for kind in [SolverKind::Newton, SolverKind::Direct] {
+            let (shape, state) = solve(&scene, kind);
+            let errors =
+                pressures(&shape, &state).into_iter().map(|(_, area, force)| (force / (area * PRESSURE) - 1.0).abs());
+            let worst = errors.fold(0.0, f64::max);
+            println!("patch test, {name}, {kind:?}: largest relative error of a pressure {worst:.1e}");
+            assert!(worst < 1e-12, "{name} {kind:?} {worst:.1e}");
+        }
+    }
+}
