@@ -15,7 +15,7 @@ pub fn cases() -> Vec<Case> {
             let scene = scene.map(|scene| Scene { friction, ..scene });
             let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
             let case = ContactCase::new(scene).at(controls).with_paper();
-            cases.push(case.case(GROUP, format!("𝓕 = {friction}, {name}")));
+            cases.push(case.case(GROUP, format!("𝓕 = {friction:?}, {name}")));
         }
     }
     for friction in [0.3, 0.9, 1.5, 2.0, 3.0, 5.0] {
@@ -26,7 +26,7 @@ pub fn cases() -> Vec<Case> {
             ];
             Scene { friction, ..scene }
         });
-        cases.push(ContactCase::new(scene).with_paper().case(GROUP, format!("𝓕 = {friction}, held base, pushed")));
+        cases.push(ContactCase::new(scene).with_paper().case(GROUP, format!("𝓕 = {friction:?}, held base, pushed")));
     }
     cases
 }

@@ -30,10 +30,8 @@ pub fn cases() -> Vec<Case> {
     }
     for (label, size) in [("1000 : 1 plan", [10.0, 1e4]), ("1 : 1000 plan", [10.0, 1e-2])] {
         let scene = stacked(0.3, 1.0, 0.05).map(|scene| crate::scene::Scene { size, ..scene });
-        let mut case = ContactCase::new(scene).check(uniform(1.0, 0.05));
-        if size[1] < 1.0 {
-            case = case.limit([Some("BeyondPrecision"), None], FACTORS);
-        }
+        let case = ContactCase::new(scene).check(uniform(1.0, 0.05));
+        let case = case.limit([Some("BeyondPrecision"), None], FACTORS);
         cases.push(case.case(GROUP, label).slow());
     }
     for (label, height) in [

@@ -123,7 +123,11 @@ fn limit(
         return (Outcome::Broken, reasons(paths));
     }
     match found.transpose() {
-        Ok(finding) => (Outcome::Limit, join(&format!("{cause} ({})", reasons(paths)), &finding.unwrap_or_default())),
+        Ok(finding) => {
+            let did = |path: &Path| format!("{}: {}", path.solver, path.refusal.as_deref().unwrap_or("a state"));
+            let did: Vec<String> = paths.iter().map(did).collect();
+            (Outcome::Limit, join(&format!("{}; {cause}", did.join(", ")), &finding.unwrap_or_default()))
+        }
         Err(wrong) => (Outcome::Broken, join(&wrong, &reasons(paths))),
     }
 }

@@ -21,7 +21,10 @@ impl TornContact<'_> {
         let (floor, what) = if gaps > stiffness {
             (gaps, "gaps (distances or loads of very different size)")
         } else {
-            (stiffness, "stiffness (bricks of extreme shape or nearly incompressible)")
+            (
+                stiffness,
+                "stiffness (bricks of extreme shape or nearly incompressible; direct condensation loses fewer digits)",
+            )
         };
         if FLOOR_REACHED * floor > settings.acceptable {
             return ContactError::BeyondPrecision { what, floor, residual, tolerance: settings.acceptable };
