@@ -121,6 +121,7 @@ fn run_stage(
             let scaled = Reparametrized::new(&journaled, matrix)?;
             let mut report = minimize(method, &scaled, start, Some(&folder.join("snapshot.json")))?;
             report.warnings.extend(journaled.into_warnings());
+            report.warnings.dedup();
             add_earlier_seconds(&mut report, &seconds);
             report
         }

@@ -130,6 +130,14 @@ impl Scene {
         if !(self.start_height > 0.0 && self.start_height.is_finite()) {
             return Err(SceneError::out_of_range("start height", self.start_height, "a finite height > 0 mm"));
         }
+        let [a, b] = self.size;
+        for [x1, x2] in [[0.0, 0.0], [a, 0.0], [0.0, b], [a, b]] {
+            let height = self.counter_surface.height(x1, x2);
+            if !height.is_finite() {
+                let field = format!("counter surface at ({x1}, {x2})");
+                return Err(SceneError::out_of_range(field, height, "finite heights over the whole base"));
+            }
+        }
         self.spline_surface()?;
         Self::validate_body("lower body", &self.lower, Face::Top)?;
         if let Some(upper) = &self.upper {
