@@ -96,10 +96,8 @@ const ROUNDING: f64 = 1e-9;
 const TARGET_SHARE: f64 = 0.5;
 /// Relative change of the slip bound below which rounding blurs the contraction.
 const BLURRED: f64 = 1e-8;
-/// Factor on what is aimed at when the recovered state misses the tolerance.
-const RENEWED_AIM: f64 = 0.25;
-/// Share of the tolerance beyond which renewing the aim has not helped.
-const MOST_RENEWED: f64 = 0.01;
+/// Factor on the tolerance aimed at when the balanced multipliers miss it.
+const TIGHTENING: f64 = 0.2;
 /// Share of the tolerance that the inner solver may leave.
 const INNER_SHARE: f64 = 0.1;
 
@@ -133,25 +131,17 @@ impl TornContact<'_> {
         };
         let mut state = self.first(&first, &coarse);
         let mut history = Vec::new();
-        let mut aim = settings.tolerance;
+        let mut aimed = *settings;
         let (iterate, residual) = loop {
-            let solution = self.tresca(&coarse, &dual, &linear, settings, aim, &state)?;
-            let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
-            history.push(residual);
-            let exhausted = (!solution.converged && residual <= acceptable)
-                || history.len() >= settings.max_fixed_point_steps
-                || (aim < MOST_RENEWED * settings.tolerance && residual <= acceptable);
-            self.count(&mut state.counts, &solution);
-            self.advance(&mut state, solution)?;
-            if residual <= TARGET_SHARE * aim || exhausted || !self.boundary.has_friction() {
-                let iterate = self.recover(&state.warm.x, &state.bounds)?;
-                let residual = self.residual(&iterate);
-                if residual <= settings.tolerance || exhausted || !residual.is_finite() {
-                    break (iterate, residual);
-                }
-                // The recovered amplitudes left more than their share: the dual problem has to leave less.
-                aim *= RENEWED_AIM;
+            self.approximate(&coarse, &dual, &linear, &aimed, &mut state, &mut history)?;
+            let iterate = self.recover(&state.warm.x, &state.bounds)?;
+            let residual = self.residual(&iterate);
+            let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= SMALLEST_TOLERANCE;
+            if residual.is_nan() || residual <= acceptable || spent {
+                break (iterate, residual);
             }
+            // Balancing the multipliers has cost more than the share kept for it.
+            aimed.tolerance = (TIGHTENING * aimed.tolerance).max(SMALLEST_TOLERANCE);
         };
         if residual.is_nan() || residual > acceptable {
             let factor = overall_contraction(&state.changes);
@@ -168,6 +158,31 @@ impl TornContact<'_> {
         }
         let linearizations = self.linearize(&iterate);
         Ok((TornSolution { iterate, linearizations, residual, steps: state.counts.fixed_point_steps }, state.counts))
+    }
+
+    /// Tresca problems until their residual is below a share of the tolerance aimed at, or the steps are spent.
+    fn approximate(
+        &self,
+        coarse: &OrthonormalCoarse<'_>,
+        dual: &ProjectedDual<'_>,
+        linear: &[f64],
+        settings: &AugmentedLagrangianSettings,
+        state: &mut FixedPoint,
+        history: &mut Vec<f64>,
+    ) -> Result<(), ContactError> {
+        loop {
+            let solution = self.tresca(coarse, dual, linear, settings, state)?;
+            let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
+            history.push(residual);
+            let exhausted = !solution.converged && residual <= settings.tolerance.max(ROUNDING);
+            let target = TARGET_SHARE * settings.tolerance;
+            self.count(&mut state.counts, &solution);
+            self.advance(state, solution)?;
+            let spent = history.len() >= settings.max_fixed_point_steps;
+            if residual <= target || exhausted || spent || !self.boundary.has_friction() {
+                return Ok(());
+            }
+        }
     }
 
     /// The first slip bounds and multipliers: those of an iterate. Where the QP's gradient is −w, Cᵀμ is its rigid part.
@@ -206,7 +221,6 @@ impl TornContact<'_> {
         dual: &ProjectedDual<'_>,
         linear: &[f64],
         settings: &AugmentedLagrangianSettings,
-        aim: f64,
         state: &FixedPoint,
     ) -> Result<SmalseSolution, ContactError> {
         let set = self.feasible_set(&state.bounds)?;
@@ -219,13 +233,13 @@ impl TornContact<'_> {
         if settings.precondition {
             solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
         }
-        let floor = INNER_SHARE * aim * self.load / self.stiffness;
+        let floor = INNER_SHARE * settings.tolerance * self.load / self.stiffness;
         let solution = solver.run(&warm, floor, &mut |progress| {
             let error = self.stiffness * progress.reduced_gradient + progress.infeasibility;
             let residual = self.coulomb_residual(progress.x, progress.gradient, progress.infeasibility);
             let change = difference(&self.slip_bounds(progress.x), &state.bounds);
             let deserved = (settings.adaptivity * change).max(2.0 * floor * self.stiffness);
-            residual <= TARGET_SHARE * aim || (self.boundary.has_friction() && error <= deserved)
+            residual <= TARGET_SHARE * settings.tolerance || (self.boundary.has_friction() && error <= deserved)
         })?;
         Ok(solution)
     }
