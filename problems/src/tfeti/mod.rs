@@ -15,6 +15,7 @@ mod dual_operator;
 mod factors;
 mod holding;
 mod limits;
+mod linear_solve;
 mod local_pattern;
 mod model;
 mod newton;
