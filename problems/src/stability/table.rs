@@ -49,7 +49,7 @@ fn line(record: &Record) -> String {
     let number = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| format!("{value:.1e}"));
     let work: Vec<String> = record.paths.iter().take(2).map(work).collect();
     let cells = [
-        record.name.clone(),
+        escaped(&record.name),
         word(record.outcome).into(),
         if work.is_empty() { evaluations(record) } else { work.join("; ") },
         number(record.largest_residual()),
@@ -57,9 +57,14 @@ fn line(record: &Record) -> String {
         number(record.subgradient_difference),
         record.contraction.map_or_else(|| "–".into(), |value| format!("{value:.3}")),
         number(record.condition),
-        record.remark.replace('|', "\\|").replace('\n', " "),
+        escaped(&record.remark),
     ];
-    format!("| {} |\n", cells.join(" | ").replace("|λ", "\\|λ"))
+    format!("| {} |\n", cells.join(" | "))
+}
+
+/// Text for a cell of a Markdown table.
+fn escaped(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
 }
 
 fn evaluations(record: &Record) -> String {

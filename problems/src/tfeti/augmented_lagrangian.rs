@@ -16,7 +16,7 @@ use crate::qp::{
     Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
     SmalseSolution, WarmStart,
 };
-use crate::tfeti::holding::LinearAccuracy;
+use crate::tfeti::linear_solve::LinearAccuracy;
 use crate::tfeti::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
 use crate::tfeti::recycling::Recycled;
 use crate::tfeti::{Iterate, TornContact, TornSolution};

@@ -12,7 +12,8 @@ use crate::contact::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
 use crate::tfeti::coarse::CoarseProblem;
-use crate::tfeti::newton::{Iterate, NewtonSettings, TornContact, balancing_amplitudes, stagnates};
+use crate::tfeti::linear_solve::balancing_amplitudes;
+use crate::tfeti::newton::{Iterate, NewtonSettings, TornContact, stagnates};
 use crate::tfeti::recycling::Recycled;
 use crate::tfeti::{Precision, ReducedRows};
 

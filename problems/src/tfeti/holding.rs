@@ -9,9 +9,9 @@
 
 use crate::contact::law::Linearization;
 use crate::error::ContactError;
-use crate::linear::gmres::PATIENCE;
 use crate::tfeti::ReducedRows;
 use crate::tfeti::coarse::CoarseProblem;
+use crate::tfeti::linear_solve::LinearAccuracy;
 use crate::tfeti::newton::{Iterate, TornContact, TornSolution};
 use crate::tfeti::recycling::Recycled;
 
@@ -19,33 +19,6 @@ use crate::tfeti::recycling::Recycled;
 const REACH: f64 = 100.0;
 /// Nodes closed first when an active set leaves a motion free.
 const FIRST_CLOSED: usize = 3;
-/// How accurately a reduced linear system is solved.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LinearAccuracy {
-    /// Norm of the projected residual aimed at, mm.
-    pub target: f64,
-    /// Reduction of its first value that is enough.
-    pub reduction: f64,
-    /// Krylov iterations allowed per cycle.
-    pub max_krylov: usize,
-    /// Krylov iterations in which the residual must halve.
-    pub patience: usize,
-    /// Cycles of iterative refinement: each recomputes the residual.
-    pub cycles: usize,
-}
-
-impl LinearAccuracy {
-    /// The start: one digit.
-    pub const START: Self = Self { target: 0.0, reduction: 0.1, max_krylov: 200, patience: PATIENCE, cycles: 1 };
-    /// All that rounding allows.
-    pub const EXACT: Self = Self { target: 0.0, reduction: 1e-14, max_krylov: 400, patience: 400, cycles: 6 };
-
-    /// One cycle to a given residual.
-    pub fn to(target: f64, max_krylov: usize) -> Self {
-        Self { target, reduction: 0.0, max_krylov, patience: PATIENCE, cycles: 1 }
-    }
-}
-
 impl TornContact<'_> {
     /// Rows and coarse problem of an active set, enlarged until it holds every motion; open nodes of largest `priority` are
     /// closed first.

@@ -16,6 +16,7 @@ mod error_estimate;
 mod factors;
 mod holding;
 mod limits;
+mod linear_solve;
 mod local_pattern;
 mod model;
 mod newton;

@@ -11,10 +11,9 @@ use crate::contact::ContactBoundary;
 use crate::contact::certificate::projection_residual;
 use crate::contact::law::Linearization;
 use crate::error::ContactError;
-use crate::linear::gmres::{Combination, gmres};
-use crate::linear::vector::{add_scaled, norm};
+use crate::linear::vector::norm;
 use crate::tfeti::coarse::{CoarseProblem, CoarseSpace};
-use crate::tfeti::holding::LinearAccuracy;
+use crate::tfeti::linear_solve::LinearAccuracy;
 use crate::tfeti::recycling::Recycled;
 use crate::tfeti::{DualOperator, Precision, Preconditioner, ReducedRows};
 
@@ -286,68 +285,6 @@ impl TornContact<'_> {
         Ok(coarse)
     }
 
-    /// Solves the reduced system for an active set, starting from given multipliers; its Krylov pairs join the others.
-    pub(super) fn linear_solve(
-        &self,
-        rows: &ReducedRows<'_>,
-        coarse: &CoarseProblem<'_>,
-        start: &[f64],
-        accuracy: LinearAccuracy,
-        pairs: &mut Recycled,
-    ) -> Result<Iterate, ContactError> {
-        let mut unknowns = rows.initial(start);
-        let (mut first, mut last) = (None, f64::INFINITY);
-        let mut image = Vec::new();
-        for _cycle in 0..accuracy.cycles {
-            coarse.enforce(&mut unknowns, &self.space.resultants);
-            image = self.operator.apply(&rows.expand(&unknowns, true));
-            let mut projected = self.reduced_residual(rows, &unknowns, &image);
-            coarse.project(&mut projected);
-            let size = norm(&projected);
-            let target = accuracy.target.max(accuracy.reduction * *first.get_or_insert(size));
-            if size <= target || size > REFINEMENT_PAYS * last {
-                break;
-            }
-            last = size;
-            let krylov: Combination<Vec<f64>> = gmres(
-                &projected,
-                target,
-                accuracy.max_krylov,
-                accuracy.patience,
-                |v| self.precondition(rows, v, |z| coarse.project(z)),
-                |z| {
-                    let product = self.operator.apply(&rows.expand(z, true));
-                    let mut reduced = rows.restrict(&product, false);
-                    rows.add_compliance(z, &mut reduced, 1.0);
-                    coarse.project(&mut reduced);
-                    (reduced, product)
-                },
-            );
-            for ((coefficient, direction), product) in
-                krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
-            {
-                add_scaled(&mut unknowns, *coefficient, direction);
-                add_scaled(&mut image, *coefficient, product);
-            }
-            if accuracy.cycles == 1 {
-                for (direction, product) in krylov.directions.iter().zip(krylov.payloads) {
-                    let amplitudes = balancing_amplitudes(rows, coarse, direction, &product);
-                    pairs.push(self, rows.expand(direction, true), product, amplitudes);
-                }
-            }
-        }
-        let amplitudes = coarse.amplitudes(&self.reduced_residual(rows, &unknowns, &image));
-        Ok(self.iterate(rows.expand(&unknowns, true), image, amplitudes))
-    }
-
-    /// Qᵀ(d − F T y) − Δ y.
-    fn reduced_residual(&self, rows: &ReducedRows<'_>, unknowns: &[f64], image: &[f64]) -> Vec<f64> {
-        let rest: Vec<f64> = self.constant.iter().zip(image).map(|(d, image)| d - image).collect();
-        let mut residual = rows.restrict(&rest, false);
-        rows.add_compliance(unknowns, &mut residual, -1.0);
-        residual
-    }
-
     /// Projected preconditioner: P (Qᵀ M Q + Z) v.
     pub fn precondition(&self, rows: &ReducedRows<'_>, v: &[f64], project: impl Fn(&mut [f64])) -> Vec<f64> {
         let mut z = rows.restrict(&self.preconditioner.apply(&rows.expand(v, false)), false);
@@ -380,8 +317,6 @@ const SHORTENED_FORCING: f64 = 0.01;
 const SINGULAR: f64 = 1e-13;
 /// Products with F that one run of Newton steps may take.
 const MAX_PRODUCTS: usize = 20_000;
-/// Reduction that another cycle of iterative refinement must have brought.
-const REFINEMENT_PAYS: f64 = 0.5;
 /// Newton steps in which the best residual must at least halve.
 const CIRCLING: usize = 16;
 /// Step halvings.
@@ -420,18 +355,6 @@ fn held_by_forces(forces: &[f64], friction: f64, held_slip: bool) -> Linearizati
     }
     let second = if forces.len() > 2 { forces[2] / traction } else { 0.0 };
     Linearization::Slip { direction: [forces[1] / traction, second], ratio: 0.0 }
-}
-
-/// Amplitudes that remove the rigid part of what a direction y with product F T y does to the reduced residual.
-pub fn balancing_amplitudes(
-    rows: &ReducedRows<'_>,
-    coarse: &CoarseProblem<'_>,
-    direction: &[f64],
-    product: &[f64],
-) -> Vec<f64> {
-    let mut change: Vec<f64> = rows.restrict(product, false).into_iter().map(|entry| -entry).collect();
-    rows.add_compliance(direction, &mut change, -1.0);
-    coarse.amplitudes(&change)
 }
 
 /// (1 − t)·from + t·to in every part.
