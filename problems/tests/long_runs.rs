@@ -1,5 +1,6 @@
 //! Long runs: killed, interrupted and limited runs continue to the same bits; folders that fail do not take a run along.
 
+#![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use nonsmooth::Snapshot;
