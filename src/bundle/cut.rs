@@ -22,6 +22,8 @@ pub struct Cut {
     pub subgradient: Vector,
     /// Error that the oracle promised for `value`.
     pub error_bound: f64,
+    /// Whether the oracle certified the cut to lie below Θ (an answer [`NoDescent`](crate::Answer::NoDescent)).
+    pub certified: bool,
     /// Multiplier in the last subproblem.
     pub multiplier: f64,
     /// Subproblems in a row in which the multiplier was zero.
@@ -29,6 +31,11 @@ pub struct Cut {
 }
 
 impl Cut {
+    /// How far the cut may lie above a convex Θ: the promised error of its value, nothing if it is certified.
+    pub fn excess(&self) -> f64 {
+        if self.certified { 0.0 } else { self.error_bound }
+    }
+
     /// e = value − Θ(y) − ⟨g, x − y⟩, the linearization error at a point x with the value given.
     pub fn linearization_error(&self, x: &Vector, value: f64) -> f64 {
         let mut slope = 0.0;

@@ -17,7 +17,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
         let serious = may_be_serious && comparison.is_serious(&self.method.config);
         self.state.failures = 0;
-        self.keep_record(&proposal, &comparison, serious);
+        self.keep_record(&proposal, may_be_serious.then_some(&comparison), serious);
         self.watch_noise(&proposal, &evaluation);
         let kind = if serious {
             weight::after_serious(&mut self.state, &self.method.config, &proposal, &comparison);
@@ -31,7 +31,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             self.state.counts.null += 1;
             if may_be_serious { StepKind::Null } else { StepKind::NoDescent }
         };
-        self.add_cut(proposal.trial.clone(), &evaluation);
+        self.add_cut(proposal.trial.clone(), &evaluation, !may_be_serious);
         if serious {
             self.move_center(proposal.trial.clone(), evaluation, accuracy);
         }
@@ -58,7 +58,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
     }
 
-    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>) {
+    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>, certified: bool) {
         let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + 15).min(150));
         let state = &mut self.state;
         state.bundle.make_room(size, state.center_id);
@@ -68,6 +68,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             value: evaluation.value,
             subgradient: evaluation.subgradient.clone(),
             error_bound: evaluation.error_bound,
+            certified,
             multiplier: 0.0,
             idle: 0,
         });
