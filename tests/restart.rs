@@ -75,7 +75,7 @@ fn foreign_text_version_and_constraints_are_refused() {
     assert!(Snapshot::from_json("{}").is_err());
     let mut first = method(&Polyhedron::unbounded(2));
     let snapshot = first.start(&cb3(), v(&[2.0, 2.0])).unwrap().snapshot();
-    let other = snapshot.to_json().unwrap().replacen("\"version\":2", "\"version\":99", 1);
+    let other = snapshot.to_json().unwrap().replacen("\"version\":3", "\"version\":99", 1);
     assert!(Snapshot::from_json(&other).unwrap_err().to_string().contains("99"));
     let mut boxed = method(&Polyhedron::boxed(v(&[0.0, 0.0]), v(&[1.0, 1.0])).unwrap());
     assert!(matches!(boxed.resume(&cb3(), snapshot), Err(OptimizeError::ChangedConstraints)));

@@ -1,7 +1,7 @@
 //! Plain model, curved model and exploration compete for the next evaluation.
 
 use super::curvature::{
-    CurvedModel, EXPLORATION, LARGEST_DIMENSION, Origin, WORTHWHILE, is_stalled, largest, seen_curvature,
+    CurvedModel, EXPLORATION, LARGEST_DIMENSION, Origin, Quadratic, WORTHWHILE, is_stalled, largest, seen_curvature,
 };
 use super::model::Model;
 use super::run::Run;
@@ -15,6 +15,13 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         if self.state.center.len() > LARGEST_DIMENSION {
             return plain;
         }
+        let before = self.solver.counts();
+        let chosen = self.best_of(plain);
+        self.count_solves(before);
+        chosen
+    }
+
+    fn best_of(&mut self, plain: Proposal) -> Proposal {
         let model = Model::new(&mut self.state, &self.method.config);
         let curved = CurvedModel::new(&self.state, &model);
         let small = self.small();
@@ -42,9 +49,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
 
     /// A trial far along directions in which no subgradient changes, if the cuts promise more than `worthwhile` there.
     fn explore(&mut self, model: &Model, plain: &Proposal, worthwhile: f64) -> Option<Proposal> {
-        let matrix = seen_curvature(&self.state);
+        let quadratic = Quadratic::Common(seen_curvature(&self.state));
         let (slopes, offsets, ids) = (model.slopes.clone(), model.offsets.clone(), model.ids.clone());
-        let metric = CurvedModel { matrix, slopes, offsets, ids };
+        let metric = CurvedModel { quadratic, slopes, offsets, ids };
         let mut weight = self.state.curvature.exploration_weight.min(self.state.weight / EXPLORATION);
         for _ in 0..2 {
             if let Ok(far) = solve_curved(&mut self.solver, &self.set, &self.state, &metric, (plain, weight)) {
@@ -58,10 +65,10 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         None
     }
 
-    /// Judges both models by what happened at the trial point.
-    pub(super) fn keep_record(&mut self, proposal: &Proposal, comparison: &Comparison, serious: bool) {
+    /// Judges both models by what happened at the trial point, where that is known.
+    pub(super) fn keep_record(&mut self, proposal: &Proposal, comparison: Option<&Comparison>, serious: bool) {
         let record = &mut self.state.curvature;
-        if let Some((plain, curved)) = proposal.predictions {
+        if let (Some((plain, curved)), Some(comparison)) = (proposal.predictions, comparison) {
             record.compare(comparison.change, plain, curved);
         }
         match proposal.origin {

@@ -1,18 +1,19 @@
 //! A second model with curvature, rebuilt from the bundle at every step, and the right to use it.
 //!
 //! ```text
-//! q(d) = max_i { ⟨h_i + B p_i, d⟩ − (a_i − ½ p_iᵀB p_i)₊ } + ½ dᵀB d       over the center and the cuts that contradict B
-//! B:  per cut, farthest first, s = y_i − x̂, z = g_i − ĝ:  cut B down to sᵀBs ≤ sᵀz, then B += r rᵀ/⟨r, s⟩, r = z − B s
+//! q(d) = max_i { ⟨h_i + B_i p_i, d⟩ − (a_i − ½ p_iᵀB_i p_i)₊ + ½ dᵀB_i d }      over the center and the cuts that contradict it
+//! min over d   max_i { slope_i·d − offset_i } + ½ dᵀ(Σ λ_i B_i + w W) d       λ: multipliers of the solve before, a few times
 //! S = Σ z zᵀ/⟨z, s⟩                                      more than the curvature seen, none where no subgradient changed
 //! ```
-//! B starts from zero and stays positive semidefinite; on a quadratic it is the multisecant matrix. Both models predict every
-//! trial; the curved one proposes only while its record of predictions is clearly better, so that kinks turn it off. When
-//! the decrease promised has become tiny beside what the run has gained, one trial with the metric S looks along directions
-//! in which no subgradient changes: long flat valleys. Failures double the pause before either is used again.
-//! References: \[LuksanVlcek1998\] (cuts transported by a curvature), symmetric rank one from below.
+//! Every piece has its own curvature B_i (pieces.rs); with the multipliers the subproblem has the Hessian of the Lagrangian of
+//! the epigraph problem, as in sequential quadratic programming for minimax. Both models predict every trial; the curved one
+//! proposes only while its record of predictions is clearly better, so that kinks turn it off. When the decrease promised has
+//! become tiny beside what the run has gained, one trial with the metric S looks along directions in which no subgradient
+//! changes: long flat valleys. Failures double the pause before either is used again.
+//! References: \[LuksanVlcek1998\] (cuts transported by their own curvature), symmetric rank one from below.
 
-use super::cut::Cut;
 use super::model::Model;
+use super::pieces::Curvature;
 use super::state::State;
 use super::weight::Comparison;
 use crate::{Matrix, Vector};
@@ -20,10 +21,12 @@ use serde::{Deserialize, Serialize};
 
 /// More variables than this make the dense matrix too dear.
 pub(super) const LARGEST_DIMENSION: usize = 200;
-/// Smaller over larger of the two errors of a pair; below, the pair has a kink in between.
+/// Smaller over larger of the two errors of a pair with the center; below, the pair has a kink in between.
 const SAME_PIECE: f64 = 0.2;
-/// Least cosine between r and s of a rank-one update.
-const LEAST_COSINE: f64 = 1e-3;
+/// The same for the other pieces, whose curvature bends cuts from afar: only what is quadratic for sure.
+const SURELY_SAME_PIECE: f64 = 0.97;
+/// Solves of the subproblem with the multipliers of the one before.
+const MULTIPLIER_ROUNDS: usize = 3;
 /// Least cosine of z and s in S.
 const LEAST_SEEN_COSINE: f64 = 1e-2;
 /// A cut above the quadratic by this share of the sizes involved contradicts it.
@@ -114,7 +117,8 @@ impl CurvatureRecord {
     /// Judges both predictions by what happened.
     pub(crate) fn compare(&mut self, change: f64, plain: f64, curved: f64) {
         let floor = 1e-3 * (change.abs() + plain.abs());
-        if floor > 0.0 {
+        // Models that agree say nothing about each other.
+        if floor > 0.0 && plain != curved {
             let gain = (((change - plain).abs() + floor) / ((change - curved).abs() + floor)).ln();
             self.score += NEWEST * (gain.clamp(-2.0, 2.0) - self.score);
         }
@@ -146,10 +150,19 @@ impl CurvatureRecord {
     }
 }
 
-/// Slopes and offsets of a model around a common quadratic ½ dᵀB d.
+/// Where the quadratic part of a model comes from.
+#[derive(Debug, Clone)]
+pub(crate) enum Quadratic {
+    /// One matrix for all cuts.
+    Common(Matrix),
+    /// One per cut.
+    Pieces(Vec<Curvature>),
+}
+
+/// Slopes, offsets and quadratic part of a model.
 #[derive(Debug, Clone)]
 pub(crate) struct CurvedModel {
-    pub matrix: Matrix,
+    pub quadratic: Quadratic,
     pub slopes: Vec<Vector>,
     pub offsets: Vec<f64>,
     pub ids: Vec<u64>,
@@ -158,67 +171,64 @@ pub(crate) struct CurvedModel {
 impl CurvedModel {
     /// The model q at the center.
     pub(crate) fn new(state: &State, plain: &Model) -> Self {
-        let mut model = Self { matrix: secant_matrix(state), slopes: vec![], offsets: vec![], ids: vec![] };
-        let Some(center) = state.bundle.cut(state.center_id) else { return model };
+        let (mut slopes, mut offsets, mut ids, mut pieces) = (vec![], vec![], vec![], vec![]);
+        let center = state.bundle.cut(state.center_id);
+        let around = center.map(|center| Curvature::around(center, state, SAME_PIECE)).unwrap_or_default();
         for ((cut, slope), &offset) in state.bundle.cuts().iter().zip(&plain.slopes).zip(&plain.offsets) {
+            let Some(center) = center else { break };
             let p = &state.center - &cut.point;
-            let bent = &model.matrix * &p;
-            let half = 0.5 * p.dot(&bent);
+            let half = 0.5 * around.along(&p);
             let error = center.linearization_error(&cut.point, cut.value);
-            if cut.id != center.id && !cut.lower_bound && error - half <= CONTRADICTION * (half + error.abs()) {
+            let is_center = cut.id == center.id;
+            if !is_center && !cut.certified && error - half <= CONTRADICTION * (half + error.abs()) {
                 continue;
             }
-            model.slopes.push(slope + bent);
-            model.offsets.push((offset - half).max(0.0));
-            model.ids.push(cut.id);
+            let piece = if is_center { around.clone() } else { Curvature::around(cut, state, SURELY_SAME_PIECE) };
+            slopes.push(slope + piece.apply(&p));
+            offsets.push((offset - 0.5 * piece.along(&p)).max(0.0));
+            ids.push(cut.id);
+            pieces.push(piece);
         }
-        model
+        Self { quadratic: Quadratic::Pieces(pieces), slopes, offsets, ids }
+    }
+
+    /// Σ λ_i B_i.
+    pub(crate) fn matrix(&self, dimension: usize, multipliers: &[f64]) -> Matrix {
+        match &self.quadratic {
+            Quadratic::Common(matrix) => matrix.clone(),
+            Quadratic::Pieces(pieces) => {
+                let mut sum = Matrix::zeros(dimension, dimension);
+                for (piece, &multiplier) in pieces.iter().zip(multipliers).filter(|(_, l)| **l > 0.0) {
+                    piece.add_to(&mut sum, multiplier);
+                }
+                symmetric(&sum)
+            }
+        }
     }
 
     /// Predicted change of Θ.
     pub(crate) fn change(&self, d: &Vector) -> f64 {
-        largest(&self.slopes, &self.offsets, d) + 0.5 * d.dot(&(&self.matrix * d))
+        match &self.quadratic {
+            Quadratic::Common(matrix) => largest(&self.slopes, &self.offsets, d) + 0.5 * d.dot(&(matrix * d)),
+            Quadratic::Pieces(pieces) => {
+                let values = self.slopes.iter().zip(&self.offsets).zip(pieces);
+                values.map(|((h, a), b)| h.dot(d) - a + 0.5 * b.along(d)).fold(f64::NEG_INFINITY, f64::max)
+            }
+        }
+    }
+
+    /// Solves of the subproblem that a trial is worth.
+    pub(crate) fn rounds(&self) -> usize {
+        match self.quadratic {
+            Quadratic::Common(_) => 1,
+            Quadratic::Pieces(_) => MULTIPLIER_ROUNDS,
+        }
     }
 }
 
 /// max_i ⟨h_i, d⟩ − a_i.
 pub(crate) fn largest(slopes: &[Vector], offsets: &[f64], d: &Vector) -> f64 {
     slopes.iter().zip(offsets).map(|(h, a)| h.dot(d) - a).fold(f64::NEG_INFINITY, f64::max)
-}
-
-/// The matrix B.
-fn secant_matrix(state: &State) -> Matrix {
-    let n = state.center.len();
-    let mut matrix = Matrix::zeros(n, n);
-    let Some(center) = state.bundle.cut(state.center_id) else { return matrix };
-    let distance = |cut: &Cut| state.norm.squared_distance(&state.center, &cut.point);
-    let mut cuts: Vec<(f64, &Cut)> = state.bundle.cuts().iter().map(|cut| (distance(cut), cut)).collect();
-    cuts.retain(|(distance, cut)| cut.id != center.id && !cut.lower_bound && *distance > 0.0);
-    cuts.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.id.cmp(&b.1.id)));
-    for (_, cut) in cuts {
-        let s = &cut.point - &center.point;
-        let z = &cut.subgradient - &center.subgradient;
-        let errors =
-            [center.linearization_error(&cut.point, cut.value), cut.linearization_error(&center.point, center.value)];
-        let (low, high) = (errors[0].min(errors[1]), errors[0].max(errors[1]));
-        let quadratic = low >= SAME_PIECE * high && high > 0.0;
-        cut_down(&mut matrix, &s, if quadratic { z.dot(&s) } else { 2.0 * low.max(0.0) });
-        let r = &z - &matrix * &s;
-        let along = r.dot(&s);
-        if quadratic && along > LEAST_COSINE * state.norm.dual_length(&r) * state.norm.length(&s) {
-            matrix.ger(1.0 / along, &r, &r, 1.0);
-        }
-    }
-    symmetric(matrix)
-}
-
-/// Lowers sᵀBs to the limit.
-fn cut_down(matrix: &mut Matrix, s: &Vector, limit: f64) {
-    let bent = &*matrix * s;
-    let along = s.dot(&bent);
-    if along > limit {
-        matrix.ger((limit / along - 1.0) / along, &bent, &bent, 1.0);
-    }
 }
 
 /// The matrix S.
@@ -234,12 +244,12 @@ pub(crate) fn seen_curvature(state: &State) -> Matrix {
             matrix.ger(1.0 / along, &z, &z, 1.0);
         }
     }
-    symmetric(matrix)
+    symmetric(&matrix)
 }
 
 /// Removes what rounding made unsymmetric.
-fn symmetric(matrix: Matrix) -> Matrix {
-    (&matrix + matrix.transpose()) * 0.5
+fn symmetric(matrix: &Matrix) -> Matrix {
+    (matrix + matrix.transpose()) * 0.5
 }
 
 /// Whether the promised decrease is tiny beside what the run has gained per evaluation.

@@ -20,11 +20,11 @@ pub struct Cut {
     pub value: f64,
     /// One subgradient of Θ at y.
     pub subgradient: Vector,
-    /// How far `value` may lie above Θ(y), as the oracle promised; 0 for a certified lower bound.
+    /// Error that the oracle promised for `value`.
     pub error_bound: f64,
-    /// Whether `value` is a certified lower bound only: the cut holds, but tells nothing about Θ(y) from above.
-    #[serde(default)]
-    pub lower_bound: bool,
+    /// Whether the oracle certified the cut to lie below Θ (an answer [`NoDescent`](crate::Answer::NoDescent)): it holds, but its
+    /// value tells nothing about Θ(y) from above.
+    pub certified: bool,
     /// Multiplier in the last subproblem.
     pub multiplier: f64,
     /// Subproblems in a row in which the multiplier was zero.
@@ -32,6 +32,11 @@ pub struct Cut {
 }
 
 impl Cut {
+    /// How far the cut may lie above a convex Θ: the promised error of its value, nothing if it is certified.
+    pub fn excess(&self) -> f64 {
+        if self.certified { 0.0 } else { self.error_bound }
+    }
+
     /// e = value − Θ(y) − ⟨g, x − y⟩, the linearization error at a point x with the value given.
     pub fn linearization_error(&self, x: &Vector, value: f64) -> f64 {
         let mut slope = 0.0;
@@ -128,7 +133,7 @@ impl Bundle {
             for i in 0..j {
                 let (a, b) = (&self.cuts[i], &self.cuts[j]);
                 let squared_distance = norm.squared_distance(&a.point, &b.point);
-                for (from, to) in [(a, b), (b, a)].into_iter().filter(|(_, to)| !to.lower_bound) {
+                for (from, to) in [(a, b), (b, a)].into_iter().filter(|(_, to)| !to.certified) {
                     let error = from.linearization_error(&to.point, to.value);
                     if error < 0.0 {
                         let allowance = from.error_bound + to.error_bound + 1e-9 * (from.value.abs() + to.value.abs());

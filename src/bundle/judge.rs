@@ -17,7 +17,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
         let serious = may_be_serious && comparison.is_serious(&self.method.config);
         self.state.failures = 0;
-        self.keep_record(&proposal, &comparison, serious);
+        self.keep_record(&proposal, may_be_serious.then_some(&comparison), serious);
         if may_be_serious {
             self.watch_noise(&proposal, &evaluation);
         }
@@ -60,7 +60,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
     }
 
-    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>, lower_bound: bool) {
+    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>, certified: bool) {
         let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + 15).min(150));
         let state = &mut self.state;
         state.bundle.make_room(size, state.center_id);
@@ -69,8 +69,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             point,
             value: evaluation.value,
             subgradient: evaluation.subgradient.clone(),
-            error_bound: if lower_bound { 0.0 } else { evaluation.error_bound },
-            lower_bound,
+            error_bound: evaluation.error_bound,
+            certified,
             multiplier: 0.0,
             idle: 0,
         });

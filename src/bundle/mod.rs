@@ -4,7 +4,7 @@
 //! 1  cuts → convexified cutting-plane model m of Θ at the center x̂                                       model.rs
 //! 2  min m(d) + u‖d‖²/2 over x̂ + d ∈ U → trial point y, predicted decrease, certificate             subproblem.rs
 //! 3  decrease small? lower u; else stop if the active cuts are near, else restart locally         small_decrease.rs
-//!    a curved model proposes instead while it predicts clearly better             curvature.rs, competition.rs
+//!    a curved model proposes instead while it predicts clearly better             pieces.rs, curvature.rs, competition.rs
 //! 4  evaluate Θ and one subgradient at y → new cut; failure: shorten the step                            oracle.rs
 //! 5  enough decrease: y becomes the center (serious step), else the cut improves the model (null step)      run.rs
 //! 6  next weight u = 1/t from the observed curvature, within a finite floor and ceiling                   weight.rs
@@ -21,6 +21,7 @@ mod judge;
 mod model;
 mod norm;
 mod oracle;
+mod pieces;
 mod run;
 mod small_decrease;
 mod snapshot;

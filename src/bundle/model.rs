@@ -44,7 +44,7 @@ impl Model {
             Self { slopes: vec![], offsets: vec![], ids: vec![], convexification: c, shares: vec![], center };
         for (cut, (&error, &distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(&distances)) {
             // A value that may be too high by its promised error must not put the cut above Θ.
-            let promised = if cut.id == state.center_id { 0.0 } else { cut.error_bound + state.center_error_bound() };
+            let promised = if cut.id == state.center_id { 0.0 } else { cut.excess() + state.center_error_bound() };
             let offset = (error + c * distance).max(error.abs()) + promised;
             let tilt = state.norm.lower_index(&(&state.center - &cut.point));
             model.slopes.push(if c > 0.0 { &cut.subgradient - tilt * (2.0 * c) } else { cut.subgradient.clone() });
@@ -94,7 +94,7 @@ fn convexification(state: &State, config: &BundleTrustConfig, errors: &[f64], di
     let pairs = quantile(&curvatures, config.curvature_quantile);
     let mut at_center = 0.0_f64;
     for (cut, (error, distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(distances)) {
-        let allowance = cut.error_bound + state.center_error_bound();
+        let allowance = cut.excess() + state.center_error_bound();
         if *error < -0.1 * value_resolution - allowance && *distance > 0.0 {
             at_center = at_center.max(-error / distance);
         }

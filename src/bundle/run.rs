@@ -8,7 +8,7 @@ use super::snapshot::Snapshot;
 use super::start::{admissible_start, first_evaluation};
 use super::state::State;
 use super::subproblem::{self, Proposal, SubproblemError};
-use crate::qp::EpigraphQpSolver;
+use crate::qp::{EpigraphQpSolver, QpCounts};
 use crate::report::{IterationRecord, StepKind, Termination};
 use crate::{
     Accuracy, Answer, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector,
@@ -17,7 +17,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
 
 /// A center that is evaluated again is asked for this share of the accuracy that would just do.
-const REFINEMENT: f64 = 0.1;
+const REFINEMENT: f64 = 0.03;
 
 /// A run of [`BundleTrust`], driven by hand.
 ///
@@ -171,13 +171,18 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         let model = Model::new(&mut self.state, &self.method.config);
         let before = self.solver.counts();
         let solved = subproblem::solve(&mut self.solver, &self.set, &self.state, &model);
-        let after = self.solver.counts();
-        self.state.counts.qp_solves += after.solves - before.solves;
-        self.state.counts.qp_fallbacks += after.fallbacks - before.fallbacks;
+        self.count_solves(before);
         let proposal = solved?;
         self.state.bundle.set_multipliers(&proposal.cut_multipliers);
         self.proposal = Some(proposal.clone());
         Ok(proposal)
+    }
+
+    /// Adds the subproblems solved since `before` to the report.
+    pub(super) fn count_solves(&mut self, before: QpCounts) {
+        let after = self.solver.counts();
+        self.state.counts.qp_solves += after.solves - before.solves;
+        self.state.counts.qp_fallbacks += after.fallbacks - before.fallbacks;
     }
 
     fn wanted_accuracy(&self, predicted_decrease: f64) -> Accuracy {

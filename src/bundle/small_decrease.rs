@@ -4,6 +4,7 @@
 //! the center is none either (a nonconvex function): both are checked before a run ends.
 
 use super::config::AccuracyPolicy;
+use super::cut::Cut;
 use super::run::Run;
 use super::subproblem::Proposal;
 use crate::report::Termination;
@@ -57,7 +58,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let promised = match self.method.config.accuracy {
             AccuracyPolicy::Tightest => {
                 let active = self.state.bundle.cuts().iter().filter(|cut| cut.multiplier > ACTIVE);
-                center + active.map(|cut| cut.error_bound).fold(0.0, f64::max)
+                center + active.map(Cut::excess).fold(0.0, f64::max)
             }
             AccuracyPolicy::OnDemand { tightest, .. } => {
                 let asked = self.state.center_accuracy;

@@ -9,7 +9,7 @@ use std::path::Path;
 use thiserror::Error;
 
 /// Version written into snapshots.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// The state of a run between two steps; versioned.
 #[derive(Debug, Clone, Serialize, Deserialize)]

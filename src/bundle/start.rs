@@ -64,7 +64,7 @@ pub(super) fn first_evaluation<O: NonsmoothObjective>(
         value,
         subgradient,
         error_bound,
-        lower_bound: false,
+        certified: false,
         multiplier: 0.0,
         idle: 0,
     };

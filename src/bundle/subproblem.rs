@@ -85,12 +85,7 @@ pub(crate) fn solve_curved(
     model: &CurvedModel,
     (plain, weight): (&Proposal, f64),
 ) -> Result<Proposal, SubproblemError> {
-    let mut metric = model.matrix.clone();
-    for (i, scale) in state.norm.weights().iter().enumerate() {
-        metric[(i, i)] += weight * scale;
-    }
-    let cuts = (&model.slopes[..], &model.offsets[..], &model.ids[..]);
-    let step = solve_qp(solver, set, state, Metric::Dense(&metric), cuts)?.step;
+    let step = curved_step(solver, set, state, model, weight)?;
     let proposal = Proposal { trial: &state.center + &step, weight, violation: 0.0, ..plain.clone() };
     let mut proposal = make_feasible(Proposal { step, ..proposal }, set, state)?;
     proposal.predicted_decrease = -model.change(&proposal.step);
@@ -99,6 +94,48 @@ pub(crate) fn solve_curved(
     } else {
         Err(SubproblemError::Unusable)
     }
+}
+
+/// The step of least model value and penalty among those found with the multipliers of the solve before.
+fn curved_step(
+    solver: &mut EpigraphQpSolver,
+    set: &Polyhedron,
+    state: &State,
+    model: &CurvedModel,
+    weight: f64,
+) -> Result<Vector, SubproblemError> {
+    let cuts = (&model.slopes[..], &model.offsets[..], &model.ids[..]);
+    let mut multipliers = first_multipliers(state, model);
+    let mut best: Option<(f64, Vector)> = None;
+    for _ in 0..model.rounds() {
+        let mut metric = model.matrix(state.center.len(), &multipliers);
+        for (i, scale) in state.norm.weights().iter().enumerate() {
+            metric[(i, i)] += weight * scale;
+        }
+        let solution = match solve_qp(solver, set, state, Metric::Dense(&metric), cuts) {
+            Ok(solution) => solution,
+            // A later round only refines what an earlier one has found.
+            Err(_) if best.is_some() => break,
+            Err(error) => return Err(error.into()),
+        };
+        let total = model.change(&solution.step) + 0.5 * weight * state.norm.squared(&solution.step);
+        if best.as_ref().is_none_or(|(least, _)| total < *least) {
+            best = Some((total, solution.step));
+        }
+        multipliers = solution.cut_multipliers;
+    }
+    best.map(|(_, step)| step).ok_or(SubproblemError::Unusable)
+}
+
+/// Multipliers of the plain subproblem; what its other cuts carry goes to the center, which stands for them here.
+fn first_multipliers(state: &State, model: &CurvedModel) -> Vec<f64> {
+    let of = |id: &u64| state.bundle.cut(*id).map_or(0.0, |cut| cut.multiplier);
+    let mut multipliers: Vec<f64> = model.ids.iter().map(of).collect();
+    let rest = 1.0 - multipliers.iter().sum::<f64>();
+    if let Some(center) = model.ids.iter().position(|id| *id == state.center_id) {
+        multipliers[center] += rest.max(0.0);
+    }
+    multipliers
 }
 
 /// The quadratic program of slopes, offsets and identities of cuts.

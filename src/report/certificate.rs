@@ -99,7 +99,7 @@ impl Certificate {
             let offset = &self.point - &cut.point;
             let linear = cut.linearization_error(&self.point, self.value);
             let convexified = linear + self.convexification * self.norm.squared(&offset);
-            let promised = if cut.point == self.point { 0.0 } else { cut.error_bound + self.error_bound };
+            let promised = if cut.point == self.point { 0.0 } else { cut.excess() + self.error_bound };
             error += cut.multiplier * (convexified.max(linear.abs()) + promised);
             let tilt = self.norm.lower_index(&offset) * (2.0 * self.convexification);
             aggregate += (&cut.subgradient - tilt) * cut.multiplier;
