@@ -44,6 +44,21 @@ pub trait Coderivative: StateSolver {
     /// # Errors
     /// An [`OracleError`] when the adjoint system cannot be solved.
     fn coderivative(&self, control: &Vector, state: &Self::State, direction: &Vector) -> Result<Vector, OracleError>;
+
+    /// As [`coderivative`](Self::coderivative), with an estimate of |⟨y*, y − S(α)⟩|, the error that the state returned brings
+    /// into ⟨y*, y⟩, where the adjoint yields one: it weighs the state's residuals, so that no norm of the state's error is
+    /// needed. `None` (the default) leaves the estimate to [`StateSolver::state_error`].
+    ///
+    /// # Errors
+    /// As [`coderivative`](Self::coderivative).
+    fn coderivative_with_error(
+        &self,
+        control: &Vector,
+        state: &Self::State,
+        direction: &Vector,
+    ) -> Result<(Vector, Option<f64>), OracleError> {
+        Ok((self.coderivative(control, state, direction)?, None))
+    }
 }
 
 /// A continuously differentiable J(α, y) (or, at the user's choice, one with a subgradient in its place).

@@ -38,11 +38,12 @@ impl<S: Coderivative, J: Cost<S::State>> ReducedObjective<S, J> {
             return Err(OracleError::NotFinite { what: "value" });
         }
         let gradient = self.cost.gradient(control, state);
-        let error_bound = match self.solver.state_error(state) {
+        let (product, weighted) = self.solver.coderivative_with_error(control, state, &gradient.state)?;
+        let error_bound = weighted.unwrap_or_else(|| match self.solver.state_error(state) {
             0.0 => 0.0,
             error => gradient.state.norm() * error,
-        };
-        let subgradient = gradient.control + self.solver.coderivative(control, state, &gradient.state)?;
+        });
+        let subgradient = gradient.control + product;
         if first_non_finite(subgradient.as_slice()).is_some() {
             return Err(OracleError::NotFinite { what: "subgradient" });
         }

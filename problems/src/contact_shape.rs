@@ -6,12 +6,15 @@
 //! The only file that knows both the framework and the mechanics. Dual of the state: the normal forces of all contact nodes,
 //! then, with friction, two tangential forces per node ([`crate::contact::ContactBoundary::dual_dimension`] entries).
 
-use crate::contact::{ContactForces, ContactProblem, Work};
+use crate::contact::{ContactForces, ContactProblem, ValueError, Work};
 use crate::direct::{DirectSolver, DirectState};
 use crate::error::{ContactError, SceneError};
 use crate::memory;
 use crate::scene::Scene;
-use crate::tfeti::{AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornSolver, TornState};
+use crate::tfeti::{
+    AugmentedLagrangianCounts, AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornSolver,
+    TornState,
+};
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -34,6 +37,7 @@ pub struct ContactShape {
     problem: ContactProblem,
     solver: Solver,
     kind: SolverKind,
+    recycling: Recycling,
 }
 
 #[derive(Debug)]
@@ -108,7 +112,15 @@ impl ContactShape {
             }
             SolverKind::Direct => Solver::Direct(Box::new(DirectSolver::new(&problem).map_err(size)?)),
         };
-        Ok(Self { problem, solver, kind })
+        Ok(Self { problem, solver, kind, recycling: Recycling::default() })
+    }
+
+    /// The same map with another use of dual directions by the Newton solver on total FETI: [`Recycling::Off`] gives every
+    /// Newton step a GMRES of its own. Other solvers do not look at it.
+    #[must_use]
+    pub fn with_recycling(mut self, recycling: Recycling) -> Self {
+        self.recycling = recycling;
+        self
     }
 
     /// The discrete problem.
@@ -213,7 +225,8 @@ impl StateSolver for ContactShape {
                     contraction = Some(counts.contraction).filter(|factor| *factor > 0.0);
                     solved.map(|(state, forces, work)| (state, forces, with_counts(work, &counts)))
                 } else {
-                    solver.solve(&self.problem, controls, start, tolerance)
+                    let settings = NewtonSettings { recycling: self.recycling, ..NewtonSettings::to(tolerance) };
+                    solver.solve_by(&self.problem, controls, |contact| contact.solve(start, &settings))
                 }
                 .map_err(oracle)?;
                 let load = state.load();
@@ -240,33 +253,67 @@ impl StateSolver for ContactShape {
         }
     }
 
-    /// Residual times load, N: the size of the error of the contact forces.
+    /// Residual times load, N: the size of the error of the contact forces. For a cost, [`ContactShape::pull_back`] has the
+    /// sharper estimate.
     fn state_error(&self, state: &ContactState) -> f64 {
         state.error
     }
 }
 
-impl Coderivative for ContactShape {
-    fn coderivative(&self, control: &Vector, state: &ContactState, direction: &Vector) -> Result<Vector, OracleError> {
+impl ContactShape {
+    /// One element of D*S(α)(y*), and what the residual of the state does to a function with the gradient y* there.
+    ///
+    /// # Errors
+    /// [`OracleError`] on wrong sizes, on a state of another kind of solver, and when the adjoint does not converge.
+    pub fn pull_back(
+        &self,
+        control: &Vector,
+        state: &ContactState,
+        direction: &Vector,
+    ) -> Result<(Vector, ValueError), OracleError> {
         self.check_dimension(control)?;
         let (expected, found) = (self.problem.boundary.dual_dimension(), direction.len());
         if expected != found {
             return Err(InputError::Dimension { what: "dual of the contact state", expected, found }.into());
         }
         let packed = self.problem.boundary.pack(direction.as_slice());
-        let heights = match (&self.solver, &state.solution) {
+        let (heights, error) = match (&self.solver, &state.solution) {
             (Solver::Torn(solver), Solution::Torn(torn)) => {
                 let tolerance = (ADJOINT_SHARE * state.forces.residuals.newton).clamp(TIGHTEST_ADJOINT, 1e-3);
                 let result = solver.sensitivities(&self.problem, torn, &packed, tolerance).map_err(oracle)?;
                 state.adjoint_applications.fetch_add(result.applications, Ordering::Relaxed);
-                result.heights
+                (result.heights, result.value_error)
             }
             (Solver::Direct(solver), Solution::Direct(direct)) => solver.sensitivities(&self.problem, direct, &packed),
             _ => {
                 return Err(OracleError::Failed("the state was found by another kind of contact solver".into()));
             }
         };
-        Ok(Vector::from_vec(self.problem.height_map.pull_back(&heights)))
+        Ok((Vector::from_vec(self.problem.height_map.pull_back(&heights)), error))
+    }
+
+    /// Strain energy of all bodies, N·mm; none for direct condensation, which keeps no displacements inside the bodies.
+    pub fn strain_energy(&self, state: &ContactState) -> Option<f64> {
+        match (&self.solver, &state.solution) {
+            (Solver::Torn(solver), Solution::Torn(torn)) => Some(solver.strain_energy(torn)),
+            _ => None,
+        }
+    }
+}
+
+impl Coderivative for ContactShape {
+    fn coderivative(&self, control: &Vector, state: &ContactState, direction: &Vector) -> Result<Vector, OracleError> {
+        Ok(self.pull_back(control, state, direction)?.0)
+    }
+
+    fn coderivative_with_error(
+        &self,
+        control: &Vector,
+        state: &ContactState,
+        direction: &Vector,
+    ) -> Result<(Vector, Option<f64>), OracleError> {
+        let (product, error) = self.pull_back(control, state, direction)?;
+        Ok((product, Some(error.bound)))
     }
 }
 

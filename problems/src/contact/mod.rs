@@ -7,11 +7,13 @@ mod boundary;
 pub mod certificate;
 mod problem;
 mod state;
+mod value_error;
 
 pub use boundary::{ContactBoundary, ContactPoint};
 pub use certificate::{Kink, Residuals, StatusCounts};
 pub use problem::ContactProblem;
 pub use state::{ContactForces, StageSeconds, Work};
+pub use value_error::ValueError;
 
 /// What a contact node does; method.md (3.2), (3.3).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]

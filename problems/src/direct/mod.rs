@@ -7,6 +7,7 @@
 
 mod adjoint;
 mod condensation;
+mod error_estimate;
 mod newton;
 mod solver;
 

@@ -158,7 +158,7 @@ impl CondensedContact<'_> {
     }
 
     /// All equations at u, in N.
-    fn residual(&self, u: &[f64]) -> Vec<f64> {
+    pub fn residual(&self, u: &[f64]) -> Vec<f64> {
         let reactions = self.reactions(u);
         let (forces, jumps) = self.packed(u);
         let law = projection_residual(self.boundary, &forces, &jumps, self.stiffness);

@@ -1,7 +1,7 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
 use crate::contact::certificate::law_residuals;
-use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, Work, modes};
+use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, ValueError, Work, modes};
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::newton::{CondensedContact, CondensedSolution};
 use crate::error::ContactError;
@@ -120,10 +120,17 @@ impl DirectSolver {
         }
     }
 
-    /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed rows.
-    pub fn sensitivities(&self, problem: &ContactProblem, state: &DirectState, direction: &[f64]) -> Vec<f64> {
+    /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed rows, and what the state's residual does to J.
+    pub fn sensitivities(
+        &self,
+        problem: &ContactProblem,
+        state: &DirectState,
+        direction: &[f64],
+    ) -> (Vec<f64>, ValueError) {
         let contact = self.contact(problem, &state.system);
         let (p, eta) = contact.adjoint(&state.solution.linearizations, direction);
+        let terms = contact.weighted_residuals(&state.solution, &p, &eta, direction);
+        let value_error = ValueError::from_terms(&terms, direction, &state.solution.forces);
         let size = contact.size();
         let spread = |packed: &[f64]| {
             let mut forces = vec![0.0; size];
@@ -148,7 +155,7 @@ impl DirectSolver {
         for (height, point) in heights.iter_mut().zip(&problem.boundary.points) {
             *height -= eta[point.start];
         }
-        heights
+        (heights, value_error)
     }
 }
 

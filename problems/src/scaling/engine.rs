@@ -126,7 +126,7 @@ impl Engine {
                 Ok((result.heights, adjoint))
             }
             (Self::Direct(solver), State::Direct(state)) => {
-                let heights = solver.sensitivities(problem, state, &direction);
+                let (heights, _) = solver.sensitivities(problem, state, &direction);
                 let seconds = clock.elapsed().as_secs_f64();
                 Ok((heights, Adjoint { tolerance, applications: 0, seconds, shape_seconds: 0.0 }))
             }

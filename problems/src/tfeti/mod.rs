@@ -11,6 +11,7 @@ pub mod communication;
 mod constraints;
 mod descent;
 mod dual_operator;
+mod error_estimate;
 mod factors;
 mod local_pattern;
 mod model;

@@ -2,9 +2,9 @@
 
 use crate::contact::certificate::law_residuals;
 use crate::contact::law::{self, Linearization};
-use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, StageSeconds, Work};
+use crate::contact::{ContactForces, ContactProblem, Kink, Residuals, StageSeconds, ValueError, Work};
 use crate::error::ContactError;
-use crate::linear::vector::norm;
+use crate::linear::vector::{dot, norm};
 use crate::mesh::Block;
 use crate::shape_sensitivity::column_sensitivities;
 use crate::tfeti::{
@@ -47,6 +47,8 @@ pub struct Sensitivities {
     pub adjoint_seconds: f64,
     /// Seconds of the element sums.
     pub shape_seconds: f64,
+    /// What the state's residual does to J.
+    pub value_error: ValueError,
 }
 
 /// Laps of wall-clock time.
@@ -284,6 +286,9 @@ impl TornSolver {
             }
         }
         let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, tolerance)?;
+        let iterate = &state.solution.iterate;
+        let terms = contact.weighted_residuals(iterate, &adjoint, &scaled);
+        let value_error = ValueError::from_terms(&terms, &scaled[equality..], &iterate.multipliers[equality..]);
         let adjoint_seconds = clock.lap();
         let mut heights = vec![0.0; problem.grid.column_count()];
         for part in self.element_sensitivities(problem, state, &adjoint.displacement) {
@@ -297,7 +302,27 @@ impl TornSolver {
             *height -= adjoint.multipliers[equality + point.start] / nu;
         }
         let shape_seconds = clock.lap();
-        Ok(Sensitivities { heights, applications: operator.applications(), adjoint_seconds, shape_seconds })
+        Ok(Sensitivities {
+            heights,
+            applications: operator.applications(),
+            adjoint_seconds,
+            shape_seconds,
+            value_error,
+        })
+    }
+
+    /// Strain energy ½ uᵀK u of the bodies of this process, N·mm.
+    pub fn strain_energy(&self, state: &TornState) -> f64 {
+        let pattern = &self.model.pattern.pattern;
+        let mut image = vec![0.0; pattern.dimension()];
+        let mut energy = 0.0;
+        for (subdomain, part) in self.model.subdomains.iter().zip(&state.system.parts) {
+            let Some(factors) = &part.factors else { continue };
+            let u = &state.displacement[subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count()];
+            pattern.multiply(&factors.stiffness, u, &mut image);
+            energy += 0.5 * dot(u, &image);
+        }
+        energy
     }
 
     /// Element sums per subdomain of the lower body, in order.

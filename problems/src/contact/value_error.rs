@@ -1,0 +1,37 @@
+//! The error that the residual of a state brings into a function J of its contact forces.
+//!
+//! ```text
+//! J(λ) − J(λ*) = Σ t_i + remainder,    t_i = weight by the adjoint × residual, per node or row
+//! bound = |Σ t_i| + ¼ Σ|t_i| + 1e-14 Σ|∂J/∂λ_i λ_i|
+//! ```
+//! The sum is the error to first order. The remainder is of second order: nodes whose status differs between λ and λ*, the
+//! curvature of J and of the slip circle. The bound holds whenever the remainder is at most a quarter of Σ|t_i|; the residual has
+//! to be so small that few nodes change their status on the way to the solution. The last term is rounding.
+
+use crate::linear::vector::dot;
+use serde::{Deserialize, Serialize};
+
+/// Estimates of J(λ) − J(λ*), in units of J.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct ValueError {
+    /// Σ t_i, with its sign: J less this is more accurate than J.
+    pub first_order: f64,
+    /// Bound of the absolute error.
+    pub bound: f64,
+}
+
+/// Remainder allowed for, as a share of Σ|t_i|.
+const REMAINDER: f64 = 0.25;
+/// Relative rounding error of the forces.
+const ROUNDING: f64 = 1e-14;
+
+impl ValueError {
+    /// From the terms t_i, and packed ∂J/∂λ and λ for the level of rounding.
+    pub fn from_terms(terms: &[f64], direction: &[f64], forces: &[f64]) -> Self {
+        let first_order: f64 = terms.iter().sum();
+        let absolute: f64 = terms.iter().map(|term| term.abs()).sum();
+        let sizes = |values: &[f64]| values.iter().map(|value| value.abs()).collect::<Vec<_>>();
+        let rounding = ROUNDING * dot(&sizes(direction), &sizes(forces));
+        Self { first_order, bound: first_order.abs() + REMAINDER * absolute + rounding }
+    }
+}
