@@ -1,5 +1,39 @@
 //! Error against run time: the study behind `docs/accuracy.md`.
+//!
+//! ```text
+//! cli ─┬─ discretisation, manufactured ─ rates      error against bricks, dofs, seconds
+//!      ├─ algebra                                   error against tolerance, seconds; the solver's estimate beside it
+//!      ├─ subgradient ─ kink                        Taylor tables, one-sided slopes at constructed kinks
+//!      └─ optimization                              Θ(best) − Θ* against evaluations, seconds
+//! Report ─ tables (Markdown), csv, pictures (SVG) or JSON
+//! ```
+//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
+//! stdout and nothing else there.
 
+mod algebra;
+mod cli;
+mod csv;
+mod discretisation;
+mod extent;
+mod kink;
 mod manufactured;
+mod objective;
+mod optimization;
+mod pictures;
+mod plot;
+mod rates;
+mod report;
+mod subgradient;
+mod tables;
 
-pub use manufactured::{ManufacturedErrors, manufactured_errors};
+pub use algebra::{AlgebraRow, AlgebraStudy};
+pub use cli::{Arguments, run};
+pub use discretisation::{MeshRow, MeshStudy, QUANTITIES};
+pub use extent::{Extent, Part};
+pub use kink::KinkRow;
+pub use manufactured::{ManufacturedErrors, ManufacturedFailure, manufactured_errors};
+pub use optimization::{Course, OptimizationStudy, PeakRow};
+pub use plot::{LogPlot, Series};
+pub use rates::{Extrapolation, extrapolate};
+pub use report::Report;
+pub use subgradient::{SubgradientStudy, TaylorStudy};

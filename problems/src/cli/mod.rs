@@ -14,6 +14,9 @@ mod verify;
 
 pub use arguments::{Arguments, Command};
 pub use failure::Failure;
+pub(crate) use optimize::{first_step, mean_height_coordinates};
+pub(crate) use output::{Folder, json};
+pub(crate) use verify::smooth_step;
 
 use crate::contact_shape::ContactShape;
 use crate::cost::PressureCost;

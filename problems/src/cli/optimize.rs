@@ -91,7 +91,7 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
 
 /// Half of the mean distance between the starting surface and its counterpart: the length on which contact changes, mm. A
 /// hundredth of the height where they coincide.
-fn first_step(objective: &ContactObjective, start: &Vector) -> f64 {
+pub(crate) fn first_step(objective: &ContactObjective, start: &Vector) -> f64 {
     let problem = objective.solver().problem();
     let gaps = problem.lower_block(start.as_slice()).map(|block| problem.gaps(&block)).unwrap_or_default();
     let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (2 * gaps.len().max(1)) as f64;
@@ -102,7 +102,7 @@ fn first_step(objective: &ContactObjective, start: &Vector) -> f64 {
 /// bodies that contact holds follow the surface as a whole, so that Θ hardly depends on its mean height.
 ///
 /// M = I + (κ − 1)/n · 1 1ᵀ stretches the mean by κ and leaves differences alone.
-fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
+pub(crate) fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
     let count = start.len();
     let stretch = (start.mean().abs() / first_step).max(1.0);
     Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))

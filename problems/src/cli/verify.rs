@@ -34,14 +34,7 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
     let control = controls::load(shape, arguments.controls.as_deref())?;
     let direction = nonsmooth::verify::seeded_direction(control.len(), SEED);
     let here = shape.solve(&control, None, Accuracy::TIGHTEST)?;
-    let height = control.iter().map(|height| height.abs()).sum::<f64>() / control.len() as f64;
-    let mut step = LARGEST_STEP * height;
-    for _shortening in 0..SHORTENINGS {
-        if same_piece(objective, &control, &direction, step, &here.forces.status)? {
-            break;
-        }
-        step *= RATIO;
-    }
+    let step = smooth_step(objective, &control, &direction, &here.forces.status)?;
     let steps: Vec<f64> = (0..STEPS).map(|index| step * RATIO.powi(index as i32)).collect();
     let test = taylor_test(objective, &control, &Direction::Given(direction), &steps)?;
     let result = Verified {
@@ -57,6 +50,24 @@ pub fn run(objective: &ContactObjective, arguments: &Arguments) -> Result<String
         "{}no contact node changes its status up to the step {:.1e} mm (nearest kink: relative margin {:.1e}, {} nodes weakly active)\n",
         result.test, step, result.smallest_margin, result.weakly_active
     ))
+}
+
+/// A step along which no contact node changes its status, to either side; the shortest one tried if all do.
+pub(crate) fn smooth_step(
+    objective: &ContactObjective,
+    control: &Vector,
+    direction: &Vector,
+    status: &[ContactStatus],
+) -> Result<f64, Failure> {
+    let height = control.iter().map(|height| height.abs()).sum::<f64>() / control.len() as f64;
+    let mut step = LARGEST_STEP * height;
+    for _shortening in 0..SHORTENINGS {
+        if same_piece(objective, control, direction, step, status)? {
+            break;
+        }
+        step *= RATIO;
+    }
+    Ok(step)
 }
 
 /// Whether all contact nodes keep their status a step to either side.

@@ -21,7 +21,7 @@ mod table;
 mod threads;
 
 pub use bandwidth::Bandwidth;
-pub use cases::{Case, Extent, SceneName, Variant};
+pub use cases::{Case, Extent, SceneName, Variant, word};
 pub use cli::{Arguments, run};
 pub use growth::Growth;
 pub use row::{Adjoint, Report, Row, Sample, Solve, Start};

@@ -1,0 +1,72 @@
+//! Limits of sequences over meshes, and the rates at which they are approached.
+//!
+//! ```text
+//! Q_n ≈ Q* + C n^(−p)      least squares over (Q*, C) for p on a grid, weights n²       (Richardson's extrapolation for meshes
+//!                                                                                      that do not double)
+//! ```
+
+use serde::Serialize;
+
+/// A limit and the rate of approach.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Extrapolation {
+    /// Q*.
+    pub limit: f64,
+    /// p of the best fit.
+    pub rate: f64,
+    /// Root mean square of the misfit over |Q*|.
+    pub misfit: f64,
+}
+
+/// Rates tried.
+const RATES: (f64, f64, f64) = (0.5, 3.0, 0.02);
+
+/// Fits the model to the values of three meshes or more; none for fewer, and where a value is not finite.
+pub fn extrapolate(meshes: &[f64], values: &[f64]) -> Option<Extrapolation> {
+    if meshes.len() < 3 || meshes.len() != values.len() || values.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
+    let (first, last, step) = RATES;
+    let count = ((last - first) / step).round() as usize;
+    let fits = (0..=count).filter_map(|index| fit(meshes, values, first + step * index as f64));
+    fits.min_by(|a, b| a.misfit.total_cmp(&b.misfit))
+}
+
+/// The weighted straight line Q* + C x over x = n^(−p).
+fn fit(meshes: &[f64], values: &[f64], rate: f64) -> Option<Extrapolation> {
+    let points: Vec<(f64, f64, f64)> = meshes.iter().zip(values).map(|(n, &q)| (n * n, n.powf(-rate), q)).collect();
+    let weight: f64 = points.iter().map(|(w, _, _)| w).sum();
+    let mean = |value: fn(&(f64, f64, f64)) -> f64| points.iter().map(|p| p.0 * value(p)).sum::<f64>() / weight;
+    let (x, q) = (mean(|p| p.1), mean(|p| p.2));
+    let square: f64 = points.iter().map(|p| p.0 * (p.1 - x).powi(2)).sum();
+    let product: f64 = points.iter().map(|p| p.0 * (p.1 - x) * (p.2 - q)).sum();
+    if square <= 0.0 {
+        return None;
+    }
+    let slope = product / square;
+    let limit = q - slope * x;
+    let misfit: f64 = points.iter().map(|p| p.0 * (p.2 - limit - slope * p.1).powi(2)).sum::<f64>() / weight;
+    Some(Extrapolation { limit, rate, misfit: misfit.sqrt() / limit.abs().max(f64::MIN_POSITIVE) })
+}
+
+/// log(e₁/e₂)/log(n₂/n₁); none where an error is zero.
+pub fn observed(meshes: [f64; 2], errors: [f64; 2]) -> Option<f64> {
+    let rate = (errors[0] / errors[1]).ln() / (meshes[1] / meshes[0]).ln();
+    Some(rate).filter(|rate| rate.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limit_and_rate_of_a_known_sequence() {
+        let meshes = [6.0, 8.0, 12.0, 16.0, 24.0];
+        let values = meshes.map(|n: f64| 3.0 - 5.0 * n.powf(-1.5));
+        let found = extrapolate(&meshes, &values).expect("five meshes");
+        assert!((found.limit - 3.0).abs() < 1e-9 && (found.rate - 1.5).abs() < 1e-9 && found.misfit < 1e-12);
+        assert!(extrapolate(&meshes[..2], &values[..2]).is_none());
+        let rate = observed([6.0, 12.0], [4.0, 1.0]).expect("positive errors");
+        assert!((rate - 2.0).abs() < 1e-12);
+    }
+}
