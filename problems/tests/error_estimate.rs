@@ -62,7 +62,7 @@ fn shape(seed: u64, level: f64, size: f64) -> Vector {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(8))]
+    #![proptest_config(ProptestConfig::with_cases(6))]
 
     #[test]
     fn one_body(seed in 0_u64..1_000_000, friction in prop_oneof![Just(0.0), 0.05..0.7], load in 0.3_f64..2.0) {
@@ -75,4 +75,14 @@ proptest! {
     fn two_bodies(seed in 0_u64..1_000_000, friction in prop_oneof![Just(0.0), 0.05..0.6]) {
         check(&Scene { mesh: [4; 3], friction, ..hertz().unwrap() }, &shape(seed, 9.7, 0.1))?;
     }
+}
+
+#[test]
+fn successive_approximations_meet_loose_tolerances_after_balancing() {
+    // Scenes whose balanced multipliers once missed the tolerance that the dual problem had met.
+    let scene = Scene { mesh: [4; 3], friction: 0.454_064_788_045_924_9, ..hertz().unwrap() };
+    check(&scene, &shape(711_030, 9.7, 0.1)).unwrap();
+    let mut scene = Scene { mesh: [4; 3], friction: 0.337_002_695_297_198_3, ..signorini().unwrap() };
+    scene.lower.loads[0].traction[2] *= 1.569_833_001_404_742_1;
+    check(&scene, &shape(414_454, 98.0, 1.0)).unwrap();
 }

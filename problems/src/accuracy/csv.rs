@@ -62,10 +62,11 @@ pub fn table(report: &Report) -> String {
     }
     for study in &report.optimization {
         for course in &study.courses {
-            for &(evaluations, seconds, best) in &course.points {
+            for point in &course.points {
                 let keys = ["optimization", &word(&study.scene), course.strategy];
-                put(keys, evaluations as f64, "seconds", seconds);
-                put(keys, evaluations as f64, "distance", best / study.lowest - 1.0);
+                put(keys, point.evaluations as f64, "seconds", point.seconds);
+                put(keys, point.evaluations as f64, "products", point.work);
+                put(keys, point.evaluations as f64, "distance", point.best / study.lowest - 1.0);
             }
         }
         for row in &study.peaks {

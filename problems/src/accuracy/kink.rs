@@ -33,7 +33,7 @@ pub struct KinkRow {
     pub product: f64,
     /// Nodes that the state at t* reports as weakly active.
     pub weakly_active: usize,
-    /// Whether the one-sided slopes bracket the product, up to [`SLACK`] of the larger.
+    /// Whether the one-sided slopes bracket the product, up to 1e-5 of the larger.
     pub bracketed: bool,
 }
 

@@ -32,7 +32,7 @@ pub use discretisation::{MeshRow, MeshStudy, QUANTITIES};
 pub use extent::{Extent, Part};
 pub use kink::KinkRow;
 pub use manufactured::{ManufacturedErrors, ManufacturedFailure, manufactured_errors};
-pub use optimization::{Course, OptimizationStudy, PeakRow};
+pub use optimization::{Course, Milestone, OptimizationStudy, PeakRow};
 pub use plot::{LogPlot, Series};
 pub use rates::{Extrapolation, extrapolate};
 pub use report::Report;

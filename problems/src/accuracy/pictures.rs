@@ -2,7 +2,7 @@
 
 use crate::accuracy::discretisation::QUANTITIES;
 use crate::accuracy::plot::{LogPlot, Series};
-use crate::accuracy::{AlgebraStudy, MeshStudy, OptimizationStudy, Report, SubgradientStudy};
+use crate::accuracy::{AlgebraStudy, MeshStudy, Milestone, OptimizationStudy, Report, SubgradientStudy};
 use crate::scaling::word;
 
 /// File names and texts of all pictures.
@@ -24,8 +24,10 @@ pub fn all(report: &Report) -> Vec<(String, String)> {
     }
     for study in &report.optimization {
         let name = word(&study.scene);
-        pictures.push((format!("accuracy_optimization_seconds_{name}.svg"), optimization(study, true).svg()));
-        pictures.push((format!("accuracy_optimization_evaluations_{name}.svg"), optimization(study, false).svg()));
+        for axis in [Axis::Seconds, Axis::Evaluations, Axis::Work] {
+            let file = format!("accuracy_optimization_{}_{name}.svg", axis.word());
+            pictures.push((file, optimization(study, axis).svg()));
+        }
     }
     pictures
 }
@@ -127,25 +129,50 @@ fn taylor(study: &SubgradientStudy) -> LogPlot {
     }
 }
 
-fn optimization(study: &OptimizationStudy, seconds: bool) -> LogPlot {
+/// What an optimization is measured by.
+#[derive(Debug, Clone, Copy)]
+enum Axis {
+    Seconds,
+    Evaluations,
+    Work,
+}
+
+impl Axis {
+    fn word(self) -> &'static str {
+        match self {
+            Self::Seconds => "seconds",
+            Self::Evaluations => "evaluations",
+            Self::Work => "work",
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Seconds => "seconds",
+            Self::Evaluations => "evaluations, those on coarser meshes included",
+            Self::Work => "products with the dual operator of the finest mesh",
+        }
+    }
+
+    fn of(self, point: &Milestone) -> f64 {
+        match self {
+            Self::Seconds => point.seconds,
+            Self::Evaluations => point.evaluations as f64,
+            Self::Work => point.work,
+        }
+    }
+}
+
+fn optimization(study: &OptimizationStudy, axis: Axis) -> LogPlot {
     let of = |course: &crate::accuracy::Course| Series {
         name: course.strategy.to_owned(),
-        points: course
-            .points
-            .iter()
-            .map(|&(evaluations, time, best)| {
-                (if seconds { time } else { evaluations as f64 }, best / study.lowest - 1.0)
-            })
-            .collect(),
+        points: course.points.iter().map(|point| (axis.of(point), point.best / study.lowest - 1.0)).collect(),
         joined: true,
     };
+    let fine = study.levels[study.levels.len() - 1];
     LogPlot {
-        title: format!(
-            "{}, {}³ bricks: distance from the lowest Θ found",
-            word(&study.scene),
-            study.levels[study.levels.len() - 1]
-        ),
-        x: if seconds { "seconds" } else { "evaluations, those on coarser meshes included" }.into(),
+        title: format!("{}, {fine}³ bricks: distance from the lowest Θ found", word(&study.scene)),
+        x: axis.name().into(),
         y: "(Θ(best) − Θ*)/Θ*".into(),
         series: study.courses.iter().map(of).collect(),
         guides: vec![],

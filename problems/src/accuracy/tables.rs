@@ -160,7 +160,7 @@ fn subgradient(study: &SubgradientStudy) -> String {
 }
 
 fn optimization(study: &OptimizationStudy) -> String {
-    let targets = TARGETS.map(|target| format!("to {:.0} % above Θ*: evaluations, s", 100.0 * target));
+    let targets = TARGETS.map(|target| format!("to {:.0} % above Θ*: evaluations, products, s", 100.0 * target));
     let mut columns = vec!["strategy", "evaluations fine + coarse", "seconds", "Θ at the end"];
     columns.extend(targets.iter().map(String::as_str));
     let fine = study.levels[study.levels.len() - 1];
@@ -173,7 +173,10 @@ fn optimization(study: &OptimizationStudy) -> String {
             format!("{:.5e}", course.value),
         ];
         cells.extend(course.reached.map(|reached| {
-            reached.map_or_else(|| "–".into(), |(evaluations, seconds)| format!("{evaluations}, {}", short(seconds)))
+            reached.map_or_else(
+                || "–".into(),
+                |point| format!("{}, {:.0}, {}", point.evaluations, point.work, short(point.seconds)),
+            )
         }));
         text += &line(&cells);
     }

@@ -78,6 +78,8 @@ const ROUNDING: f64 = 1e-9;
 const TARGET_SHARE: f64 = 0.5;
 /// Relative change of the slip bound below which rounding blurs the contraction.
 const BLURRED: f64 = 1e-8;
+/// Factor on the tolerance aimed at when the balanced multipliers miss it.
+const TIGHTENING: f64 = 0.2;
 /// Share of the tolerance that the inner solver may leave.
 const INNER_SHARE: f64 = 0.1;
 
@@ -111,23 +113,18 @@ impl TornContact<'_> {
         };
         let mut state = self.first(&first, &coarse);
         let mut history = Vec::new();
-        loop {
-            let solution = self.tresca(&coarse, &dual, &linear, settings, &state)?;
-            let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
-            history.push(residual);
-            let exhausted = !solution.converged && residual <= acceptable;
-            let target = TARGET_SHARE * settings.tolerance;
-            self.count(&mut state.counts, &solution);
-            self.advance(&mut state, solution)?;
-            if residual <= target || exhausted || !self.boundary.has_friction() {
-                break;
+        let mut aimed = *settings;
+        let (iterate, residual) = loop {
+            self.approximate(&coarse, &dual, &linear, &aimed, &mut state, &mut history)?;
+            let iterate = self.recover(&state.warm.x, &state.bounds)?;
+            let residual = self.residual(&iterate);
+            let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= SMALLEST_TOLERANCE;
+            if residual.is_nan() || residual <= acceptable || spent {
+                break (iterate, residual);
             }
-            if history.len() >= settings.max_fixed_point_steps {
-                break;
-            }
-        }
-        let iterate = self.recover(&state.warm.x, &state.bounds)?;
-        let residual = self.residual(&iterate);
+            // Balancing the multipliers has cost more than the share kept for it.
+            aimed.tolerance = (TIGHTENING * aimed.tolerance).max(SMALLEST_TOLERANCE);
+        };
         if residual.is_nan() || residual > acceptable {
             return Err(ContactError::NotConverged {
                 solver: "successive approximations",
@@ -139,6 +136,31 @@ impl TornContact<'_> {
         }
         let linearizations = self.linearize(&iterate);
         Ok((TornSolution { iterate, linearizations, residual, steps: state.counts.fixed_point_steps }, state.counts))
+    }
+
+    /// Tresca problems until their residual is below a share of the tolerance aimed at, or the steps are spent.
+    fn approximate(
+        &self,
+        coarse: &OrthonormalCoarse<'_>,
+        dual: &ProjectedDual<'_>,
+        linear: &[f64],
+        settings: &AugmentedLagrangianSettings,
+        state: &mut FixedPoint,
+        history: &mut Vec<f64>,
+    ) -> Result<(), ContactError> {
+        loop {
+            let solution = self.tresca(coarse, dual, linear, settings, state)?;
+            let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
+            history.push(residual);
+            let exhausted = !solution.converged && residual <= settings.tolerance.max(ROUNDING);
+            let target = TARGET_SHARE * settings.tolerance;
+            self.count(&mut state.counts, &solution);
+            self.advance(state, solution)?;
+            let spent = history.len() >= settings.max_fixed_point_steps;
+            if residual <= target || exhausted || spent || !self.boundary.has_friction() {
+                return Ok(());
+            }
+        }
     }
 
     /// The first slip bounds and multipliers: those of an iterate. Where the QP's gradient is −w, Cᵀμ is its rigid part.
