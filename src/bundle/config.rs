@@ -86,7 +86,7 @@ pub struct BundleTrustConfig {
     /// Largest number of cuts. Default none: n + 15, at most 150. ≥ 2. A large bundle remembers cuts that mislead a
     /// nonconvex run; a small one forgets kinks.
     pub bundle_size: Option<usize>,
-    /// Share m_S of the predicted decrease that makes a step serious. Default 0.05; in (0, 0.5).
+    /// Share m_S of the predicted decrease that makes a step serious. Default 0.02; in (0, 0.5).
     pub serious_fraction: f64,
     /// Share m_R of the predicted decrease that lets the weight fall at once. Default 0.5; in [m_S, 1).
     pub good_fraction: f64,
@@ -123,7 +123,7 @@ impl Default for BundleTrustConfig {
             scaling: VariableScaling::FromBox,
             accuracy: AccuracyPolicy::Tightest,
             bundle_size: None,
-            serious_fraction: 0.05,
+            serious_fraction: 0.02,
             good_fraction: 0.5,
             weight_decrease: 8.0,
             weight_increase: 10.0,
