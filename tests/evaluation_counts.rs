@@ -11,7 +11,7 @@ use testset::{Family, Problem};
 /// Evaluations to f − f* ≤ 1e-6 (1 + |f*|). Not pinned: ChebRosenN1_5, which is not solved, and ShellDual, where the last bit
 /// decides whether 2000 are enough.
 const MEASURED: [(&str, usize); 42] = [
-    ("Rosenbrock", 62),
+    ("Rosenbrock", 58),
     ("CB2", 13),
     ("CB3", 12),
     ("DEM", 7),
@@ -20,44 +20,44 @@ const MEASURED: [(&str, usize); 42] = [
     ("Mifflin2", 11),
     ("RosenSuzuki", 26),
     ("Shor", 20),
-    ("Colville1", 33),
-    ("ElAttar", 80),
+    ("Colville1", 30),
+    ("ElAttar", 90),
     ("Maxquad", 43),
-    ("Steiner2", 94),
+    ("Steiner2", 96),
     ("MAXL", 22),
     ("Goffin", 51),
-    ("L1HILB", 16),
-    ("WF", 49),
+    ("L1HILB", 15),
+    ("WF", 33),
     ("EVD52", 20),
     ("PBC3", 38),
     ("KowalikOsborne", 88),
     ("Davidon2", 32),
-    ("OET6", 214),
+    ("OET6", 231),
     ("PBC1", 45),
     ("Wong1", 50),
-    ("Wong3", 146),
-    ("Polak3", 43),
-    ("Watson20", 214),
+    ("Wong3", 141),
+    ("Polak3", 40),
+    ("Watson20", 149),
     ("MAD1", 10),
     ("MAD4", 20),
     ("PENTAGON", 13),
     ("EQUIL", 46),
-    ("Wong3lin", 115),
+    ("Wong3lin", 137),
     ("HS114", 59),
     ("Dembo5", 69),
     ("GenMXHILB", 13),
-    ("ChainedLQ", 122),
+    ("ChainedLQ", 117),
     ("ChainedCB3II", 23),
     ("ActiveFaces", 2),
     ("ChainedCrescentI", 44),
     ("ChainedCrescentII", 164),
     ("ChebRosenN1_2", 88),
-    ("NesterovWorst_20", 112),
+    ("NesterovWorst_20", 131),
 ];
 /// Sum over the unconstrained problems that all nine peers solve.
-const COMMON_SUM: f64 = 427.0;
+const COMMON_SUM: f64 = 412.0;
 /// Geometric mean of the ratio to MPBNGC over the problems both solve.
-const MEAN: f64 = 0.722;
+const MEAN: f64 = 0.718;
 
 fn evaluations(problem: &Problem) -> Option<usize> {
     let (count, hit) = (Cell::new(0), Cell::new(None));
