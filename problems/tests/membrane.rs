@@ -21,7 +21,7 @@ fn radial([x, y]: [f64; 2]) -> f64 {
 fn radial_problem(cells: usize) -> (MembraneControl, MembraneState) {
     let data =
         MembraneData { load: Box::new(|_| -2.0), obstacle: Box::new(|_| 0.0), boundary: Box::new(radial), patches: 1 };
-    let problem = MembraneControl::new(MembraneGrid::new(cells, [-1.5, -1.5], 3.0), &data).unwrap();
+    let problem = MembraneControl::new(MembraneGrid::new(cells, [-1.5, -1.5], 3.0).unwrap(), &data).unwrap();
     let state = problem.solve(&Vector::zeros(1), None, Accuracy::TIGHTEST).unwrap();
     (problem, state)
 }
@@ -165,7 +165,12 @@ fn wrong_controls_and_data_are_refused() {
         boundary: Box::new(|_| 0.0),
         patches: 1,
     };
-    assert!(MembraneControl::new(MembraneGrid::new(4, [0.0, 0.0], 1.0), &data).is_err());
+    let grid = || MembraneGrid::new(4, [0.0, 0.0], 1.0).unwrap();
+    assert!(MembraneControl::new(grid(), &data).unwrap_err().to_string().contains("NaN"));
+    let none = MembraneData { load: Box::new(|_| 0.0), patches: 0, ..data };
+    assert!(MembraneControl::new(grid(), &none).unwrap_err().to_string().contains("patches"));
+    assert!(MembraneGrid::new(1, [0.0, 0.0], 1.0).is_err() && MembraneGrid::new(4, [0.0, 0.0], -1.0).is_err());
+    assert!(example(1).is_err());
 }
 
 #[test]

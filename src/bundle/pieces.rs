@@ -25,10 +25,13 @@ impl Curvature {
     /// The curvature around a cut; errors of a pair agree if the smaller is at least `same_piece` times the larger.
     pub(crate) fn around(base: &Cut, state: &State, same_piece: f64) -> Self {
         let mut curvature = Self::default();
+        // The value of a certified cut says nothing about curvature.
+        if base.certified {
+            return curvature;
+        }
         let distance = |cut: &Cut| state.norm.squared_distance(&base.point, &cut.point);
         let mut cuts: Vec<(f64, &Cut)> = state.bundle.cuts().iter().map(|cut| (distance(cut), cut)).collect();
-        // The value of a certified cut says nothing about curvature.
-        cuts.retain(|(distance, cut)| cut.id != base.id && *distance > 0.0 && !cut.certified && !base.certified);
+        cuts.retain(|(distance, cut)| cut.id != base.id && *distance > 0.0 && !cut.certified);
         cuts.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.id.cmp(&b.1.id)));
         for (_, cut) in cuts {
             let errors =

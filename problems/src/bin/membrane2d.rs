@@ -4,11 +4,11 @@ use clap::Parser;
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
 };
-use problems::cli::Failure;
 use problems::cli::picture::field_map;
+use problems::cli::{Failure, Folder};
 use problems::membrane::{MembraneObjective, MembraneState, PATCHES, admissible_loads, example};
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Loads a membrane over a dome so that it takes a wanted shape without pressing on the dome.
@@ -45,12 +45,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
-    if let Some(folder) = &arguments.out {
-        let refused = |error| Failure::Input(format!("--out {}: {error}", folder.display()));
-        std::fs::create_dir_all(folder).map_err(refused)?;
-        write(folder, ".writable", "")?;
-        let _ = std::fs::remove_file(folder.join(".writable"));
-    }
+    let folder = arguments.out.as_deref().map(|path| Folder::with_room(path, 1 << 20)).transpose()?;
     let theta = example(usize::from(arguments.cells)).map_err(computation)?;
     let config = BundleTrustConfig { max_evaluations: arguments.max_evaluations, ..Default::default() };
     let mut method = BundleTrust::new(config)?.constraints(admissible_loads());
@@ -59,10 +54,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let start = Vector::zeros(PATCHES * PATCHES);
     let report = method.minimize(&theta, start.clone())?;
-    if let Some(folder) = &arguments.out {
+    if let Some(folder) = &folder {
         let states = [solve(&theta, &start)?, solve(&theta, &report.solution)?];
         pictures(folder, &theta, &states)?;
-        write(folder, "report.json", &serde_json::to_string_pretty(&report).map_err(computation)?)?;
+        folder.write("report.json", &serde_json::to_string_pretty(&report).map_err(computation)?)?;
     }
     print(arguments, &theta, &report)
 }
@@ -80,7 +75,9 @@ fn print(arguments: &Arguments, theta: &MembraneObjective, report: &Report) -> R
              (gap below {TOUCHING:e} of the largest height)\n{report}"
         )
     };
-    writeln!(io::stdout(), "{}", text.trim_end()).map_err(computation)
+    // A reader that closes the pipe early has seen what it wanted.
+    let _ = writeln!(io::stdout(), "{}", text.trim_end());
+    Ok(())
 }
 
 /// Gap, relative to the largest height, that counts as none.
@@ -102,7 +99,7 @@ fn solve(theta: &MembraneObjective, loads: &Vector) -> Result<MembraneState, Fai
 type Field = fn(&MembraneState) -> &[f64];
 
 /// Displacements and reactions before and after, each pair on one scale.
-fn pictures(folder: &Path, theta: &MembraneObjective, states: &[MembraneState; 2]) -> Result<(), Failure> {
+fn pictures(folder: &Folder, theta: &MembraneObjective, states: &[MembraneState; 2]) -> Result<(), Failure> {
     let grid = theta.solver().grid();
     let fields: [(&str, &str, Field); 2] = [
         ("displacement", "length", |state| &state.displacement),
@@ -124,15 +121,10 @@ fn pictures(folder: &Path, theta: &MembraneObjective, states: &[MembraneState; 2
                 _ => format!("{name} above {lowest:.4}, {moment}"),
             };
             let svg = field_map(&title, unit, [grid.length; 2], [grid.cells + 1; 2], &nodes, largest);
-            write(folder, &format!("{name}_{moment}.svg"), &svg)?;
+            folder.write(&format!("{name}_{moment}.svg"), &svg)?;
         }
     }
     Ok(())
-}
-
-fn write(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
-    let path = folder.join(name);
-    std::fs::write(&path, text).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
 }
 
 fn computation(error: impl std::fmt::Display) -> Failure {

@@ -5,7 +5,9 @@
 //! ∂(qᵀK u)/∂x₃ᵛ = Σ det [ (σ(u):∇q) G₃ᵥ − Σ σ(u)_ji ∂₃q_j G_iᵥ − Σ σ(q)_ji ∂₃u_j G_iᵥ ]       method.md (5.2)
 //! ```
 //! With [`Formulation::MeanDilatation`] the Gauss points carry the deviatoric part only (λ = −⅔μ) and
-//! `mean_dilatation` adds the volumetric one. Nodes of a brick are ordered a = 4i + 2j + k with i, j, k ∈ {0, 1} along x₁, x₂, x₃; dof 3a + component.
+//! `mean_dilatation` adds the volumetric one.
+//!
+//! Nodes of a brick are ordered a = 4i + 2j + k with i, j, k ∈ {0, 1} along x₁, x₂, x₃; dof 3a + component.
 
 use crate::elasticity::{Formulation, Material, mean_dilatation};
 use crate::scalar::Scalar;

@@ -6,10 +6,9 @@
 //! A is an M-matrix, so that u grows and the inactive part only shrinks after the first step: the method ends.
 
 use crate::error::ContactError;
-use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
+use crate::linear::cholesky::{NumericFactor, SymbolicFactor, sequential};
 use crate::linear::symmetric::LowerPattern;
 use crate::membrane::MembraneGrid;
-use faer::Par;
 use std::sync::Arc;
 
 /// The matrix with active rows and columns replaced by the identity.
@@ -50,7 +49,7 @@ impl ReducedMembrane {
     /// Solves A u − b = λ ≥ 0, u ≥ ψ, λ(u − ψ) = 0 from an active set.
     ///
     /// # Errors
-    /// [`ContactError::NotFinite`], [`ContactError::NotConverged`].
+    /// [`ContactError::NotFinite`]; [`ContactError::NotConverged`] with the share of nodes that still changed as residual.
     pub fn solve(
         &self,
         grid: &MembraneGrid,
@@ -61,13 +60,14 @@ impl ReducedMembrane {
         let mut active = start.map_or_else(|| vec![false; load.len()], <[bool]>::to_vec);
         let size = load.iter().zip(obstacle).fold(0.0_f64, |size, (b, psi)| size.max(b.abs()).max(psi.abs()));
         let rounding = 64.0 * f64::EPSILON * size;
+        let mut changed = 0;
         for step in 1..=MOST_STEPS {
             let factor = self.factorize(&active)?;
             let held: Vec<f64> = active.iter().zip(obstacle).map(|(&a, &psi)| if a { psi } else { 0.0 }).collect();
             let from_held = grid.multiply(&held);
             let mut u: Vec<f64> =
                 (0..load.len()).map(|i| if active[i] { obstacle[i] } else { load[i] - from_held[i] }).collect();
-            factor.solve_in_place(&mut u, 1, Par::Seq);
+            factor.solve_in_place(&mut u, 1, sequential());
             if u.iter().any(|value| !value.is_finite()) {
                 return Err(ContactError::NotFinite { what: "membrane" });
             }
@@ -77,14 +77,15 @@ impl ReducedMembrane {
             let next: Vec<bool> = (0..u.len())
                 .map(|i| if active[i] { reaction[i] > rounding } else { obstacle[i] - u[i] > rounding })
                 .collect();
-            if next == active {
+            changed = next.iter().zip(&active).filter(|(new, old)| new != old).count();
+            if changed == 0 {
                 return Ok(Solved { displacement: u, reaction, active, factor, steps: step });
             }
             active = next;
         }
         Err(ContactError::NotConverged {
             solver: "primal–dual active sets",
-            residual: f64::NAN,
+            residual: changed as f64 / load.len() as f64,
             tolerance: 0.0,
             iterations: MOST_STEPS,
             history: Vec::new(),
@@ -103,6 +104,6 @@ impl ReducedMembrane {
                 });
             }
         }
-        self.symbolic.factorize(&values, Par::Seq)
+        self.symbolic.factorize(&values, sequential())
     }
 }

@@ -4,7 +4,7 @@
 //! (A u)_i = 4u_i − Σ u_neighbours ≈ h² (−Δu)(x_i)
 //! ```
 
-use crate::error::ContactError;
+use crate::error::{ContactError, SceneError};
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;
 use crate::linear::symmetric::LowerPattern;
@@ -24,14 +24,19 @@ pub struct MembraneGrid {
 impl MembraneGrid {
     /// A grid of at least two cells per edge.
     ///
-    /// # Panics
-    /// When `cells < 2` or the length is not positive: a grid without nodes is a mistake of the program.
-    pub fn new(cells: usize, origin: [f64; 2], length: f64) -> Self {
-        assert!(
-            cells >= 2 && length > 0.0,
-            "a membrane needs at least 2 cells per edge (found {cells}) and a length > 0"
-        );
-        Self { cells, origin, length }
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for fewer cells, a length that is not positive, and numbers that are not finite.
+    pub fn new(cells: usize, origin: [f64; 2], length: f64) -> Result<Self, SceneError> {
+        if cells < 2 {
+            return Err(SceneError::out_of_range("cells per edge of the membrane", cells, "at least 2"));
+        }
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(SceneError::out_of_range("edge of the membrane", length, "a finite length > 0"));
+        }
+        if let Some(x) = origin.into_iter().find(|x| !x.is_finite()) {
+            return Err(SceneError::out_of_range("corner of the membrane", x, "finite numbers"));
+        }
+        Ok(Self { cells, origin, length })
     }
 
     /// h.

@@ -19,11 +19,24 @@ pub use cost::{MembraneCost, MembraneWishes};
 pub use grid::MembraneGrid;
 pub use problem::{MembraneControl, MembraneData, MembraneState};
 
-use crate::error::ContactError;
+use crate::error::{ContactError, SceneError};
 use nonsmooth::{Polyhedron, ReducedObjective, Vector};
+use thiserror::Error;
 
 /// Θ of a membrane problem.
 pub type MembraneObjective = ReducedObjective<MembraneControl, MembraneCost>;
+
+/// Why there is no membrane problem.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum MembraneError {
+    /// The data describe none.
+    #[error(transparent)]
+    Data(#[from] SceneError),
+    /// Its matrix could not be analysed.
+    #[error(transparent)]
+    Solver(#[from] ContactError),
+}
 
 /// Patches of loads per edge of the example.
 pub const PATCHES: usize = 4;
@@ -42,9 +55,9 @@ pub const LARGEST_LOAD: f64 = 40.0;
 /// ```
 ///
 /// # Errors
-/// [`ContactError::Factorization`] when the symbolic analysis fails.
-pub fn example(cells: usize) -> Result<MembraneObjective, ContactError> {
-    let grid = MembraneGrid::new(cells, [0.0, 0.0], 1.0);
+/// [`MembraneError`] for fewer than two cells per edge, and when the symbolic analysis fails.
+pub fn example(cells: usize) -> Result<MembraneObjective, MembraneError> {
+    let grid = MembraneGrid::new(cells, [0.0, 0.0], 1.0)?;
     let data = MembraneData {
         load: Box::new(|_| -8.0),
         obstacle: Box::new(|[x, y]| 0.1 - (x - 0.5).powi(2) - (y - 0.5).powi(2)),

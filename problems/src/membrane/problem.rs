@@ -7,11 +7,10 @@
 //! λ is a density (load per area). A node on the kink, u = ψ and λ = 0, counts as inactive: for independent loads at all nodes
 //! this is a limit of Jacobians nearby; for loads by patches it is an element of the set that the chain rule yields.
 
-use crate::error::ContactError;
-use crate::linear::cholesky::NumericFactor;
-use crate::membrane::MembraneGrid;
+use crate::error::SceneError;
+use crate::linear::cholesky::{NumericFactor, sequential};
 use crate::membrane::active_set::ReducedMembrane;
-use faer::Par;
+use crate::membrane::{MembraneError, MembraneGrid};
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
 
 /// A function of the position.
@@ -58,19 +57,24 @@ impl MembraneControl {
     /// Evaluates the data on the grid and analyses the pattern.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when the analysis fails, [`ContactError::NotFinite`] for data that are not numbers.
-    pub fn new(grid: MembraneGrid, data: &MembraneData) -> Result<Self, ContactError> {
+    /// [`MembraneError::Data`] without patches and for data that are not numbers, [`MembraneError::Solver`] when the analysis
+    /// fails.
+    pub fn new(grid: MembraneGrid, data: &MembraneData) -> Result<Self, MembraneError> {
+        if data.patches == 0 {
+            return Err(SceneError::out_of_range("patches per edge", 0, "at least 1").into());
+        }
         let area = grid.width() * grid.width();
         let sums = grid.boundary_sums(&data.boundary);
         let nodes: Vec<[f64; 2]> = (0..grid.node_count()).map(|index| grid.node(index)).collect();
         let constant: Vec<f64> = nodes.iter().zip(sums).map(|(&x, sum)| area * (data.load)(x) + sum).collect();
         let obstacle: Vec<f64> = nodes.iter().map(|&x| (data.obstacle)(x)).collect();
-        if constant.iter().chain(&obstacle).any(|value| !value.is_finite()) {
-            return Err(ContactError::NotFinite { what: "data of the membrane" });
+        if let Some(value) = constant.iter().chain(&obstacle).find(|value| !value.is_finite()) {
+            let field = "load, edge or obstacle of the membrane";
+            return Err(SceneError::out_of_range(field, value, "finite numbers at all nodes").into());
         }
         let patch = |x: f64, axis: usize| {
             let share = (x - grid.origin[axis]) / grid.length;
-            ((share * data.patches as f64) as usize).min(data.patches.saturating_sub(1))
+            ((share * data.patches as f64) as usize).min(data.patches - 1)
         };
         let patch_of_node = nodes.iter().map(|x| patch(x[0], 0) * data.patches + patch(x[1], 1)).collect();
         let reduced = ReducedMembrane::new(&grid)?;
@@ -156,7 +160,7 @@ impl Coderivative for MembraneControl {
         let from_pressing = self.grid.multiply(&pressing);
         let mut adjoint: Vec<f64> =
             (0..count).map(|i| if state.active[i] { 0.0 } else { toward[i] + from_pressing[i] }).collect();
-        state.factor.solve_in_place(&mut adjoint, 1, Par::Seq);
+        state.factor.solve_in_place(&mut adjoint, 1, sequential());
         let mut result = Vector::zeros(self.control_dimension());
         for (i, &patch) in self.patch_of_node.iter().enumerate() {
             result[patch] += area * (adjoint[i] - pressing[i]);

@@ -18,7 +18,6 @@ use crate::qp::{
 };
 use crate::tfeti::linear_solve::LinearAccuracy;
 use crate::tfeti::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
-use crate::tfeti::recycling::Recycled;
 use crate::tfeti::{Iterate, TornContact, TornSolution};
 
 /// When to stop, and how the dual QPs are solved.
@@ -127,7 +126,7 @@ impl TornContact<'_> {
         let linear = dual.homogenised(&self.constant);
         let first = match start {
             Some(multipliers) => self.restart(multipliers)?,
-            None => self.bonded(LinearAccuracy::START, &mut Recycled::default())?,
+            None => self.bonded(LinearAccuracy::START, None)?,
         };
         let mut state = self.first(&first, &coarse);
         let mut history = Vec::new();

@@ -19,6 +19,7 @@ use crate::tfeti::recycling::Recycled;
 const REACH: f64 = 100.0;
 /// Nodes closed first when an active set leaves a motion free.
 const FIRST_CLOSED: usize = 3;
+
 impl TornContact<'_> {
     /// Rows and coarse problem of an active set, enlarged until it holds every motion; open nodes of largest `priority` are
     /// closed first.
@@ -82,7 +83,11 @@ impl TornContact<'_> {
 
     /// The start that Newton converges from: contact rows glued, solved roughly. Nodes that only forces beyond all
     /// proportion to the load could close start open; where bodies have to travel to meet, the first to meet start closed.
-    pub(crate) fn bonded(&self, accuracy: LinearAccuracy, pairs: &mut Recycled) -> Result<Iterate, ContactError> {
+    pub(crate) fn bonded(
+        &self,
+        accuracy: LinearAccuracy,
+        pairs: Option<&mut Recycled>,
+    ) -> Result<Iterate, ContactError> {
         let reach = REACH * self.load / self.stiffness;
         let nearest = self.gaps.iter().copied().fold(f64::INFINITY, f64::min);
         let within = |reach: f64| -> Vec<Linearization> {

@@ -43,14 +43,15 @@ impl LinearAccuracy {
 const REFINEMENT_PAYS: f64 = 0.5;
 
 impl TornContact<'_> {
-    /// Solves the reduced system for an active set, starting from given multipliers; its Krylov pairs join the others.
+    /// Solves the reduced system for an active set, starting from given multipliers; its Krylov pairs join `pairs`, where
+    /// somebody will use them.
     pub(super) fn linear_solve(
         &self,
         rows: &ReducedRows<'_>,
         coarse: &CoarseProblem<'_>,
         start: &[f64],
         accuracy: LinearAccuracy,
-        pairs: &mut Recycled,
+        mut pairs: Option<&mut Recycled>,
     ) -> Result<Iterate, ContactError> {
         let mut unknowns = rows.initial(start);
         let (mut first, mut last) = (None, f64::INFINITY);
@@ -86,7 +87,7 @@ impl TornContact<'_> {
                 add_scaled(&mut unknowns, *coefficient, direction);
                 add_scaled(&mut image, *coefficient, product);
             }
-            if accuracy.cycles == 1 {
+            if let Some(pairs) = pairs.as_deref_mut() {
                 for (direction, product) in krylov.directions.iter().zip(krylov.payloads) {
                     let amplitudes = balancing_amplitudes(rows, coarse, direction, &product);
                     pairs.push(self, rows.expand(direction, true), product, amplitudes);

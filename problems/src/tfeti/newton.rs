@@ -130,30 +130,29 @@ impl TornContact<'_> {
     /// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],
     /// [`ContactError::NotFinite`], [`ContactError::Unheld`] when an active set leaves a motion free.
     pub fn solve(&self, start: Option<&[f64]>, settings: &NewtonSettings) -> Result<TornSolution, ContactError> {
-        let mut pairs = Recycled::default();
+        let mut pairs = settings.recycling.pays(self.space).then(Recycled::default);
         let mut iterate = match start {
             Some(multipliers) => match self.restart(multipliers) {
                 // Forces that hold the old shape but not the new one are no start.
-                Err(ContactError::Unheld { .. }) => self.bonded(LinearAccuracy::START, &mut pairs)?,
+                Err(ContactError::Unheld { .. }) => self.bonded(LinearAccuracy::START, pairs.as_mut())?,
                 other => other?,
             },
-            None => self.bonded(LinearAccuracy::START, &mut pairs)?,
+            None => self.bonded(LinearAccuracy::START, pairs.as_mut())?,
         };
         let mut residual = self.residual(&iterate);
         let mut history = vec![residual];
-        if settings.recycling.pays(self.space) {
+        if let Some(mut pairs) = pairs {
             residual = self.descend(&mut iterate, &mut pairs, residual, settings, &mut history)?;
         }
-        pairs.clear();
         if residual > settings.tolerance || self.precision == Precision::Double {
-            (iterate, _) = self.newton_steps(iterate, residual, false, settings, &mut history)?;
+            iterate = self.newton_steps(iterate, residual, false, settings, &mut history)?;
             residual = self.replace_image(&mut iterate);
         }
         if residual.is_nan() || residual > settings.acceptable {
-            let exact = self.bonded(LinearAccuracy::EXACT, &mut pairs)?;
+            let exact = self.bonded(LinearAccuracy::EXACT, None)?;
             let start = self.residual(&exact);
             history.push(start);
-            (iterate, _) = self.newton_steps(exact, start, true, settings, &mut history)?;
+            iterate = self.newton_steps(exact, start, true, settings, &mut history)?;
             residual = self.replace_image(&mut iterate);
         }
         if residual.is_nan() || residual > settings.acceptable {
@@ -171,7 +170,7 @@ impl TornContact<'_> {
         exact: bool,
         settings: &NewtonSettings,
         history: &mut Vec<f64>,
-    ) -> Result<(Iterate, f64), ContactError> {
+    ) -> Result<Iterate, ContactError> {
         let first = history.len() - 1;
         let budget = self.operator.applications() + MAX_PRODUCTS;
         let mut forcing = FIRST_FORCING;
@@ -185,8 +184,7 @@ impl TornContact<'_> {
             let target = forcing.max(0.3 * settings.tolerance / residual) * residual * self.load / self.stiffness;
             let accuracy = if exact { LinearAccuracy::EXACT } else { LinearAccuracy::to(target, settings.max_krylov) };
             let (rows, coarse) = self.held_at(&iterate)?;
-            let candidate =
-                self.linear_solve(&rows, &coarse, &iterate.multipliers, accuracy, &mut Recycled::default())?;
+            let candidate = self.linear_solve(&rows, &coarse, &iterate.multipliers, accuracy, None)?;
             let (next, length) = self.search(iterate, candidate, residual);
             iterate = next;
             let previous = residual;
@@ -197,7 +195,7 @@ impl TornContact<'_> {
             history.push(residual);
             forcing = eisenstat_walker(residual, previous, length);
         }
-        Ok((iterate, residual))
+        Ok(iterate)
     }
 
     /// |(c w_E, λ − Π(λ + c w))|₂ over the load.

@@ -50,12 +50,6 @@ impl Recycled {
         self.directions.len()
     }
 
-    /// Forgets all directions.
-    pub fn clear(&mut self) {
-        self.directions.clear();
-        self.products.clear();
-    }
-
     /// Adds a direction v with its product F v and its change of the rigid amplitudes.
     pub fn push(&mut self, contact: &TornContact<'_>, multipliers: Vec<f64>, image: Vec<f64>, amplitudes: Vec<f64>) {
         let mut jumps = contact.space.jumps(&amplitudes);
