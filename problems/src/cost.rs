@@ -40,6 +40,22 @@ impl PressureCost {
         Ok(Self { measure, areas, dual_dimension: boundary.dual_dimension() })
     }
 
+    /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that carries
+    /// this force is below it.
+    ///
+    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1} (Hölder), max σ ≥ Λ/ΣA, with Λ = Σλ_N ≥ 0 in N.
+    pub fn lower_bound(&self, total_force: f64) -> f64 {
+        match self.measure {
+            PressureMeasure::Norm { exponent: p } => {
+                // Relative to the mean pressure, so that no power leaves the range of numbers before the result does.
+                let area: f64 = self.areas.iter().sum();
+                let weights: f64 = self.areas.iter().map(|share| (share / area).powf(p / (p - 1.0))).sum();
+                (total_force / area).powf(p) / weights.powf(p - 1.0)
+            }
+            PressureMeasure::Peak => total_force / self.areas.iter().sum::<f64>(),
+        }
+    }
+
     /// σ per contact node, MPa.
     pub fn pressures(&self, state: &ContactState) -> Vec<f64> {
         state.forces.normal.iter().zip(&self.areas).map(|(force, area)| force / area).collect()
@@ -75,5 +91,42 @@ impl Cost<ContactState> for PressureCost {
             }
         }
         CostGradient { control: Vector::zeros(control.len()), state: dual }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Σσ^p of forces over areas.
+    fn norm(forces: &[f64], areas: &[f64], p: f64) -> f64 {
+        forces.iter().zip(areas).map(|(force, area)| (force / area).powf(p)).sum()
+    }
+
+    #[test]
+    fn the_lower_bound_is_attained_and_never_undercut() {
+        let areas = vec![1.0, 2.0, 4.0, 0.5];
+        for p in [1.5, 4.0, 12.0] {
+            let measure = PressureMeasure::Norm { exponent: p };
+            let cost = PressureCost { measure, areas: areas.clone(), dual_dimension: 4 };
+            let weights: Vec<f64> = areas.iter().map(|area: &f64| area.powf(p / (p - 1.0))).collect();
+            let forces: Vec<f64> = weights.iter().map(|w| 30.0 * w / weights.iter().sum::<f64>()).collect();
+            let bound = cost.lower_bound(30.0);
+            assert!((norm(&forces, &areas, p) / bound - 1.0).abs() < 1e-12);
+            for other in [[30.0, 0.0, 0.0, 0.0], [7.5; 4], [4.0, 8.0, 16.0, 2.0]] {
+                assert!(norm(&other, &areas, p) >= bound * (1.0 - 1e-12));
+            }
+        }
+        let cost = PressureCost { measure: PressureMeasure::Peak, areas, dual_dimension: 4 };
+        assert!((cost.lower_bound(30.0) - 4.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_lower_bound_of_the_paper_s_example() {
+        // method.md section 7: (3e7)⁴/(Σ A^{4/3})³ = 1.294e16 on 12 × 12 bricks of a 100 mm square.
+        let grid = crate::mesh::Grid { cells: [12, 12, 12], size: [100.0, 100.0] };
+        let areas = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
+        let cost = PressureCost { measure: PressureMeasure::Norm { exponent: 4.0 }, areas, dual_dimension: 169 };
+        assert!((cost.lower_bound(3e7) / 1.294e16 - 1.0).abs() < 5e-4);
     }
 }

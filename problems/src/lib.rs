@@ -12,6 +12,7 @@ pub mod linear;
 pub mod membrane;
 pub mod memory;
 pub mod mesh;
+pub mod page;
 pub mod qp;
 pub mod scalar;
 pub mod scaling;

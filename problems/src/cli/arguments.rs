@@ -14,6 +14,8 @@ use std::path::PathBuf;
 pub enum Command {
     /// Optimize the shape.
     Optimize,
+    /// Optimize with and without friction, and evaluate both shapes with friction (Example 5.3 of the paper).
+    Compare,
     /// Objective, subgradient and certificates at one shape.
     Evaluate,
     /// Taylor test of the subgradient at one shape.
@@ -111,16 +113,16 @@ impl Arguments {
     /// # Errors
     /// [`Failure::Input`] naming the option.
     pub fn check(&self) -> Result<(), Failure> {
-        let optimizing = self.command == Command::Optimize;
+        let optimizing = matches!(self.command, Command::Optimize | Command::Compare);
         let wrong = |option: &str, allowed: &str| Err(SceneError::out_of_range(option, "given", allowed).into());
         if optimizing && self.controls.is_some() {
-            return wrong("--controls", "with evaluate and verify only (optimize takes --start-controls)");
+            return wrong("--controls", "with evaluate and verify only (optimize and compare take --start-controls)");
         }
         if !optimizing && self.start_controls.is_some() {
-            return wrong("--start-controls", "with optimize only (evaluate and verify take --controls)");
+            return wrong("--start-controls", "with optimize and compare only (evaluate and verify take --controls)");
         }
         if !optimizing && self.max_evaluations.is_some() {
-            return wrong("--max-evaluations", "with optimize only");
+            return wrong("--max-evaluations", "with optimize and compare only");
         }
         if self.diagnose && self.command != Command::Evaluate {
             return wrong("--diagnose", "with evaluate only");
@@ -131,7 +133,7 @@ impl Arguments {
             ("--resume", self.resume.is_some()),
         ] {
             if !optimizing && given {
-                return wrong(option, "with optimize only");
+                return wrong(option, "with optimize and compare only");
             }
         }
         if let Some(limit) = self.time_limit.filter(|limit| !(*limit > 0.0 && limit.is_finite())) {
@@ -163,6 +165,7 @@ impl Arguments {
         }
         let Ok(nothing) = Self::try_parse_from(["resume"]) else { return Ok(()) };
         let allowed = Self {
+            command: self.command,
             resume: self.resume.clone(),
             max_evaluations: self.max_evaluations,
             time_limit: self.time_limit,

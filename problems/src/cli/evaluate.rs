@@ -2,7 +2,7 @@
 
 use crate::cli::output::{self, Folder};
 use crate::cli::picture::pressure_map;
-use crate::cli::{Arguments, ContactObjective, Failure, controls};
+use crate::cli::{Arguments, ContactObjective, Failure, Source, controls};
 use crate::contact::{Diagnosis, Kink, Residuals, StatusCounts};
 use crate::contact_shape::ContactState;
 use crate::scene_file::Case;
@@ -36,7 +36,12 @@ struct Seconds {
     subgradient: f64,
 }
 
-pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
+pub fn run(
+    objective: &ContactObjective,
+    _source: &Source,
+    case: &Case,
+    arguments: &Arguments,
+) -> Result<String, Failure> {
     let folder = Folder::prepare(case.output.folder.as_deref())?;
     let shape = objective.solver();
     let control = controls::load(shape, case, arguments.controls.as_deref())?;

@@ -5,14 +5,19 @@
 //! `--json` prints one JSON object on stdout and nothing else there.
 
 mod arguments;
+mod compare;
+mod compared;
 mod controls;
 mod evaluate;
 mod failure;
 pub mod long_run;
+mod optimization;
 mod optimize;
 mod optimized;
 mod output;
 pub mod picture;
+mod results;
+mod solved;
 mod source;
 mod stages;
 mod verify;
@@ -20,12 +25,15 @@ mod verify;
 pub use arguments::{Arguments, Command};
 pub use controls::parse as parse_controls;
 pub use failure::Failure;
-pub(crate) use optimize::{first_step, mean_height_coordinates};
+pub(crate) use optimization::{first_step, mean_height_coordinates};
 pub use output::Folder;
 pub(crate) use output::json;
 pub use source::Source;
 pub(crate) use verify::smooth_step;
 
+use crate::cli::long_run::{StageLayer, StatusLine};
+use crate::cli::optimization::Session;
+use crate::contact::STAGE_TARGET;
 use crate::contact_shape::ContactShape;
 use crate::cost::PressureCost;
 use crate::scene_file::{Case, schema};
@@ -34,7 +42,11 @@ use nonsmooth::ReducedObjective;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Instant;
 use tracing_subscriber::EnvFilter;
+use tracing_subscriber::filter::{LevelFilter, Targets};
+use tracing_subscriber::layer::{Layer, SubscriberExt};
+use tracing_subscriber::util::SubscriberInitExt;
 
 /// Θ of a scene.
 pub type ContactObjective = ReducedObjective<ContactShape, PressureCost>;
@@ -95,9 +107,9 @@ pub fn execute(open: impl FnOnce() -> Result<Source, Failure>, arguments: &Argum
         return output::json(schema());
     }
     arguments.check()?;
-    log_as_asked()?;
+    let status = listen()?;
     let source = match &arguments.resume {
-        Some(folder) => long_run::RunFolder::scene(folder)?,
+        Some(folder) => long_run::RunFolder::scene(folder, arguments.command == Command::Compare)?,
         None => open()?,
     };
     let source = source.map(|file| arguments.apply(file));
@@ -109,21 +121,35 @@ pub fn execute(open: impl FnOnce() -> Result<Source, Failure>, arguments: &Argum
         // A second call in one process keeps the first pool; results do not depend on it.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
-    match arguments.command {
-        Command::Optimize => optimize::run(&source, &case, arguments),
-        Command::Evaluate => evaluate::run(&objective(&case)?, &case, arguments),
+    let session = Session { arguments, clock: Instant::now(), status };
+    let result = match arguments.command {
+        Command::Optimize => optimize::run(&source, &case, &session),
+        Command::Compare => compare::run(&source, &case, &session),
+        Command::Evaluate => evaluate::run(&objective(&case)?, &source, &case, arguments),
         Command::Verify => verify::run(&objective(&case)?, &case, arguments),
-    }
+    };
+    session.status.clear();
+    result
 }
 
-/// Logs on stderr if the environment variable RUST_LOG asks for it.
-fn log_as_asked() -> Result<(), Failure> {
-    let Ok(filter) = std::env::var(EnvFilter::DEFAULT_ENV) else { return Ok(()) };
+/// Listens to the events of the solvers: for a log on stderr if the environment variable RUST_LOG asks for it, else for a status
+/// line if stderr is a terminal.
+fn listen() -> Result<StatusLine, Failure> {
+    // A program that has its own subscriber keeps it.
+    let Ok(filter) = std::env::var(EnvFilter::DEFAULT_ENV) else {
+        let status = StatusLine::of_stderr();
+        if status.is_visible() {
+            let line = status.clone();
+            let layer = StageLayer(move |stage| line.stage(stage));
+            let stages = Targets::new().with_target(STAGE_TARGET, LevelFilter::TRACE);
+            let _ = tracing_subscriber::registry().with(layer.with_filter(stages)).try_init();
+        }
+        return Ok(status);
+    };
     let filter =
         EnvFilter::try_new(&filter).map_err(|error| Failure::Input(format!("RUST_LOG = {filter}: {error}")))?;
-    // A program that has its own subscriber keeps it.
     let _ = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).try_init();
-    Ok(())
+    Ok(StatusLine::hidden())
 }
 
 /// Θ of a case.

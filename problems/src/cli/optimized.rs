@@ -1,8 +1,8 @@
 //! What an optimization reports: page, JSON, tables.
 
-use crate::cli::{ContactObjective, output};
+use crate::cli::ContactObjective;
+use crate::cli::solved::Solved;
 use crate::contact::{Kink, Residuals};
-use crate::contact_shape::ContactState;
 use nonsmooth::{Report, Termination, Vector};
 use serde::Serialize;
 
@@ -49,7 +49,7 @@ struct Optimized<'a> {
 }
 
 #[derive(Debug, Serialize)]
-struct Ending<'a> {
+pub struct Ending<'a> {
     reason: &'a Termination,
     text: String,
     confirmed: bool,
@@ -93,14 +93,9 @@ fn stage_summaries(finished: &[Finished]) -> Vec<StageSummary<'_>> {
         .collect()
 }
 
-fn ending(report: &Report) -> Ending<'_> {
+pub fn ending(report: &Report) -> Ending<'_> {
     let termination = &report.termination;
     Ending { reason: termination, text: termination.to_string(), confirmed: termination.is_confirmed() }
-}
-
-/// max σ of both states, MPa.
-pub fn peak_pressures(objective: &ContactObjective, states: [&ContactState; 2]) -> [f64; 2] {
-    states.map(|state| output::peak_pressure(objective, state))
 }
 
 /// One line per stage; nothing for a run on a single mesh.
@@ -121,11 +116,11 @@ pub fn stages_page(finished: &[Finished], asked: usize) -> String {
 }
 
 /// The JSON of a run: its last stage, and a line for every stage.
-pub fn summary(finished: &[Finished], states: [&ContactState; 2]) -> Option<impl Serialize> {
+pub fn summary<'a>(finished: &'a [Finished], shapes: &[Solved; 2]) -> Option<impl Serialize + use<'a>> {
     let Finished { report, objective, replayed, .. } = finished.last()?;
     let active = |multipliers: &Vector| multipliers.iter().filter(|multiplier| **multiplier != 0.0).count();
     Some(Optimized {
-        objective_start: report.start_value,
+        objective_start: shapes[0].value,
         objective: report.value,
         controls: report.solution.as_slice(),
         evaluations: report.counts.evaluations,
@@ -146,9 +141,9 @@ pub fn summary(finished: &[Finished], states: [&ContactState; 2]) -> Option<impl
         history: report.history.iter().map(|record| record.value).collect(),
         seconds: report.seconds,
         resumed_evaluations: *replayed,
-        peak_pressure: peak_pressures(objective, states),
-        residuals: states.map(|state| state.forces.residuals),
-        kinks: states.map(|state| state.forces.kink),
+        peak_pressure: shapes.each_ref().map(|shape| shape.peak_pressure),
+        residuals: shapes.each_ref().map(|shape| shape.state.forces.residuals),
+        kinks: shapes.each_ref().map(|shape| shape.state.forces.kink),
         stages: stage_summaries(finished),
         warnings: &report.warnings,
         left_out: objective.solver().left_out(),
@@ -156,10 +151,9 @@ pub fn summary(finished: &[Finished], states: [&ContactState; 2]) -> Option<impl
 }
 
 /// The one-page report.
-pub fn page(finished: &Finished, states: [&ContactState; 2]) -> String {
+pub fn page(finished: &Finished, shapes: &[Solved; 2]) -> String {
     let Finished { report, objective, .. } = finished;
-    let peaks = peak_pressures(objective, states);
-    let at_solution = &states[1].forces;
+    let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { 2 } else { 1 };
     format!(
@@ -177,9 +171,9 @@ pub fn page(finished: &Finished, states: [&ContactState; 2]) -> String {
         scene.subdomains[1],
         scene.subdomains[2],
         scene.friction,
-        report.start_value / report.value,
-        peaks[0],
-        peaks[1],
+        shapes[0].value / report.value,
+        shapes[0].peak_pressure,
+        shapes[1].peak_pressure,
         at_solution.residuals,
         at_solution.kink.smallest_margin,
         at_solution.kink.weakly_active,

@@ -7,7 +7,7 @@
 
 use crate::contact::certificate::projection_residual;
 use crate::contact::law::Linearization;
-use crate::contact::{ContactBoundary, ContactPoint};
+use crate::contact::{ContactBoundary, ContactPoint, Stage};
 use crate::direct::condensation::CondensedBody;
 use crate::error::ContactError;
 use crate::linear::dense::{DenseLu, multiply};
@@ -96,6 +96,7 @@ impl CondensedContact<'_> {
                 return Err(ContactError::NotFinite { what: "contact residual" });
             }
             history.push(residual);
+            Stage::Contact.reached(history.len() - 1, residual);
             if residual <= ACCEPTABLE && residual > 0.5 * previous {
                 break;
             }

@@ -2,7 +2,7 @@
 
 use crate::contact::certificate::law_residuals;
 use crate::contact::law::Linearization;
-use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, ValueError, Work, modes};
+use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Stage, ValueError, Work, modes};
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::newton::{CondensedContact, CondensedSolution};
 use crate::error::ContactError;
@@ -66,10 +66,12 @@ impl DirectSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(DirectState, ContactForces, Work), ContactError> {
+        Stage::Equilibrium.enter();
         let mut blocks = problem.blocks(controls)?;
         let rigid = problem.rigid_scene(&blocks);
         let grounded: Vec<Vec<f64>> =
             rigid.analyse(&problem.boundary)?.iter().map(|motion| contact_motion(&rigid, motion)).collect();
+        Stage::Factorization.enter();
         let lower = self.lower.condense(&blocks[0], &problem.scene.lower)?;
         let mut factorizations = 1;
         let upper = self.upper_body(problem, &blocks, &mut factorizations)?;
@@ -78,6 +80,7 @@ impl DirectSolver {
         let penetration: f64 = gaps.iter().map(|gap| (-gap).max(0.0)).sum();
         let load = rigid.total_load() + stiffness * penetration;
         let system = CondensedSystem { block: blocks.swap_remove(0), lower, upper, grounded, gaps, stiffness, load };
+        Stage::Contact.enter();
         let contact = self.contact(problem, &system);
         let solution = if load > 0.0 { contact.solve(start, tolerance)? } else { contact.at_rest() };
         let work = Work { newton_steps: solution.steps, factorizations, ..Work::default() };
@@ -139,6 +142,7 @@ impl DirectSolver {
             // Bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
             return Ok((vec![0.0; problem.grid.column_count()], ValueError::default()));
         }
+        Stage::Adjoint.enter();
         let contact = self.contact(problem, &state.system);
         let (p, eta) = contact.adjoint(&state.solution.linearizations, direction);
         let terms = contact.weighted_residuals(&state.solution, &p, &eta, direction);
@@ -157,6 +161,7 @@ impl DirectSolver {
         };
         let u = state.system.lower.extend(&state.solution.displacement[..size], &spread(&state.solution.forces), true);
         let p = state.system.lower.extend(&p[..size], &spread(&eta), false);
+        Stage::ShapeDerivative.enter();
         let whole = Subdomain { first_cell: [0; 3], cells: problem.grid.cells };
         let lower = &problem.scene.lower;
         let mut heights = vec![0.0; problem.grid.column_count()];

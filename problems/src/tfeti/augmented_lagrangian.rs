@@ -7,9 +7,9 @@
 //! The orthonormalised homogenised problem in the unshifted multipliers: P λ₀ = 0, so that the bounds stay where they are.
 //! Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ that it brings about.
 
-use crate::contact::Work;
 use crate::contact::certificate::projection_residual;
 use crate::contact::law::{Linearization, tangential_norm};
+use crate::contact::{Stage, Work};
 use crate::error::ContactError;
 use crate::linear::vector::{add_scaled, norm};
 use crate::qp::{
@@ -173,6 +173,7 @@ impl TornContact<'_> {
             let solution = self.tresca(coarse, dual, linear, settings, state)?;
             let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
             history.push(residual);
+            Stage::Contact.reached(history.len(), residual);
             let exhausted = !solution.converged && residual <= settings.tolerance.max(ROUNDING);
             let target = TARGET_SHARE * settings.tolerance;
             self.count(&mut state.counts, &solution);

@@ -8,6 +8,7 @@
 //! over the whole solve, derivatives follow every product, and the residual falls at the rate of the linear problem. The
 //! projector of an active set is kept while the set stays (a search direction need not know the last slip direction).
 
+use crate::contact::Stage;
 use crate::contact::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
@@ -50,6 +51,7 @@ impl TornContact<'_> {
                     replaced = residual;
                 }
                 history.push(residual);
+                Stage::Contact.reached(history.len() - 1, residual);
                 let done = residual <= settings.tolerance || stagnates(history, STAGNATION);
                 if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
                     break;

@@ -7,9 +7,9 @@
 //! (Eisenstat–Walker). One product with F gives the particular part, one each Krylov vector; F is linear, so that step
 //! lengths and the new residual are free.
 
-use crate::contact::ContactBoundary;
 use crate::contact::certificate::projection_residual;
 use crate::contact::law::Linearization;
+use crate::contact::{ContactBoundary, Stage};
 use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::tfeti::coarse::{CoarseProblem, CoarseSpace};
@@ -193,6 +193,7 @@ impl TornContact<'_> {
                 return Err(ContactError::NotFinite { what: "contact residual" });
             }
             history.push(residual);
+            Stage::Contact.reached(history.len() - 1, residual);
             forcing = eisenstat_walker(residual, previous, length);
         }
         Ok(iterate)

@@ -2,7 +2,9 @@
 
 use crate::contact::certificate::law_residuals;
 use crate::contact::law::{self, Linearization};
-use crate::contact::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, StageSeconds, ValueError, Work};
+use crate::contact::{
+    ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Stage, StageSeconds, ValueError, Work,
+};
 use crate::error::ContactError;
 use crate::linear::vector::{dot, norm};
 use crate::mesh::Block;
@@ -130,12 +132,15 @@ impl TornSolver {
     ) -> Result<(TornState, ContactForces, Work), ContactError> {
         let mut clock = Clock::start();
         let mut seconds = StageSeconds::default();
+        Stage::Equilibrium.enter();
         let blocks = problem.blocks(controls)?;
         let rigid = problem.rigid_scene(&blocks);
         let grounded = rigid.analyse(&problem.boundary)?;
         seconds.equilibrium = clock.lap();
+        Stage::Factorization.enter();
         let system = self.model.factorize(&blocks)?;
         seconds.factorization = clock.lap();
+        Stage::CoarseSpace.enter();
         let amplitudes: Vec<Vec<f64>> = grounded
             .iter()
             .map(|motion| self.model.amplitudes(&system, &blocks, motion, rigid.centre, rigid.length))
@@ -147,6 +152,7 @@ impl TornSolver {
         let operator = DualOperator::new(&self.model, &system);
         let space = CoarseSpace::new(&operator, &amplitudes);
         seconds.coarse_space = clock.lap();
+        Stage::Contact.enter();
         let (solution, displacement, residuals) = {
             let preconditioner = Preconditioner::new(&operator, self.preconditioner, stiffness);
             let contact = TornContact {
@@ -162,6 +168,7 @@ impl TornSolver {
             };
             let solution = if load > 0.0 { method(&contact)? } else { contact.at_rest() };
             seconds.newton = clock.lap();
+            Stage::Recovery.enter();
             let iterate = &solution.iterate;
             let displacement = operator.displacement(&iterate.multipliers, &iterate.amplitudes, true);
             let residuals = self.certify(problem, &contact, &solution);
@@ -311,6 +318,7 @@ impl TornSolver {
                 shape_seconds: clock.lap(),
             });
         }
+        Stage::Adjoint.enter();
         let operator = DualOperator::new(&self.model, &state.system);
         let preconditioner = Preconditioner::new(&operator, self.preconditioner, state.stiffness);
         let contact = self.linearised(problem, state, &operator, &preconditioner);
@@ -327,6 +335,7 @@ impl TornSolver {
         let terms = contact.weighted_residuals(iterate, &adjoint, &scaled);
         let value_error = ValueError::from_terms(&terms, &scaled[equality..], &iterate.multipliers[equality..]);
         let adjoint_seconds = clock.lap();
+        Stage::ShapeDerivative.enter();
         let mut heights = vec![0.0; problem.grid.column_count()];
         for part in self.element_sensitivities(problem, state, &adjoint.displacement) {
             for (column, value) in part {

@@ -10,6 +10,9 @@ const SCENE: &str = "scene.toml";
 const START: &str = "start.json";
 const REPORT: &str = "report.json";
 
+/// Folders of the two runs of a comparison.
+pub const COMPARED: [&str; 2] = ["with_friction", "without_friction"];
+
 /// A folder in which a run is kept.
 #[derive(Debug)]
 pub struct RunFolder {
@@ -19,16 +22,24 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// The scene of a run that is to be continued.
+    /// The scene of a run that is to be continued; `comparison`: of a run that has others in folders of its own.
     ///
     /// # Errors
-    /// [`SceneError::File`] if the folder holds no run.
-    pub fn scene(folder: &Path) -> Result<Source, SceneError> {
+    /// [`SceneError::File`] if the folder holds no run of this kind.
+    pub fn scene(folder: &Path, comparison: bool) -> Result<Source, SceneError> {
         if !folder.join(SCENE).exists() || !folder.join(START).exists() {
             let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
             return Err(SceneError::File { path: folder.display().to_string(), reason });
         }
         let path = folder.display().to_string();
+        if COMPARED.iter().any(|part| folder.join(part).exists()) != comparison {
+            let found = if comparison {
+                "an optimization: continue it with optimize"
+            } else {
+                "a comparison: continue it with compare"
+            };
+            return Err(SceneError::File { path, reason: format!("holds {found} --resume") });
+        }
         Ok(Source::file(&folder.join(SCENE))?.map(|mut scene| {
             scene.output.folder = Some(path);
             scene

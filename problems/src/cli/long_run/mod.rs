@@ -15,10 +15,12 @@ mod interrupt;
 mod journal;
 mod journaled;
 mod progress;
+mod status;
 mod warm_start;
 
-pub use folder::RunFolder;
+pub use folder::{COMPARED, RunFolder};
 pub use interrupt::{STATUS, interrupted, watch_interrupts};
 pub use journal::{Entry, Journal, Outcome, parse as parse_journal};
 pub use journaled::{Journaled, Kept};
 pub use progress::Progress;
+pub use status::{StageLayer, StatusLine};

@@ -1,8 +1,8 @@
 //! One line per evaluation for people, one event for logs; and the place where an interruption takes effect.
 
+use crate::cli::long_run::StatusLine;
 use crate::cli::long_run::interrupt::interrupted;
 use nonsmooth::{IterationRecord, Observer};
-use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
@@ -18,14 +18,22 @@ pub struct Progress {
     /// Evaluations answered from the journal; nothing is shown for them.
     replayed: usize,
     clock: Instant,
-    visible: bool,
+    status: StatusLine,
 }
 
 impl Progress {
-    /// Progress towards the limits; lines are shown if stderr is a terminal.
-    pub fn new(label: &str, limit: usize, time_limit: Option<f64>, replayed: usize) -> Self {
-        let visible = std::io::stderr().is_terminal();
-        Self { label: label.to_owned(), limit, time_limit, replayed, clock: Instant::now(), visible }
+    /// Progress towards the limits, shown where the status line is.
+    pub fn new(label: &str, limit: usize, time_limit: Option<f64>, replayed: usize, status: StatusLine) -> Self {
+        let this = Self { label: label.to_owned(), limit, time_limit, replayed, clock: Instant::now(), status };
+        this.announce(replayed + 1);
+        this
+    }
+
+    /// The evaluation that begins, on the status line.
+    fn announce(&self, evaluation: usize) {
+        if evaluation <= self.limit {
+            self.status.begin(format!("{}evaluation {evaluation:>4}/{}: ", self.label, self.limit));
+        }
     }
 
     fn line(&self, record: &IterationRecord, elapsed: Duration) -> String {
@@ -59,9 +67,10 @@ impl Observer for Progress {
                 seconds = record.seconds,
                 "evaluation done"
             );
-            if self.visible {
-                eprintln!("{}", self.line(record, self.clock.elapsed()));
+            if self.status.is_visible() {
+                self.status.print(&self.line(record, self.clock.elapsed()));
             }
+            self.announce(record.evaluation + 1);
         }
         if interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
@@ -102,7 +111,7 @@ mod tests {
             seconds: 1.0,
         };
         // Ten evaluations after the resumption took 50 s: 120 more take ten minutes, the time limit leaves two.
-        let mut progress = Progress::new("mesh 6: ", 150, None, 20);
+        let mut progress = Progress::new("mesh 6: ", 150, None, 20, StatusLine::hidden());
         let line = progress.line(&record, Duration::from_secs(50));
         for words in
             ["mesh 6: evaluation   30/150", "serious", "1.500000e16", "2.0e14", "elapsed 50.0 s", "at most 10 min 00 s"]

@@ -1,0 +1,53 @@
+//! What a contact solver is doing, told as `tracing` events: a log or a status line follows them, and without a listener they
+//! cost nothing.
+
+use std::fmt;
+
+/// Target of the events: entering a stage has the level debug, a step of an iteration the level trace.
+pub const TARGET: &str = "problems::stage";
+
+/// A stage of a state or of its subgradient, in the order in which they come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Rigid body analysis of the scene.
+    Equilibrium,
+    /// Assembly and factorisation of subdomains or bodies.
+    Factorization,
+    /// The coarse space of the dual operator.
+    CoarseSpace,
+    /// The iteration for the contact forces.
+    Contact,
+    /// Displacements and certificates.
+    Recovery,
+    /// The adjoint system.
+    Adjoint,
+    /// The element sums of the shape derivative.
+    ShapeDerivative,
+}
+
+impl Stage {
+    /// Says that the stage begins.
+    pub fn enter(self) {
+        tracing::debug!(target: TARGET, stage = %self);
+    }
+
+    /// Says how far its iteration has come: steps so far, relative residual.
+    pub fn reached(self, steps: usize, residual: f64) {
+        tracing::trace!(target: TARGET, stage = %self, steps, residual);
+    }
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Equilibrium => "equilibrium",
+            Self::Factorization => "factorization",
+            Self::CoarseSpace => "coarse space",
+            Self::Contact => "contact",
+            Self::Recovery => "recovery",
+            Self::Adjoint => "adjoint",
+            Self::ShapeDerivative => "shape derivative",
+        })
+    }
+}
