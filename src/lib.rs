@@ -4,6 +4,9 @@
 //! minimise Θ(α) = J(α, S(α))  over  α ∈ U,      ξ = ∇₁J + D*S(α)(∇₂J) ∈ ∂Θ(α)              method.md (1.1), (1.2)
 //! ```
 
+/// The version of this crate, for reports.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
 pub mod bundle;
 pub mod constraints;
 pub mod counted;

@@ -16,6 +16,8 @@ mod optimize;
 mod optimized;
 mod output;
 pub mod picture;
+mod report_pages;
+mod report_sections;
 mod results;
 mod solved;
 mod source;

@@ -139,13 +139,17 @@ pub struct OutputSection {
     /// Folder for the files of a run, made if it does not exist. Default none: nothing is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<String>,
-    /// Whether maps of the contact pressure are drawn into the folder.
+    /// Whether pictures are drawn into the folder, as SVG and PNG.
     pub pictures: bool,
+    /// Whether displacements, stresses and the contact boundary are written for ParaView.
+    pub vtk: bool,
+    /// Whether a report is written as a self-contained HTML page.
+    pub report: bool,
 }
 
 impl Default for OutputSection {
     fn default() -> Self {
-        Self { folder: None, pictures: true }
+        Self { folder: None, pictures: true, vtk: true, report: true }
     }
 }
 

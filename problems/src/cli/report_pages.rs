@@ -1,0 +1,146 @@
+//! The HTML report of each command: self-contained, opens offline.
+
+use crate::cli::ContactObjective;
+use crate::cli::compared::Compared;
+use crate::cli::optimized::Finished;
+use crate::cli::report_sections::{Picture, certificate, course, files, origin, pictures, states};
+use crate::cli::solved::Solved;
+use crate::contact::StageSeconds;
+use crate::page::{Block, Page, Section};
+
+/// What every report needs beside its results.
+pub struct Context<'a> {
+    /// The scene as a complete file.
+    pub scene: &'a str,
+    /// Pictures, in the order in which they are shown.
+    pub pictures: &'a [Picture],
+    /// Names of the other files, with what they hold.
+    pub files: &'a [(String, &'static str)],
+}
+
+/// The report of an optimization.
+pub fn optimization(context: &Context<'_>, finished: &Finished, shapes: &[Solved; 2]) -> Page {
+    let Finished { objective, report, .. } = finished;
+    let confirmed = if report.termination.is_confirmed() {
+        "The optimum is confirmed by its certificate."
+    } else {
+        "It is the best shape found; the run ended without a proof of optimality."
+    };
+    let lead = format!(
+        "Θ falls from {:.4e} to {:.4e}, by a factor of {:.3}; the peak pressure from {:.1} to {:.1} MPa, in {} evaluations. \
+         {confirmed}",
+        shapes[0].value,
+        report.value,
+        shapes[0].value / report.value,
+        shapes[0].peak_pressure,
+        shapes[1].peak_pressure,
+        report.counts.evaluations
+    );
+    let sections = vec![
+        pictures("Pictures", context.pictures),
+        states(objective, &[("start", &shapes[0]), ("optimum", &shapes[1])]),
+        course(report),
+        certificate(report.certificate.as_ref()),
+        controls(objective, shapes[1].controls.as_slice()),
+        seconds(&shapes[1]),
+        origin(context.scene, &objective.solver().left_out(), &report.warnings),
+        files(context.files),
+    ];
+    page(objective, "optimized shape", lead, sections)
+}
+
+/// The report of an evaluation.
+pub fn evaluation(context: &Context<'_>, objective: &ContactObjective, shape: &Solved) -> Page {
+    let counts = shape.state.forces.counts();
+    let lead = format!(
+        "Θ = {:.10e}, peak pressure {:.2} MPa; {} contact nodes open, {} stick, {} slip.",
+        shape.value, shape.peak_pressure, counts.open, counts.stick, counts.slip
+    );
+    let sections = vec![
+        pictures("Pictures", context.pictures),
+        states(objective, &[("value", shape)]),
+        controls(objective, shape.controls.as_slice()),
+        seconds(shape),
+        origin(context.scene, &objective.solver().left_out(), &[]),
+        files(context.files),
+    ];
+    page(objective, "one shape", lead, sections)
+}
+
+/// The report of a comparison with and without friction.
+pub fn comparison(context: &Context<'_>, compared: &Compared<'_>) -> Page {
+    let objective = &compared.runs[0].objective;
+    let sentences = compared.conclusion();
+    let lead = sentences.first().cloned().unwrap_or_default();
+    let friction = objective.solver().problem().scene.friction;
+    let head = [
+        "shape".to_owned(),
+        format!("Θ, friction {friction}"),
+        "peak, MPa".into(),
+        "Θ, no friction".into(),
+        "peak, MPa".into(),
+    ];
+    let rows = compared.rows().map(|row| {
+        vec![
+            row.shape.to_owned(),
+            format!("{:.6e}", row.objective_with_friction),
+            format!("{:.1}", row.peak_pressure_with_friction),
+            format!("{:.6e}", row.objective_without_friction),
+            format!("{:.1}", row.peak_pressure_without_friction),
+        ]
+    });
+    let table = Section::new("Shapes in both models", vec![Block::table(head, rows), Block::List(sentences)]);
+    let both = [("optimized with friction", &compared.own[0][1]), ("optimized without friction", &compared.crossed[0])];
+    let mut with_friction = states(objective, &both);
+    with_friction.title = format!("Both shapes with friction {friction}");
+    let sections = vec![
+        table,
+        pictures("Pictures", context.pictures),
+        with_friction,
+        origin(context.scene, &objective.solver().left_out(), &[]),
+        files(context.files),
+    ];
+    page(objective, "with and without friction", lead, sections)
+}
+
+fn page(objective: &ContactObjective, what: &str, lead: String, sections: Vec<Section>) -> Page {
+    let scene = &objective.solver().problem().scene;
+    let [n1, n2, n3] = scene.mesh;
+    let bodies = if scene.upper.is_some() { 2 } else { 1 };
+    let title = format!("{}: {what} ({bodies} × {n1}×{n2}×{n3} bricks, friction {})", scene.name, scene.friction);
+    let used = |section: &Section| !section.blocks.is_empty();
+    Page { title, lead, sections: sections.into_iter().filter(used).collect() }
+}
+
+/// Control heights as the table that they are: one row per control point along x₁.
+fn controls(objective: &ContactObjective, heights: &[f64]) -> Section {
+    let [_, along] = objective.solver().problem().scene.control_points;
+    let head = std::iter::once("mm".to_owned()).chain((1..=along).map(|j| format!("x₂: {j}")));
+    let rows = heights.chunks(along).enumerate().map(|(i, line)| {
+        std::iter::once(format!("x₁: {}", i + 1)).chain(line.iter().map(|height| format!("{height:.4}"))).collect()
+    });
+    Section::new("Control heights", vec![Block::table(head, rows.collect::<Vec<Vec<String>>>())])
+}
+
+/// Where the time of one state went; empty for a solver that does not keep it.
+fn seconds(shape: &Solved) -> Section {
+    let Some(torn) = shape.state.torn() else { return Section::default() };
+    let StageSeconds { equilibrium, factorization, coarse_space, newton, recovery, .. } = torn.seconds();
+    let stages = [
+        ("equilibrium", equilibrium),
+        ("factorization", factorization),
+        ("coarse space", coarse_space),
+        ("contact", newton),
+        ("recovery", recovery),
+    ];
+    let total: f64 = stages.iter().map(|(_, seconds)| seconds).sum();
+    let row = |(name, seconds): (&str, f64)| {
+        vec![name.to_owned(), format!("{seconds:.4}"), format!("{:.0} %", 100.0 * seconds / total)]
+    };
+    let rows: Vec<Vec<String>> = stages.into_iter().map(row).collect();
+    let words = "Wall-clock seconds of the last state, solved from nothing.";
+    Section::new(
+        "Time of one state",
+        vec![Block::table(["stage", "seconds", "share"], rows), Block::Text(words.into())],
+    )
+}
