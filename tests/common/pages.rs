@@ -4,6 +4,8 @@
 //! that: the tests have their options parsed. `#` begins a comment. Blocks of another kind hold no command that begins with
 //! `cargo` or `git`, except those marked `text`: output, or usage.
 
+#![allow(dead_code, reason = "two tests share this, each uses its part")]
+
 use std::path::{Path, PathBuf};
 
 /// One page of the repository.
