@@ -12,6 +12,7 @@ use thiserror::Error;
 
 /// The direction of a [`taylor_test`].
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Direction {
     /// A given direction; its length is the unit of the steps.
     Given(Vector),
@@ -21,6 +22,7 @@ pub enum Direction {
 
 /// One step of a Taylor test.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
 pub struct TaylorRow {
     /// Step h.
     pub step: f64,
@@ -34,6 +36,7 @@ pub struct TaylorRow {
 
 /// Result of a Taylor test. `Display` is the table.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
 pub struct TaylorTest {
     /// ⟨ξ, d⟩.
     pub directional_derivative: f64,

@@ -21,6 +21,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Which contact solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum SolverKind {
     /// Semismooth Newton on total FETI.
     #[default]
@@ -67,6 +68,7 @@ enum Solution {
 
 /// What restarts a solve nearby.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub enum ContactWarmStart {
     /// Multipliers of the torn problem.
     Multipliers(Vec<f64>),

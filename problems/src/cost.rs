@@ -7,6 +7,7 @@ use nonsmooth::{Cost, CostGradient, Vector};
 
 /// A function of the contact pressures.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum PressureMeasure {
     /// Σσ^p, MPa^p.
     Norm {

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 /// What is known about the convexity of Θ on the admissible set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Convexity {
     /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex.
     #[default]
@@ -17,6 +18,7 @@ pub enum Convexity {
 /// In which units the distance of two points is measured, ‖d‖² = Σ (dᵢ/Dᵢ)².
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum VariableScaling {
     /// Dᵢ proportional to the width of the box if every variable has a finite one, otherwise Dᵢ = 1.
     #[default]
@@ -30,6 +32,7 @@ pub enum VariableScaling {
 /// Which accuracy the engine asks of the oracle.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum AccuracyPolicy {
     /// Always as accurate as the oracle can.
     #[default]

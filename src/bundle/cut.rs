@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 /// One evaluation kept in the bundle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Cut {
     /// Number of the evaluation that made the cut; unique in a run.
     pub id: u64,

@@ -61,6 +61,7 @@ pub struct EpigraphQp<'a> {
 
 /// Which method produced an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum QpMethod {
     /// The dual active-set method.
     ActiveSet,
@@ -70,6 +71,7 @@ pub enum QpMethod {
 
 /// Minimiser, multipliers and certificate.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct QpSolution {
     /// The minimiser d.
     pub step: Vector,
@@ -91,6 +93,7 @@ pub struct QpSolution {
 
 /// Work done by a solver since it was made.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct QpCounts {
     /// Calls of `solve`.
     pub solves: usize,

@@ -12,6 +12,7 @@ use std::fmt;
 
 /// How stationary a point is, with all that is needed to compute it again.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Certificate {
     /// The center x̂.
     pub point: Vector,
@@ -45,6 +46,7 @@ pub struct Certificate {
 
 /// The numbers of a certificate computed again from its cuts and multipliers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct CertificateCheck {
     /// ‖z̃‖* computed from cuts and multipliers.
     pub aggregate_norm: f64,

@@ -18,6 +18,7 @@ use std::fmt;
 
 /// The result of a run. `Display` is a one-page summary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Report {
     /// The best admissible point found.
     pub solution: Vector,

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 /// What became of an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum StepKind {
     /// The first evaluation.
     Start,
@@ -70,6 +71,7 @@ pub struct IterationRecord {
 
 /// Counts of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Counts {
     /// Evaluations, failed ones included.
     pub evaluations: usize,

@@ -5,6 +5,7 @@ use crate::error::SceneError;
 /// How a trilinear brick sees the change of volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Formulation {
     /// At every Gauss point. Locks when ν approaches ½.
     #[default]

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// Analytic surfaces of the paper, a plane, indenters with known solutions, and heights on a grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum CounterSurface {
     /// `base + first·sin(2πx₁/period) + second·cos(2πx₂/period)`, paper (5.3).
     Waves {

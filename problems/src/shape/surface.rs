@@ -6,6 +6,7 @@ use crate::shape::bspline::Basis;
 
 /// Which spline carries the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
 pub enum SplineKind {
     /// Clamped uniform B-spline of this degree.
     BSpline(usize),

@@ -24,6 +24,7 @@ const LOCKED: f64 = 1.5;
 
 /// Why an error was not measured.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum LockingError {
     /// The material.
     #[error(transparent)]

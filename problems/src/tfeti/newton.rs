@@ -71,6 +71,7 @@ impl NewtonSettings {
 /// Use of the dual directions that a solve has already multiplied with F.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Recycling {
     /// On unless the coarse problem is so large that its repeated factorisation outweighs the products saved.
     #[default]

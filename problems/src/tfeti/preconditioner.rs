@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 /// Which preconditioner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
 pub enum PreconditionerKind {
     /// Schur complements: fewest products with F.
     #[default]

@@ -1,0 +1,178 @@
+//! What publishing needs: metadata, licences and Rust versions of all packages, from `cargo metadata`.
+
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// Licences that ask for no more than a notice, so that MIT or Apache-2.0 can be kept.
+const PERMISSIVE: [&str; 8] =
+    ["MIT", "Apache-2.0", "BSD-2-Clause", "BSD-3-Clause", "Zlib", "0BSD", "Unlicense", "Unicode-3.0"];
+
+/// Licences of data inside single packages: fonts that may be embedded, and must not be sold by themselves.
+const FONTS: [(&str, &str); 2] = [("epaint_default_fonts", "OFL-1.1"), ("epaint_default_fonts", "Ubuntu-font-1.0")];
+
+/// The categories in use; all of them exist in the registry.
+const CATEGORIES: [&str; 4] = ["algorithms", "mathematics", "science", "simulation"];
+
+fn cargo(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo starts");
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// All packages that this machine builds: others need not have been downloaded.
+fn metadata() -> Value {
+    let version = cargo(&["-vV"]);
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("cargo tells its host");
+    let text = cargo(&["metadata", "--locked", "--offline", "--format-version", "1", "--filter-platform", host]);
+    serde_json::from_str(&text).expect("JSON")
+}
+
+fn entries(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}
+
+fn text(value: &Value) -> &str {
+    value.as_str().unwrap_or_default()
+}
+
+fn packages(metadata: &Value) -> BTreeMap<&str, &Value> {
+    entries(&metadata["packages"]).iter().map(|package| (text(&package["id"]), package)).collect()
+}
+
+fn is_published(package: &Value) -> bool {
+    package["source"].is_null() && package["publish"].is_null()
+}
+
+/// Packages that the published ones need to be built, themselves included; not what tests need.
+fn needed(metadata: &Value) -> BTreeSet<&str> {
+    let nodes: BTreeMap<&str, &Value> =
+        entries(&metadata["resolve"]["nodes"]).iter().map(|node| (text(&node["id"]), node)).collect();
+    let published = packages(metadata).into_iter().filter(|(_, package)| is_published(package));
+    let mut open: Vec<&str> = published.map(|(id, _)| id).collect();
+    let mut found = BTreeSet::new();
+    while let Some(id) = open.pop() {
+        if found.insert(id) {
+            let built =
+                |dependency: &&Value| entries(&dependency["dep_kinds"]).iter().any(|kind| kind["kind"] != "dev");
+            open.extend(entries(&nodes[id]["deps"]).iter().filter(built).map(|dependency| text(&dependency["pkg"])));
+        }
+    }
+    found
+}
+
+/// Major, minor, patch.
+fn version(text: &str) -> Vec<u64> {
+    let mut numbers: Vec<u64> = text.split('.').map(|number| number.parse().expect("a number")).collect();
+    numbers.resize(3, 0);
+    numbers
+}
+
+/// Whether a licence expression can be satisfied: `OR` needs one side, `AND` (which binds tighter) both.
+fn satisfied(expression: &str, allowed: &dyn Fn(&str) -> bool) -> bool {
+    let spaced = expression.replace('(', " ( ").replace(')', " ) ").replace('/', " OR ");
+    let words: Vec<&str> = spaced.split_whitespace().collect();
+    let mut at = 0;
+    let result = alternatives(&words, &mut at, allowed);
+    assert_eq!(at, words.len(), "licence expression {expression:?}");
+    result
+}
+
+fn alternatives(words: &[&str], at: &mut usize, allowed: &dyn Fn(&str) -> bool) -> bool {
+    let mut result = conjunction(words, at, allowed);
+    while words.get(*at) == Some(&"OR") {
+        *at += 1;
+        result |= conjunction(words, at, allowed);
+    }
+    result
+}
+
+fn conjunction(words: &[&str], at: &mut usize, allowed: &dyn Fn(&str) -> bool) -> bool {
+    let mut result = licence(words, at, allowed);
+    while words.get(*at) == Some(&"AND") {
+        *at += 1;
+        result &= licence(words, at, allowed);
+    }
+    result
+}
+
+fn licence(words: &[&str], at: &mut usize, allowed: &dyn Fn(&str) -> bool) -> bool {
+    let word = words.get(*at).expect("a licence");
+    *at += 1;
+    if *word != "(" {
+        return allowed(word);
+    }
+    let inside = alternatives(words, at, allowed);
+    assert_eq!(words.get(*at), Some(&")"), "a closing bracket");
+    *at += 1;
+    inside
+}
+
+#[test]
+fn two_packages_with_all_that_a_registry_asks_for() {
+    let metadata = metadata();
+    let packages = packages(&metadata);
+    let published: Vec<&&Value> = packages.values().filter(|package| is_published(package)).collect();
+    let names: BTreeSet<&str> = published.iter().map(|package| text(&package["name"])).collect();
+    assert_eq!(names, BTreeSet::from(["nonsmooth", "problems"]));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for package in published {
+        let name = text(&package["name"]);
+        assert!(text(&package["description"]).len() > 40, "{name}: description");
+        assert_eq!(text(&package["license"]), "MIT OR Apache-2.0", "{name}");
+        let folder = Path::new(text(&package["manifest_path"])).parent().expect("a folder");
+        let readme = fs::read_to_string(folder.join(text(&package["readme"]))).expect("a README");
+        assert!(readme.starts_with(&format!("# {name}\n")), "{name}: README");
+        for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
+            let own = fs::read(folder.join(file)).unwrap_or_else(|error| panic!("{name}: {file}: {error}"));
+            assert_eq!(own, fs::read(root.join(file)).expect("the licence"), "{name}: {file}");
+        }
+        let categories: Vec<&str> = entries(&package["categories"]).iter().map(text).collect();
+        assert!(!categories.is_empty() && categories.len() <= 5, "{name}: {categories:?}");
+        assert!(categories.iter().all(|category| CATEGORIES.contains(category)), "{name}: {categories:?}");
+        let keywords: Vec<&str> = entries(&package["keywords"]).iter().map(text).collect();
+        assert!(!keywords.is_empty() && keywords.len() <= 5, "{name}: {keywords:?}");
+        let plain = |word: &&str| word.len() <= 20 && word.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+        assert!(keywords.iter().all(plain), "{name}: {keywords:?}");
+    }
+}
+
+#[test]
+fn no_dependency_asks_for_a_newer_rust() {
+    let metadata = metadata();
+    let ours = version(env!("CARGO_PKG_RUST_VERSION"));
+    for package in packages(&metadata).values().filter(|package| !package["rust_version"].is_null()) {
+        let theirs = text(&package["rust_version"]);
+        assert!(version(theirs) <= ours, "{} needs Rust {theirs}", package["name"]);
+    }
+}
+
+#[test]
+fn dependencies_have_licences_that_ask_for_a_notice_only() {
+    let metadata = metadata();
+    let packages = packages(&metadata);
+    let needed = needed(&metadata);
+    assert!(needed.len() > 50 && needed.len() < packages.len(), "{} of {}", needed.len(), packages.len());
+    for id in needed {
+        let (name, expression) = (text(&packages[id]["name"]), text(&packages[id]["license"]));
+        let allowed = |licence: &str| PERMISSIVE.contains(&licence) || FONTS.contains(&(name, licence));
+        assert!(satisfied(expression, &allowed), "{name}: licence {expression:?}");
+    }
+}
+
+#[test]
+fn licence_expressions_are_understood() {
+    let allowed = |licence: &str| PERMISSIVE.contains(&licence);
+    for good in ["MIT", "MIT/Apache-2.0", "GPL-3.0 OR MIT", "(MIT OR GPL-3.0) AND Zlib"] {
+        assert!(satisfied(good, &allowed), "{good}");
+    }
+    for bad in ["GPL-3.0", "MIT AND GPL-3.0", "GPL-3.0 OR MIT AND GPL-2.0", "(MIT OR Zlib) AND MPL-2.0"] {
+        assert!(!satisfied(bad, &allowed), "{bad}");
+    }
+}
