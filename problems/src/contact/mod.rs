@@ -7,6 +7,7 @@ pub mod modes;
 mod boundary;
 pub mod certificate;
 mod problem;
+mod solved_body;
 mod state;
 mod value_error;
 
@@ -14,6 +15,7 @@ pub use boundary::{ContactBoundary, ContactPoint};
 pub use certificate::{Kink, Residuals, StatusCounts};
 pub use diagnosis::Diagnosis;
 pub use problem::ContactProblem;
+pub use solved_body::SolvedBody;
 pub use state::{ContactForces, StageSeconds, Work};
 pub use value_error::ValueError;
 
