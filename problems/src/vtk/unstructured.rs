@@ -73,11 +73,10 @@ fn write_bytes(text: &mut String, kind: &str, name: &str, components: usize, mor
     let mut block = Vec::with_capacity(8 + bytes.len());
     block.extend((bytes.len() as u64).to_le_bytes());
     block.extend_from_slice(bytes);
+    // VTK leaves the number out where it is one; some readers make columns of what has it.
+    let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
     // Writing to a string does not fail.
-    let _ = write!(
-        text,
-        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\"{more} format=\"binary\">"
-    );
+    let _ = write!(text, "<DataArray type=\"{kind}\" Name=\"{name}\"{components}{more} format=\"binary\">");
     STANDARD.encode_string(&block, text);
     *text += "</DataArray>\n";
 }
