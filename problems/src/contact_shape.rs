@@ -9,6 +9,7 @@
 use crate::contact::{ContactForces, ContactProblem, Diagnosis, ValueError, Work};
 use crate::direct::{DirectSolver, DirectState};
 use crate::error::{ContactError, SceneError};
+use crate::fields::Fields;
 use crate::memory;
 use crate::scene::Scene;
 use crate::tfeti::{
@@ -146,7 +147,7 @@ impl ContactShape {
             (Solver::Direct(solver), Solution::Direct(direct)) => {
                 solver.diagnose(&self.problem, direct).map_err(oracle)
             }
-            _ => Err(OracleError::Failed("the state was found by another kind of contact solver".into())),
+            _ => Err(other_solver()),
         }
     }
 
@@ -295,26 +296,51 @@ impl ContactShape {
         direction: &Vector,
     ) -> Result<(Vector, ValueError), OracleError> {
         self.check_dimension(control)?;
+        let (heights, error) = self.height_sensitivity(state, direction)?;
+        Ok((Vector::from_vec(self.problem.height_map.pull_back(&heights)), error))
+    }
+
+    /// As [`ContactShape::pull_back`], for the heights of the contact nodes instead of the controls: with y* = ∂J/∂y of a cost,
+    /// ∂J/∂(height) per contact node, unit of J per mm. A shape may move every node on its own here; the controls move them
+    /// together.
+    ///
+    /// # Errors
+    /// As [`ContactShape::pull_back`].
+    pub fn height_sensitivity(
+        &self,
+        state: &ContactState,
+        direction: &Vector,
+    ) -> Result<(Vec<f64>, ValueError), OracleError> {
         let (expected, found) = (self.problem.boundary.dual_dimension(), direction.len());
         if expected != found {
             return Err(InputError::Dimension { what: "dual of the contact state", expected, found }.into());
         }
         let packed = self.problem.boundary.pack(direction.as_slice());
-        let (heights, error) = match (&self.solver, &state.solution) {
+        match (&self.solver, &state.solution) {
             (Solver::Torn(solver), Solution::Torn(torn)) => {
                 let tolerance = (ADJOINT_SHARE * state.forces.residuals.newton).clamp(TIGHTEST_ADJOINT, 1e-3);
                 let result = solver.sensitivities(&self.problem, torn, &packed, tolerance).map_err(oracle)?;
                 state.adjoint_applications.fetch_add(result.applications, Ordering::Relaxed);
-                (result.heights, result.value_error)
+                Ok((result.heights, result.value_error))
             }
             (Solver::Direct(solver), Solution::Direct(direct)) => {
-                solver.sensitivities(&self.problem, direct, &packed).map_err(oracle)?
+                solver.sensitivities(&self.problem, direct, &packed).map_err(oracle)
             }
-            _ => {
-                return Err(OracleError::Failed("the state was found by another kind of contact solver".into()));
-            }
+            _ => Err(other_solver()),
+        }
+    }
+
+    /// Displacements, stresses and contact fields of a solved shape; the sensitivity is left out.
+    ///
+    /// # Errors
+    /// [`OracleError::Failed`] for a state of another kind of solver or of another mesh.
+    pub fn fields(&self, state: &ContactState) -> Result<Fields, OracleError> {
+        let bodies = match (&self.solver, &state.solution) {
+            (Solver::Torn(solver), Solution::Torn(torn)) => solver.bodies(&self.problem, torn),
+            (Solver::Direct(solver), Solution::Direct(direct)) => solver.bodies(&self.problem, direct),
+            _ => return Err(other_solver()),
         };
-        Ok((Vector::from_vec(self.problem.height_map.pull_back(&heights)), error))
+        Ok(Fields::new(&self.problem, bodies.map_err(oracle)?, &state.forces))
     }
 
     /// Strain energy of all bodies, N·mm; none for direct condensation, which keeps no displacements inside the bodies.
@@ -340,6 +366,11 @@ impl Coderivative for ContactShape {
         let (product, error) = self.pull_back(control, state, direction)?;
         Ok((product, Some(error.bound)))
     }
+}
+
+/// A state that this solver did not find.
+fn other_solver() -> OracleError {
+    OracleError::Failed("the state was found by another kind of contact solver".into())
 }
 
 /// Mechanics' reasons in the framework's words.

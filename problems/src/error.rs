@@ -168,6 +168,16 @@ pub enum ContactError {
         /// Relative residual that would have been accepted.
         tolerance: f64,
     },
+    /// A state was handed to the solver of another mesh.
+    #[error("the state was found on another mesh: {found} {what}, {expected} expected")]
+    ForeignState {
+        /// What was counted.
+        what: &'static str,
+        /// How many this solver has.
+        expected: usize,
+        /// How many the state has.
+        found: usize,
+    },
     /// A result is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -201,6 +211,7 @@ impl ContactError {
             Self::Factorization { .. } => "Factorization",
             Self::NotConverged { .. } => "NotConverged",
             Self::BeyondPrecision { .. } => "BeyondPrecision",
+            Self::ForeignState { .. } => "ForeignState",
             Self::NotFinite { .. } => "NotFinite",
             Self::NoContraction { .. } => "NoContraction",
             Self::DualProblem(_) => "DualProblem",

@@ -48,6 +48,8 @@ impl Communication for Rank {
 struct Outcome {
     normal: Vec<f64>,
     heights: Vec<f64>,
+    displacement: Vec<f64>,
+    gluing_defect: f64,
     factorizations: usize,
 }
 
@@ -62,7 +64,14 @@ fn solve(scene: &Scene, communication: Option<Rank>) -> Outcome {
     let (state, forces, work) = solver.solve(&problem, &controls, None, 1e-12).unwrap();
     let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.3 * row as f64).sin()).collect();
     let heights = solver.sensitivities(&problem, &state, &dual, 1e-11).unwrap().heights;
-    Outcome { normal: forces.normal, heights, factorizations: work.factorizations }
+    let bodies = solver.bodies(&problem, &state).unwrap();
+    Outcome {
+        normal: forces.normal,
+        heights,
+        displacement: bodies.iter().flat_map(|body| body.displacement.as_flattened().to_vec()).collect(),
+        gluing_defect: bodies.iter().map(|body| body.gluing_defect).fold(0.0, f64::max),
+        factorizations: work.factorizations,
+    }
 }
 
 fn difference(a: &[f64], b: &[f64]) -> f64 {
@@ -88,6 +97,12 @@ fn two_processes_find_the_state_of_one() {
         assert_eq!(first.heights, second.heights);
         assert!(difference(&alone.normal, &first.normal) < 1e-9);
         assert!(difference(&alone.heights, &first.heights) < 1e-8);
+        // Whole bodies on both, though each has solved one half of the subdomains only.
+        assert_eq!(first.displacement, second.displacement);
+        assert_eq!(first.gluing_defect, second.gluing_defect);
+        assert!(difference(&alone.displacement, &first.displacement) < 1e-8);
+        let size = alone.displacement.iter().fold(0.0, |size: f64, u| size.max(u.abs()));
+        assert!(first.gluing_defect < 1e-9 * size && first.gluing_defect > 0.0);
         assert_eq!(first.factorizations + second.factorizations, alone.factorizations);
     }
 }

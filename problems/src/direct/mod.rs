@@ -10,6 +10,7 @@ mod condensation;
 mod diagnosis;
 mod error_estimate;
 mod newton;
+mod recovery;
 mod solver;
 
 pub use condensation::{CondensationPattern, CondensedBody};

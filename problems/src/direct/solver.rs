@@ -7,6 +7,7 @@ use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::newton::{CondensedContact, CondensedSolution};
 use crate::error::ContactError;
 use crate::mesh::{Block, Subdomain};
+use crate::scene::BodyScene;
 use crate::shape_sensitivity::column_sensitivities;
 use std::sync::{Arc, OnceLock};
 
@@ -16,15 +17,16 @@ pub struct DirectSolver {
     lower: CondensationPattern,
     upper: Option<CondensationPattern>,
     fixed: OnceLock<Arc<CondensedBody>>,
-    lower_held: Vec<bool>,
+    /// Held contact dofs, per body.
+    pub(super) held: Vec<Vec<bool>>,
 }
 
 /// The condensed bodies of one shape.
 #[derive(Debug)]
-struct CondensedSystem {
-    block: Block,
-    lower: CondensedBody,
-    upper: Option<Arc<CondensedBody>>,
+pub(super) struct CondensedSystem {
+    pub(super) block: Block,
+    pub(super) lower: CondensedBody,
+    pub(super) upper: Option<Arc<CondensedBody>>,
     grounded: Vec<Vec<f64>>,
     gaps: Vec<f64>,
     stiffness: f64,
@@ -34,8 +36,8 @@ struct CondensedSystem {
 /// A solved shape with all that its coderivative needs.
 #[derive(Debug)]
 pub struct DirectState {
-    system: CondensedSystem,
-    solution: CondensedSolution,
+    pub(super) system: CondensedSystem,
+    pub(super) solution: CondensedSolution,
 }
 
 impl DirectSolver {
@@ -50,9 +52,11 @@ impl DirectSolver {
             Some(upper) => Some(CondensationPattern::new(grid, &upper.body, 0)?),
             None => None,
         };
-        let held = |(i, j): (usize, usize)| scene.lower.held(grid, [i, j, grid.cells[2]]);
-        let lower_held = grid.columns().flat_map(held).collect();
-        Ok(Self { lower, upper, fixed: OnceLock::new(), lower_held })
+        let held = |(scene, layer): (&BodyScene, usize)| {
+            grid.columns().flat_map(|(i, j)| scene.held(grid, [i, j, layer])).collect()
+        };
+        let held = problem.bodies().zip([grid.cells[2], 0]).map(held).collect();
+        Ok(Self { lower, upper, fixed: OnceLock::new(), held })
     }
 
     /// Solves one shape to a relative residual; `start`: contact displacements of a similar shape.
@@ -109,7 +113,7 @@ impl DirectSolver {
         CondensedContact {
             bodies: std::iter::once(&state.lower).chain(state.upper.as_deref()).collect(),
             boundary: &problem.boundary,
-            lower_held: &self.lower_held,
+            lower_held: &self.held[0],
             gaps: state.gaps.clone(),
             stiffness: state.stiffness,
             load: state.load,
@@ -148,19 +152,8 @@ impl DirectSolver {
         let terms = contact.weighted_residuals(&state.solution, &p, &eta, direction);
         let value_error = ValueError::from_terms(&terms, direction, &state.solution.forces);
         let size = contact.size();
-        let spread = |packed: &[f64]| {
-            let mut forces = vec![0.0; size];
-            for (index, point) in problem.boundary.points.iter().enumerate() {
-                for (dof, row) in CondensedContact::rows_of(index, point) {
-                    if !self.lower_held[dof] {
-                        forces[dof] = -packed[row];
-                    }
-                }
-            }
-            forces
-        };
-        let u = state.system.lower.extend(&state.solution.displacement[..size], &spread(&state.solution.forces), true);
-        let p = state.system.lower.extend(&p[..size], &spread(&eta), false);
+        let u = self.extend(problem, state, 0, &state.solution.displacement[..size], &state.solution.forces, true);
+        let p = self.extend(problem, state, 0, &p[..size], &eta, false);
         Stage::ShapeDerivative.enter();
         let whole = Subdomain { first_cell: [0; 3], cells: problem.grid.cells };
         let lower = &problem.scene.lower;

@@ -91,8 +91,13 @@ fn invert<T: Scalar>(m: &[[T; 3]; 3]) -> ([[T; 3]; 3], T) {
     (std::array::from_fn(|k| std::array::from_fn(|i| cofactor(i, k) / determinant)), determinant)
 }
 
+/// Volume of a brick, mm³; exact, the determinant is of degree two along each axis.
+pub fn volume(nodes: &Nodes<f64>) -> f64 {
+    gauss_points(nodes).iter().map(|point| point.volume).sum()
+}
+
 /// λ at the Gauss points: of the whole material, or of its deviatoric part.
-fn pointwise_lambda(material: &Material) -> f64 {
+pub(super) fn pointwise_lambda(material: &Material) -> f64 {
     match material.formulation() {
         Formulation::Standard => material.lame_lambda(),
         Formulation::MeanDilatation => -2.0 / 3.0 * material.shear_modulus(),

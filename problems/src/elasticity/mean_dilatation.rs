@@ -10,6 +10,17 @@
 use crate::elasticity::hex8::{DOFS, GaussPoint, displacement_gradient};
 use crate::scalar::Scalar;
 
+/// D(u)/V: the mean over the brick of its relative change of volume.
+pub fn mean(points: &[GaussPoint<f64>; 8], u: &[f64; DOFS]) -> f64 {
+    let (mut dilatation, mut volume) = (0.0, 0.0);
+    for point in points {
+        let gradient = displacement_gradient(point, u);
+        dilatation += point.volume * (gradient[0][0] + gradient[1][1] + gradient[2][2]);
+        volume += point.volume;
+    }
+    dilatation / volume
+}
+
 /// Adds κ D Dᵀ/V to the lower triangle of a stiffness matrix.
 pub fn add_stiffness<T: Scalar>(points: &[GaussPoint<T>; 8], bulk_modulus: f64, matrix: &mut [[T; DOFS]; DOFS]) {
     let (mut divergence, mut volume) = ([T::zero(); DOFS], T::zero());

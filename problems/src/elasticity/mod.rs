@@ -1,6 +1,7 @@
 //! Trilinear isotropic elasticity on bricks.
 
 pub mod hex8;
+pub mod stress;
 pub mod traction;
 
 mod material;

@@ -49,6 +49,27 @@ impl Grid {
         (i * (self.cells[1] + 1) + j) * (self.cells[2] + 1) + k
     }
 
+    /// Number of bricks of the block.
+    pub fn brick_count(&self) -> usize {
+        self.cells.iter().product()
+    }
+
+    /// Index of brick (i, j, k).
+    pub fn brick(&self, [i, j, k]: [usize; 3]) -> usize {
+        (i * self.cells[1] + j) * self.cells[2] + k
+    }
+
+    /// All bricks (i, j, k) in index order.
+    pub fn bricks(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
+        let [_, n2, n3] = self.cells;
+        (0..self.brick_count()).map(move |brick| [brick / (n2 * n3), brick / n3 % n2, brick % n3])
+    }
+
+    /// Indices of the eight nodes of brick (i, j, k), in the order of [`crate::elasticity::hex8`].
+    pub fn brick_nodes(&self, [i, j, k]: [usize; 3]) -> [usize; 8] {
+        std::array::from_fn(|a| self.node([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]))
+    }
+
     /// Number of vertical columns of nodes, the points of a surface.
     pub fn column_count(&self) -> usize {
         (self.cells[0] + 1) * (self.cells[1] + 1)

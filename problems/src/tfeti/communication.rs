@@ -6,7 +6,7 @@
 //!
 //! ```text
 //! exchange:  rows of B (own torn displacements)   →  sums over all processes       (neighbours only, in a distributed run)
-//! sum:       short vectors (stiffness, heights)   →  sums over all processes
+//! sum:       short vectors (stiffness, heights)   →  sums over all processes     (and nodal displacements, if asked for)
 //! ```
 //! A sum must come out the same on every process; implementations add in the order of ranks.
 

@@ -22,6 +22,7 @@ mod model;
 mod newton;
 mod preconditioner;
 mod projected_dual;
+mod recovery;
 mod recycling;
 mod reduced;
 mod rigid_modes;

@@ -418,6 +418,11 @@ impl TornState {
         &self.solution.iterate.multipliers
     }
 
+    /// The bodies' undeformed geometry, lower first.
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
     /// Displacements over the torn dofs of this process (zero elsewhere), mm.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement

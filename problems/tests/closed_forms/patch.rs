@@ -41,3 +41,26 @@ fn uniform_pressure() {
         }
     }
 }
+
+/// Every brick of every body carries −p along e₃ and nothing else.
+#[test]
+fn uniform_stress() {
+    for (name, scene) in [("one body", one_body()), ("two bodies", two_bodies())] {
+        for kind in [SolverKind::Newton, SolverKind::Direct] {
+            let (shape, state) = solve(&scene, kind);
+            let fields = shape.fields(&state).unwrap();
+            let mut worst: f64 = 0.0;
+            for body in &fields.bodies {
+                for (stress, von_mises) in body.stress.iter().zip(&body.von_mises) {
+                    let exact = [0.0, 0.0, -PRESSURE, 0.0, 0.0, 0.0];
+                    let errors = stress.iter().zip(exact).map(|(found, exact)| (found - exact).abs() / PRESSURE);
+                    worst = errors.fold(worst, f64::max).max((von_mises / PRESSURE - 1.0).abs());
+                }
+                let nodal = body.nodal_von_mises.iter().map(|found| (found / PRESSURE - 1.0).abs());
+                worst = nodal.fold(worst, f64::max);
+            }
+            println!("patch test, {name}, {kind:?}: largest relative error of a stress {worst:.1e}");
+            assert!(worst < 1e-11, "{name} {kind:?} {worst:.1e}");
+        }
+    }
+}

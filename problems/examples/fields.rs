@@ -1,0 +1,51 @@
+//! Fields of two shapes as VTK files: `cargo run --release -p problems --example fields -- FOLDER`, then open
+//! `FOLDER/fields.pvd` in a viewer that reads VTK files.
+//!
+//! The shapes are the start of Example 5.2 of the paper and one after a single step down the subgradient.
+
+use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
+use problems::contact_shape::{ContactShape, SolverKind};
+use problems::cost::{PressureCost, PressureMeasure};
+use problems::fields::{FieldState, Fields, vtk_files};
+use problems::scene::hertz;
+use std::error::Error;
+use std::path::PathBuf;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = PathBuf::from(std::env::args().nth(1).ok_or("name the folder to write to")?);
+    let mut scene = hertz()?;
+    scene.mesh = [8; 3];
+    let shape = ContactShape::new(scene, SolverKind::Newton)?;
+    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary)?;
+    let start = shape.start();
+    let (first, subgradient) = solved(&shape, &cost, &start)?;
+    // A tenth of a millimetre at most.
+    let moved = &start - subgradient.scale(0.1 / subgradient.amax());
+    let (second, _) = solved(&shape, &cost, &moved)?;
+    let states = [
+        FieldState { time: 0.0, name: "start", fields: &first },
+        FieldState { time: 1.0, name: "moved", fields: &second },
+    ];
+    std::fs::create_dir_all(&folder)?;
+    for (name, text) in vtk_files(&states)? {
+        std::fs::write(folder.join(&name), text)?;
+        println!("{}", folder.join(name).display());
+    }
+    Ok(())
+}
+
+/// Fields with sensitivities, and the subgradient.
+fn solved(shape: &ContactShape, cost: &PressureCost, control: &Vector) -> Result<(Fields, Vector), Box<dyn Error>> {
+    let state = shape.solve(control, None, Accuracy::TIGHTEST)?;
+    let dual = cost.gradient(control, &state).state;
+    let (heights, _) = shape.height_sensitivity(&state, &dual)?;
+    let subgradient = Vector::from_vec(shape.problem().height_map.pull_back(&heights));
+    let mut fields = shape.fields(&state)?;
+    fields.contact.sensitivity = Some(heights);
+    println!(
+        "Θ = {:.6e}, largest pressure {:.0} MPa",
+        cost.value(control, &state),
+        cost.pressures(&state).into_iter().fold(0.0, f64::max)
+    );
+    Ok((fields, subgradient))
+}

@@ -1,0 +1,196 @@
+//! What a VTU file holds, and what it may not hold.
+
+use std::collections::HashSet;
+use thiserror::Error;
+
+/// One cell, by the indices of its points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cell {
+    /// VTK type 12: the four points of the lower face counterclockwise as seen from above, then those above them.
+    Hexahedron([usize; 8]),
+    /// VTK type 9: four points in order around the face.
+    Quad([usize; 4]),
+}
+
+impl Cell {
+    /// Number of the type in VTK.
+    pub fn kind(&self) -> u8 {
+        match self {
+            Self::Hexahedron(_) => 12,
+            Self::Quad(_) => 9,
+        }
+    }
+
+    /// Indices of the points.
+    pub fn points(&self) -> &[usize] {
+        match self {
+            Self::Hexahedron(points) => points,
+            Self::Quad(points) => points,
+        }
+    }
+}
+
+/// The values of an array: one entry per point or per cell.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Integers.
+    Integers(Vec<i32>),
+    /// Numbers.
+    Scalars(Vec<f64>),
+    /// Vectors (x, y, z).
+    Vectors(Vec<[f64; 3]>),
+    /// Symmetric tensors (XX, YY, ZZ, XY, YZ, XZ).
+    Tensors(Vec<[f64; 6]>),
+}
+
+impl Values {
+    /// Number of entries.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Integers(values) => values.len(),
+            Self::Scalars(values) => values.len(),
+            Self::Vectors(values) => values.len(),
+            Self::Tensors(values) => values.len(),
+        }
+    }
+
+    /// Whether there are no entries.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// All floating-point numbers, in order.
+    fn numbers(&self) -> &[f64] {
+        match self {
+            Self::Integers(_) => &[],
+            Self::Scalars(values) => values,
+            Self::Vectors(values) => values.as_flattened(),
+            Self::Tensors(values) => values.as_flattened(),
+        }
+    }
+}
+
+/// A named array.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Array {
+    /// Name shown by readers; any text without control characters.
+    pub name: String,
+    /// One entry per point or cell.
+    pub values: Values,
+}
+
+impl Array {
+    /// A named array.
+    pub fn new(name: impl Into<String>, values: Values) -> Self {
+        Self { name: name.into(), values }
+    }
+}
+
+/// Points, cells, and data on both.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct UnstructuredGrid {
+    /// What the file shows, with units and codes; written as a comment at its head.
+    pub description: String,
+    /// Coordinates.
+    pub points: Vec<[f64; 3]>,
+    /// Cells.
+    pub cells: Vec<Cell>,
+    /// Arrays with one entry per point.
+    pub point_data: Vec<Array>,
+    /// Arrays with one entry per cell.
+    pub cell_data: Vec<Array>,
+}
+
+/// Why a grid or a list cannot be written.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum VtkError {
+    /// An array has not one entry per point or cell.
+    #[error("array `{array}` has {found} entries, allowed: {expected}, one for each of the {place}")]
+    WrongLength {
+        /// Name of the array.
+        array: String,
+        /// `points` or `cells`.
+        place: &'static str,
+        /// Entries it must have.
+        expected: usize,
+        /// Entries it has.
+        found: usize,
+    },
+    /// A number is infinite or not a number.
+    #[error("array `{array}`: value {index} is {value}, allowed: finite numbers")]
+    NotFinite {
+        /// Name of the array; `Points` for the coordinates.
+        array: String,
+        /// Position among all numbers of the array.
+        index: usize,
+        /// The number.
+        value: f64,
+    },
+    /// A cell names a point that does not exist.
+    #[error("cell {cell} has the point {point}, allowed: less than {points}, the number of points")]
+    NoSuchPoint {
+        /// The cell.
+        cell: usize,
+        /// The point.
+        point: usize,
+        /// Number of points.
+        points: usize,
+    },
+    /// A text cannot stand in XML.
+    #[error("{what} {text:?} is not allowed; allowed: {allowed}")]
+    Text {
+        /// What the text is.
+        what: &'static str,
+        /// The text.
+        text: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// Two arrays of the same place have one name.
+    #[error("array `{array}` stands twice among the data of the {place}, allowed: once")]
+    Twice {
+        /// Name of the arrays.
+        array: String,
+        /// `points` or `cells`.
+        place: &'static str,
+    },
+}
+
+impl UnstructuredGrid {
+    /// Refuses what readers would misread.
+    ///
+    /// # Errors
+    /// [`VtkError`] naming the array, the place and the value.
+    pub fn check(&self) -> Result<(), VtkError> {
+        check_finite("Points", self.points.as_flattened())?;
+        for (cell, points) in self.cells.iter().enumerate() {
+            if let Some(&point) = points.points().iter().find(|&&point| point >= self.points.len()) {
+                return Err(VtkError::NoSuchPoint { cell, point, points: self.points.len() });
+            }
+        }
+        check_arrays(&self.point_data, "points", self.points.len())?;
+        check_arrays(&self.cell_data, "cells", self.cells.len())
+    }
+}
+
+fn check_arrays(arrays: &[Array], place: &'static str, expected: usize) -> Result<(), VtkError> {
+    let mut names = HashSet::new();
+    for Array { name, values } in arrays {
+        if !names.insert(name) {
+            return Err(VtkError::Twice { array: name.clone(), place });
+        }
+        if values.len() != expected {
+            return Err(VtkError::WrongLength { array: name.clone(), place, expected, found: values.len() });
+        }
+        check_finite(name, values.numbers())?;
+    }
+    Ok(())
+}
+
+fn check_finite(array: &str, numbers: &[f64]) -> Result<(), VtkError> {
+    match numbers.iter().position(|number| !number.is_finite()) {
+        Some(index) => Err(VtkError::NotFinite { array: array.to_owned(), index, value: numbers[index] }),
+        None => Ok(()),
+    }
+}

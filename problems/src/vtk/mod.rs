@@ -1,0 +1,17 @@
+//! Unstructured grids with data as files of the Visualization Toolkit: VTU for one grid, PVD for a series of grids.
+//!
+//! ```text
+//! VTU   XML, arrays inline as base64 of (length in bytes as UInt64, values), all little endian, not compressed
+//! PVD   XML, a list of (time, part, file)
+//! ```
+//! Formats: *VTK File Formats*, docs.vtk.org; hexahedra, quadrilaterals and the order of tensor components (XX, YY, ZZ, XY, YZ,
+//! XZ) as defined there. Floating-point values are written as they are, without rounding. Knows nothing of contact.
+
+mod collection;
+mod grid;
+mod unstructured;
+mod xml;
+
+pub use collection::{Entry, collection};
+pub use grid::{Array, Cell, UnstructuredGrid, Values, VtkError};
+pub use unstructured::unstructured;

@@ -1,0 +1,82 @@
+//! One grid as the text of a VTU file.
+
+use crate::vtk::xml::{attribute, comment};
+use crate::vtk::{Array, UnstructuredGrid, Values, VtkError};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use std::fmt::Write;
+
+/// Names of the components of a symmetric tensor in VTK's order.
+const TENSOR_COMPONENTS: [&str; 6] = ["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+
+/// The text of a VTU file.
+///
+/// # Errors
+/// [`VtkError`] for data that do not fit the grid, numbers that are not finite, and names that XML cannot hold.
+pub fn unstructured(grid: &UnstructuredGrid) -> Result<String, VtkError> {
+    grid.check()?;
+    let mut text = String::from("<?xml version=\"1.0\"?>\n");
+    text += &comment(&grid.description)?;
+    text += "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
+    text += "<UnstructuredGrid>\n";
+    let (points, cells) = (grid.points.len(), grid.cells.len());
+    // Writing to a string does not fail.
+    let _ = writeln!(text, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">");
+    for (section, arrays) in [("PointData", &grid.point_data), ("CellData", &grid.cell_data)] {
+        let _ = writeln!(text, "<{section}>");
+        for array in arrays {
+            write_array(&mut text, array)?;
+        }
+        let _ = writeln!(text, "</{section}>");
+    }
+    text += "<Points>\n";
+    write_bytes(&mut text, "Float64", "Points", 3, "", &float_bytes(grid.points.as_flattened()));
+    text += "</Points>\n<Cells>\n";
+    // An index beyond 64 bits cannot occur: usize has at most as many.
+    let connectivity = grid.cells.iter().flat_map(|cell| cell.points()).flat_map(|&point| (point as i64).to_le_bytes());
+    write_bytes(&mut text, "Int64", "connectivity", 1, "", &connectivity.collect::<Vec<u8>>());
+    let mut end = 0;
+    let offsets = grid.cells.iter().flat_map(|cell| {
+        end += cell.points().len() as i64;
+        end.to_le_bytes()
+    });
+    write_bytes(&mut text, "Int64", "offsets", 1, "", &offsets.collect::<Vec<u8>>());
+    write_bytes(&mut text, "UInt8", "types", 1, "", &grid.cells.iter().map(|cell| cell.kind()).collect::<Vec<u8>>());
+    text += "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+    Ok(text)
+}
+
+fn write_array(text: &mut String, Array { name, values }: &Array) -> Result<(), VtkError> {
+    let name = attribute("name of an array", name)?;
+    match values {
+        Values::Integers(values) => {
+            let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+            write_bytes(text, "Int32", &name, 1, "", &bytes);
+        }
+        Values::Scalars(values) => write_bytes(text, "Float64", &name, 1, "", &float_bytes(values)),
+        Values::Vectors(values) => write_bytes(text, "Float64", &name, 3, "", &float_bytes(values.as_flattened())),
+        Values::Tensors(values) => {
+            let names = TENSOR_COMPONENTS.iter().enumerate();
+            let names: String = names.map(|(index, name)| format!(" ComponentName{index}=\"{name}\"")).collect();
+            write_bytes(text, "Float64", &name, 6, &names, &float_bytes(values.as_flattened()));
+        }
+    }
+    Ok(())
+}
+
+fn float_bytes(values: &[f64]) -> Vec<u8> {
+    values.iter().flat_map(|value| value.to_le_bytes()).collect()
+}
+
+/// One DataArray element; `more`: further attributes, each with a blank before it.
+fn write_bytes(text: &mut String, kind: &str, name: &str, components: usize, more: &str, bytes: &[u8]) {
+    let mut block = Vec::with_capacity(8 + bytes.len());
+    block.extend((bytes.len() as u64).to_le_bytes());
+    block.extend_from_slice(bytes);
+    // VTK leaves the number out where it is one; some readers make columns of what has it.
+    let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+    // Writing to a string does not fail.
+    let _ = write!(text, "<DataArray type=\"{kind}\" Name=\"{name}\"{components}{more} format=\"binary\">");
+    STANDARD.encode_string(&block, text);
+    *text += "</DataArray>\n";
+}

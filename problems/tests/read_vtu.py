@@ -1,0 +1,128 @@
+"""Reads the files that `vtk_files` makes with VTK's own readers. Optional: needs `pip install vtk`.
+
+    cargo run --release -p problems --example fields -- FOLDER
+    python3 problems/tests/read_vtu.py FOLDER
+
+Checks, for every file that FOLDER/fields.pvd lists: readers report no error, arrays have their components and no NaN, all
+hexahedra have a positive scaled Jacobian and together the volume inside the outer surface, quadrilaterals point upwards, the von
+Mises stress is that of the stress tensor in VTK's order, and the normal force Σ pressure·area is what the mean vertical stress
+of the lower body passes on (by the stress at the centres, hence to 2 %; for scenes whose lower body is loaded by contact and a
+plane bottom only).
+"""
+
+import sys
+import xml.etree.ElementTree as tree
+from pathlib import Path
+
+import numpy as np
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+errors = []
+
+
+def read(path):
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    for event in ("ErrorEvent", "WarningEvent"):
+        reader.AddObserver(event, lambda *_: errors.append(f"{path}: the reader complains"))
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+def arrays(data):
+    found = {data.GetArrayName(index): vtk_to_numpy(data.GetArray(index)) for index in range(data.GetNumberOfArrays())}
+    for name, values in found.items():
+        assert np.isfinite(values).all(), name
+    return found
+
+
+def shapes(found):
+    return {name: values.shape[1:] for name, values in found.items()}
+
+
+def bodies(grid):
+    cells, points = arrays(grid.GetCellData()), arrays(grid.GetPointData())
+    assert shapes(cells) == {"body": (), "subdomain": (), "stress": (6,), "von_mises": ()}
+    assert shapes(points) == {"displacement": (3,), "von_mises_nodal": ()}
+    assert set(grid.GetCell(index).GetCellType() for index in range(grid.GetNumberOfCells())) == {vtk.VTK_HEXAHEDRON}
+    names = [grid.GetCellData().GetArray("stress").GetComponentName(index) for index in range(6)]
+    assert names == ["XX", "YY", "ZZ", "XY", "YZ", "XZ"], names
+
+    quality = vtk.vtkMeshQuality()
+    quality.SetInputData(grid)
+    quality.SetHexQualityMeasureToScaledJacobian()
+    quality.Update()
+    jacobian = vtk_to_numpy(quality.GetOutput().GetCellData().GetArray("Quality"))
+    assert jacobian.min() > 0, jacobian.min()
+
+    sizes = vtk.vtkCellSizeFilter()
+    sizes.SetInputData(grid)
+    sizes.Update()
+    volume = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Volume"))
+    assert volume.min() > 0
+
+    xx, yy, zz, xy, yz, xz = cells["stress"].T
+    mises = np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + yz**2 + xz**2))
+    assert np.allclose(mises, cells["von_mises"], rtol=1e-12)
+    assert points["von_mises_nodal"].max() <= cells["von_mises"].max()
+
+    # Outer surface and its volume by the divergence theorem, an independent check of orientation and completeness.
+    surface = vtk.vtkDataSetSurfaceFilter()
+    surface.SetInputData(grid)
+    triangles = vtk.vtkTriangleFilter()
+    triangles.SetInputConnection(surface.GetOutputPort())
+    mass = vtk.vtkMassProperties()
+    mass.SetInputConnection(triangles.GetOutputPort())
+    mass.Update()
+    assert abs(mass.GetVolume() / volume.sum() - 1) < 2e-3, (mass.GetVolume(), volume.sum())
+
+    lower = cells["body"] == 1
+    # ∫ σ₃₃ dV = −force × height, where the force passes through the whole height.
+    bounds = grid.GetBounds()
+    base = (bounds[1] - bounds[0]) * (bounds[3] - bounds[2])
+    force = -(zz[lower] * volume[lower]).sum() / (volume[lower].sum() / base)
+    print(
+        f"  {grid.GetNumberOfCells()} hexahedra, volume {volume.sum():.6f}, by the surface {mass.GetVolume():.6f}, "
+        f"smallest scaled Jacobian {jacobian.min():.4f}, von Mises up to {mises.max():.1f}"
+    )
+    return force
+
+
+def contact(grid):
+    points = arrays(grid.GetPointData())
+    expected = {"displacement": (3,), "pressure": (), "status": (), "area": (), "gap": (), "remaining_gap": ()}
+    optional = {"traction": (3,), "slip": (3,), "sensitivity": ()}
+    found = shapes(points)
+    assert expected.items() <= found.items() and found.items() <= (expected | optional).items(), found
+    assert set(np.unique(points["status"])) <= {0, 1, 2} and points["status"].dtype.kind == "i"
+    assert (points["pressure"][points["status"] == 0] == 0).all()
+    normals = vtk.vtkPolyDataNormals()
+    surface = vtk.vtkDataSetSurfaceFilter()
+    surface.SetInputData(grid)
+    normals.SetInputConnection(surface.GetOutputPort())
+    normals.ComputeCellNormalsOn()
+    normals.ConsistencyOff()
+    normals.Update()
+    assert vtk_to_numpy(normals.GetOutput().GetCellData().GetNormals())[:, 2].min() > 0
+    bounds = grid.GetBounds()
+    assert abs(points["area"].sum() / ((bounds[1] - bounds[0]) * (bounds[3] - bounds[2])) - 1) < 1e-12
+    force = (points["pressure"] * points["area"]).sum()
+    print(f"  {grid.GetNumberOfCells()} quadrilaterals, normal force {force:.6e} N, arrays {', '.join(sorted(found))}")
+    return force
+
+
+def main(folder):
+    print("VTK", vtk.vtkVersion().GetVTKVersion())
+    forces = {}
+    for entry in tree.parse(folder / "fields.pvd").getroot().iter("DataSet"):
+        time, kind, path = entry.get("timestep"), entry.get("name"), folder / entry.get("file")
+        print(f"time {time}, part {entry.get('part')}, {kind}: {path.name}")
+        forces.setdefault(time, []).append({"bodies": bodies, "contact": contact}[kind](read(path)))
+    for time, (inside, outside) in forces.items():
+        print(f"time {time}: force by stress {inside:.4e} N, by pressure {outside:.4e} N")
+        assert abs(inside / outside - 1) < 0.02
+    assert not errors, errors
+
+
+main(Path(sys.argv[1]))
