@@ -8,6 +8,7 @@ pub mod cost;
 pub mod direct;
 pub mod elasticity;
 pub mod error;
+pub mod figure;
 pub mod linear;
 pub mod membrane;
 pub mod memory;
