@@ -76,6 +76,7 @@ pub mod direct;
 pub mod elasticity;
 pub mod error;
 pub mod fields;
+pub mod figure;
 pub mod linear;
 pub mod membrane;
 pub mod memory;

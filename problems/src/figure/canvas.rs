@@ -1,0 +1,227 @@
+//! SVG text: lines, areas and writing at positions in points, the origin at the upper left.
+//!
+//! A superscript is written `^{…}` and raised when the text is drawn.
+
+use super::png::FAMILY;
+use std::fmt::Write;
+
+/// Size of captions and titles, points.
+pub(super) const TITLE: f64 = 14.0;
+/// Size of labels and notes, points.
+pub(super) const LABEL: f64 = 12.0;
+/// Colour of text and frames.
+pub(super) const INK: &str = "#222222";
+/// Average width of a letter relative to its size; only decides about distances.
+const LETTER: f64 = 0.5;
+
+/// A position in points.
+pub(super) type Place = [f64; 2];
+
+/// Where a text lies relative to its position.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stroke<'a> {
+    pub colour: &'a str,
+    pub width: f64,
+    pub dashed: bool,
+}
+
+impl<'a> Stroke<'a> {
+    pub fn solid(colour: &'a str, width: f64) -> Self {
+        Self { colour, width, dashed: false }
+    }
+
+    pub fn dashed(colour: &'a str, width: f64) -> Self {
+        Self { colour, width, dashed: true }
+    }
+
+    fn attributes(self) -> String {
+        let dashes = if self.dashed { " stroke-dasharray=\"5 4\"" } else { "" };
+        format!("fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"{dashes}", self.colour, self.width)
+    }
+}
+
+/// A drawing under way.
+#[derive(Debug, Clone)]
+pub(super) struct Canvas {
+    pub width: f64,
+    pub height: f64,
+    body: String,
+}
+
+// Writing to a string cannot fail: the results of `write!` are dropped below.
+impl Canvas {
+    pub fn new(width: f64, height: f64) -> Self {
+        Self { width: width.ceil(), height: height.ceil(), body: String::new() }
+    }
+
+    /// One line of text of some size, its foot at a place.
+    pub fn text(&mut self, [x, y]: Place, anchor: Anchor, size: f64, text: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let _ = writeln!(
+            self.body,
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{INK}\">{}</text>",
+            raised(&escaped(text), size)
+        );
+    }
+
+    /// A line through places.
+    pub fn line(&mut self, places: &[Place], stroke: Stroke) {
+        let _ = writeln!(self.body, "<path d=\"{}\" {}/>", path(places, false), stroke.attributes());
+    }
+
+    /// A closed outline.
+    pub fn outline(&mut self, places: &[Place], stroke: Stroke) {
+        let _ = writeln!(self.body, "<path d=\"{}\" {}/>", path(places, true), stroke.attributes());
+    }
+
+    /// Areas one over the other, each with its colour.
+    pub fn areas<'a>(&mut self, areas: impl IntoIterator<Item = (&'a str, &'a [Place])>) {
+        self.body += "<g transform=\"scale(.1)\">\n";
+        for (colour, places) in areas {
+            let _ = writeln!(self.body, "<path fill=\"{colour}\" d=\"{}\"/>", tenths(places));
+        }
+        self.body += "</g>\n";
+    }
+
+    /// Areas of one colour as one path; where they overlap nothing changes.
+    pub fn area<'a>(&mut self, colour: &str, areas: impl IntoIterator<Item = &'a [Place]>) {
+        let paths: String = areas.into_iter().map(tenths).collect();
+        if !paths.is_empty() {
+            let _ = writeln!(self.body, "<path transform=\"scale(.1)\" fill=\"{colour}\" d=\"{paths}\"/>");
+        }
+    }
+
+    /// A rectangle filled with a colour.
+    pub fn rectangle(&mut self, [x, y]: Place, [width, height]: [f64; 2], colour: &str) {
+        let _ = writeln!(
+            self.body,
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"/>"
+        );
+    }
+
+    /// What is drawn by `draw` is seen only inside a rectangle; `name` must be unique in the drawing.
+    pub fn clipped(&mut self, name: &str, [x, y]: Place, [width, height]: [f64; 2], draw: impl FnOnce(&mut Self)) {
+        let _ = writeln!(
+            self.body,
+            "<clipPath id=\"{name}\"><rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"/>\
+             </clipPath>\n<g clip-path=\"url(#{name})\">"
+        );
+        draw(self);
+        self.body += "</g>\n";
+    }
+
+    /// SVG elements as they are.
+    pub fn raw(&mut self, elements: &str) {
+        self.body += elements;
+    }
+
+    /// The whole text.
+    pub fn finish(self, title: &str) -> String {
+        let Self { width, height, body } = self;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
+             {height}\" font-family=\"{FAMILY}, sans-serif\">\n<title>{}</title>\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</svg>\n",
+            escaped(title)
+        )
+    }
+}
+
+/// About how wide a text is, points.
+pub(super) fn text_width(text: &str, size: f64) -> f64 {
+    let letters = text.chars().filter(|letter| !"^{}".contains(*letter)).count();
+    LETTER * size * letters as f64
+}
+
+/// A text for SVG; control characters, which XML does not know, become spaces.
+pub(super) fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            letter if letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}') => safe.push(' '),
+            letter => safe.push(letter),
+        }
+    }
+    safe
+}
+
+/// `^{…}` as superscripts in a text that is escaped already.
+pub(super) fn raised(text: &str, size: f64) -> String {
+    let (small, rise) = (0.75 * size, 0.35 * size);
+    let mut pieces = text.split("^{");
+    let mut all = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (exponent, rest) = piece.split_once('}').unwrap_or((piece, ""));
+        let _ = write!(all, "<tspan dy=\"-{rise:.1}\" font-size=\"{small:.1}\">{exponent}</tspan>");
+        if !rest.is_empty() {
+            let _ = write!(all, "<tspan dy=\"{rise:.1}\">{rest}</tspan>");
+        }
+    }
+    all
+}
+
+fn path(places: &[Place], closed: bool) -> String {
+    let mut text = String::new();
+    for (index, [x, y]) in places.iter().enumerate() {
+        let _ = write!(text, "{}{x:.1} {y:.1}", if index == 0 { 'M' } else { 'L' });
+    }
+    if closed {
+        text.push('Z');
+    }
+    text
+}
+
+/// A closed path in tenths of points, relative positions: half the length of absolute ones.
+fn tenths(places: &[Place]) -> String {
+    let mut text = String::new();
+    let mut last = [0_i64; 2];
+    for (index, place) in places.iter().enumerate() {
+        let here = place.map(|coordinate| (10.0 * coordinate).round() as i64);
+        let [dx, dy] = [here[0] - last[0], here[1] - last[1]];
+        let _ = match index {
+            0 => write!(text, "M{dx} {dy}"),
+            1 => write!(text, "l{dx} {dy}"),
+            _ => write!(text, " {dx} {dy}"),
+        };
+        last = here;
+    }
+    text.push('z');
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn superscripts_are_raised_and_the_rest_comes_back_down() {
+        let text = raised("10^{−3} MPa^{4}", 12.0);
+        assert_eq!(
+            text,
+            "10<tspan dy=\"-4.2\" font-size=\"9.0\">−3</tspan><tspan dy=\"4.2\"> MPa</tspan>\
+             <tspan dy=\"-4.2\" font-size=\"9.0\">4</tspan>"
+        );
+        assert_eq!(raised("no closing ^{brace", 10.0).matches("</tspan>").count(), 1);
+        assert_eq!(escaped("a<b & \u{1}"), "a&lt;b &amp;  ");
+    }
+
+    #[test]
+    fn areas_are_written_relative_in_tenths() {
+        assert_eq!(tenths(&[[1.0, 2.0], [3.04, 2.0], [3.0, 4.5]]), "M10 20l20 0 0 25z");
+    }
+}

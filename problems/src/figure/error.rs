@@ -1,0 +1,86 @@
+//! Why a figure cannot be drawn.
+
+use thiserror::Error;
+
+/// Why a figure cannot be drawn.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FigureError {
+    /// There is nothing to draw.
+    #[error("figure {figure}: no {what}")]
+    Empty {
+        /// Name of the figure.
+        figure: String,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// Two numbers that belong together differ.
+    #[error("figure {figure}: {found} {what}, expected {expected}")]
+    Count {
+        /// Name of the figure.
+        figure: String,
+        /// What was counted.
+        what: &'static str,
+        /// How many belong there.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// A number that cannot be drawn.
+    #[error("figure {figure}: {what} {index} is {value}, allowed are {allowed}")]
+    Number {
+        /// Name of the figure.
+        figure: String,
+        /// What it is.
+        what: &'static str,
+        /// Its place, counted from 0.
+        index: usize,
+        /// The number.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A factor between points and pixels that gives no picture.
+    #[error("pixels per point are {value}, allowed are numbers > 0 that give at most {most} pixels in all")]
+    Scale {
+        /// The factor.
+        value: f64,
+        /// Most pixels.
+        most: u64,
+    },
+    /// The SVG text was not understood by the renderer, or the picture not written.
+    #[error("the figure cannot be drawn: {0}")]
+    Drawing(String),
+}
+
+/// Checks that every number of a list can be drawn.
+pub(super) fn finite(
+    figure: &str,
+    what: &'static str,
+    values: impl IntoIterator<Item = f64>,
+) -> Result<(), FigureError> {
+    // Differences of two numbers, and their multiples by a few, have to be finite as well.
+    const LARGEST: f64 = 1e300;
+    for (index, value) in values.into_iter().enumerate() {
+        if value.is_nan() || value.abs() > LARGEST {
+            let allowed = "numbers of modulus up to 1e300";
+            return Err(FigureError::Number { figure: figure.to_owned(), what, index, value, allowed });
+        }
+    }
+    Ok(())
+}
+
+/// Checks a count.
+pub(super) fn count(figure: &str, what: &'static str, expected: usize, found: usize) -> Result<(), FigureError> {
+    match expected == found {
+        true => Ok(()),
+        false => Err(FigureError::Count { figure: figure.to_owned(), what, expected, found }),
+    }
+}
+
+/// Checks that there is something.
+pub(super) fn some(figure: &str, what: &'static str, found: usize) -> Result<(), FigureError> {
+    match found {
+        0 => Err(FigureError::Empty { figure: figure.to_owned(), what }),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,48 @@
+//! Figures as SVG and, from the same text, as PNG: without other programs, system libraries or system fonts.
+//!
+//! ```text
+//! numbers ─ Map, Solid, Surfaces, Convergence, Landscape, LogPlot ─ Figure ─┬─ svg
+//!                                                                         └─ png (resvg, fonts of its own)
+//! scale (ticks), chart (axes by plotters), levels (filled areas), oblique (bodies), canvas (SVG text)
+//! ```
+//! The module knows numbers only: no mechanics, no optimizer, no command line. The same input gives the same bytes.
+//! In titles, captions and units `^{…}` is a superscript. The font has Latin and Greek letters, ₀ … ₉, ∂, √, ∞ and the usual
+//! signs; ⟨ ⟩ ‖ ∇ → come from a second one.
+
+mod canvas;
+mod chart;
+mod colours;
+mod error;
+mod levels;
+mod map;
+mod png;
+mod scale;
+
+pub use error::FigureError;
+pub use map::{Map, MapPanel};
+
+/// A figure.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Figure {
+    /// For files, without an ending.
+    pub name: String,
+    /// What is seen.
+    pub title: String,
+    /// The figure as SVG text.
+    pub svg: String,
+}
+
+impl Figure {
+    fn new(name: &str, title: &str, canvas: canvas::Canvas) -> Self {
+        Self { name: name.to_owned(), title: title.to_owned(), svg: canvas.finish(title) }
+    }
+
+    /// The figure as a PNG file with `scale` pixels per point of the SVG; 2 suits screens, 4 suits print.
+    ///
+    /// # Errors
+    /// [`FigureError::Scale`] for a factor that gives no pixel or more than 100 million, [`FigureError::Drawing`] if the SVG
+    /// text was changed into something that is none.
+    pub fn png(&self, scale: f64) -> Result<Vec<u8>, FigureError> {
+        png::png(&self.svg, scale)
+    }
+}
