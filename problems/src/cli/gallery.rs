@@ -1,0 +1,62 @@
+//! The pictures of solved shapes and of a run.
+
+use crate::cli::ContactObjective;
+use crate::cli::solved::Solved;
+use crate::contact::ContactProblem;
+use crate::fields::Fields;
+use crate::figure::{Figure, FigureError, Map, MapPanel};
+use nonsmooth::Cost;
+
+use crate::cli::Failure;
+
+/// A solved shape with all that is seen of it.
+pub struct Seen<'a> {
+    /// What distinguishes it, for captions.
+    pub caption: String,
+    /// Beginning of the names of its files.
+    pub name: &'static str,
+    /// The shape.
+    pub solved: &'a Solved,
+    /// Its fields.
+    pub fields: Fields,
+}
+
+impl<'a> Seen<'a> {
+    /// Fields of a solved shape, with the sensitivity of the objective to the height of every contact node.
+    ///
+    /// # Errors
+    /// [`Failure`] of the adjoint.
+    pub fn new(
+        objective: &ContactObjective,
+        name: &'static str,
+        caption: impl Into<String>,
+        solved: &'a Solved,
+    ) -> Result<Self, Failure> {
+        let shape = objective.solver();
+        let mut fields = shape.fields(&solved.state)?;
+        let gradient = objective.cost().gradient(&solved.controls, &solved.state);
+        fields.contact.sensitivity = Some(shape.height_sensitivity(&solved.state, &gradient.state)?.0);
+        Ok(Self { caption: caption.into(), name, solved, fields })
+    }
+}
+
+/// Contact pressures side by side on one scale.
+pub fn pressure(problem: &ContactProblem, shapes: &[Seen<'_>]) -> Result<Figure, FigureError> {
+    let [n1, n2, _] = problem.grid.nodes();
+    let panel = |shape: &Seen<'_>| MapPanel {
+        caption: shape.caption.clone(),
+        counts: [n1, n2],
+        origin: [0.0; 2],
+        size: problem.grid.size,
+        values: shape.fields.contact.pressure.clone(),
+    };
+    Map {
+        name: "pressure".into(),
+        title: format!("{}: contact pressure", problem.scene.name),
+        quantity: "pressure".into(),
+        unit: "MPa".into(),
+        axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
+        panels: shapes.iter().map(panel).collect(),
+    }
+    .figure()
+}
