@@ -11,7 +11,7 @@
 //! | `pressure` | points of contact | MPa | λ_N/A, compression positive |
 //! | `traction` | points of contact | MPa | (λ_T/A, 0), what the lower body exerts above; only with friction |
 //! | `slip` | points of contact | mm | tangential jump, lower less upper body; only with friction |
-//! | `status` | points of contact | – | 0 open, 1 stick, 2 slip |
+//! | `status` | points of contact | – | 0 open, 1 stick, 2 slip (closed and free to slide, if there is no friction) |
 //! | `area` | points of contact | mm² | tributary area A; Σ pressure·A is the normal force |
 //! | `gap` | points of contact | mm | gap before loading |
 //! | `remaining_gap` | points of contact | mm | gap under load |
