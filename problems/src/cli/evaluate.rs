@@ -1,10 +1,9 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
 use crate::cli::output::{self, Folder};
-use crate::cli::picture::pressure_map;
-use crate::cli::{Arguments, ContactObjective, Failure, Source, controls};
+use crate::cli::solved::Solved;
+use crate::cli::{Arguments, ContactObjective, Failure, Source, controls, results};
 use crate::contact::{Diagnosis, Kink, Residuals, StatusCounts};
-use crate::contact_shape::ContactState;
 use crate::scene_file::Case;
 use nonsmooth::{Accuracy, StateSolver};
 use serde::Serialize;
@@ -38,7 +37,7 @@ struct Seconds {
 
 pub fn run(
     objective: &ContactObjective,
-    _source: &Source,
+    source: &Source,
     case: &Case,
     arguments: &Arguments,
 ) -> Result<String, Failure> {
@@ -68,44 +67,10 @@ pub fn run(
     };
     let json = output::json(&result)?;
     if let Some(folder) = folder {
-        folder.write("evaluation.json", &json)?;
-        folder.write("pressure.csv", &pressure_table(objective, &state))?;
-        let title = format!("{}: contact pressure", shape.problem().scene.name);
-        folder.write("pressure.svg", &pressure_picture(objective, &state, &title, result.peak_pressure))?;
+        let solved = Solved { controls: control, value: result.objective, peak_pressure: result.peak_pressure, state };
+        results::write_evaluation(&folder, source, case, objective, &solved, &json)?;
     }
     Ok(if arguments.json { json } else { result.to_string() })
-}
-
-/// Contact nodes as lines of a CSV table.
-pub fn pressure_table(objective: &ContactObjective, state: &ContactState) -> String {
-    let problem = objective.solver().problem();
-    let mut table = String::from("x1,x2,pressure,traction_1,traction_2,opening,status\n");
-    let pressures = objective.cost().pressures(state);
-    for (index, (point, pressure)) in problem.boundary.points.iter().zip(pressures).enumerate() {
-        let [x1, x2] = problem.grid.position(point.position[0], point.position[1]);
-        let traction = state.forces.tangential.get(index).map_or([0.0; 2], |force| force.map(|f| f / point.area));
-        let (opening, status) = (state.forces.opening[index], state.forces.status[index]);
-        table += &format!("{x1},{x2},{pressure},{},{},{opening},{status:?}\n", traction[0], traction[1]);
-    }
-    table
-}
-
-/// The contact pressures as a map, on a scale up to `largest`.
-pub fn pressure_picture(objective: &ContactObjective, state: &ContactState, title: &str, largest: f64) -> String {
-    let problem = objective.solver().problem();
-    let pressures = objective.cost().pressures(state);
-    let nodes: Vec<(f64, f64, f64)> = problem
-        .boundary
-        .points
-        .iter()
-        .zip(pressures)
-        .map(|(point, pressure)| {
-            let [x1, x2] = problem.grid.position(point.position[0], point.position[1]);
-            (x1, x2, pressure)
-        })
-        .collect();
-    let [n1, n2, _] = problem.grid.nodes();
-    pressure_map(title, problem.grid.size, [n1, n2], &nodes, largest)
 }
 
 impl fmt::Display for Evaluated {

@@ -29,6 +29,11 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// A failed computation, for the reason that an error gives.
+    pub fn computation(error: impl std::fmt::Display) -> Self {
+        Self::Computation(error.to_string())
+    }
+
     /// 2 for bad input, 1 for a failed computation, 130 for an interrupted one.
     pub fn exit_code(&self) -> ExitCode {
         match self {

@@ -1,13 +1,11 @@
 //! The pictures of solved shapes and of a run.
 
-use crate::cli::ContactObjective;
 use crate::cli::solved::Solved;
+use crate::cli::{ContactObjective, Failure};
 use crate::contact::ContactProblem;
 use crate::fields::Fields;
 use crate::figure::{Figure, FigureError, Map, MapPanel};
 use nonsmooth::Cost;
-
-use crate::cli::Failure;
 
 /// A solved shape with all that is seen of it.
 pub struct Seen<'a> {

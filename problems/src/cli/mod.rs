@@ -10,6 +10,7 @@ mod compared;
 mod controls;
 mod evaluate;
 mod failure;
+mod gallery;
 pub mod long_run;
 mod optimization;
 mod optimize;
@@ -22,6 +23,7 @@ mod results;
 mod solved;
 mod source;
 mod stages;
+mod tables;
 mod verify;
 
 pub use arguments::{Arguments, Command};

@@ -41,7 +41,7 @@ pub fn deliver(
     if let Some(folder) = &optimization.folder {
         let folder = folder.folder();
         let write = || -> Result<(), Failure> {
-            results::write_optimization(folder, source, case, last, &shapes, &text)?;
+            results::write_optimization(folder, source, case, last, &shapes)?;
             folder.write("report.txt", &text)?;
             folder.replace("report.json", &json)
         };

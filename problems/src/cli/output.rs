@@ -51,13 +51,33 @@ impl Folder {
         &self.0
     }
 
+    /// A folder in it, made if it does not exist.
+    ///
+    /// # Errors
+    /// [`Failure::Computation`] with the system's reason.
+    pub fn within(&self, name: &str) -> Result<Self, Failure> {
+        let path = self.0.join(name);
+        match std::fs::create_dir_all(&path) {
+            Ok(()) => Ok(Self(path)),
+            Err(error) => Err(Failure::Computation(format!("{}: {error}", path.display()))),
+        }
+    }
+
     /// Writes one file.
     ///
     /// # Errors
     /// [`Failure::Computation`] with the system's reason.
     pub fn write(&self, name: &str, text: &str) -> Result<(), Failure> {
+        self.write_bytes(name, text.as_bytes())
+    }
+
+    /// Writes one file that is not text.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn write_bytes(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         let path = self.0.join(name);
-        std::fs::write(&path, text).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
+        std::fs::write(&path, bytes).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
     }
 
     /// Writes one file at once: it holds the old text or the new one, never a part.

@@ -3,17 +3,18 @@
 use crate::cli::ContactObjective;
 use crate::cli::compared::Compared;
 use crate::cli::optimized::Finished;
-use crate::cli::report_sections::{Picture, certificate, course, files, origin, pictures, states};
+use crate::cli::report_sections::{certificate, course, files, origin, pictures, states};
 use crate::cli::solved::Solved;
 use crate::contact::StageSeconds;
+use crate::figure::Figure;
 use crate::page::{Block, Page, Section};
 
 /// What every report needs beside its results.
 pub struct Context<'a> {
     /// The scene as a complete file.
     pub scene: &'a str,
-    /// Pictures, in the order in which they are shown.
-    pub pictures: &'a [Picture],
+    /// Figures, in the order in which they are shown.
+    pub figures: &'a [Figure],
     /// Names of the other files, with what they hold.
     pub files: &'a [(String, &'static str)],
 }
@@ -37,7 +38,7 @@ pub fn optimization(context: &Context<'_>, finished: &Finished, shapes: &[Solved
         report.counts.evaluations
     );
     let sections = vec![
-        pictures("Pictures", context.pictures),
+        pictures("Pictures", context.figures),
         states(objective, &[("start", &shapes[0]), ("optimum", &shapes[1])]),
         course(report),
         certificate(report.certificate.as_ref()),
@@ -57,7 +58,7 @@ pub fn evaluation(context: &Context<'_>, objective: &ContactObjective, shape: &S
         shape.value, shape.peak_pressure, counts.open, counts.stick, counts.slip
     );
     let sections = vec![
-        pictures("Pictures", context.pictures),
+        pictures("Pictures", context.figures),
         states(objective, &[("value", shape)]),
         controls(objective, shape.controls.as_slice()),
         seconds(shape),
@@ -95,7 +96,7 @@ pub fn comparison(context: &Context<'_>, compared: &Compared<'_>) -> Page {
     with_friction.title = format!("Both shapes with friction {friction}");
     let sections = vec![
         table,
-        pictures("Pictures", context.pictures),
+        pictures("Pictures", context.figures),
         with_friction,
         origin(context.scene, &objective.solver().left_out(), &[]),
         files(context.files),

@@ -2,24 +2,14 @@
 
 use crate::cli::ContactObjective;
 use crate::cli::solved::Solved;
+use crate::figure::Figure;
 use crate::page::{Block, Section};
 use nonsmooth::{Certificate, Report};
 
-/// A picture with what it shows.
-#[derive(Debug, Clone)]
-pub struct Picture {
-    /// Name of its files, without ending.
-    pub name: String,
-    /// What is seen.
-    pub caption: String,
-    /// The picture.
-    pub svg: String,
-}
-
 /// The pictures of a page.
-pub fn pictures(title: &str, pictures: &[Picture]) -> Section {
-    let block = |picture: &Picture| Block::Figure { svg: picture.svg.clone(), caption: picture.caption.clone() };
-    Section::new(title, pictures.iter().map(block).collect())
+pub fn pictures(title: &str, figures: &[Figure]) -> Section {
+    let block = |figure: &Figure| Block::Figure { svg: figure.svg.clone(), caption: figure.title.clone() };
+    Section::new(title, figures.iter().map(block).collect())
 }
 
 /// States side by side: what the objective is made of, and how far the numbers can be trusted.

@@ -2,36 +2,148 @@
 //! for.
 
 use crate::cli::compared::Compared;
+use crate::cli::gallery::{self, Seen};
 use crate::cli::optimized::{Finished, history_table};
 use crate::cli::output::{self, Folder};
+use crate::cli::report_pages::{self, Context};
 use crate::cli::solved::Solved;
-use crate::cli::{Failure, Source, evaluate};
+use crate::cli::{ContactObjective, Failure, Source, tables};
+use crate::fields::{FieldState, vtk_files};
+use crate::figure::Figure;
 use crate::scene_file::Case;
+
+/// Folders of pictures and of files for ParaView.
+const FIGURES: &str = "figures";
+const VTK: &str = "vtk";
+/// Pixels of a PNG per point of the SVG.
+const PNG_SCALE: f64 = 2.0;
+
+/// What a folder receives: a list of the files for the report, and the figures for it.
+struct Delivery<'a> {
+    folder: &'a Folder,
+    case: &'a Case,
+    files: Vec<(String, &'static str)>,
+    figures: Vec<Figure>,
+}
+
+impl<'a> Delivery<'a> {
+    fn new(folder: &'a Folder, case: &'a Case) -> Self {
+        Self { folder, case, files: vec![], figures: vec![] }
+    }
+
+    fn write(&mut self, name: &str, text: &str, what: &'static str) -> Result<(), Failure> {
+        self.files.push((name.to_owned(), what));
+        self.folder.write(name, text)
+    }
+
+    /// A picture as SVG and PNG, and in the report.
+    fn draw(&mut self, figure: Figure, what: &'static str) -> Result<(), Failure> {
+        let folder = self.folder.within(FIGURES)?;
+        folder.write(&format!("{}.svg", figure.name), &figure.svg)?;
+        folder.write_bytes(&format!("{}.png", figure.name), &figure.png(PNG_SCALE).map_err(Failure::computation)?)?;
+        self.files.push((format!("{FIGURES}/{}.svg, .png", figure.name), what));
+        self.figures.push(figure);
+        Ok(())
+    }
+
+    /// Contact boundary as tables, fields for ParaView.
+    fn tabulate(&mut self, objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<(), Failure> {
+        for shape in shapes {
+            let what = "pressure, traction, opening and status of every contact node";
+            self.write(
+                &format!("pressure_{}.csv", shape.name),
+                &tables::contact(objective, &shape.solved.state),
+                what,
+            )?;
+        }
+        if self.case.output.vtk {
+            let states = shapes.iter().enumerate();
+            let states: Vec<FieldState<'_>> = states
+                .map(|(index, shape)| FieldState { time: index as f64, name: shape.name, fields: &shape.fields })
+                .collect();
+            let folder = self.folder.within(VTK)?;
+            for (name, text) in vtk_files(&states).map_err(Failure::computation)? {
+                folder.write(&name, &text)?;
+            }
+            let what = "displacements, stresses and contact fields: open fields.pvd with ParaView";
+            self.files.push((format!("{VTK}/fields.pvd, *.vtu"), what));
+        }
+        Ok(())
+    }
+
+    /// Pressure, stress and surface of some shapes.
+    fn draw_shapes(&mut self, objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<(), Failure> {
+        if !self.case.output.pictures && !self.case.output.report {
+            return Ok(());
+        }
+        let problem = objective.solver().problem();
+        self.draw(gallery::pressure(problem, shapes).map_err(Failure::computation)?, "contact pressure on one scale")
+    }
+
+    fn report(&self, source: &Source, page: impl FnOnce(&Context<'_>) -> crate::page::Page) -> Result<(), Failure> {
+        if !self.case.output.report {
+            return Ok(());
+        }
+        let scene = source.scene.print()?;
+        let context = Context { scene: &scene, figures: &self.figures, files: &self.files };
+        self.folder.write("report.html", &page(&context).html())
+    }
+}
 
 /// The files of an optimization.
 pub fn write_optimization(
     folder: &Folder,
-    _source: &Source,
-    _case: &Case,
+    source: &Source,
+    case: &Case,
     finished: &Finished,
     shapes: &[Solved; 2],
-    _text: &str,
 ) -> Result<(), Failure> {
-    folder.write("controls.json", &output::json(finished.report.solution.as_slice())?)?;
-    folder.write("certificate.json", &output::json(&finished.report.certificate)?)?;
-    folder.write("history.csv", &history_table(&finished.report))?;
-    for (name, shape) in ["initial", "optimal"].into_iter().zip(shapes) {
-        folder.write(&format!("pressure_{name}.csv"), &evaluate::pressure_table(&finished.objective, &shape.state))?;
-    }
-    Ok(())
+    let Finished { objective, report, .. } = finished;
+    let mut delivery = Delivery::new(folder, case);
+    delivery.write("controls.json", &output::json(report.solution.as_slice())?, "the control heights found")?;
+    let what = "all cuts and multipliers behind the certificate";
+    delivery.write("certificate.json", &output::json(&report.certificate)?, what)?;
+    delivery.write("history.csv", &history_table(report), "one line per evaluation")?;
+    let seen = [
+        Seen::new(objective, "initial", format!("start, Θ = {:.4e}", shapes[0].value), &shapes[0])?,
+        Seen::new(objective, "optimal", format!("optimum, Θ = {:.4e}", shapes[1].value), &shapes[1])?,
+    ];
+    delivery.tabulate(objective, &seen)?;
+    delivery.draw_shapes(objective, &seen)?;
+    delivery.report(source, |context| report_pages::optimization(context, finished, shapes))
+}
+
+/// The files of an evaluation.
+pub fn write_evaluation(
+    folder: &Folder,
+    source: &Source,
+    case: &Case,
+    objective: &ContactObjective,
+    shape: &Solved,
+    json: &str,
+) -> Result<(), Failure> {
+    let mut delivery = Delivery::new(folder, case);
+    delivery.write("evaluation.json", json, "everything that evaluate knows, as one JSON object")?;
+    let seen = [Seen::new(objective, "shape", format!("Θ = {:.4e}", shape.value), shape)?];
+    delivery.tabulate(objective, &seen)?;
+    delivery.draw_shapes(objective, &seen)?;
+    delivery.report(source, |context| report_pages::evaluation(context, objective, shape))
 }
 
 /// The files of a comparison.
-pub fn write_comparison(
-    _folder: &Folder,
-    _source: &Source,
-    _case: &Case,
-    _compared: &Compared<'_>,
-) -> Result<(), Failure> {
-    Ok(())
+pub fn write_comparison(folder: &Folder, source: &Source, case: &Case, compared: &Compared<'_>) -> Result<(), Failure> {
+    let objective = &compared.runs[0].objective;
+    let mut delivery = Delivery::new(folder, case);
+    for part in crate::cli::long_run::COMPARED {
+        delivery.files.push((format!("{part}/report.html"), "the optimization itself, with its files"));
+    }
+    let caption = |words: &str, shape: &Solved| format!("{words}, Θ = {:.4e}", shape.value);
+    let (with, without) = (&compared.own[0][1], &compared.crossed[0]);
+    let seen = [
+        Seen::new(objective, "optimized_with_friction", caption("optimized with friction", with), with)?,
+        Seen::new(objective, "optimized_without_friction", caption("optimized without friction", without), without)?,
+    ];
+    delivery.tabulate(objective, &seen)?;
+    delivery.draw_shapes(objective, &seen)?;
+    delivery.report(source, |context| report_pages::comparison(context, compared))
 }

@@ -3,8 +3,8 @@
 //! Inside a cell the values are linear on the four triangles between its corners and its middle, which has the mean value:
 //! the area above a level is then a polygon per triangle, without ambiguous cases.
 
-use super::canvas::{Anchor, Canvas, LABEL, Place, Stroke};
 use super::canvas::INK;
+use super::canvas::{Anchor, Canvas, LABEL, Place, Stroke};
 use super::colours;
 use super::scale::{Axis, extent};
 
@@ -44,7 +44,8 @@ impl ColourScale {
 
     /// Colour between level k − 1 and level k.
     pub fn step_colour(&self, step: usize) -> String {
-        let end = |index: Option<usize>, outside: f64| index.and_then(|i| self.levels.get(i)).copied().unwrap_or(outside);
+        let end =
+            |index: Option<usize>, outside: f64| index.and_then(|i| self.levels.get(i)).copied().unwrap_or(outside);
         let (low, high) = (end(step.checked_sub(1), 0.0), end(Some(step), 1.0));
         colours::colour(0.5 * (low + high))
     }
@@ -64,11 +65,7 @@ impl ColourScale {
             let high = self.levels.get(step).copied().unwrap_or(1.0);
             // A little more than a step, so that no line is seen between two.
             let more = if step == 0 { 0.0 } else { 0.4 };
-            canvas.rectangle(
-                [left, foot(high)],
-                [WIDTH, foot(low) - foot(high) + more],
-                &self.step_colour(step),
-            );
+            canvas.rectangle([left, foot(high)], [WIDTH, foot(low) - foot(high) + more], &self.step_colour(step));
         }
         let corners = [[left, top], [left + WIDTH, top], [left + WIDTH, top + height], [left, top + height]];
         canvas.outline(&corners, Stroke::solid(INK, 0.8));

@@ -72,7 +72,10 @@ impl Axis {
         let share = |exponent: f64| (exponent - low) / (high - low);
         let decades = (first..=last).filter(|exponent| exponent.rem_euclid(stride) == 0);
         let mut ticks: Vec<Tick> = decades
-            .map(|power| Tick { share: share(f64::from(power)), label: format!("10^{{{}}}", signed(power.to_string())) })
+            .map(|power| Tick {
+                share: share(f64::from(power)),
+                label: format!("10^{{{}}}", signed(power.to_string())),
+            })
             .collect();
         if last - first < 2 {
             // Few decades: their parts are labelled too.
@@ -185,19 +188,29 @@ mod tests {
         let axis = Axis::linear("Θ", "MPa^{4}", [1e17, 3.97e18], 0.0, 5);
         assert_eq!((axis.title.as_str(), labels(&axis)), ("Θ (10^{18} MPa^{4})", vec!["1", "2", "3"]));
         let axis = Axis::linear("gap", "mm", [0.0, 2e-12], 0.0, 5);
-        assert_eq!((axis.title.as_str(), labels(&axis)), ("gap (10^{−12} mm)", vec!["0.0", "0.5", "1.0", "1.5", "2.0"]));
+        assert_eq!(
+            (axis.title.as_str(), labels(&axis)),
+            ("gap (10^{−12} mm)", vec!["0.0", "0.5", "1.0", "1.5", "2.0"])
+        );
         let axis = Axis::linear("p", "MPa", [0.0, 14_809.0], 0.0, 5);
         assert_eq!((axis.title.as_str(), labels(&axis)), ("p (MPa)", vec!["0", "5000", "10000"]));
     }
 
     #[test]
     fn no_values_one_value_and_numbers_without_end_give_an_axis() {
-        let cases = [vec![], vec![f64::NAN], vec![0.0], vec![7.0; 3], vec![-1e300, 1e300], vec![1e18, 1e18 + 1e3], vec![5e-324]];
+        let cases = [
+            vec![],
+            vec![f64::NAN],
+            vec![0.0],
+            vec![7.0; 3],
+            vec![-1e300, 1e300],
+            vec![1e18, 1e18 + 1e3],
+            vec![5e-324],
+        ];
         for values in cases {
-            for axis in [
-                Axis::linear("", "", values.clone(), 0.04, 5),
-                Axis::logarithmic("", "", values.clone(), 0.04, 5),
-            ] {
+            for axis in
+                [Axis::linear("", "", values.clone(), 0.04, 5), Axis::logarithmic("", "", values.clone(), 0.04, 5)]
+            {
                 assert!((1..=12).contains(&axis.ticks.len()), "{values:?}: {axis:?}");
                 assert!(axis.ticks.iter().all(|tick| (0.0..=1.0).contains(&tick.share)), "{values:?}: {axis:?}");
                 assert!(axis.ticks.windows(2).all(|pair| pair[0].label != pair[1].label), "{values:?}: {axis:?}");
@@ -208,7 +221,10 @@ mod tests {
     #[test]
     fn logarithmic_axes_show_decades_and_parts_of_few() {
         assert_eq!(labels(&Axis::logarithmic("", "", [1.0, 1e4], 0.0, 8)).len(), 5);
-        assert_eq!(labels(&Axis::logarithmic("", "", [2.0, 30.0], 0.0, 8)), ["2·10^{0}", "5·10^{0}", "10^{1}", "2·10^{1}"]);
+        assert_eq!(
+            labels(&Axis::logarithmic("", "", [2.0, 30.0], 0.0, 8)),
+            ["2·10^{0}", "5·10^{0}", "10^{1}", "2·10^{1}"]
+        );
         assert!(labels(&Axis::logarithmic("", "", [1e-16, 1e18], 0.0, 8)).len() <= 9);
     }
 
