@@ -81,6 +81,16 @@ fn only_the_linear_algebra_and_its_users_know_faer() {
 }
 
 #[test]
+fn figures_pages_and_meshes_on_disk_know_numbers_only() {
+    let words = ["nonsmooth::", "crate::cli", "crate::contact", "crate::fields", "crate::scene", "crate::mesh"];
+    for folder in ["problems/src/figure", "problems/src/vtk"] {
+        assert_eq!(naming(folder, &words, &[]), Vec::<String>::new());
+    }
+    let page = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/src/page.rs")).expect("a file");
+    assert!(words.iter().all(|word| !page.contains(word)));
+}
+
+#[test]
 fn files_are_short() {
     for folder in ["src", "problems/src", "testset/src", "tests", "problems/tests", "examples"] {
         for path in sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)) {

@@ -61,7 +61,7 @@ fn grids_are_found_beside_the_scene_and_travel_with_a_run() {
     let out = folder.join("run");
     let limits = ["--mesh", "4", "--max-evaluations", "2", "--json", "--out", out.to_str().unwrap()];
     json(&contact3d(&[&[scene("flat_punch.toml").as_str()], &limits[..]].concat()));
-    assert!(out.join("counter_surface.csv").exists() && out.join("pressure_optimal.svg").exists());
+    assert!(out.join("counter_surface.csv").exists() && out.join("figures/pressure.svg").exists());
     let resumed = json(&contact3d(&["--resume", out.to_str().unwrap(), "--max-evaluations", "4", "--json"]));
     assert_eq!(resumed["evaluations"], 4);
     assert_eq!(resumed["resumed_evaluations"], 2);

@@ -118,14 +118,18 @@ pub fn optimize(
     Ok(Optimization { finished, asked: stages.len(), folder })
 }
 
-/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, and the rest.
+/// Bytes per torn node of the fields of one state (some 260 bytes per brick were written at 35³).
+const FIELD_BYTES: u64 = 300;
+
+/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states, and
+/// the rest.
 fn room(stages: &[Stage]) -> u64 {
-    let dofs = stages.iter().map(|stage| {
+    let nodes = stages.iter().map(|stage| {
         let scene = &stage.case.scene;
         let torn = scene.mesh.iter().zip(&scene.subdomains).map(|(cells, count)| (cells + count) as u64);
-        torn.product::<u64>() * 3 * if scene.upper.is_some() { 2 } else { 1 }
+        torn.product::<u64>() * if scene.upper.is_some() { 2 } else { 1 }
     });
-    3 * 8 * dofs.max().unwrap_or(0) + (4 << 20)
+    (3 * 3 * 8 + 2 * FIELD_BYTES) * nodes.max().unwrap_or(0) + (4 << 20)
 }
 
 struct Optimized {
