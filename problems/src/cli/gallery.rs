@@ -2,9 +2,9 @@
 
 use crate::cli::solved::Solved;
 use crate::cli::{ContactObjective, Failure};
-use crate::contact::ContactProblem;
 use crate::fields::Fields;
 use crate::figure::{Figure, FigureError, Map, MapPanel};
+use crate::scene_file::OutputSection;
 use nonsmooth::Cost;
 
 /// A solved shape with all that is seen of it.
@@ -15,12 +15,13 @@ pub struct Seen<'a> {
     pub name: &'static str,
     /// The shape.
     pub solved: &'a Solved,
-    /// Its fields.
-    pub fields: Fields,
+    /// Its fields, if a picture or a file shows them.
+    pub fields: Option<Fields>,
 }
 
 impl<'a> Seen<'a> {
-    /// Fields of a solved shape, with the sensitivity of the objective to the height of every contact node.
+    /// A solved shape with as many fields as the outputs show: files for ParaView hold the sensitivity of the objective to the
+    /// height of every contact node as well, which takes an adjoint.
     ///
     /// # Errors
     /// [`Failure`] of the adjoint.
@@ -29,24 +30,31 @@ impl<'a> Seen<'a> {
         name: &'static str,
         caption: impl Into<String>,
         solved: &'a Solved,
+        wanted: &OutputSection,
     ) -> Result<Self, Failure> {
         let shape = objective.solver();
-        let mut fields = shape.fields(&solved.state)?;
-        let gradient = objective.cost().gradient(&solved.controls, &solved.state);
-        fields.contact.sensitivity = Some(shape.height_sensitivity(&solved.state, &gradient.state)?.0);
+        let mut fields = None;
+        if wanted.pictures || wanted.vtk {
+            fields = Some(shape.fields(&solved.state)?);
+        }
+        if let Some(fields) = fields.as_mut().filter(|_| wanted.vtk) {
+            let gradient = objective.cost().gradient(&solved.controls, &solved.state);
+            fields.contact.sensitivity = Some(shape.height_sensitivity(&solved.state, &gradient.state)?.0);
+        }
         Ok(Self { caption: caption.into(), name, solved, fields })
     }
 }
 
 /// Contact pressures side by side on one scale.
-pub fn pressure(problem: &ContactProblem, shapes: &[Seen<'_>]) -> Result<Figure, FigureError> {
+pub fn pressure(objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<Figure, FigureError> {
+    let problem = objective.solver().problem();
     let [n1, n2, _] = problem.grid.nodes();
     let panel = |shape: &Seen<'_>| MapPanel {
         caption: shape.caption.clone(),
         counts: [n1, n2],
         origin: [0.0; 2],
         size: problem.grid.size,
-        values: shape.fields.contact.pressure.clone(),
+        values: objective.cost().pressures(&shape.solved.state),
     };
     Map {
         name: "pressure".into(),

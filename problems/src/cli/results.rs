@@ -59,7 +59,9 @@ impl<'a> Delivery<'a> {
         if self.case.output.vtk {
             let states = shapes.iter().enumerate();
             let states: Vec<FieldState<'_>> = states
-                .map(|(index, shape)| FieldState { time: index as f64, name: shape.name, fields: &shape.fields })
+                .filter_map(|(index, shape)| {
+                    shape.fields.as_ref().map(|fields| FieldState { time: index as f64, name: shape.name, fields })
+                })
                 .collect();
             let folder = self.folder.within(VTK)?;
             for (name, text) in vtk_files(&states).map_err(Failure::computation)? {
@@ -73,11 +75,10 @@ impl<'a> Delivery<'a> {
 
     /// Pressure, stress and surface of some shapes.
     fn draw_shapes(&mut self, objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<(), Failure> {
-        if !self.case.output.pictures && !self.case.output.report {
+        if !self.case.output.pictures {
             return Ok(());
         }
-        let problem = objective.solver().problem();
-        self.draw(gallery::pressure(problem, shapes).map_err(Failure::computation)?, "contact pressure on one scale")
+        self.draw(gallery::pressure(objective, shapes).map_err(Failure::computation)?, "contact pressure on one scale")
     }
 
     fn report(&self, source: &Source, page: impl FnOnce(&Context<'_>) -> crate::page::Page) -> Result<(), Failure> {
@@ -104,9 +105,10 @@ pub fn write_optimization(
     let what = "all cuts and multipliers behind the certificate";
     delivery.write("certificate.json", &output::json(&report.certificate)?, what)?;
     delivery.write("history.csv", &history_table(report), "one line per evaluation")?;
+    let wanted = &case.output;
     let seen = [
-        Seen::new(objective, "initial", format!("start, Θ = {:.4e}", shapes[0].value), &shapes[0])?,
-        Seen::new(objective, "optimal", format!("optimum, Θ = {:.4e}", shapes[1].value), &shapes[1])?,
+        Seen::new(objective, "initial", format!("start, Θ = {:.4e}", shapes[0].value), &shapes[0], wanted)?,
+        Seen::new(objective, "optimal", format!("optimum, Θ = {:.4e}", shapes[1].value), &shapes[1], wanted)?,
     ];
     delivery.tabulate(objective, &seen)?;
     delivery.draw_shapes(objective, &seen)?;
@@ -124,7 +126,8 @@ pub fn write_evaluation(
 ) -> Result<(), Failure> {
     let mut delivery = Delivery::new(folder, case);
     delivery.write("evaluation.json", json, "everything that evaluate knows, as one JSON object")?;
-    let seen = [Seen::new(objective, "shape", format!("Θ = {:.4e}", shape.value), shape)?];
+    let wanted = &case.output;
+    let seen = [Seen::new(objective, "shape", format!("Θ = {:.4e}", shape.value), shape, wanted)?];
     delivery.tabulate(objective, &seen)?;
     delivery.draw_shapes(objective, &seen)?;
     delivery.report(source, |context| report_pages::evaluation(context, objective, shape))
@@ -139,9 +142,16 @@ pub fn write_comparison(folder: &Folder, source: &Source, case: &Case, compared:
     }
     let caption = |words: &str, shape: &Solved| format!("{words}, Θ = {:.4e}", shape.value);
     let (with, without) = (&compared.own[0][1], &compared.crossed[0]);
+    let wanted = &case.output;
     let seen = [
-        Seen::new(objective, "optimized_with_friction", caption("optimized with friction", with), with)?,
-        Seen::new(objective, "optimized_without_friction", caption("optimized without friction", without), without)?,
+        Seen::new(objective, "optimized_with_friction", caption("optimized with friction", with), with, wanted)?,
+        Seen::new(
+            objective,
+            "optimized_without_friction",
+            caption("optimized without friction", without),
+            without,
+            wanted,
+        )?,
     ];
     delivery.tabulate(objective, &seen)?;
     delivery.draw_shapes(objective, &seen)?;
