@@ -2,10 +2,11 @@
 
 use crate::cli::solved::Solved;
 use crate::cli::{ContactObjective, Failure};
+use crate::cost::PressureMeasure;
 use crate::fields::Fields;
-use crate::figure::{Figure, FigureError, Map, MapPanel};
+use crate::figure::{Convergence, Figure, FigureError, Map, MapPanel, Step};
 use crate::scene_file::OutputSection;
-use nonsmooth::Cost;
+use nonsmooth::{Cost, Report};
 
 /// A solved shape with all that is seen of it.
 pub struct Seen<'a> {
@@ -63,6 +64,34 @@ pub fn pressure(objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<Fig
         unit: "MPa".into(),
         axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
         panels: shapes.iter().map(panel).collect(),
+    }
+    .figure()
+}
+
+/// The course of an optimization, with the least value that the total force of a shape allows.
+pub fn convergence(
+    objective: &ContactObjective,
+    measure: PressureMeasure,
+    report: &Report,
+    optimum: &Solved,
+) -> Result<Figure, FigureError> {
+    let steps = report.history.iter().map(|record| Step {
+        kind: record.kind.to_string(),
+        value: record.value,
+        best: record.center_value,
+    });
+    let unit = match measure {
+        PressureMeasure::Norm { exponent } => format!("MPa^{{{exponent}}}"),
+        PressureMeasure::Peak => "MPa".into(),
+    };
+    let bound = objective.cost().lower_bound(optimum.state.forces.total_normal_force());
+    Convergence {
+        name: "convergence".into(),
+        title: format!("{}: course of the optimization", objective.solver().problem().scene.name),
+        quantity: "Θ".into(),
+        unit,
+        steps: steps.collect(),
+        reference: (bound > 0.0).then(|| ("least for this force".into(), bound)),
     }
     .figure()
 }

@@ -112,6 +112,10 @@ pub fn write_optimization(
     ];
     delivery.tabulate(objective, &seen)?;
     delivery.draw_shapes(objective, &seen)?;
+    if case.output.pictures {
+        let figure = gallery::convergence(objective, case.measure, report, &shapes[1]);
+        delivery.draw(figure.map_err(Failure::computation)?, "objective of every evaluation and kinds of steps")?;
+    }
     delivery.report(source, |context| report_pages::optimization(context, finished, shapes))
 }
 

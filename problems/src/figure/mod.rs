@@ -12,12 +12,14 @@
 mod canvas;
 mod chart;
 mod colours;
+mod convergence;
 mod error;
 mod levels;
 mod map;
 mod png;
 mod scale;
 
+pub use convergence::{Convergence, Step};
 pub use error::FigureError;
 pub use map::{Map, MapPanel};
 
