@@ -93,13 +93,15 @@ impl Frame {
         let font = (FAMILY, PLOTTERS_FONT * FINENESS * LABEL).into_font().color(&AXIS);
         let (across_label, up_label) = (|share: &f64| label(across, *share), |share: &f64| label(up, *share));
         let mut mesh = chart.configure_mesh();
-        mesh.disable_x_axis().disable_y_axis();
-        if parts.below.is_some() {
-            mesh.x_desc(across.title.clone());
-        }
-        if parts.left.is_some() {
-            mesh.y_desc(up.title.clone());
-        }
+        // An axis that is disabled loses ticks and numbers as well as its line.
+        match parts.below {
+            Some(_) => mesh.x_desc(across.title.clone()),
+            None => mesh.disable_x_axis(),
+        };
+        match parts.left {
+            Some(_) => mesh.y_desc(up.title.clone()),
+            None => mesh.disable_y_axis(),
+        };
         let grid = if parts.grid { GRID.to_rgba() } else { TRANSPARENT };
         mesh.bold_line_style(grid.stroke_width(7))
             .light_line_style(TRANSPARENT)
