@@ -78,7 +78,12 @@ impl<'a> Delivery<'a> {
         if !self.case.output.pictures {
             return Ok(());
         }
-        self.draw(gallery::pressure(objective, shapes).map_err(Failure::computation)?, "contact pressure on one scale")
+        let pressure = gallery::pressure(objective, shapes).map_err(Failure::computation)?;
+        self.draw(pressure, "contact pressure on one scale")?;
+        let stress = gallery::von_mises(objective, shapes).map_err(Failure::computation)?;
+        self.draw(stress, "von Mises stress on the deformed bodies, on one scale")?;
+        let surface = gallery::surfaces(objective, shapes).map_err(Failure::computation)?;
+        self.draw(surface, "heights of the contact surface on one scale")
     }
 
     fn report(&self, source: &Source, page: impl FnOnce(&Context<'_>) -> crate::page::Page) -> Result<(), Failure> {

@@ -103,6 +103,29 @@ impl Canvas {
         }
     }
 
+    /// Areas one over the other, each with its colour and either lines around it or a rim of its own colour, which hides the
+    /// seams between neighbours. Without lines, areas of one colour that follow each other become one path.
+    pub fn covering(&mut self, lines: Option<Stroke>, areas: impl IntoIterator<Item = (String, [Place; 4])>) {
+        let (colour, width) =
+            lines.map_or((String::new(), 0.4), |line| (format!(" stroke=\"{}\"", line.colour), line.width));
+        let _ = writeln!(
+            self.body,
+            "<g transform=\"scale(.1)\"{colour} stroke-width=\"{:.1}\" stroke-linejoin=\"round\">",
+            10.0 * width
+        );
+        let mut last = None;
+        for (colour, places) in areas {
+            if lines.is_some() || last.as_ref() != Some(&colour) {
+                self.body += if last.is_some() { "\"/>\n" } else { "" };
+                let rim = if lines.is_some() { String::new() } else { format!(" stroke=\"{colour}\"") };
+                let _ = write!(self.body, "<path fill=\"{colour}\"{rim} d=\"");
+                last = Some(colour);
+            }
+            self.body += &tenths(&places);
+        }
+        self.body += if last.is_some() { "\"/>\n</g>\n" } else { "</g>\n" };
+    }
+
     /// A rectangle filled with a colour.
     pub fn rectangle(&mut self, [x, y]: Place, [width, height]: [f64; 2], colour: &str) {
         let _ = writeln!(

@@ -90,10 +90,30 @@ pub(super) fn fill(canvas: &mut Canvas, lattice: Lattice, scale: &ColourScale, p
         // Steps below all values would be painted over, steps above all values are empty.
         if next > lowest && level <= highest {
             let areas = above(shares, level);
-            let placed: Vec<Vec<Place>> = areas.iter().map(|area| area.iter().map(|p| place(*p)).collect()).collect();
+            let placed: Vec<Vec<Place>> = areas.iter().map(|area| corners(area.iter().map(|p| place(*p)))).collect();
             canvas.area(&scale.step_colour(step), placed.iter().map(Vec::as_slice));
         }
     }
+}
+
+/// A closed polygon without the points that lie on straight lines between their neighbours.
+fn corners(polygon: impl Iterator<Item = Place>) -> Vec<Place> {
+    /// Distance from a line that is not seen, points.
+    const UNSEEN: f64 = 0.02;
+    let mut kept: Vec<Place> = Vec::new();
+    for place in polygon {
+        while let [.., a, b] = kept[..] {
+            let (along, length) = ([place[0] - a[0], place[1] - a[1]], (place[0] - a[0]).hypot(place[1] - a[1]));
+            let across = along[0] * (b[1] - a[1]) - along[1] * (b[0] - a[0]);
+            let between = along[0] * (b[0] - a[0]) + along[1] * (b[1] - a[1]);
+            if across.abs() > UNSEEN * length || !(0.0..=length * length).contains(&between) {
+                break;
+            }
+            kept.pop();
+        }
+        kept.push(place);
+    }
+    kept
 }
 
 /// Lines on which the values have a level, in pieces.
@@ -159,9 +179,9 @@ fn above(lattice: Lattice, level: f64) -> Vec<Vec<[f64; 2]>> {
             match (whole, run) {
                 (true, None) => run = Some(j),
                 (false, Some(first)) => {
-                    let (low, high) = (i as f64, (i + 1) as f64);
-                    let (from, to) = (first as f64, j as f64);
-                    areas.push(vec![[low, from], [high, from], [high, to], [low, to]]);
+                    // All nodes along the run: it need not be straight where it is placed.
+                    let side = |i: usize| (first..=j).map(move |node| [i as f64, node as f64]);
+                    areas.push(side(i + 1).chain(side(i).rev()).collect());
                     run = None;
                 }
                 _ => {}
@@ -207,6 +227,16 @@ mod tests {
         assert!(above(lattice, 4.5).is_empty() && above(lattice, f64::NEG_INFINITY).len() == 4);
         let length: f64 = contour(lattice, 1.5).iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum();
         assert!((length - 4.0).abs() < 1e-12, "{length}");
+    }
+
+    #[test]
+    fn straight_runs_keep_their_corners_only_and_bent_ones_their_nodes() {
+        let run = |bend: f64| {
+            corners((0..=4).map(|j| [f64::from(j), bend * f64::from(j * j)]).chain([[4.0, -9.0], [0.0, -9.0]]))
+        };
+        assert_eq!(run(0.0), [[0.0, 0.0], [4.0, 0.0], [4.0, -9.0], [0.0, -9.0]]);
+        assert_eq!(run(0.5).len(), 7);
+        assert_eq!(corners([[0.0; 2]; 3].into_iter()).len(), 2);
     }
 
     #[test]

@@ -89,7 +89,7 @@ impl Map {
                 let labelled = index == 0 || !same;
                 left += if labelled { 52.0 } else { 0.0 };
                 let here = left;
-                left += sizes[index][0].max(self.caption_width(index)) + 26.0;
+                left += sizes[index][0].max(self.caption_width(index)) + 36.0;
                 here
             })
             .collect();

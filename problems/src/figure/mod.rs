@@ -1,7 +1,7 @@
 //! Figures as SVG and, from the same text, as PNG: without other programs, system libraries or system fonts.
 //!
 //! ```text
-//! numbers ─ Map, Solid, Surfaces, Convergence, Landscape, LogPlot ─ Figure ─┬─ svg
+//! numbers ─ Map, Solids, Surfaces, Convergence, Landscape, LogPlot ─ Figure ─┬─ svg
 //!                                                                         └─ png (resvg, fonts of its own)
 //! scale (ticks), chart (axes by plotters), levels (filled areas), oblique (bodies), canvas (SVG text)
 //! ```
@@ -16,12 +16,18 @@ mod convergence;
 mod error;
 mod levels;
 mod map;
+mod oblique;
+mod panels;
 mod png;
 mod scale;
+mod solid;
+mod surfaces;
 
 pub use convergence::{Convergence, Step};
 pub use error::FigureError;
 pub use map::{Map, MapPanel};
+pub use solid::{SolidBlock, SolidPanel, Solids};
+pub use surfaces::{SurfacePanel, Surfaces};
 
 /// A figure.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,0 +1,114 @@
+//! Panels with bodies in space side by side: title, captions, arrows of the axes, note and colour bar around them.
+
+use super::canvas::{Anchor, Canvas, INK, LABEL, Place, Stroke, TITLE, text_width};
+use super::levels::ColourScale;
+use super::oblique::{Point, Sheet, View, bounds, paint};
+use super::{Figure, FigureError};
+
+/// Larger side of a panel, points.
+const SIDE: f64 = 300.0;
+/// Length of an arrow of the axes, points.
+const ARROW: f64 = 30.0;
+/// Least height of the colour bar, so that its labels have room.
+const LEAST_HEIGHT: f64 = 130.0;
+const MARGIN: f64 = 16.0;
+
+/// All of a figure but the values of its panels.
+pub(super) struct Row<'a> {
+    pub name: &'a str,
+    pub title: &'a str,
+    /// What is written at the arrows of the axes.
+    pub axes: &'a [String; 3],
+    pub note: &'a str,
+    pub scale: &'a ColourScale,
+    pub panels: Vec<Panel>,
+}
+
+/// What is seen in a panel.
+pub(super) struct Panel {
+    /// Two lines above it.
+    pub captions: [String; 2],
+    pub bodies: Vec<Vec<Sheet>>,
+    /// Sheets before everything else.
+    pub front: Vec<Sheet>,
+}
+
+impl Panel {
+    fn points(&self) -> impl Iterator<Item = Point> + Clone {
+        let sheets = self.bodies.iter().flatten().chain(&self.front);
+        sheets.flat_map(|sheet| sheet.points.iter().copied())
+    }
+}
+
+impl Row<'_> {
+    /// All panels show the same part of space, so that equal places in them are equal points.
+    pub fn figure(&self) -> Result<Figure, FigureError> {
+        let [across, up] = bounds(self.panels.iter().flat_map(Panel::points));
+        let extents = [across, up].map(|[low, high]| high - low);
+        let points = SIDE / extents[0].max(extents[1]);
+        if !(points.is_finite() && points > 0.0) {
+            let (what, value, allowed) =
+                ("extent on the drawing, axis", extents[0], "numbers > 0 on one axis or the other");
+            return Err(FigureError::Number { figure: self.name.to_owned(), what, index: 0, value, allowed });
+        }
+        let size = extents.map(|extent| points * extent);
+        let (top, height) = (76.0, size[1].max(LEAST_HEIGHT));
+        let mut left = MARGIN;
+        let lefts: Vec<f64> = self
+            .panels
+            .iter()
+            .map(|panel| {
+                let here = left;
+                left += panel.captions.iter().fold(size[0], |width, text| width.max(text_width(text, LABEL))) + 30.0;
+                here
+            })
+            .collect();
+        let bar_title = text_width(&self.scale.axis.title, LABEL);
+        // Arrows end at their labels; the note begins right of those.
+        let labels = self.axes.iter().fold(0.0_f64, |width, label| width.max(text_width(label, LABEL)));
+        let note = MARGIN + 2.0 * ARROW + labels + 24.0;
+        let width = [
+            bar_title + left,
+            left + 75.0,
+            MARGIN + text_width(self.title, TITLE),
+            note + text_width(self.note, LABEL),
+        ];
+        let width = width.into_iter().fold(0.0, f64::max) + MARGIN;
+        let mut canvas = Canvas::new(width, top + height + 84.0);
+        canvas.text([MARGIN, 22.0], Anchor::Start, TITLE, self.title);
+        for (panel, left) in self.panels.iter().zip(lefts) {
+            let origin = [left - points * across[0], top + 0.5 * (height - size[1]) - points * up[0]];
+            let view = View { origin, scale: points };
+            canvas.raw("<g class=\"panel\">\n");
+            paint(&mut canvas, &view, &panel.bodies, self.scale);
+            for sheet in &panel.front {
+                paint(&mut canvas, &view, &[vec![sheet.clone()]], self.scale);
+            }
+            canvas.raw("</g>\n");
+            canvas.text([left, top - 30.0], Anchor::Start, LABEL, &panel.captions[0]);
+            canvas.text([left, top - 14.0], Anchor::Start, LABEL, &panel.captions[1]);
+        }
+        self.scale.bar(&mut canvas, [left, top], height);
+        let foot = top + height;
+        self.arrows(&mut canvas, [MARGIN + 8.0, foot + 58.0]);
+        canvas.text([note, foot + 62.0], Anchor::Start, LABEL, self.note);
+        Ok(Figure::new(self.name, self.title, canvas))
+    }
+
+    fn arrows(&self, canvas: &mut Canvas, origin: Place) {
+        let view = View { origin, scale: ARROW };
+        let stroke = Stroke::solid(INK, 1.0);
+        for (axis, label) in self.axes.iter().enumerate() {
+            let end = view.place(std::array::from_fn(|other| f64::from(u8::from(other == axis))));
+            let along = [end[0] - origin[0], end[1] - origin[1]];
+            let length = along[0].hypot(along[1]);
+            let along = along.map(|part| part / length);
+            canvas.line(&[origin, end], stroke);
+            let wing =
+                |side: f64| [end[0] - 5.0 * along[0] - side * along[1], end[1] - 5.0 * along[1] + side * along[0]];
+            canvas.area(INK, [[end, wing(2.2), wing(-2.2)].as_slice()]);
+            let gap = if axis == 2 { [6.0, 2.0] } else { [5.0, 0.34 * LABEL] };
+            canvas.text([end[0] + gap[0], end[1] + gap[1]], Anchor::Start, LABEL, label);
+        }
+    }
+}
