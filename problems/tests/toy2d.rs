@@ -41,6 +41,23 @@ fn landscape_is_written() {
 }
 
 #[test]
+fn pictures_show_every_evaluation_of_the_first_run() {
+    let folder = std::env::temp_dir().join(format!("toy2d-pictures-{}", std::process::id()));
+    let output = toy2d(&["--start", "-3,5", "--cells", "40", "--json", "--out", folder.to_str().expect("text")]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let study: Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let evaluations = study["runs"][0]["evaluations"].as_u64().expect("a number") as usize;
+    let svg = std::fs::read_to_string(folder.join("landscape.svg")).expect("the landscape");
+    let marks = ["start", "serious", "null", "refined"].map(|kind| svg.matches(&format!("class=\"{kind}\"")).count());
+    assert_eq!(marks.iter().sum::<usize>(), evaluations, "{marks:?}");
+    for name in ["landscape", "convergence"] {
+        let png = std::fs::read(folder.join(format!("{name}.png"))).expect("a picture");
+        assert!(png.starts_with(b"\x89PNG") && png.len() > 5000, "{name}");
+    }
+    std::fs::remove_dir_all(&folder).expect("removable");
+}
+
+#[test]
 fn bad_input_ends_with_status_2_and_a_reason() {
     for (arguments, reason) in [
         (vec!["--start", "1"], "--start"),

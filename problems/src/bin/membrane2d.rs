@@ -4,8 +4,8 @@ use clap::Parser;
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
 };
-use problems::cli::picture::field_map;
 use problems::cli::{Failure, Folder};
+use problems::figure::{Map, MapPanel};
 use problems::membrane::{MembraneObjective, MembraneState, PATCHES, admissible_loads, example};
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -105,24 +105,26 @@ fn pictures(folder: &Folder, theta: &MembraneObjective, states: &[MembraneState;
         ("displacement", "length", |state| &state.displacement),
         ("reaction", "load per area", |state| &state.reaction),
     ];
+    // Inner nodes only: the first lies one cell inside the boundary.
+    let inner = grid.cells - 1;
+    let cell = grid.length / grid.cells as f64;
     for (name, unit, field) in fields {
-        let lowest = states.iter().flat_map(field).fold(0.0_f64, |lowest, &value| lowest.min(value));
-        let largest = states.iter().flat_map(field).fold(0.0_f64, |largest, &value| largest.max(value)) - lowest;
-        for (state, moment) in states.iter().zip(["start", "optimum"]) {
-            let values = field(state).iter().enumerate();
-            let nodes: Vec<(f64, f64, f64)> = values
-                .map(|(i, value)| {
-                    let [x, y] = grid.node(i);
-                    (x - grid.origin[0], y - grid.origin[1], value - lowest)
-                })
-                .collect();
-            let title = match lowest {
-                0.0 => format!("{name}, {moment}"),
-                _ => format!("{name} above {lowest:.4}, {moment}"),
-            };
-            let svg = field_map(&title, unit, [grid.length; 2], [grid.cells + 1; 2], &nodes, largest);
-            folder.write(&format!("{name}_{moment}.svg"), &svg)?;
-        }
+        let panel = |(state, caption): (&MembraneState, &str)| MapPanel {
+            caption: caption.to_owned(),
+            counts: [inner; 2],
+            origin: grid.origin.map(|origin| origin + cell),
+            size: [grid.length - 2.0 * cell; 2],
+            values: field(state).to_vec(),
+        };
+        let map = Map {
+            name: name.to_owned(),
+            title: format!("Membrane over a dome: {name}"),
+            quantity: name.to_owned(),
+            unit: unit.to_owned(),
+            axes: ["x".into(), "y".into()],
+            panels: states.iter().zip(["start", "optimum"]).map(panel).collect(),
+        };
+        folder.draw(&map.figure().map_err(computation)?)?;
     }
     Ok(())
 }

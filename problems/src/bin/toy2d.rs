@@ -1,6 +1,9 @@
 //! Minimises the 2D toy with the bundle-trust engine and compares with the known minimiser.
 
 use clap::Parser;
+use nonsmooth::IterationRecord;
+use problems::cli::{Failure, Folder};
+use problems::figure::{self, Convergence, Step, Visit};
 use problems::toy::{self, landscape::Landscape};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -27,47 +30,46 @@ struct Arguments {
     /// Also write the landscape of the objective as comma-separated values
     #[arg(long, value_name = "FILE.csv")]
     landscape: Option<PathBuf>,
+    /// Folder for pictures of the landscape with the points of the first run, and of its course
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Grid cells per edge of the landscape
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=4096))]
     cells: u32,
 }
 
-/// Bad input and failed computations, with their exit status.
-enum Failure {
-    Input(String),
-    Computation(String),
-}
-
 fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Computation(message)) => report(&message, 1),
-        Err(Failure::Input(message)) => report(&message, 2),
+        Err(failure) => {
+            // A closed stderr leaves the exit status as the message.
+            let _ = writeln!(io::stderr(), "error: {failure}");
+            failure.exit_code()
+        }
     }
-}
-
-fn report(message: &str, status: u8) -> ExitCode {
-    // A closed stderr leaves the exit status as the message.
-    let _ = writeln!(io::stderr(), "error: {message}");
-    ExitCode::from(status)
 }
 
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(file) = &arguments.landscape {
         write_landscape(file, arguments.cells as usize)?;
     }
+    let folder = Folder::prepare(arguments.out.as_deref())?;
     let starts = match arguments.start {
         Some(start) => vec![start],
         None => toy::random_starts(arguments.seed, arguments.starts as usize),
     };
-    let study = toy::run_study(&starts).map_err(computation)?.ok_or_else(|| computation("no start"))?;
-    let text = if arguments.json { serde_json::to_string(&study).map_err(computation)? } else { study.to_string() };
-    writeln!(io::stdout(), "{}", text.trim_end()).map_err(computation)?;
+    let study = toy::run_study(&starts)?.ok_or_else(|| Failure::computation("no start"))?;
+    if let (Some(folder), Some(start)) = (&folder, starts.first()) {
+        pictures(folder, *start, arguments.cells as usize)?;
+    }
+    let text =
+        if arguments.json { serde_json::to_string(&study).map_err(Failure::computation)? } else { study.to_string() };
+    writeln!(io::stdout(), "{}", text.trim_end()).map_err(Failure::computation)?;
     if study.all_found() {
         return Ok(());
     }
     let missed = study.runs.len() - study.successes();
-    Err(computation(format!(
+    Err(Failure::computation(format!(
         "{missed} of {} runs missed the minimiser by more than {:e}",
         study.runs.len(),
         toy::SUCCESS
@@ -76,13 +78,46 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 fn write_landscape(file: &PathBuf, cells: usize) -> Result<(), Failure> {
     let refused = |error: io::Error| Failure::Input(format!("--landscape {}: {error}", file.display()));
-    let landscape = Landscape::new(&toy::toy_objective(), cells).map_err(computation)?;
+    let landscape = Landscape::new(&toy::toy_objective(), cells)?;
     let mut writer = BufWriter::new(File::create(file).map_err(refused)?);
     landscape.write_csv(&mut writer).and_then(|()| writer.flush()).map_err(refused)
 }
 
-fn computation(error: impl std::fmt::Display) -> Failure {
-    Failure::Computation(error.to_string())
+/// Landscape with kinks and the points of a run, and the course of that run.
+fn pictures(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failure> {
+    let landscape = Landscape::new(&toy::toy_objective(), cells)?;
+    let trace = toy::trace(start)?;
+    let history = &trace.report.history;
+    let visit = |(record, &place): (&IterationRecord, &[f64; 2])| Visit { kind: record.kind.to_string(), place };
+    let ground = figure::Landscape {
+        name: "landscape".into(),
+        title: "Two nodes on a shaped support with friction: Θ and the points of a run".into(),
+        quantity: "Θ".into(),
+        axes: ["control 1".into(), "control 2".into()],
+        counts: [cells + 1; 2],
+        origin: [toy::LOWER; 2],
+        size: [toy::UPPER - toy::LOWER; 2],
+        values: landscape.points.iter().map(|point| point.value).collect(),
+        lines: Some(("kink of a node".into(), toy::kink_lines())),
+        path: history.iter().zip(&trace.points).map(visit).collect(),
+        goal: Some(("minimiser".into(), toy::MINIMISER)),
+    };
+    let step = |record: &IterationRecord| Step {
+        kind: record.kind.to_string(),
+        value: record.value.map(|value| value - toy::MINIMUM),
+        best: record.center_value - toy::MINIMUM,
+    };
+    let course = Convergence {
+        name: "convergence".into(),
+        title: "Distance to the minimum".into(),
+        quantity: "Θ − Θ*".into(),
+        unit: String::new(),
+        // A logarithmic axis has no place for a distance that is all rounding.
+        steps: history.iter().map(step).filter(|step| step.best > f64::EPSILON).collect(),
+        reference: None,
+    };
+    folder.draw(&ground.figure().map_err(Failure::computation)?)?;
+    folder.draw(&course.figure().map_err(Failure::computation)?)
 }
 
 fn parse_start(text: &str) -> Result<[f64; 2], String> {

@@ -16,7 +16,6 @@ mod optimization;
 mod optimize;
 mod optimized;
 mod output;
-pub mod picture;
 mod report_pages;
 mod report_sections;
 mod results;

@@ -3,9 +3,13 @@
 use crate::cli::{ContactObjective, Failure};
 use crate::contact_shape::ContactState;
 use crate::error::SceneError;
+use crate::figure::Figure;
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+
+/// Pixels of a PNG per point of the SVG.
+const PNG_SCALE: f64 = 2.0;
 
 /// An output folder that was found writable before the work began.
 #[derive(Debug)]
@@ -16,8 +20,8 @@ impl Folder {
     ///
     /// # Errors
     /// [`SceneError::File`] with the system's reason.
-    pub fn prepare(path: Option<&str>) -> Result<Option<Self>, SceneError> {
-        path.map(|path| Self::with_room(Path::new(path), 1)).transpose()
+    pub fn prepare(path: Option<impl AsRef<Path>>) -> Result<Option<Self>, SceneError> {
+        path.map(|path| Self::with_room(path.as_ref(), 1)).transpose()
     }
 
     /// As [`prepare`](Self::prepare), for files of so many bytes.
@@ -78,6 +82,15 @@ impl Folder {
     pub fn write_bytes(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         let path = self.0.join(name);
         std::fs::write(&path, bytes).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
+    }
+
+    /// Writes a figure as SVG and as PNG.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write); [`Failure::Computation`] if it cannot be drawn.
+    pub fn draw(&self, figure: &Figure) -> Result<(), Failure> {
+        self.write(&format!("{}.svg", figure.name), &figure.svg)?;
+        self.write_bytes(&format!("{}.png", figure.name), &figure.png(PNG_SCALE).map_err(Failure::computation)?)
     }
 
     /// Writes one file at once: it holds the old text or the new one, never a part.

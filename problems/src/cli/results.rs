@@ -15,8 +15,6 @@ use crate::scene_file::Case;
 /// Folders of pictures and of files for ParaView.
 const FIGURES: &str = "figures";
 const VTK: &str = "vtk";
-/// Pixels of a PNG per point of the SVG.
-const PNG_SCALE: f64 = 2.0;
 
 /// What a folder receives: a list of the files for the report, and the figures for it.
 struct Delivery<'a> {
@@ -38,9 +36,7 @@ impl<'a> Delivery<'a> {
 
     /// A picture as SVG and PNG, and in the report.
     fn draw(&mut self, figure: Figure, what: &'static str) -> Result<(), Failure> {
-        let folder = self.folder.within(FIGURES)?;
-        folder.write(&format!("{}.svg", figure.name), &figure.svg)?;
-        folder.write_bytes(&format!("{}.png", figure.name), &figure.png(PNG_SCALE).map_err(Failure::computation)?)?;
+        self.folder.within(FIGURES)?.draw(&figure)?;
         self.files.push((format!("{FIGURES}/{}.svg, .png", figure.name), what));
         self.figures.push(figure);
         Ok(())

@@ -14,6 +14,7 @@ mod chart;
 mod colours;
 mod convergence;
 mod error;
+mod landscape;
 mod levels;
 mod map;
 mod oblique;
@@ -25,6 +26,7 @@ mod surfaces;
 
 pub use convergence::{Convergence, Step};
 pub use error::FigureError;
+pub use landscape::{Landscape, Visit};
 pub use map::{Map, MapPanel};
 pub use solid::{SolidBlock, SolidPanel, Solids};
 pub use surfaces::{SurfacePanel, Surfaces};

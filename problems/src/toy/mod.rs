@@ -33,12 +33,14 @@ mod solver;
 mod study;
 #[cfg(test)]
 mod tests;
+mod trace;
 
 pub use clarke::{KINK_WIDTH, clarke_vertices};
 pub use cost::ToyCost;
 pub use node::{Kink, Node, NodeData, NodeStatus, NodeValues};
 pub use solver::{NodeState, SURFACE, ToyContact, ToyState};
 pub use study::{SUCCESS, ToyRun, ToyStudy, random_starts, run_study};
+pub use trace::{ToyTrace, kink_lines, trace};
 
 use nonsmooth::{Polyhedron, ReducedObjective, Vector};
 

@@ -76,9 +76,13 @@ pub fn run_study(starts: &[[f64; 2]]) -> Result<Option<ToyStudy>, OptimizeError>
     Ok(Some(ToyStudy { minimiser: super::MINIMISER, minimum: MINIMUM, best, kinks, runs }))
 }
 
+/// Settings of the engine for the toy.
+pub(super) fn config() -> BundleTrustConfig {
+    BundleTrustConfig { tolerance: TOLERANCE, ..BundleTrustConfig::default() }
+}
+
 fn run(start: &[f64; 2]) -> Result<ToyRun, OptimizeError> {
-    let config = BundleTrustConfig { tolerance: TOLERANCE, ..BundleTrustConfig::default() };
-    let report = BundleTrust::new(config)?
+    let report = BundleTrust::new(config())?
         .constraints(admissible_set())
         .minimize(&toy_objective(), Vector::from_row_slice(start))?;
     Ok(ToyRun {

@@ -1,0 +1,92 @@
+//! One run of the engine on the toy with every point that it evaluated, for pictures.
+
+use super::study::config;
+use super::{LOWER, SURFACE, ToyObjective, UPPER, admissible_set, toy_objective};
+use nonsmooth::{Answer, BundleTrust, NonsmoothObjective, OptimizeError, OracleError, Report, Request, Vector};
+use std::cell::RefCell;
+
+/// A run with the points of its evaluations.
+#[derive(Debug, Clone)]
+pub struct ToyTrace {
+    /// How it went; one record per evaluation.
+    pub report: Report,
+    /// Where each evaluation was.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// Writes down where it is evaluated.
+struct Recorded {
+    inner: ToyObjective,
+    points: RefCell<Vec<[f64; 2]>>,
+}
+
+impl NonsmoothObjective for Recorded {
+    type WarmStart = <ToyObjective as NonsmoothObjective>::WarmStart;
+
+    fn dimension(&self) -> usize {
+        self.inner.dimension()
+    }
+
+    fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {
+        self.points.borrow_mut().push([request.point[0], request.point[1]]);
+        self.inner.evaluate(request)
+    }
+}
+
+/// Runs the engine from a start, with the settings of [`super::run_study`].
+///
+/// # Errors
+/// [`OptimizeError`] if the start is not finite.
+pub fn trace(start: [f64; 2]) -> Result<ToyTrace, OptimizeError> {
+    let recorded = Recorded { inner: toy_objective(), points: RefCell::default() };
+    let mut method = BundleTrust::new(config())?.constraints(admissible_set());
+    let report = method.minimize(&recorded, Vector::from_row_slice(&start))?;
+    Ok(ToyTrace { report, points: recorded.points.into_inner() })
+}
+
+/// The lines in the admissible box on which a node has a kink: ends of each.
+pub fn kink_lines() -> Vec<[[f64; 2]; 2]> {
+    let objective = toy_objective();
+    let nodes = objective.solver().nodes().iter().zip(SURFACE);
+    nodes.flat_map(|(node, row)| node.kinks().into_iter().filter_map(move |kink| clipped(row, kink.height))).collect()
+}
+
+/// The part of the line row·α = height inside the box; both entries of a row are positive.
+fn clipped([first, second]: [f64; 2], height: f64) -> Option<[[f64; 2]; 2]> {
+    // Along the line α₁ falls as α₂ rises: its part in the box begins and ends where one of them meets a bound.
+    let at = |alpha_2: f64| (height - second * alpha_2) / first;
+    let low = LOWER.max((height - first * UPPER) / second);
+    let high = UPPER.min((height - first * LOWER) / second);
+    (low < high).then(|| [[at(low), low], [at(high), high]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_and_records_belong_together() {
+        let trace = trace([-3.0, 5.0]).expect("a start in the box");
+        assert_eq!(trace.points.len(), trace.report.history.len());
+        let objective = toy_objective();
+        for (point, record) in trace.points.iter().zip(&trace.report.history) {
+            let value = objective.evaluate(&Request::tight(&Vector::from_row_slice(point))).expect("in the box");
+            assert_eq!(Some(value.evaluation().value), record.value);
+        }
+    }
+
+    #[test]
+    fn kink_lines_end_at_the_box_and_lie_on_kinks() {
+        let lines = kink_lines();
+        assert_eq!(lines.len(), 6);
+        for ends in &lines {
+            for point in ends {
+                assert!(point.iter().all(|x| (LOWER - 1e-12..=UPPER + 1e-12).contains(x)), "{point:?}");
+                assert!(point.iter().any(|x| (x - LOWER).abs() < 1e-12 || (x - UPPER).abs() < 1e-12), "{point:?}");
+            }
+            let middle = Vector::from_fn(2, |i, _| 0.5 * (ends[0][i] + ends[1][i]));
+            let kinks = toy_objective().solver().nearest_kinks(&middle).expect("finite");
+            assert!(kinks.iter().flatten().any(|(_, distance)| *distance < 1e-12));
+        }
+    }
+}
