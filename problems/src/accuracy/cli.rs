@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Print all numbers as comma-separated values on stdout.
     #[arg(long)]
     pub csv: bool,
-    /// Folder for report.json, report.md, report.csv and the pictures (SVG).
+    /// Folder for report.json, report.md, report.csv and the pictures (SVG, PNG).
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -77,8 +77,8 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
         folder.write("report.json", &object)?;
         folder.write("report.md", &page)?;
         folder.write("report.csv", &table)?;
-        for (name, picture) in pictures::all(&report) {
-            folder.write(&name, &picture)?;
+        for figure in pictures::all(&report).map_err(Failure::computation)? {
+            folder.draw(&figure)?;
         }
     }
     Ok(if arguments.json {

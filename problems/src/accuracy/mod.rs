@@ -5,7 +5,7 @@
 //!      ├─ algebra                                   error against tolerance, seconds; the solver's estimate beside it
 //!      ├─ subgradient ─ kink                        Taylor tables, one-sided slopes at constructed kinks
 //!      └─ optimization                              Θ(best) − Θ* against evaluations, seconds
-//! Report ─ tables (Markdown), csv, pictures (SVG) or JSON
+//! Report ─ tables (Markdown), csv, pictures (SVG, PNG) or JSON
 //! ```
 //! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
 //! stdout and nothing else there.
@@ -20,7 +20,6 @@ mod manufactured;
 mod objective;
 mod optimization;
 mod pictures;
-mod plot;
 mod rates;
 mod report;
 mod subgradient;
@@ -35,7 +34,6 @@ pub use manufactured::{
     ManufacturedErrors, ManufacturedFailure, StressErrors, manufactured_errors, manufactured_stress_errors,
 };
 pub use optimization::{Course, Milestone, OptimizationStudy, PeakRow};
-pub use plot::{LogPlot, Series};
 pub use rates::{Extrapolation, extrapolate};
 pub use report::Report;
 pub use subgradient::{SubgradientStudy, TaylorStudy};

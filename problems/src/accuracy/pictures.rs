@@ -1,35 +1,27 @@
 //! The pictures of a report.
 
 use crate::accuracy::discretisation::QUANTITIES;
-use crate::accuracy::plot::{LogPlot, Series};
 use crate::accuracy::{AlgebraStudy, MeshStudy, Milestone, OptimizationStudy, Report, SubgradientStudy};
+use crate::figure::{Figure, FigureError, LogPlot, Series};
 use crate::scaling::word;
 
-/// File names and texts of all pictures.
-pub fn all(report: &Report) -> Vec<(String, String)> {
-    let mut pictures = Vec::new();
+/// All pictures of a report.
+///
+/// # Errors
+/// [`FigureError`] for numbers that are not finite.
+pub fn all(report: &Report) -> Result<Vec<Figure>, FigureError> {
+    let mut plots = Vec::new();
     for study in &report.discretisation {
-        let name = word(&study.scene);
-        pictures.push((format!("accuracy_mesh_{name}.svg"), mesh(study).svg()));
-        pictures.push((format!("accuracy_mesh_seconds_{name}.svg"), mesh_seconds(study).svg()));
+        plots.extend([mesh(study), mesh_seconds(study)]);
     }
     for study in &report.algebra {
-        let name = word(&study.scene);
-        pictures.push((format!("accuracy_solvers_{name}.svg"), solvers(study).svg()));
-        pictures.push((format!("accuracy_estimate_{name}.svg"), estimate(study).svg()));
-        pictures.push((format!("accuracy_subgradient_{name}.svg"), slopes(study).svg()));
+        plots.extend([solvers(study), estimate(study), slopes(study)]);
     }
-    if let Some(study) = &report.subgradient {
-        pictures.push(("accuracy_taylor.svg".into(), taylor(study).svg()));
-    }
+    plots.extend(report.subgradient.as_ref().map(taylor));
     for study in &report.optimization {
-        let name = word(&study.scene);
-        for axis in [Axis::Seconds, Axis::Evaluations, Axis::Work] {
-            let file = format!("accuracy_optimization_{}_{name}.svg", axis.word());
-            pictures.push((file, optimization(study, axis).svg()));
-        }
+        plots.extend([Axis::Seconds, Axis::Evaluations, Axis::Work].map(|axis| optimization(study, axis)));
     }
-    pictures
+    plots.iter().map(LogPlot::figure).collect()
 }
 
 fn mesh_series(study: &MeshStudy, x: impl Fn(&crate::accuracy::MeshRow) -> f64) -> Vec<Series> {
@@ -46,6 +38,7 @@ fn mesh(study: &MeshStudy) -> LogPlot {
     let anchor = study.rows.first().map_or((1.0, 1.0), |row| (row.bricks as f64, row.errors[0]));
     let guide = |rate: f64| (format!("rate {rate}"), anchor.1 * anchor.0.powf(rate), -rate);
     LogPlot {
+        name: format!("accuracy_mesh_{}", word(&study.scene)),
         title: format!("{}: error of the discretisation", word(&study.scene)),
         x: "bricks per edge of each body".into(),
         y: "error relative to the extrapolated limit".into(),
@@ -56,6 +49,7 @@ fn mesh(study: &MeshStudy) -> LogPlot {
 
 fn mesh_seconds(study: &MeshStudy) -> LogPlot {
     LogPlot {
+        name: format!("accuracy_mesh_seconds_{}", word(&study.scene)),
         title: format!("{}: what a smaller error of the discretisation costs", word(&study.scene)),
         x: "seconds of the contact state".into(),
         y: "error relative to the extrapolated limit".into(),
@@ -81,6 +75,7 @@ fn by_method(
 
 fn solvers(study: &AlgebraStudy) -> LogPlot {
     LogPlot {
+        name: format!("accuracy_solvers_{}", word(&study.scene)),
         title: format!("{}, {}³ bricks: what a smaller error of Θ costs", word(&study.scene), study.bricks),
         x: "seconds of state and subgradient".into(),
         y: "relative error of Θ by the solver".into(),
@@ -91,6 +86,7 @@ fn solvers(study: &AlgebraStudy) -> LogPlot {
 
 fn estimate(study: &AlgebraStudy) -> LogPlot {
     LogPlot {
+        name: format!("accuracy_estimate_{}", word(&study.scene)),
         title: format!("{}: the bound reported against the true error of Θ", word(&study.scene)),
         x: "true relative error of Θ".into(),
         y: "relative bound reported by the solver".into(),
@@ -101,6 +97,7 @@ fn estimate(study: &AlgebraStudy) -> LogPlot {
 
 fn slopes(study: &AlgebraStudy) -> LogPlot {
     LogPlot {
+        name: format!("accuracy_subgradient_{}", word(&study.scene)),
         title: format!("{}, {}³ bricks: error of the subgradient", word(&study.scene), study.bricks),
         x: "relative accuracy asked for".into(),
         y: "|ξ − ξ*|/|ξ*|".into(),
@@ -121,6 +118,7 @@ fn taylor(study: &SubgradientStudy) -> LogPlot {
     let series: Vec<Series> = study.taylor.iter().map(of).collect();
     let anchor = series.first().and_then(|series| series.points.first()).map_or(1.0, |point| point.0);
     LogPlot {
+        name: "accuracy_taylor".into(),
         title: "Taylor remainder of Θ with the subgradient (2 is right)".into(),
         x: "step along a random direction".into(),
         y: "|Θ(α + hd) − Θ(α) − h⟨ξ, d⟩|, scaled".into(),
@@ -171,6 +169,7 @@ fn optimization(study: &OptimizationStudy, axis: Axis) -> LogPlot {
     };
     let fine = study.levels[study.levels.len() - 1];
     LogPlot {
+        name: format!("accuracy_optimization_{}_{}", axis.word(), word(&study.scene)),
         title: format!("{}, {fine}³ bricks: distance from the lowest Θ found", word(&study.scene)),
         x: axis.name().into(),
         y: "(Θ(best) − Θ*)/Θ*".into(),

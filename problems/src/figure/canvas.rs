@@ -17,14 +17,6 @@ const LETTER: f64 = 0.5;
 /// A position in points.
 pub(super) type Place = [f64; 2];
 
-/// Where a text lies relative to its position.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stroke<'a> {
@@ -62,16 +54,11 @@ impl Canvas {
         Self { width: width.ceil(), height: height.ceil(), body: String::new() }
     }
 
-    /// One line of text of some size, its foot at a place.
-    pub fn text(&mut self, [x, y]: Place, anchor: Anchor, size: f64, text: &str) {
-        let anchor = match anchor {
-            Anchor::Start => "start",
-            Anchor::Middle => "middle",
-            Anchor::End => "end",
-        };
+    /// One line of text of some size that begins at a place.
+    pub fn text(&mut self, [x, y]: Place, size: f64, text: &str) {
         let _ = writeln!(
             self.body,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{INK}\">{}</text>",
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{INK}\">{}</text>",
             raised(&escaped(text), size)
         );
     }
@@ -84,15 +71,6 @@ impl Canvas {
     /// A closed outline.
     pub fn outline(&mut self, places: &[Place], stroke: Stroke) {
         let _ = writeln!(self.body, "<path d=\"{}\" {}/>", path(places, true), stroke.attributes());
-    }
-
-    /// Areas one over the other, each with its colour.
-    pub fn areas<'a>(&mut self, areas: impl IntoIterator<Item = (&'a str, &'a [Place])>) {
-        self.body += "<g transform=\"scale(.1)\">\n";
-        for (colour, places) in areas {
-            let _ = writeln!(self.body, "<path fill=\"{colour}\" d=\"{}\"/>", tenths(places));
-        }
-        self.body += "</g>\n";
     }
 
     /// Areas of one colour as one path; where they overlap nothing changes.

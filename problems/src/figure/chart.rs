@@ -44,14 +44,6 @@ impl Frame {
         [self.left + across * self.width, self.top + (1.0 - up) * self.height]
     }
 
-    pub fn corner(&self) -> Place {
-        [self.left, self.top]
-    }
-
-    pub fn size(&self) -> [f64; 2] {
-        [self.width, self.height]
-    }
-
     /// Axes with ticks, labels and titles.
     pub fn axes(&self, canvas: &mut Canvas, across: &Axis, up: &Axis, parts: Parts) -> Result<(), FigureError> {
         let mut text = String::new();

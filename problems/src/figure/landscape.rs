@@ -1,6 +1,6 @@
 //! A function of two variables as filled levels, with the points that a method visited.
 
-use super::canvas::{Anchor, Canvas, INK, LABEL, Stroke, TITLE, text_width};
+use super::canvas::{Canvas, INK, LABEL, Stroke, TITLE, text_width};
 use super::chart::{Frame, Parts};
 use super::colours::CURVES;
 use super::convergence::mark;
@@ -94,7 +94,7 @@ impl Landscape {
             (legend + 44.0 + widest).max(text_width(&self.title, TITLE) + 32.0),
             frame.top + height + ROOM[1] + 10.0,
         );
-        canvas.text([16.0, 22.0], Anchor::Start, TITLE, &self.title);
+        canvas.text([16.0, 22.0], TITLE, &self.title);
         self.ground(&mut canvas, &frame, &scale)?;
         canvas.clipped("inside", [frame.left, frame.top], [width, height], |canvas| self.route(canvas, &frame, &kinds));
         scale.bar(&mut canvas, [frame.left + width + 24.0, frame.top], height);
@@ -105,7 +105,7 @@ impl Landscape {
                 None if self.goal.is_some() && index == kinds.len() => cross(&mut canvas, [legend + 11.0, y]),
                 None => canvas.line(&[[legend, y], [legend + 22.0, y]], Stroke::dashed(INK, 1.0)),
             }
-            canvas.text([legend + 29.0, y + 0.34 * LABEL], Anchor::Start, LABEL, name);
+            canvas.text([legend + 29.0, y + 0.34 * LABEL], LABEL, name);
             y += 20.0;
         }
         Ok(Figure::new(&self.name, &self.title, canvas))

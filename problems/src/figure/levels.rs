@@ -4,7 +4,7 @@
 //! the area above a level is then a polygon per triangle, without ambiguous cases.
 
 use super::canvas::INK;
-use super::canvas::{Anchor, Canvas, LABEL, Place, Stroke};
+use super::canvas::{Canvas, LABEL, Place, Stroke};
 use super::colours;
 use super::scale::{Axis, extent};
 
@@ -72,9 +72,9 @@ impl ColourScale {
         for tick in &self.axis.ticks {
             let y = foot(tick.share);
             canvas.line(&[[left + WIDTH, y], [left + WIDTH + 4.0, y]], Stroke::solid(INK, 0.8));
-            canvas.text([left + WIDTH + 7.0, y + 0.34 * LABEL], Anchor::Start, LABEL, &tick.label);
+            canvas.text([left + WIDTH + 7.0, y + 0.34 * LABEL], LABEL, &tick.label);
         }
-        canvas.text([left, top - 10.0], Anchor::Start, LABEL, &self.axis.title);
+        canvas.text([left, top - 10.0], LABEL, &self.axis.title);
     }
 }
 

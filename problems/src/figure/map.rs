@@ -1,6 +1,6 @@
 //! Values on the nodes of plane grids as panels side by side, on one colour scale.
 
-use super::canvas::{Anchor, Canvas, LABEL, TITLE, text_width};
+use super::canvas::{Canvas, LABEL, TITLE, text_width};
 use super::chart::{Frame, Parts};
 use super::error::{count, finite, some};
 use super::levels::{ColourScale, Lattice, fill};
@@ -96,7 +96,7 @@ impl Map {
         let bar_title = text_width(&scale.axis.title, LABEL);
         let width = (left + bar_title.max(75.0) + 10.0).max(text_width(&self.title, TITLE) + 32.0);
         let mut canvas = Canvas::new(width, top + height + below + 8.0);
-        canvas.text([16.0, 22.0], Anchor::Start, TITLE, &self.title);
+        canvas.text([16.0, 22.0], TITLE, &self.title);
         for (index, panel) in self.panels.iter().enumerate() {
             let labelled = index == 0 || !same;
             let frame = Frame { left: lefts[index], top, width: sizes[index][0], height: sizes[index][1] };
@@ -174,8 +174,8 @@ impl MapPanel {
         frame.axes(canvas, &axis(0), &axis(1), parts)?;
         let ([i, j], text) = self.largest(&map.unit);
         ring(canvas, place([i as f64, j as f64]));
-        canvas.text([frame.left, frame.top - 26.0], Anchor::Start, LABEL, &self.caption);
-        canvas.text([frame.left, frame.top - 10.0], Anchor::Start, LABEL, &text);
+        canvas.text([frame.left, frame.top - 26.0], LABEL, &self.caption);
+        canvas.text([frame.left, frame.top - 10.0], LABEL, &text);
         Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! Panels with bodies in space side by side: title, captions, arrows of the axes, note and colour bar around them.
 
-use super::canvas::{Anchor, Canvas, INK, LABEL, Place, Stroke, TITLE, text_width};
+use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, text_width};
 use super::levels::ColourScale;
 use super::oblique::{Point, Sheet, View, bounds, paint};
 use super::{Figure, FigureError};
@@ -75,7 +75,7 @@ impl Row<'_> {
         ];
         let width = width.into_iter().fold(0.0, f64::max) + MARGIN;
         let mut canvas = Canvas::new(width, top + height + 84.0);
-        canvas.text([MARGIN, 22.0], Anchor::Start, TITLE, self.title);
+        canvas.text([MARGIN, 22.0], TITLE, self.title);
         for (panel, left) in self.panels.iter().zip(lefts) {
             let origin = [left - points * across[0], top + 0.5 * (height - size[1]) - points * up[0]];
             let view = View { origin, scale: points };
@@ -85,13 +85,13 @@ impl Row<'_> {
                 paint(&mut canvas, &view, &[vec![sheet.clone()]], self.scale);
             }
             canvas.raw("</g>\n");
-            canvas.text([left, top - 30.0], Anchor::Start, LABEL, &panel.captions[0]);
-            canvas.text([left, top - 14.0], Anchor::Start, LABEL, &panel.captions[1]);
+            canvas.text([left, top - 30.0], LABEL, &panel.captions[0]);
+            canvas.text([left, top - 14.0], LABEL, &panel.captions[1]);
         }
         self.scale.bar(&mut canvas, [left, top], height);
         let foot = top + height;
         self.arrows(&mut canvas, [MARGIN + 8.0, foot + 58.0]);
-        canvas.text([note, foot + 62.0], Anchor::Start, LABEL, self.note);
+        canvas.text([note, foot + 62.0], LABEL, self.note);
         Ok(Figure::new(self.name, self.title, canvas))
     }
 
@@ -108,7 +108,7 @@ impl Row<'_> {
                 |side: f64| [end[0] - 5.0 * along[0] - side * along[1], end[1] - 5.0 * along[1] + side * along[0]];
             canvas.area(INK, [[end, wing(2.2), wing(-2.2)].as_slice()]);
             let gap = if axis == 2 { [6.0, 2.0] } else { [5.0, 0.34 * LABEL] };
-            canvas.text([end[0] + gap[0], end[1] + gap[1]], Anchor::Start, LABEL, label);
+            canvas.text([end[0] + gap[0], end[1] + gap[1]], LABEL, label);
         }
     }
 }

@@ -105,10 +105,6 @@ impl Axis {
         let value = |position: f64| if self.logarithmic { 10.0_f64.powf(position) } else { position * self.unit };
         [value(self.low), value(self.high)]
     }
-
-    pub fn is_logarithmic(&self) -> bool {
-        self.logarithmic
-    }
 }
 
 /// Smallest and largest of the finite values; none without any.
