@@ -2,6 +2,11 @@
 
 use thiserror::Error;
 
+/// What is said of a value that is not allowed.
+fn found(value: &str) -> String {
+    if value == "missing" { "is missing".into() } else { format!("= {value} is not allowed") }
+}
+
 /// Input that describes no scene we can compute. Every variant names the field, the value and what is allowed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -17,7 +22,7 @@ pub enum SceneError {
         allowed: String,
     },
     /// A field of a scene file is missing, of another type or outside its range.
-    #[error("{file}: {path} = {value} is not allowed; allowed: {allowed}")]
+    #[error("{file}: {path} {}; allowed: {allowed}", found(value))]
     Field {
         /// The file.
         file: String,

@@ -67,6 +67,10 @@ fn the_table_is_what_separate_commands_find() {
     let continued = json(&arguments);
     let at_once = json(&["compare", "--mesh", "4", "--max-evaluations", "15", "--json"]);
     assert_eq!(continued["shapes"], at_once["shapes"]);
+    // Fewer evaluations than it has are refused, and nothing is touched.
+    let kept = std::fs::read(folder.join("report.json")).unwrap();
+    refused(&["compare", "--resume", folder.to_str().unwrap(), "--max-evaluations", "3"], &["at least the 15"]);
+    assert_eq!(std::fs::read(folder.join("report.json")).unwrap(), kept);
     // Neither kind of run is taken for the other.
     refused(&["--resume", folder.to_str().unwrap()], &["comparison", "compare --resume"]);
     let part = folder.join("with_friction");

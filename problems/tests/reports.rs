@@ -6,7 +6,7 @@ use resvg::usvg::{Options, Tree};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// A folder that is removed with the test.
 struct Scratch(PathBuf);
@@ -30,15 +30,18 @@ impl Drop for Scratch {
     }
 }
 
-/// Runs a binary in a folder; its JSON.
-fn run(folder: &Path, binary: &str, arguments: &[&str]) -> Value {
+fn output(folder: &Path, binary: &str, arguments: &[&str]) -> Output {
     let path = match binary {
         "contact3d" => env!("CARGO_BIN_EXE_contact3d"),
         "hertz3d" => env!("CARGO_BIN_EXE_hertz3d"),
         _ => env!("CARGO_BIN_EXE_signorini3d"),
     };
-    let output =
-        Command::new(path).args(arguments).arg("--json").current_dir(folder).env_remove("RUST_LOG").output().unwrap();
+    Command::new(path).args(arguments).arg("--json").current_dir(folder).env_remove("RUST_LOG").output().unwrap()
+}
+
+/// Runs a binary in a folder; its JSON.
+fn run(folder: &Path, binary: &str, arguments: &[&str]) -> Value {
+    let output = output(folder, binary, arguments);
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
@@ -134,4 +137,37 @@ fn what_is_not_asked_for_is_not_made() {
     std::fs::write(scratch.0.join("quiet.toml"), quiet).unwrap();
     run(&scratch.0, "contact3d", &["quiet.toml", "evaluate", mesh[0], mesh[1]]);
     assert_eq!(names(&scratch.0.join("run")), ["evaluation.json", "pressure_shape.csv"].map(String::from).into());
+}
+
+#[test]
+fn no_command_replaces_the_report_of_an_optimization_by_the_way() {
+    let scratch = Scratch::new("kept");
+    run(&scratch.0, "signorini3d", &["--mesh", "4", "--max-evaluations", "6", "--out", "run"]);
+    let report = scratch.read("run/report.html");
+    for arguments in [
+        &["evaluate", "--mesh", "4", "--out", "run"][..],
+        &["verify", "--mesh", "4", "--out", "run"],
+        &["--resume", "run", "--max-evaluations", "3"],
+    ] {
+        let output = output(&scratch.0, "signorini3d", arguments);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains("run") || message.contains("at least the 6 evaluations"), "{message}");
+    }
+    assert_eq!(scratch.read("run/report.html"), report);
+    // The scene that the folder keeps does not send other commands there.
+    run(&scratch.0, "contact3d", &["run/scene.toml", "evaluate"]);
+    assert_eq!(scratch.read("run/report.html"), report);
+    // A second run with the same folder replaces the first, and says so.
+    let again = output(&scratch.0, "signorini3d", &["--mesh", "4", "--max-evaluations", "2", "--out", "run"]);
+    assert!(again.status.success() && String::from_utf8_lossy(&again.stderr).contains("is replaced"));
+}
+
+#[test]
+fn a_verification_leaves_its_table() {
+    let scratch = Scratch::new("verify");
+    let result = run(&scratch.0, "signorini3d", &["verify", "--mesh", "4", "--out", "table"]);
+    let written: Value = serde_json::from_str(&scratch.read("table/verification.json")).unwrap();
+    assert_eq!(written["smooth_step"], result["smooth_step"]);
+    assert!(scratch.read("table/verification.txt").contains("nearest kink"));
 }

@@ -98,7 +98,7 @@ fn bad_values_are_refused_with_path_value_and_what_is_allowed() {
         ("friction = 0.3", "friction = -0.5", ["friction = -0.5", "≥ 0"]),
         ("friction = 0.3", "friction = nan", ["friction = nan", "finite"]),
         ("friction = 0.3", "friction = \"much\"", ["friction = \"much\"", "number"]),
-        ("friction = 0.3\n", "", ["friction = missing", "≥ 0"]),
+        ("friction = 0.3\n", "", ["friction is missing", "≥ 0"]),
         ("bricks = [12, 12, 12]", "bricks = [12, 12]", ["mesh.bricks = [12, 12]", "3 entries"]),
         ("bricks = [12, 12, 12]", "bricks = [12, 0, 12]", ["mesh.bricks[1] = 0", "≥ 1"]),
         ("bricks = [12, 12, 12]", "bricks = [12, 1.5, 12]", ["mesh.bricks[1] = 1.5", "integer"]),

@@ -75,12 +75,12 @@ impl Termination {
         match self {
             Self::Stationary { .. } => "the certificate can be re-checked offline",
             Self::StationaryUnconfirmed { .. } => {
-                "believe it if the objective is convex; otherwise start again from here or from elsewhere and compare"
+                "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
             }
             Self::NoiseLimit { .. } => "a more accurate oracle is needed to get further",
             Self::StepTooShort { .. } => "check the subgradients with `verify` at the best point",
-            Self::EvaluationLimit | Self::IterationLimit | Self::TimeLimit => "raise the limit and resume the snapshot",
-            Self::StoppedByObserver | Self::StopRule { .. } => "resume the snapshot to continue",
+            Self::EvaluationLimit | Self::IterationLimit | Self::TimeLimit => "raise the limit and continue",
+            Self::StoppedByObserver | Self::StopRule { .. } => "continue when wanted: nothing is lost",
             Self::UnboundedBelow => "add bounds on the variables",
             Self::OracleFailing { .. } => "make the oracle robust near the best point, or restrict the admissible set",
             Self::SubproblemFailed { .. } => "check the scale of the variables and of the constraint rows",

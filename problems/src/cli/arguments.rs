@@ -14,7 +14,7 @@ use std::path::PathBuf;
 pub enum Command {
     /// Optimize the shape.
     Optimize,
-    /// Optimize with and without friction, and evaluate both shapes with friction (Example 5.3 of the paper).
+    /// Optimize with and without friction, and look at both shapes with and without it (Example 5.3 of the paper).
     Compare,
     /// Objective, subgradient and certificates at one shape.
     Evaluate,
@@ -114,7 +114,7 @@ impl Arguments {
     /// [`Failure::Input`] naming the option.
     pub fn check(&self) -> Result<(), Failure> {
         let optimizing = matches!(self.command, Command::Optimize | Command::Compare);
-        let wrong = |option: &str, allowed: &str| Err(SceneError::out_of_range(option, "given", allowed).into());
+        let wrong = |option: &str, allowed: &str| Err(Failure::Input(format!("{option} is allowed {allowed}")));
         if optimizing && self.controls.is_some() {
             return wrong("--controls", "with evaluate and verify only (optimize and compare take --start-controls)");
         }
@@ -177,7 +177,7 @@ impl Arguments {
             return Ok(());
         }
         let allowed = "with --max-evaluations, --time-limit, --threads, --json only: all else is in the folder";
-        Err(SceneError::out_of_range("--resume", "given with other options", allowed).into())
+        Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
 
     /// The scene file with the options put in; checked when it becomes a case.

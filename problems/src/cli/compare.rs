@@ -3,9 +3,10 @@
 
 use crate::cli::compared::Compared;
 use crate::cli::long_run::{COMPARED, RunFolder, STATUS};
-use crate::cli::optimization::{Begin, Optimization, Session, optimize};
+use crate::cli::optimization::{Begin, Optimization, Session, check_limit, optimize};
 use crate::cli::optimize::{deliver, interruption};
 use crate::cli::solved::Solved;
+use crate::cli::stages::stages;
 use crate::cli::{Failure, Source, controls, objective, output, results};
 use crate::error::SceneError;
 use crate::scene_file::Case;
@@ -20,6 +21,13 @@ pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String
     let resumed = session.arguments.resume.is_some();
     let folder = case.output.folder.as_deref();
     let folder = folder.map(|path| RunFolder::open(path, 1, resumed)).transpose()?;
+    for part in
+        folder.iter().filter(|_| resumed).flat_map(|folder| COMPARED.map(|part| folder.folder().path().join(part)))
+    {
+        if RunFolder::is_one(&part) {
+            check_limit(&RunFolder::open(&part.display().to_string(), 1, true)?, &stages(case))?;
+        }
+    }
     let start = start(source, case, folder.as_ref(), session)?;
     let frictions = [case.scene.friction, 0.0];
     let (mut printed, mut runs) = (String::new(), Vec::new());
@@ -29,7 +37,7 @@ pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String
         let begin = if resumed && begun { Begin::Resumed } else { Begin::At(&start) };
         let optimization = optimize(&source, &case, begin, session)?;
         session.status.begin("reporting: ".into());
-        let (text, shapes) = deliver(&optimization, &source, &case, session)?;
+        let (text, shapes) = deliver(&optimization, &source, &case, session, None)?;
         // One JSON object at most stands on stdout.
         printed = if session.arguments.json { text } else { printed + &text };
         if optimization.was_cut_short() {
@@ -38,7 +46,10 @@ pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String
         runs.push((optimization, shapes));
     }
     let compared = cross(&runs)?;
-    let text = compared.to_string();
+    let mut text = compared.to_string();
+    if let Some(folder) = folder.as_ref().filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
+        text += &format!("to continue: compare --resume {}\n", folder.folder().path().display());
+    }
     let json = output::json(&compared.summary())?;
     let printed = if session.arguments.json { json.clone() } else { format!("{printed}\n{text}") };
     if let Some(folder) = &folder {

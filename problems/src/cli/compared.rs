@@ -105,9 +105,10 @@ impl Compared<'_> {
             peaks[0]
         )];
         sentences.push(if loss > 1.0 + NEGLIGIBLE {
-            format!("Leaving friction out of the optimization costs {:.1} % here: friction belongs into the model.", 100.0 * (loss - 1.0))
+            format!("In these runs, leaving friction out of the optimization costs {:.1} %: it is no approximation of the optimum with \
+                 friction.", 100.0 * (loss - 1.0))
         } else if loss >= 1.0 {
-            format!("Leaving friction out of the optimization costs only {:.2} % here.", 100.0 * (loss - 1.0))
+            format!("In these runs, leaving friction out of the optimization costs only {:.2} %.", 100.0 * (loss - 1.0))
         } else {
             format!(
                 "The run with friction stopped {:.2} % above the other shape: it is not at the best shape, and may be continued \

@@ -41,7 +41,7 @@ pub fn run(
     case: &Case,
     arguments: &Arguments,
 ) -> Result<String, Failure> {
-    let folder = Folder::prepare(case.output.folder.as_deref())?;
+    let folder = Folder::for_results(case.output.folder.as_deref())?;
     let shape = objective.solver();
     let control = controls::load(shape, case, arguments.controls.as_deref())?;
     let clock = Instant::now();

@@ -40,7 +40,7 @@ use crate::contact::STAGE_TARGET;
 use crate::contact_shape::ContactShape;
 use crate::cost::PressureCost;
 use crate::scene_file::{Case, schema};
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use nonsmooth::ReducedObjective;
 use std::io::Write;
 use std::path::PathBuf;
@@ -80,7 +80,13 @@ pub fn run_any() -> ExitCode {
             Failure::Input("SCENE.toml and --resume together: a resumed run has its scene in its folder".into());
         return finish(Err(failure));
     }
-    finish(execute(|| Ok(Source::file(scene.as_ref().ok_or_else(missing)?)?), &arguments))
+    let open = || {
+        let scene = scene.as_ref().ok_or_else(missing)?;
+        // A command in the place of the scene: the scene was forgotten.
+        let command = scene.to_str().is_some_and(|word| Command::from_str(word, true).is_ok());
+        if command && !scene.exists() { Err(missing()) } else { Ok(Source::file(scene)?) }
+    };
+    finish(execute(open, &arguments))
 }
 
 fn finish(result: Result<String, Failure>) -> ExitCode {

@@ -4,6 +4,7 @@ use crate::cli::long_run::{Entry, Journal, Journaled, Progress, RunFolder, Statu
 use crate::cli::optimized::Finished;
 use crate::cli::stages::{Stage, stages};
 use crate::cli::{Arguments, ContactObjective, Failure, Source, controls, objective};
+use crate::error::SceneError;
 use crate::scene_file::{AccuracyName, Case};
 use nonsmooth::{
     AccuracyPolicy, BundleTrust, BundleTrustConfig, Matrix, NonsmoothObjective, Reparametrized, Report, Termination,
@@ -85,6 +86,9 @@ pub fn optimize(
         // Replaced by what the folder holds.
         Begin::Resumed => first.solver().start(),
     };
+    if let Some(folder) = folder.as_ref().filter(|_| matches!(begin, Begin::Resumed)) {
+        check_limit(folder, &stages)?;
+    }
     if let Some(folder) = &folder {
         start = Vector::from_vec(folder.begin(source, start.as_slice())?);
         first.solver().problem().admissible.check(&start)?;
@@ -116,6 +120,18 @@ pub fn optimize(
         }
     }
     Ok(Optimization { finished, asked: stages.len(), folder })
+}
+
+/// Refuses fewer evaluations than a run that is continued has made already: its report would become worse.
+pub fn check_limit(folder: &RunFolder, stages: &[Stage]) -> Result<(), SceneError> {
+    for stage in stages {
+        let (held, limit) = (folder.evaluations(stage.name.as_deref())?, stage.case.optimizer.max_evaluations);
+        if held > limit {
+            let allowed = format!("at least the {held} evaluations that the folder holds");
+            return Err(SceneError::out_of_range("--max-evaluations", limit, allowed));
+        }
+    }
+    Ok(())
 }
 
 /// Bytes per torn node of the fields of one state (some 260 bytes per brick were written at 35³).

@@ -11,20 +11,22 @@ pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String
     let begin = if session.arguments.resume.is_some() { Begin::Resumed } else { Begin::Anew };
     let optimization = optimize(source, case, begin, session)?;
     session.status.begin("reporting: ".into());
-    let (printed, _shapes) = deliver(&optimization, source, case, session)?;
+    let continued = optimization.folder.as_ref().map(|folder| format!("--resume {}", folder.folder().path().display()));
+    let (printed, _shapes) = deliver(&optimization, source, case, session, continued.as_deref())?;
     match interruption(optimization.folder.as_ref()) {
         Some(reason) => Err(Failure::Incomplete { text: printed, reason, status: STATUS }),
         None => Ok(printed),
     }
 }
 
-/// The report for stdout and, if asked for, in files, with the shapes at both ends. What cannot be written does not take the
-/// report along.
+/// The report for stdout and, if asked for, in files, with the shapes at both ends; `continued`: the options that continue the
+/// run, to be named if it can be. What cannot be written does not take the report along.
 pub fn deliver(
     optimization: &Optimization,
     source: &Source,
     case: &Case,
     session: &Session<'_>,
+    continued: Option<&str>,
 ) -> Result<(String, [Solved; 2]), Failure> {
     let finished = &optimization.finished;
     let (Some(first), Some(last)) = (finished.first(), finished.last()) else {
@@ -34,8 +36,8 @@ pub fn deliver(
     let json = output::json(&summary(finished, &shapes))?;
     let mut text = page(last, &shapes);
     text += &stages_page(finished, optimization.asked);
-    if let Some(folder) = optimization.folder.as_ref().filter(|_| optimization.can_continue()) {
-        text += &format!("to continue: --resume {}\n", folder.folder().path().display());
+    if let Some(options) = continued.filter(|_| optimization.can_continue()) {
+        text += &format!("to continue: {options}\n");
     }
     let printed = if session.arguments.json { json.clone() } else { text.clone() };
     if let Some(folder) = &optimization.folder {

@@ -155,12 +155,13 @@ pub fn page(finished: &Finished, shapes: &[Solved; 2]) -> String {
     let Finished { report, objective, .. } = finished;
     let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;
-    let bodies = if scene.upper.is_some() { 2 } else { 1 };
+    let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
     format!(
-        "{}: {} bodies of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}\n\
+        "{}: {} of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}\n\
          reduction:   {:.4} times, peak pressure {:.1} -> {:.1} MPa\n{report}\
          state:       relative residuals at the solution: {}\n\
          \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
+         active:      {}\n\
          left out:    {}\n",
         scene.name,
         bodies,
@@ -177,8 +178,21 @@ pub fn page(finished: &Finished, shapes: &[Solved; 2]) -> String {
         at_solution.residuals,
         at_solution.kink.smallest_margin,
         at_solution.kink.weakly_active,
+        active_constraints(objective, &report.solution),
         objective.solver().left_out().join("; "),
     )
+}
+
+/// Constraints of the shape that are attained, in words.
+pub fn active_constraints(objective: &ContactObjective, controls: &Vector) -> String {
+    /// As many as a line holds.
+    const MOST: usize = 3;
+    let active = objective.solver().problem().admissible.active(controls);
+    match active.len() {
+        0 => "no constraint of the shape".into(),
+        count if count > MOST => format!("{}; {} more", active[..MOST].join("; "), count - MOST),
+        _ => active.join("; "),
+    }
 }
 
 /// The evaluations as a table.

@@ -1,5 +1,6 @@
 //! JSON, files, and numbers that several commands report.
 
+use crate::cli::long_run::RunFolder;
 use crate::cli::{ContactObjective, Failure};
 use crate::contact_shape::ContactState;
 use crate::error::SceneError;
@@ -22,6 +23,20 @@ impl Folder {
     /// [`SceneError::File`] with the system's reason.
     pub fn prepare(path: Option<impl AsRef<Path>>) -> Result<Option<Self>, SceneError> {
         path.map(|path| Self::with_room(path.as_ref(), 1)).transpose()
+    }
+
+    /// As [`prepare`](Self::prepare); refuses the folder of an optimization, whose report would be replaced.
+    ///
+    /// # Errors
+    /// As [`prepare`](Self::prepare).
+    pub fn for_results(path: Option<&str>) -> Result<Option<Self>, SceneError> {
+        match path.filter(|path| RunFolder::is_one(Path::new(path))) {
+            None => Self::prepare(path),
+            Some(path) => {
+                let reason = "holds an optimization, whose report would be replaced; --out takes another folder".into();
+                Err(SceneError::File { path: path.to_owned(), reason })
+            }
+        }
     }
 
     /// As [`prepare`](Self::prepare), for files of so many bytes.

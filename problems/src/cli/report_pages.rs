@@ -2,7 +2,7 @@
 
 use crate::cli::ContactObjective;
 use crate::cli::compared::Compared;
-use crate::cli::optimized::Finished;
+use crate::cli::optimized::{Finished, active_constraints};
 use crate::cli::report_sections::{certificate, course, files, origin, pictures, states};
 use crate::cli::solved::Solved;
 use crate::contact::StageSeconds;
@@ -40,7 +40,7 @@ pub fn optimization(context: &Context<'_>, finished: &Finished, shapes: &[Solved
     let sections = vec![
         pictures("Pictures", context.figures),
         states(objective, &[("start", &shapes[0]), ("optimum", &shapes[1])]),
-        course(report),
+        course(report, &active_constraints(objective, &report.solution)),
         certificate(report.certificate.as_ref()),
         controls(objective, shapes[1].controls.as_slice()),
         seconds(&shapes[1]),
@@ -72,7 +72,9 @@ pub fn evaluation(context: &Context<'_>, objective: &ContactObjective, shape: &S
 pub fn comparison(context: &Context<'_>, compared: &Compared<'_>) -> Page {
     let objective = &compared.runs[0].objective;
     let sentences = compared.conclusion();
-    let lead = sentences.first().cloned().unwrap_or_default();
+    let confirmed = compared.runs.iter().all(|run| run.report.termination.is_confirmed());
+    let caveat = if confirmed { "" } else { " Not both runs ended with a proof of optimality." };
+    let lead = sentences.first().cloned().unwrap_or_default() + caveat;
     let friction = objective.solver().problem().scene.friction;
     let head = [
         "shape".to_owned(),

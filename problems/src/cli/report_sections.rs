@@ -49,7 +49,7 @@ pub fn states(objective: &ContactObjective, shapes: &[(&str, &Solved)]) -> Secti
 }
 
 /// How the optimization went.
-pub fn course(report: &Report) -> Section {
+pub fn course(report: &Report, active: &str) -> Section {
     let counts = &report.counts;
     let slowest = report.history.windows(2).map(|pair| pair[1].seconds - pair[0].seconds).fold(0.0, f64::max);
     let rows = vec![
@@ -66,6 +66,7 @@ pub fn course(report: &Report) -> Section {
             format!("{:.3} / {slowest:.3}", report.seconds / counts.evaluations.max(1) as f64),
         ],
         vec!["largest relative violation of the constraints".into(), format!("{:.1e}", report.largest_violation)],
+        vec!["constraints attained at the end".into(), active.to_owned()],
     ];
     let end = format!("The run ended: {}. {}.", report.termination, sentence(report.termination.advice()));
     Section::new("Course of the optimization", vec![Block::Text(end), Block::table(["quantity", "value"], rows)])
@@ -92,8 +93,8 @@ pub fn certificate(certificate: Option<&Certificate>) -> Section {
         vec!["noise".into(), format!("{:.1e}", certificate.noise)],
     ];
     let words = "At a stationary point the aggregate subgradient and the aggregate error vanish; the predicted decrease is what \
-                 the model still hopes for. certificate.json holds all cuts and multipliers, from which these numbers can be \
-                 computed again (Certificate::recheck).";
+                 the model still hopes for. certificate.json holds all cuts and multipliers, from which a program can \
+                 compute these numbers again (Certificate::recheck in the library).";
     Section::new("Certificate", vec![Block::table(["quantity", "value"], rows), Block::Text(words.into())])
 }
 

@@ -3,6 +3,7 @@
 
 use crate::cli::compared::Compared;
 use crate::cli::gallery::{self, Seen};
+use crate::cli::long_run::{COMPARED, RunFolder};
 use crate::cli::optimized::{Finished, history_table};
 use crate::cli::output::{self, Folder};
 use crate::cli::report_pages::{self, Context};
@@ -45,7 +46,7 @@ impl<'a> Delivery<'a> {
     /// Contact boundary as tables, fields for ParaView.
     fn tabulate(&mut self, objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<(), Failure> {
         for shape in shapes {
-            let what = "pressure, traction, opening and status of every contact node";
+            let what = "pressure, traction, remaining gap and status of every contact node";
             self.write(
                 &format!("pressure_{}.csv", shape.name),
                 &tables::contact(objective, &shape.solved.state),
@@ -82,9 +83,14 @@ impl<'a> Delivery<'a> {
         self.draw(surface, "heights of the contact surface on one scale")
     }
 
-    fn report(&self, source: &Source, page: impl FnOnce(&Context<'_>) -> crate::page::Page) -> Result<(), Failure> {
+    /// The page, with a table of all files.
+    fn report(&mut self, source: &Source, page: impl FnOnce(&Context<'_>) -> crate::page::Page) -> Result<(), Failure> {
         if !self.case.output.report {
             return Ok(());
+        }
+        if RunFolder::is_one(self.folder.path()) {
+            self.files.push(("report.txt, report.json".into(), "the page of text, and the same as one JSON object"));
+            self.files.push(("scene.toml, start.json, journal.jsonl, …".into(), "the run itself, for --resume"));
         }
         let scene = source.scene.print()?;
         let context = Context { scene: &scene, figures: &self.figures, files: &self.files };
@@ -142,7 +148,7 @@ pub fn write_evaluation(
 pub fn write_comparison(folder: &Folder, source: &Source, case: &Case, compared: &Compared<'_>) -> Result<(), Failure> {
     let objective = &compared.runs[0].objective;
     let mut delivery = Delivery::new(folder, case);
-    for part in crate::cli::long_run::COMPARED {
+    for part in COMPARED {
         delivery.files.push((format!("{part}/report.html"), "the optimization itself, with its files"));
     }
     let caption = |words: &str, shape: &Solved| format!("{words}, Θ = {:.4e}", shape.value);

@@ -1,7 +1,7 @@
 //! `verify`: Taylor test of the subgradient on the smooth piece around one shape.
 
 use crate::cli::output;
-use crate::cli::{Arguments, ContactObjective, Failure, controls};
+use crate::cli::{Arguments, ContactObjective, Failure, Folder, controls};
 use crate::contact::{ContactStatus, Residuals};
 use crate::scene_file::Case;
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
@@ -33,6 +33,7 @@ struct Verified {
 }
 
 pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
+    let folder = Folder::for_results(case.output.folder.as_deref())?;
     let shape = objective.solver();
     let control = controls::load(shape, case, arguments.controls.as_deref())?;
     let direction = nonsmooth::verify::seeded_direction(control.len(), SEED);
@@ -47,14 +48,17 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
         weakly_active: here.forces.kink.weakly_active,
         residuals: here.forces.residuals,
     };
-    if arguments.json {
-        return output::json(&result);
-    }
-    Ok(format!(
+    let json = output::json(&result)?;
+    let text = format!(
         "{}no contact node changes its status up to the step {:.1e} mm (nearest kink: relative margin {:.1e}, {} nodes weakly active)\n\
          relative residuals of the state: {}\n",
         result.test, step, result.smallest_margin, result.weakly_active, result.residuals
-    ))
+    );
+    if let Some(folder) = folder {
+        folder.write("verification.json", &json)?;
+        folder.write("verification.txt", &text)?;
+    }
+    Ok(if arguments.json { json } else { text })
 }
 
 /// A step along which no contact node changes its status, to either side; the shortest one tried if all do.

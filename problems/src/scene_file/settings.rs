@@ -136,7 +136,7 @@ pub enum AccuracyName {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OutputSection {
-    /// Folder for the files of a run, made if it does not exist. Default none: nothing is written.
+    /// Folder for the files of a run, relative to where the program is started, made if it does not exist. Default none: nothing is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<String>,
     /// Whether pictures are drawn into the folder, as SVG and PNG.

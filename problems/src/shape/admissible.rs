@@ -81,6 +81,22 @@ impl AdmissibleSet {
         &self.polyhedron
     }
 
+    /// Bounds and rows that controls attain (up to the tolerance of [`AdmissibleSet::check`]), in words.
+    pub fn active(&self, controls: &Vector) -> Vec<String> {
+        let set = &self.polyhedron;
+        let products = set.rows() * controls;
+        let bounds = (0..controls.len()).map(|i| (format!("α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
+        let rows = (0..products.len())
+            .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
+        let attained = |value: f64, side: f64| (value - side).abs() <= ADMISSIBLE * side.abs().max(f64::MIN_POSITIVE);
+        let words = |(name, value, lower, upper): (String, f64, f64, f64)| match () {
+            () if attained(value, lower) => Some(format!("{name} = {lower}, its least value")),
+            () if attained(value, upper) => Some(format!("{name} = {upper}, its largest value")),
+            () => None,
+        };
+        bounds.chain(rows).filter_map(words).collect()
+    }
+
     /// Refuses controls outside U.
     ///
     /// # Errors

@@ -46,6 +46,11 @@ impl RunFolder {
         }))
     }
 
+    /// Whether a folder holds a run, ended or not.
+    pub fn is_one(folder: &Path) -> bool {
+        folder.join(START).exists() && folder.join(SCENE).exists()
+    }
+
     /// Prepares the folder for a run; `bytes` must fit into it.
     ///
     /// # Errors
@@ -85,6 +90,8 @@ impl RunFolder {
         // From here on a folder without report is that of a run that has not ended.
         let _absent = std::fs::remove_file(self.path(REPORT));
         let mut scene = source.scene.clone();
+        // The folder is where the file lies; a file that named it would send other commands there.
+        scene.output.folder = None;
         if self.resumed {
             self.folder.replace(SCENE, &scene.print()?)?;
             let path = self.path(START).display().to_string();
@@ -93,7 +100,11 @@ impl RunFolder {
             return Ok(crate::cli::parse_controls(&text, &path, given.len())?.as_slice().to_vec());
         }
         // No journal may ever stand beside a scene that is not its own.
-        for path in self.journals()? {
+        let journals = self.journals()?;
+        if !journals.is_empty() {
+            eprintln!("warning: {}: the run that it held is replaced", self.folder.path().display());
+        }
+        for path in journals {
             Journal::remove(&path)
                 .map_err(|error| SceneError::File { path: path.display().to_string(), reason: error.to_string() })?;
         }
@@ -138,6 +149,15 @@ impl RunFolder {
         }
         let journal = Journal::create(&path).map_err(failed)?;
         Ok((path, journal, vec![]))
+    }
+
+    /// Number of evaluations that the journal of the run, or of one of its stages, holds.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] for a journal that cannot be read.
+    pub fn evaluations(&self, stage: Option<&str>) -> Result<usize, SceneError> {
+        let path = stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage));
+        if Journal::exists(&path) { Journal::count(&path) } else { Ok(0) }
     }
 
     /// The folder for the files of the report.

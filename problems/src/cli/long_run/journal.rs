@@ -95,6 +95,18 @@ impl Journal {
         Ok(Self { folder: folder.to_owned(), file, ends, pending: vec![], kept: vec![] })
     }
 
+    /// Number of evaluations in the journal of a folder; it is not changed.
+    ///
+    /// # Errors
+    /// As [`Journal::open`].
+    pub fn count(folder: &Path) -> Result<usize, SceneError> {
+        let path = folder.join(NAME);
+        let failed = |reason: String| SceneError::File { path: path.display().to_string(), reason };
+        let bytes = std::fs::read(&path).map_err(|error| failed(error.to_string()))?;
+        // A run may have ended before its first line was whole.
+        if !bytes.contains(&b'\n') { Ok(0) } else { parse(&bytes).map(|(entries, _)| entries.len()).map_err(failed) }
+    }
+
     /// Opens a journal to continue it; a last line that is not whole is cut off.
     ///
     /// # Errors
