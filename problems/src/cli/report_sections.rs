@@ -40,7 +40,6 @@ pub fn states(objective: &ContactObjective, shapes: &[(&str, &Solved)]) -> Secti
             format!("{:.1e}", shape.state.forces.kink.smallest_margin)
         }),
         row("weakly active nodes", &|shape| shape.state.forces.kink.weakly_active.to_string()),
-        row("products with the dual operator", &|shape| shape.state.work().dual_operator_applications.to_string()),
     ];
     let head = std::iter::once("").chain(shapes.iter().map(|(label, _)| *label));
     let words = "Residuals are relative to the load. No shape that carries the same total force over the same contact nodes \

@@ -129,12 +129,13 @@ impl Ranged for Shares {
     }
 }
 
-/// The elements inside plotters' SVG element, each on one line, superscripts raised.
+/// The elements inside plotters' SVG element, each on one line, superscripts raised. Their font is that of the whole figure, which
+/// names a family to fall back on as well.
 fn inner(svg: &str) -> String {
     let mut text = String::new();
     for line in svg.lines().filter(|line| !line.starts_with("<svg") && !line.starts_with("</svg")) {
         if line.starts_with('<') {
-            text += line;
+            text += &line.replace(&format!(" font-family=\"{FAMILY}\""), "");
         } else {
             // plotters puts what is written on a line of its own.
             text += &raised(line, FINENESS * LABEL);

@@ -201,6 +201,8 @@ mod tests {
         let figure = course.figure().expect("numbers");
         assert_eq!(figure.svg.matches("class=\"null\"").count(), 2);
         assert_eq!(figure.svg.matches("class=\"legend ").count(), 3);
+        // One family with its fallback for all text.
+        assert_eq!(figure.svg.matches("font-family").count(), 1);
         assert!(figure.svg.contains("null (2)") && figure.svg.contains(">bound<"));
         assert_eq!(figure, course.figure().expect("numbers"));
         assert!(figure.png(1.0).expect("a picture").starts_with(b"\x89PNG"));
