@@ -84,3 +84,26 @@ pub(super) fn some(figure: &str, what: &'static str, found: usize) -> Result<(),
         _ => Ok(()),
     }
 }
+
+/// Checks that a grid has cells along every axis.
+pub(super) fn cells(figure: &str, nodes: &[usize]) -> Result<(), FigureError> {
+    match nodes.iter().position(|nodes| *nodes < 2) {
+        None => Ok(()),
+        Some(index) => {
+            let (what, value, allowed) = ("number of nodes along axis", nodes[index] as f64, "numbers from 2");
+            Err(FigureError::Number { figure: figure.to_owned(), what, index, value, allowed })
+        }
+    }
+}
+
+/// Checks that a rectangle has an area.
+pub(super) fn area(figure: &str, size: [f64; 2]) -> Result<(), FigureError> {
+    finite(figure, "side", size)?;
+    match size.iter().position(|side| *side <= 0.0) {
+        None => Ok(()),
+        Some(index) => {
+            let (what, value, allowed) = ("side", size[index], "numbers > 0");
+            Err(FigureError::Number { figure: figure.to_owned(), what, index, value, allowed })
+        }
+    }
+}

@@ -4,7 +4,7 @@ use super::canvas::{Canvas, INK, LABEL, Stroke, TITLE, text_width};
 use super::chart::{Frame, Parts};
 use super::colours::CURVES;
 use super::convergence::mark;
-use super::error::{count, finite, some};
+use super::error::{area, cells, count, finite, some};
 use super::levels::{ColourScale, Lattice, contour, fill};
 use super::scale::Axis;
 use super::{Figure, FigureError};
@@ -113,28 +113,16 @@ impl Landscape {
 
     fn check(&self) -> Result<(), FigureError> {
         let figure = &self.name;
-        for (index, nodes) in self.counts.into_iter().enumerate() {
-            if nodes < 2 {
-                let (what, value, allowed) = ("nodes along axis", nodes as f64, "numbers from 2");
-                return Err(FigureError::Number { figure: figure.clone(), what, index, value, allowed });
-            }
-        }
+        cells(figure, &self.counts)?;
         some(figure, "values", self.values.len())?;
         count(figure, "values", self.counts[0].saturating_mul(self.counts[1]), self.values.len())?;
         finite(figure, "value", self.values.iter().copied())?;
         finite(figure, "origin", self.origin)?;
-        finite(figure, "side", self.size)?;
         finite(figure, "coordinate of the path", self.path.iter().flat_map(|visit| visit.place))?;
         finite(figure, "coordinate of the goal", self.goal.iter().flat_map(|goal| goal.1))?;
         let lines = self.lines.iter().flat_map(|lines| lines.1.iter().flatten().flatten().copied());
         finite(figure, "coordinate of a line", lines)?;
-        match self.size.iter().position(|side| *side <= 0.0) {
-            None => Ok(()),
-            Some(index) => {
-                let (what, value, allowed) = ("side", self.size[index], "numbers > 0");
-                Err(FigureError::Number { figure: figure.clone(), what, index, value, allowed })
-            }
-        }
+        area(figure, self.size)
     }
 
     fn kinds(&self) -> Vec<(String, usize)> {

@@ -2,7 +2,7 @@
 
 use super::canvas::{Canvas, LABEL, TITLE, text_width};
 use super::chart::{Frame, Parts};
-use super::error::{count, finite, some};
+use super::error::{area, cells, count, finite, some};
 use super::levels::{ColourScale, Lattice, fill};
 use super::scale::{Axis, number};
 use super::{Figure, FigureError};
@@ -120,23 +120,11 @@ fn sides([first, second]: [f64; 2]) -> [f64; 2] {
 
 impl MapPanel {
     fn check(&self, figure: &str) -> Result<(), FigureError> {
-        for (index, nodes) in self.counts.into_iter().enumerate() {
-            if nodes < 2 {
-                let (what, value, allowed) = ("nodes along axis", nodes as f64, "numbers from 2");
-                return Err(FigureError::Number { figure: figure.into(), what, index, value, allowed });
-            }
-        }
+        cells(figure, &self.counts)?;
         count(figure, "values of a panel", self.counts[0].saturating_mul(self.counts[1]), self.values.len())?;
         finite(figure, "value", self.values.iter().copied())?;
         finite(figure, "origin", self.origin)?;
-        finite(figure, "side", self.size)?;
-        match self.size.iter().position(|side| *side <= 0.0) {
-            None => Ok(()),
-            Some(index) => {
-                let (what, value, allowed) = ("side", self.size[index], "numbers > 0");
-                Err(FigureError::Number { figure: figure.into(), what, index, value, allowed })
-            }
-        }
+        area(figure, self.size)
     }
 
     /// Indices of the first node with the largest value, and a text about it.

@@ -1,6 +1,6 @@
 //! Values on the outside of blocks as panels side by side, on one colour scale.
 
-use super::error::{count, finite, some};
+use super::error::{cells, count, finite, some};
 use super::levels::ColourScale;
 use super::oblique::Sheet;
 use super::panels::{Panel, Row};
@@ -110,12 +110,7 @@ impl Solids {
 
 impl SolidBlock {
     fn check(&self, figure: &str) -> Result<(), FigureError> {
-        for (index, nodes) in self.nodes.into_iter().enumerate() {
-            if nodes < 2 {
-                let (what, value, allowed) = ("points along axis", nodes as f64, "numbers from 2");
-                return Err(FigureError::Number { figure: figure.into(), what, index, value, allowed });
-            }
-        }
+        cells(figure, &self.nodes)?;
         let [n1, n2, n3] = self.nodes;
         let points = n1.saturating_mul(n2).saturating_mul(n3);
         count(figure, "points of a block", points, self.points.len())?;

@@ -1,6 +1,6 @@
 //! Heights over rectangles as surfaces in space side by side, on one colour scale.
 
-use super::error::{count, finite, some};
+use super::error::{area, cells, count, finite, some};
 use super::levels::ColourScale;
 use super::oblique::{Point, Sheet};
 use super::panels::{Panel, Row};
@@ -119,22 +119,10 @@ impl Surfaces {
 
 impl SurfacePanel {
     fn check(&self, figure: &str) -> Result<(), FigureError> {
-        for (index, nodes) in self.counts.into_iter().enumerate() {
-            if nodes < 2 {
-                let (what, value, allowed) = ("nodes along axis", nodes as f64, "numbers from 2");
-                return Err(FigureError::Number { figure: figure.into(), what, index, value, allowed });
-            }
-        }
+        cells(figure, &self.counts)?;
         count(figure, "heights of a panel", self.counts[0].saturating_mul(self.counts[1]), self.heights.len())?;
         finite(figure, "height", self.heights.iter().copied())?;
-        finite(figure, "side", self.size)?;
-        match self.size.iter().position(|side| *side <= 0.0) {
-            None => Ok(()),
-            Some(index) => {
-                let (what, value, allowed) = ("side", self.size[index], "numbers > 0");
-                Err(FigureError::Number { figure: figure.into(), what, index, value, allowed })
-            }
-        }
+        area(figure, self.size)
     }
 
     fn point(&self, magnified: Magnified, [i, j]: [usize; 2]) -> Point {
