@@ -48,10 +48,10 @@ impl PressureCost {
     pub fn lower_bound(&self, total_force: f64) -> f64 {
         match self.measure {
             PressureMeasure::Norm { exponent: p } => {
-                // Relative to the mean pressure, so that no power leaves the range of numbers before the result does.
-                let area: f64 = self.areas.iter().sum();
-                let weights: f64 = self.areas.iter().map(|share| (share / area).powf(p / (p - 1.0))).sum();
-                (total_force / area).powf(p) / weights.powf(p - 1.0)
+                // Relative to the largest area, so that the sum is at least 1 for every p.
+                let largest = self.areas.iter().copied().fold(0.0, f64::max);
+                let weights: f64 = self.areas.iter().map(|area| (area / largest).powf(p / (p - 1.0))).sum();
+                (total_force / largest).powf(p) / weights.powf(p - 1.0)
             }
             PressureMeasure::Peak => total_force / self.areas.iter().sum::<f64>(),
         }
@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn the_lower_bound_is_attained_and_never_undercut() {
         let areas = vec![1.0, 2.0, 4.0, 0.5];
-        for p in [1.5, 4.0, 12.0] {
+        for p in [1.02, 1.5, 4.0, 12.0] {
             let measure = PressureMeasure::Norm { exponent: p };
             let cost = PressureCost { measure, areas: areas.clone(), dual_dimension: 4 };
             let weights: Vec<f64> = areas.iter().map(|area: &f64| area.powf(p / (p - 1.0))).collect();
@@ -118,6 +118,10 @@ mod tests {
                 assert!(norm(&other, &areas, p) >= bound * (1.0 - 1e-12));
             }
         }
+        // Near p = 1 everything goes to the largest area: (30/4)^p.
+        let nearly = PressureMeasure::Norm { exponent: 1.001 };
+        let cost = PressureCost { measure: nearly, areas: areas.clone(), dual_dimension: 4 };
+        assert!((cost.lower_bound(30.0) / 7.5_f64.powf(1.001) - 1.0).abs() < 1e-12);
         let cost = PressureCost { measure: PressureMeasure::Peak, areas, dual_dimension: 4 };
         assert!((cost.lower_bound(30.0) - 4.0).abs() < 1e-14);
     }

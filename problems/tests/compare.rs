@@ -92,3 +92,34 @@ fn a_comparison_that_is_cut_short_says_so_and_is_no_success() {
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert!(text.contains("the comparison is not complete") && message.contains("time limit"), "{text}{message}");
 }
+
+#[test]
+fn a_used_folder_never_answers_for_another_scene() {
+    let folder = scratch("used");
+    let path = folder.to_str().unwrap();
+    let compare = |more: &[&str]| {
+        let mut arguments = vec!["compare", "--mesh", "3", "--max-evaluations", "4", "--json"];
+        arguments.extend(["--out", path]);
+        arguments.extend(more);
+        run(&arguments)
+    };
+    assert!(compare(&[]).status.success());
+    // Another load in the same folder, cut short at once, then continued: what is continued is that load.
+    assert_eq!(compare(&["--load-factor", "0.5", "--time-limit", "1e-9"]).status.code(), Some(1));
+    let continued = json(&["compare", "--resume", path, "--time-limit", "1000", "--json"]);
+    let fresh = json(&["compare", "--mesh", "3", "--max-evaluations", "4", "--load-factor", "0.5", "--json"]);
+    assert_eq!(continued["shapes"], fresh["shapes"]);
+    // A comparison that has not ended is not replaced, nor is its scene.
+    std::fs::remove_file(folder.join("report.json")).unwrap();
+    let scene = std::fs::read(folder.join("scene.toml")).unwrap();
+    let refused = compare(&["--load-factor", "2"]);
+    let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(refused.status.code() == Some(2) && message.contains("has not ended"), "{message}");
+    assert_eq!(std::fs::read(folder.join("scene.toml")).unwrap(), scene);
+    // An optimization takes over the folder of a comparison that has ended, and can be continued as one.
+    json(&["compare", "--resume", path, "--json"]);
+    let taken = run(&["--mesh", "3", "--max-evaluations", "2", "--json", "--out", path]);
+    assert!(taken.status.success(), "{}", String::from_utf8_lossy(&taken.stderr));
+    json(&["--resume", path, "--max-evaluations", "3", "--json"]);
+    std::fs::remove_dir_all(folder).unwrap();
+}

@@ -68,10 +68,12 @@ fn start(command: &Command, program: &str, more: &[&str], folder: &Path) -> Outp
     output
 }
 
-/// Runs the command of a binary; a slow one only gets its options parsed, which end in a request for help.
+/// Runs the command of a binary; a slow one only gets its options checked.
 fn run(command: &Command, program: &str, folder: &Path) {
     if command.slow {
-        start(command, program, &["--help"], folder);
+        // Beside the parser, a contact binary checks which options go together, and the scene.
+        let contact = ["hertz3d", "signorini3d", "contact3d"].iter().any(|name| program.ends_with(name));
+        start(command, program, &[if contact { "--print-scene" } else { "--help" }], folder);
         return;
     }
     let output = start(command, program, &[], folder);

@@ -52,7 +52,10 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         let dimension = objective.dimension();
         let set = method.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
         let start = admissible_start(&set, dimension, x0)?;
-        let (state, warm_start) = first_evaluation(objective, &method.config, &set, start)?;
+        let (mut state, warm_start) = first_evaluation(objective, &method.config, &set, start)?;
+        if let Some(first) = state.history.first_mut() {
+            first.seconds = clock.elapsed().as_secs_f64();
+        }
         let mut run = Self::assemble(method, objective, set, state, clock);
         run.warm_start = Some(warm_start);
         if let Break(termination) = run.after_evaluation() {

@@ -54,12 +54,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let start = Vector::zeros(PATCHES * PATCHES);
     let report = method.minimize(&theta, start.clone())?;
+    print(arguments, &theta, &report)?;
     if let Some(folder) = &folder {
+        folder.write("report.json", &serde_json::to_string_pretty(&report).map_err(computation)?)?;
         let states = [solve(&theta, &start)?, solve(&theta, &report.solution)?];
         pictures(folder, &theta, &states)?;
-        folder.write("report.json", &serde_json::to_string_pretty(&report).map_err(computation)?)?;
     }
-    print(arguments, &theta, &report)
+    Ok(())
 }
 
 fn print(arguments: &Arguments, theta: &MembraneObjective, report: &Report) -> Result<(), Failure> {
@@ -107,6 +108,10 @@ fn pictures(folder: &Folder, theta: &MembraneObjective, states: &[MembraneState;
     ];
     // Inner nodes only: the first lies one cell inside the boundary.
     let inner = grid.cells - 1;
+    if inner < 2 {
+        // A single node makes no map.
+        return Ok(());
+    }
     let cell = grid.length / grid.cells as f64;
     for (name, unit, field) in fields {
         let panel = |(state, caption): (&MembraneState, &str)| MapPanel {

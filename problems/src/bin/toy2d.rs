@@ -59,12 +59,12 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => toy::random_starts(arguments.seed, arguments.starts as usize),
     };
     let study = toy::run_study(&starts)?.ok_or_else(|| Failure::computation("no start"))?;
-    if let (Some(folder), Some(start)) = (&folder, starts.first()) {
-        pictures(folder, *start, arguments.cells as usize)?;
-    }
     let text =
         if arguments.json { serde_json::to_string(&study).map_err(Failure::computation)? } else { study.to_string() };
     writeln!(io::stdout(), "{}", text.trim_end()).map_err(Failure::computation)?;
+    if let (Some(folder), Some(start)) = (&folder, starts.first()) {
+        pictures(folder, *start, arguments.cells as usize)?;
+    }
     if study.all_found() {
         return Ok(());
     }
@@ -117,6 +117,10 @@ fn pictures(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failur
         reference: None,
     };
     folder.draw(&ground.figure().map_err(Failure::computation)?)?;
+    if course.steps.is_empty() {
+        // A start at the minimiser: no distance is left to show.
+        return Ok(());
+    }
     folder.draw(&course.figure().map_err(Failure::computation)?)
 }
 

@@ -145,6 +145,11 @@ impl Arguments {
         if self.continuation.is_some() && self.mesh.is_some() {
             return wrong("--mesh", "without --continuation, which names the meshes");
         }
+        for (option, path) in [("--out", &self.out), ("--resume", &self.resume)] {
+            if let Some(path) = path.as_ref().filter(|path| path.to_str().is_none()) {
+                return Err(SceneError::out_of_range(option, path.display(), "a name in Unicode").into());
+            }
+        }
         self.check_resume()?;
         if self.max_evaluations == Some(0) {
             return Err(SceneError::out_of_range("--max-evaluations", 0, "a number ≥ 1").into());

@@ -3,7 +3,7 @@
 
 use crate::cli::compared::Compared;
 use crate::cli::long_run::{COMPARED, RunFolder, STATUS};
-use crate::cli::optimization::{Begin, Optimization, Session, check_limit, optimize};
+use crate::cli::optimization::{Begin, Optimization, Session, check_limit, optimize, room};
 use crate::cli::optimize::{deliver, interruption};
 use crate::cli::solved::Solved;
 use crate::cli::stages::stages;
@@ -20,7 +20,7 @@ pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String
     }
     let resumed = session.arguments.resume.is_some();
     let folder = case.output.folder.as_deref();
-    let folder = folder.map(|path| RunFolder::open(path, 1, resumed)).transpose()?;
+    let folder = folder.map(|path| RunFolder::open(path, 2 * room(&stages(case)), resumed)).transpose()?;
     for part in
         folder.iter().filter(|_| resumed).flat_map(|folder| COMPARED.map(|part| folder.folder().path().join(part)))
     {
@@ -33,11 +33,12 @@ pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String
     let (mut printed, mut runs) = (String::new(), Vec::new());
     for (friction, name) in frictions.into_iter().zip(COMPARED) {
         let (source, case) = part(source, folder.as_ref(), friction, name)?;
-        let begun = case.output.folder.as_deref().is_some_and(|path| Path::new(path).exists());
+        let begun = case.output.folder.as_deref().is_some_and(|path| RunFolder::is_one(Path::new(path)));
         let begin = if resumed && begun { Begin::Resumed } else { Begin::At(&start) };
-        let optimization = optimize(&source, &case, begin, session)?;
+        let optimization = optimize(&source, &case, begin, session).map_err(|failure| failure.after(&printed))?;
         session.status.begin("reporting: ".into());
-        let (text, shapes) = deliver(&optimization, &source, &case, session, None)?;
+        let (text, shapes) = deliver(&optimization, &source, &case, session, None)
+            .map_err(|failure| if session.arguments.json { failure } else { failure.after(&printed) })?;
         // One JSON object at most stands on stdout.
         printed = if session.arguments.json { text } else { printed + &text };
         if optimization.was_cut_short() {
@@ -45,7 +46,7 @@ pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String
         }
         runs.push((optimization, shapes));
     }
-    let compared = cross(&runs)?;
+    let compared = cross(&runs).map_err(|failure| failure.after(&printed))?;
     let mut text = compared.to_string();
     if let Some(folder) = folder.as_ref().filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
         text += &format!("to continue: compare --resume {}\n", folder.folder().path().display());
@@ -64,7 +65,10 @@ pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String
             return Err(Failure::Incomplete { text: printed, reason, status: 1 });
         }
     }
-    Ok(printed)
+    match interruption(folder.as_ref()) {
+        Some(reason) => Err(Failure::Incomplete { text: printed, reason, status: STATUS }),
+        None => Ok(printed),
+    }
 }
 
 /// The controls that both runs start from, kept in the folder.

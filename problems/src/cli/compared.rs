@@ -7,6 +7,8 @@ use std::fmt;
 
 /// Relative loss of the objective below which a shape counts as good as the other.
 const NEGLIGIBLE: f64 = 0.02;
+/// Relative difference of the objective that says nothing.
+const SAME: f64 = 1e-4;
 
 /// Two optimizations, with and without friction, and their shapes seen from the other side. Pairs: with, without.
 pub struct Compared<'a> {
@@ -104,15 +106,19 @@ impl Compared<'_> {
             peaks[1],
             peaks[0]
         )];
-        sentences.push(if loss > 1.0 + NEGLIGIBLE {
+        sentences.push(if !loss.is_finite() || loss <= 0.0 {
+            "There is no contact pressure to compare.".into()
+        } else if (loss - 1.0).abs() <= SAME {
+            "In these runs, both shapes are as good as each other with friction.".into()
+        } else if loss > 1.0 + NEGLIGIBLE {
             format!("In these runs, leaving friction out of the optimization costs {:.1} %: it is no approximation of the optimum with \
                  friction.", 100.0 * (loss - 1.0))
         } else if loss >= 1.0 {
             format!("In these runs, leaving friction out of the optimization costs only {:.2} %.", 100.0 * (loss - 1.0))
         } else {
             format!(
-                "The run with friction stopped {:.2} % above the other shape: it is not at the best shape, and may be continued \
-                 from there (--start-controls).",
+                "The run with friction stopped {:.2} % above the other shape: a better shape than its own exists, and it may be \
+                 continued from there (--start-controls).",
                 100.0 * (1.0 / loss - 1.0)
             )
         });

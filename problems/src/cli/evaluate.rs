@@ -68,7 +68,9 @@ pub fn run(
     let json = output::json(&result)?;
     if let Some(folder) = folder {
         let solved = Solved { controls: control, value: result.objective, peak_pressure: result.peak_pressure, state };
-        results::write_evaluation(&folder, source, case, objective, &solved, &json)?;
+        let printed = if arguments.json { json.clone() } else { result.to_string() };
+        results::write_evaluation(&folder, source, case, objective, &solved, &json)
+            .map_err(|failure| failure.after(&printed))?;
     }
     Ok(if arguments.json { json } else { result.to_string() })
 }

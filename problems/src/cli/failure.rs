@@ -35,11 +35,29 @@ impl Failure {
     }
 
     /// 2 for bad input, 1 for a failed computation, 130 for an interrupted one.
-    pub fn exit_code(&self) -> ExitCode {
+    pub fn status(&self) -> u8 {
         match self {
-            Self::Input(_) => ExitCode::from(2),
-            Self::Computation(_) => ExitCode::from(1),
-            Self::Incomplete { status, .. } => ExitCode::from(*status),
+            Self::Input(_) => 2,
+            Self::Computation(_) => 1,
+            Self::Incomplete { status, .. } => *status,
+        }
+    }
+
+    /// [`Failure::status`] for the operating system.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(self.status())
+    }
+
+    /// The same failure after something for stdout is there already: it is not lost.
+    #[must_use]
+    pub fn after(self, printed: &str) -> Self {
+        let status = self.status();
+        match self {
+            failure if printed.is_empty() => failure,
+            Self::Incomplete { text, reason, .. } => {
+                Self::Incomplete { text: format!("{printed}{text}"), reason, status }
+            }
+            other => Self::Incomplete { text: printed.to_owned(), reason: other.to_string(), status },
         }
     }
 }

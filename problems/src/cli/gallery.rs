@@ -94,7 +94,7 @@ pub fn convergence(
         quantity: "Θ".into(),
         unit,
         steps: steps.collect(),
-        reference: (bound > 0.0).then(|| ("least for this force".into(), bound)),
+        reference: (bound > 0.0 && bound.is_finite()).then(|| ("least for this force".into(), bound)),
     }
     .figure()
 }

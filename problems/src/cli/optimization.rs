@@ -139,7 +139,7 @@ const FIELD_BYTES: u64 = 300;
 
 /// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states, and
 /// the rest.
-fn room(stages: &[Stage]) -> u64 {
+pub fn room(stages: &[Stage]) -> u64 {
     let nodes = stages.iter().map(|stage| {
         let scene = &stage.case.scene;
         let torn = scene.mesh.iter().zip(&scene.subdomains).map(|(cells, count)| (cells + count) as u64);

@@ -32,7 +32,9 @@ pub fn deliver(
     let (Some(first), Some(last)) = (finished.first(), finished.last()) else {
         return Err(Failure::Computation("no mesh was begun".into()));
     };
-    let shapes = [Solved::at(&last.objective, &first.start)?, Solved::at(&last.objective, &last.report.solution)?];
+    let solved =
+        |controls| Solved::at(&last.objective, controls).map_err(|failure| failure.after(&last.report.to_string()));
+    let shapes = [solved(&first.start)?, solved(&last.report.solution)?];
     let json = output::json(&summary(finished, &shapes))?;
     let mut text = page(last, &shapes);
     text += &stages_page(finished, optimization.asked);
@@ -43,9 +45,9 @@ pub fn deliver(
     if let Some(folder) = &optimization.folder {
         let folder = folder.folder();
         let write = || -> Result<(), Failure> {
-            results::write_optimization(folder, source, case, last, &shapes)?;
             folder.write("report.txt", &text)?;
-            folder.replace("report.json", &json)
+            folder.replace("report.json", &json)?;
+            results::write_optimization(folder, source, case, finished, &shapes)
         };
         if let Err(failure) = write() {
             let reason = format!("{failure}; the report above is complete");

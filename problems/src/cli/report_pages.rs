@@ -20,26 +20,28 @@ pub struct Context<'a> {
 }
 
 /// The report of an optimization.
-pub fn optimization(context: &Context<'_>, finished: &Finished, shapes: &[Solved; 2]) -> Page {
-    let Finished { objective, report, .. } = finished;
+pub fn optimization(context: &Context<'_>, meshes: &[Finished], last: &Finished, shapes: &[Solved; 2]) -> Page {
+    let Finished { objective, report, .. } = last;
     let confirmed = if report.termination.is_confirmed() {
         "The optimum is confirmed by its certificate."
     } else {
         "It is the best shape found; the run ended without a proof of optimality."
     };
     let lead = format!(
-        "Θ falls from {:.4e} to {:.4e}, by a factor of {:.3}; the peak pressure from {:.1} to {:.1} MPa, in {} evaluations. \
+        "From the start to the shape found, Θ goes from {:.4e} to {:.4e}, {:.3} times less; the peak pressure from {:.1} to {:.1} MPa, \
+         after {}. \
          {confirmed}",
         shapes[0].value,
         report.value,
         shapes[0].value / report.value,
         shapes[0].peak_pressure,
         shapes[1].peak_pressure,
-        report.counts.evaluations
+        evaluations(meshes)
     );
     let sections = vec![
         pictures("Pictures", context.figures),
         states(objective, &[("start", &shapes[0]), ("optimum", &shapes[1])]),
+        stages(meshes),
         course(report, &active_constraints(objective, &report.solution)),
         certificate(report.certificate.as_ref()),
         controls(objective, shapes[1].controls.as_slice()),
@@ -113,6 +115,35 @@ fn page(objective: &ContactObjective, what: &str, lead: String, sections: Vec<Se
     let title = format!("{}: {what} ({bodies} × {n1}×{n2}×{n3} bricks, friction {})", scene.name, scene.friction);
     let used = |section: &Section| !section.blocks.is_empty();
     Page { title, lead, sections: sections.into_iter().filter(used).collect() }
+}
+
+/// "20 evaluations", on growing meshes "150 + 37 evaluations on growing meshes".
+fn evaluations(meshes: &[Finished]) -> String {
+    let counts: Vec<String> = meshes.iter().map(|mesh| mesh.report.counts.evaluations.to_string()).collect();
+    let growing = if counts.len() > 1 { " on growing meshes" } else { "" };
+    format!("{} evaluations{growing}", counts.join(" + "))
+}
+
+/// The meshes of a coarse-to-fine optimization; empty for a single one.
+fn stages(meshes: &[Finished]) -> Section {
+    if meshes.iter().all(|mesh| mesh.name.is_none()) {
+        return Section::default();
+    }
+    let rows = meshes.iter().map(|mesh| {
+        let [n1, n2, n3] = mesh.objective.solver().problem().scene.mesh;
+        vec![
+            format!("{n1}×{n2}×{n3}"),
+            format!("{:.4e}", mesh.report.start_value),
+            format!("{:.4e}", mesh.report.value),
+            mesh.report.counts.evaluations.to_string(),
+            format!("{:.1}", mesh.report.seconds),
+            mesh.report.termination.to_string(),
+        ]
+    });
+    let head = ["bricks", "Θ at its start", "Θ at its end", "evaluations", "seconds", "ended"];
+    let words = "Pictures, course and certificate are those of the last mesh; the start is that of the first.";
+    let rows: Vec<Vec<String>> = rows.collect();
+    Section::new("Growing meshes", vec![Block::table(head, rows), Block::Text(words.into())])
 }
 
 /// Control heights as the table that they are: one row per control point along x₁.

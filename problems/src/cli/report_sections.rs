@@ -50,7 +50,8 @@ pub fn states(objective: &ContactObjective, shapes: &[(&str, &Solved)]) -> Secti
 /// How the optimization went.
 pub fn course(report: &Report, active: &str) -> Section {
     let counts = &report.counts;
-    let slowest = report.history.windows(2).map(|pair| pair[1].seconds - pair[0].seconds).fold(0.0, f64::max);
+    let first = report.history.first().map_or(0.0, |record| record.seconds);
+    let slowest = report.history.windows(2).map(|pair| pair[1].seconds - pair[0].seconds).fold(first, f64::max);
     let rows = vec![
         vec!["evaluations".to_owned(), counts.evaluations.to_string()],
         vec![
@@ -105,7 +106,10 @@ pub fn origin(scene: &str, left_out: &[&str], warnings: &[String]) -> Section {
         vec!["problems".into(), env!("CARGO_PKG_VERSION").to_owned()],
         vec!["build".into(), format!("{build}, {} {}", std::env::consts::ARCH, std::env::consts::OS)],
         vec!["threads".into(), rayon::current_num_threads().to_string()],
-        vec!["command".into(), std::env::args().collect::<Vec<_>>().join(" ")],
+        vec![
+            "command".into(),
+            std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" "),
+        ],
     ];
     let mut blocks = vec![Block::table(["", ""], versions)];
     if !left_out.is_empty() {

@@ -103,10 +103,11 @@ pub fn write_optimization(
     folder: &Folder,
     source: &Source,
     case: &Case,
-    finished: &Finished,
+    finished: &[Finished],
     shapes: &[Solved; 2],
 ) -> Result<(), Failure> {
-    let Finished { objective, report, .. } = finished;
+    let Some(last) = finished.last() else { return Ok(()) };
+    let Finished { objective, report, .. } = last;
     let mut delivery = Delivery::new(folder, case);
     delivery.write("controls.json", &output::json(report.solution.as_slice())?, "the control heights found")?;
     let what = "all cuts and multipliers behind the certificate";
@@ -123,7 +124,7 @@ pub fn write_optimization(
         let figure = gallery::convergence(objective, case.measure, report, &shapes[1]);
         delivery.draw(figure.map_err(Failure::computation)?, "objective of every evaluation and kinds of steps")?;
     }
-    delivery.report(source, |context| report_pages::optimization(context, finished, shapes))
+    delivery.report(source, |context| report_pages::optimization(context, finished, last, shapes))
 }
 
 /// The files of an evaluation.

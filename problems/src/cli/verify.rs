@@ -55,8 +55,9 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
         result.test, step, result.smallest_margin, result.weakly_active, result.residuals
     );
     if let Some(folder) = folder {
-        folder.write("verification.json", &json)?;
-        folder.write("verification.txt", &text)?;
+        let printed = if arguments.json { &json } else { &text };
+        let written = folder.write("verification.json", &json).and_then(|()| folder.write("verification.txt", &text));
+        written.map_err(|failure| failure.after(printed))?;
     }
     Ok(if arguments.json { json } else { text })
 }

@@ -4,6 +4,7 @@ use thiserror::Error;
 
 /// Why a figure cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum FigureError {
     /// There is nothing to draw.
     #[error("figure {figure}: no {what}")]

@@ -4,11 +4,14 @@ use crate::cli::long_run::journal::{Entry, Journal};
 use crate::cli::{Failure, Folder, Source, output};
 use crate::error::SceneError;
 use crate::scene_file::{CounterSection, SceneFile, StartSection};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 const SCENE: &str = "scene.toml";
 const START: &str = "start.json";
 const REPORT: &str = "report.json";
+/// What would be wrong beside another run.
+const REPORTS: [&str; 5] = [REPORT, "report.html", "report.txt", "controls.json", "certificate.json"];
 
 /// Folders of the two runs of a comparison.
 pub const COMPARED: [&str; 2] = ["with_friction", "without_friction"];
@@ -32,7 +35,7 @@ impl RunFolder {
             return Err(SceneError::File { path: folder.display().to_string(), reason });
         }
         let path = folder.display().to_string();
-        if COMPARED.iter().any(|part| folder.join(part).exists()) != comparison {
+        if COMPARED.iter().any(|part| folder.join(part).join(START).exists()) != comparison {
             let found = if comparison {
                 "an optimization: continue it with optimize"
             } else {
@@ -65,17 +68,20 @@ impl RunFolder {
         Ok(this)
     }
 
-    /// Folders with a journal: this one, and those of its stages.
+    /// Folders with a journal: this one, those of its stages, and those of the parts of a comparison.
     fn journals(&self) -> Result<Vec<PathBuf>, SceneError> {
         let failed = |error: std::io::Error| SceneError::File {
             path: self.folder.path().display().to_string(),
             reason: error.to_string(),
         };
         let mut found = vec![self.folder.path().to_owned()];
-        for entry in std::fs::read_dir(self.folder.path()).map_err(failed)? {
-            let path = entry.map_err(failed)?.path();
-            if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("stage_")) {
-                found.push(path);
+        found.extend(COMPARED.iter().map(|part| self.path(part)).filter(|part| part.exists()));
+        for place in found.clone() {
+            for entry in std::fs::read_dir(place).map_err(failed)? {
+                let path = entry.map_err(failed)?.path();
+                if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("stage_")) {
+                    found.push(path);
+                }
             }
         }
         found.retain(|path| Journal::exists(path));
@@ -88,7 +94,7 @@ impl RunFolder {
     /// [`Failure`] if a file cannot be written or read.
     pub fn begin(&self, source: &Source, given: &[f64]) -> Result<Vec<f64>, Failure> {
         // From here on a folder without report is that of a run that has not ended.
-        let _absent = std::fs::remove_file(self.path(REPORT));
+        self.remove_old(&REPORTS)?;
         let mut scene = source.scene.clone();
         // The folder is where the file lies; a file that named it would send other commands there.
         scene.output.folder = None;
@@ -108,10 +114,27 @@ impl RunFolder {
             Journal::remove(&path)
                 .map_err(|error| SceneError::File { path: path.display().to_string(), reason: error.to_string() })?;
         }
+        for part in COMPARED {
+            self.remove_old(&[SCENE, START, REPORT].map(|file| format!("{part}/{file}")))?;
+        }
         self.keep_grids(&mut scene, source.folder())?;
         self.folder.replace(START, &output::json(&given)?)?;
         self.folder.replace(SCENE, &scene.print()?)?;
         Ok(given.to_vec())
+    }
+
+    /// Removes files of an earlier run, as far as there are any.
+    fn remove_old(&self, names: &[impl AsRef<Path>]) -> Result<(), SceneError> {
+        for name in names {
+            let path = self.folder.path().join(name);
+            match std::fs::remove_file(&path) {
+                Err(error) if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                    return Err(SceneError::File { path: path.display().to_string(), reason: error.to_string() });
+                }
+                _ => {}
+            }
+        }
+        Ok(())
     }
 
     /// Copies the grids that the scene names, and names the copies.

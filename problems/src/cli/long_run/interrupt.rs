@@ -1,5 +1,6 @@
 //! Ctrl-C and requests to terminate.
 
+use std::sync::Once;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 static INTERRUPTS: AtomicUsize = AtomicUsize::new(0);
@@ -9,6 +10,12 @@ pub const STATUS: u8 = 130;
 
 /// From now on the first Ctrl-C (or request to terminate) is remembered, the second ends the program at once.
 pub fn watch_interrupts() {
+    // Several runs of one process share the handler.
+    static WATCHED: Once = Once::new();
+    WATCHED.call_once(set_handler);
+}
+
+fn set_handler() {
     let handler = || {
         if INTERRUPTS.fetch_add(1, Ordering::SeqCst) > 0 {
             std::process::exit(i32::from(STATUS));
