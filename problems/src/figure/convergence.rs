@@ -73,7 +73,7 @@ impl Convergence {
         // Half an evaluation of room at both ends keeps the marks inside.
         let across = Axis::linear("evaluation", "", [0.5, last + 0.5], 0.0, 8);
         let frame = Frame { left: 76.0, top: 40.0, width: SIZE[0], height: SIZE[1] };
-        let kinds = self.kinds();
+        let kinds = kinds(self.steps.iter().map(|step| step.kind.as_str()));
         let names = kinds.iter().map(|(kind, count)| format!("{kind} ({count})"));
         let names: Vec<String> = names.chain(["best so far".into()]).chain(self.reference_name()).collect();
         let legend = names.iter().fold(0.0_f64, |width, name| width.max(text_width(name, LABEL))) + 44.0;
@@ -124,18 +124,6 @@ impl Convergence {
         }
     }
 
-    /// Kinds in the order in which they appear, with their numbers.
-    fn kinds(&self) -> Vec<(String, usize)> {
-        let mut kinds: Vec<(String, usize)> = Vec::new();
-        for step in &self.steps {
-            match kinds.iter_mut().find(|(kind, _)| *kind == step.kind) {
-                Some((_, count)) => *count += 1,
-                None => kinds.push((step.kind.clone(), 1)),
-            }
-        }
-        kinds
-    }
-
     /// The best value so far, constant between evaluations.
     fn stairs(&self, place: impl Fn(f64, f64) -> Place) -> Vec<Place> {
         let mut places = Vec::new();
@@ -153,6 +141,18 @@ impl Convergence {
         }
         places
     }
+}
+
+/// Kinds in the order in which they appear, with their numbers.
+pub(super) fn kinds<'a>(all: impl Iterator<Item = &'a str>) -> Vec<(String, usize)> {
+    let mut kinds: Vec<(String, usize)> = Vec::new();
+    for kind in all {
+        match kinds.iter_mut().find(|(known, _)| known == kind) {
+            Some((_, count)) => *count += 1,
+            None => kinds.push((kind.to_owned(), 1)),
+        }
+    }
+    kinds
 }
 
 fn order(kinds: &[(String, usize)], kind: &str) -> usize {

@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, INK, LABEL, Stroke, TITLE, text_width};
 use super::chart::{Frame, Parts};
 use super::colours::CURVES;
-use super::convergence::mark;
+use super::convergence::{kinds, mark};
 use super::error::{area, cells, count, finite, some};
 use super::levels::{ColourScale, Lattice, contour, fill};
 use super::scale::Axis;
@@ -82,7 +82,7 @@ impl Landscape {
         let longest = self.size[0].max(self.size[1]);
         let [width, height] = self.size.map(|side| SIDE * (side / longest).max(0.25));
         let frame = Frame { left: 16.0 + ROOM[0], top: 56.0, width, height };
-        let kinds = self.kinds();
+        let kinds = kinds(self.path.iter().map(|visit| visit.kind.as_str()));
         let legend = frame.left + width + 110.0;
         let names = kinds.iter().map(|(kind, count)| format!("{kind} ({count})"));
         let names: Vec<String> = names
@@ -123,17 +123,6 @@ impl Landscape {
         let lines = self.lines.iter().flat_map(|lines| lines.1.iter().flatten().flatten().copied());
         finite(figure, "coordinate of a line", lines)?;
         area(figure, self.size)
-    }
-
-    fn kinds(&self) -> Vec<(String, usize)> {
-        let mut kinds: Vec<(String, usize)> = Vec::new();
-        for visit in &self.path {
-            match kinds.iter_mut().find(|(kind, _)| *kind == visit.kind) {
-                Some((_, count)) => *count += 1,
-                None => kinds.push((visit.kind.clone(), 1)),
-            }
-        }
-        kinds
     }
 
     /// Levels, contour lines and axes.

@@ -94,7 +94,8 @@ impl RunFolder {
     /// [`Failure`] if a file cannot be written or read.
     pub fn begin(&self, source: &Source, given: &[f64]) -> Result<Vec<f64>, Failure> {
         // From here on a folder without report is that of a run that has not ended.
-        self.remove_old(&REPORTS)?;
+        // What a continued run has found so far stays until its end replaces it.
+        self.remove_old(if self.resumed { &REPORTS[..1] } else { &REPORTS })?;
         let mut scene = source.scene.clone();
         // The folder is where the file lies; a file that named it would send other commands there.
         scene.output.folder = None;
