@@ -3,11 +3,11 @@
 //!
 //! The shapes are the start of Example 5.2 of the paper and one after a single step down the subgradient.
 
+use contact::contact_shape::{ContactShape, SolverKind};
+use contact::cost::{PressureCost, PressureMeasure};
+use contact::fields::{FieldState, Fields, vtk_files};
+use contact::scene::hertz;
 use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
-use problems::contact_shape::{ContactShape, SolverKind};
-use problems::cost::{PressureCost, PressureMeasure};
-use problems::fields::{FieldState, Fields, vtk_files};
-use problems::scene::hertz;
 use std::error::Error;
 use std::path::PathBuf;
 

@@ -54,43 +54,9 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`contact_shape`], [`cost`] | the contact problem in the framework's terms: state solver with coderivative, costs |
-//! | [`scene`], [`scene_file`] | what a problem is made of; the same as TOML |
-//! | [`shape`], [`mesh`], [`elasticity`] | splines and admissible set; bricks and tearing; trilinear elasticity |
-//! | [`contact`] | boundary, contact law, certificates, discrete problem |
-//! | [`tfeti`] | total FETI: dual operator, preconditioner, Newton, adjoint, successive approximations |
-//! | [`direct`] | direct condensation: an independent path |
-//! | [`shape_sensitivity`], [`shape_load`], [`scalar`] | element sums of the adjoint; dual numbers |
-//! | [`qp`], [`linear`] | dual QPs over half-lines and discs; factorisations and Krylov methods |
+//! | [`commands`] | the commands of the contact binaries, their reports and long runs |
 //! | [`membrane`], [`toy`] | the other two state problems |
-//! | [`cli`], [`memory`] | the binaries' commands and long runs; memory estimated before work |
-//! | [`scaling`], [`accuracy`], [`stability`] | the studies |
-//! | [`error`] | what can be wrong with a scene, and why a contact problem has no answer |
 
-pub mod accuracy;
-pub mod cli;
-pub mod contact;
-pub mod contact_shape;
-pub mod cost;
-pub mod direct;
-pub mod elasticity;
-pub mod error;
-pub mod fields;
-pub mod figure;
-pub mod linear;
+pub mod commands;
 pub mod membrane;
-pub mod memory;
-pub mod mesh;
-pub mod page;
-pub mod qp;
-pub mod scalar;
-pub mod scaling;
-pub mod scene;
-pub mod scene_file;
-pub mod shape;
-pub mod shape_load;
-pub mod shape_sensitivity;
-pub mod stability;
-pub mod tfeti;
 pub mod toy;
-pub mod vtk;

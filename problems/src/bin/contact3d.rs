@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    problems::cli::run_any()
+    problems::commands::run_any()
 }

@@ -1,11 +1,11 @@
 //! Minimises the membrane over an obstacle with the bundle-trust engine.
 
 use clap::Parser;
+use figures::{Map, MapPanel};
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
 };
-use problems::cli::{Failure, Folder};
-use problems::figure::{Map, MapPanel};
+use problems::commands::{Failure, Folder};
 use problems::membrane::{MembraneObjective, MembraneState, PATCHES, admissible_loads, example};
 use std::io::{self, Write};
 use std::path::PathBuf;

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    problems::cli::run("signorini.toml", include_str!("../../scenes/signorini.toml"))
+    problems::commands::run("signorini.toml", include_str!("../../scenes/signorini.toml"))
 }

@@ -1,9 +1,9 @@
 //! Minimises the 2D toy with the bundle-trust engine and compares with the known minimiser.
 
 use clap::Parser;
+use figures::{self, Convergence, Step, Visit};
 use nonsmooth::IterationRecord;
-use problems::cli::{Failure, Folder};
-use problems::figure::{self, Convergence, Step, Visit};
+use problems::commands::{Failure, Folder};
 use problems::toy::{self, landscape::Landscape};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -89,7 +89,7 @@ fn pictures(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failur
     let trace = toy::trace(start)?;
     let history = &trace.report.history;
     let visit = |(record, &place): (&IterationRecord, &[f64; 2])| Visit { kind: record.kind.to_string(), place };
-    let ground = figure::Landscape {
+    let ground = figures::Landscape {
         name: "landscape".into(),
         title: "Two nodes on a shaped support with friction: Θ and the points of a run".into(),
         quantity: "Θ".into(),

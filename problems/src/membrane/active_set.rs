@@ -5,10 +5,10 @@
 //! ```
 //! A is an M-matrix, so that u grows and the inactive part only shrinks after the first step: the method ends.
 
-use crate::error::ContactError;
-use crate::linear::cholesky::{NumericFactor, SymbolicFactor, sequential};
-use crate::linear::symmetric::LowerPattern;
 use crate::membrane::MembraneGrid;
+use contact::error::ContactError;
+use contact::linear::cholesky::{NumericFactor, SymbolicFactor, sequential};
+use contact::linear::symmetric::LowerPattern;
 use std::sync::Arc;
 
 /// The matrix with active rows and columns replaced by the identity.

@@ -4,10 +4,10 @@
 //! (A u)_i = 4u_i − Σ u_neighbours ≈ h² (−Δu)(x_i)
 //! ```
 
-use crate::error::{ContactError, SceneError};
-use crate::linear::cholesky::SymbolicFactor;
-use crate::linear::ordering::nested_dissection;
-use crate::linear::symmetric::LowerPattern;
+use contact::error::{ContactError, SceneError};
+use contact::linear::cholesky::SymbolicFactor;
+use contact::linear::ordering::nested_dissection;
+use contact::linear::symmetric::LowerPattern;
 use std::sync::Arc;
 
 /// A square with N × N cells; unknowns are the (N − 1)² inner nodes, i·(N − 1) + j with i along x₁.

@@ -19,7 +19,7 @@ pub use cost::{MembraneCost, MembraneWishes};
 pub use grid::MembraneGrid;
 pub use problem::{MembraneControl, MembraneData, MembraneState};
 
-use crate::error::{ContactError, SceneError};
+use contact::error::{ContactError, SceneError};
 use nonsmooth::{Polyhedron, ReducedObjective, Vector};
 use thiserror::Error;
 

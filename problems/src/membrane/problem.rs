@@ -7,10 +7,10 @@
 //! λ is a density (load per area). A node on the kink, u = ψ and λ = 0, counts as inactive: for independent loads at all nodes
 //! this is a limit of Jacobians nearby; for loads by patches it is an element of the set that the chain rule yields.
 
-use crate::error::SceneError;
-use crate::linear::cholesky::{NumericFactor, sequential};
 use crate::membrane::active_set::ReducedMembrane;
 use crate::membrane::{MembraneError, MembraneGrid};
+use contact::error::SceneError;
+use contact::linear::cholesky::{NumericFactor, sequential};
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
 
 /// A function of the position.

@@ -1,0 +1,281 @@
+//! Trilinear brick: stiffness and its derivative with respect to the heights of its nodes.
+//!
+//! ```text
+//! K_ab = ∫ λ ∇N_a ∇N_bᵀ + μ ∇N_b ∇N_aᵀ + μ (∇N_a·∇N_b) I                                    (2×2×2 Gauss points)
+//! ∂(qᵀK u)/∂x₃ᵛ = Σ det [ (σ(u):∇q) G₃ᵥ − Σ σ(u)_ji ∂₃q_j G_iᵥ − Σ σ(q)_ji ∂₃u_j G_iᵥ ]       method.md (5.2)
+//! ```
+//! With [`Formulation::MeanDilatation`] the Gauss points carry the deviatoric part only (λ = −⅔μ) and
+//! `mean_dilatation` adds the volumetric one.
+//!
+//! Nodes of a brick are ordered a = 4i + 2j + k with i, j, k ∈ {0, 1} along x₁, x₂, x₃; dof 3a + component.
+
+use crate::body::elasticity::{Formulation, Material, mean_dilatation};
+use crate::scalar::Scalar;
+
+/// Coordinates of the eight nodes, mm.
+pub type Nodes<T> = [[T; 3]; 8];
+
+/// Dofs of one brick.
+pub const DOFS: usize = 24;
+
+/// Gradients of the shape functions and weighted Jacobian determinant at one Gauss point.
+#[derive(Debug, Clone, Copy)]
+pub struct GaussPoint<T> {
+    /// ∂N_a/∂x_i as `gradients[a][i]`, 1/mm.
+    pub gradients: [[T; 3]; 8],
+    /// det(∂x/∂ξ) times the Gauss weight, mm³.
+    pub volume: T,
+}
+
+/// 1/√3, the abscissa of the two-point Gauss rule.
+const ABSCISSA: f64 = 0.577_350_269_189_625_8;
+
+/// −1 or 1 for the two ends of an edge.
+fn sign(bit: usize) -> f64 {
+    if bit == 1 { 1.0 } else { -1.0 }
+}
+
+/// Reference gradients of the eight shape functions at ξ ∈ [−1, 1]³.
+fn reference_gradients(xi: [f64; 3]) -> [[f64; 3]; 8] {
+    std::array::from_fn(|a| {
+        let s = [sign(a >> 2 & 1), sign(a >> 1 & 1), sign(a & 1)];
+        let f = [1.0 + s[0] * xi[0], 1.0 + s[1] * xi[1], 1.0 + s[2] * xi[2]];
+        [s[0] * f[1] * f[2] / 8.0, s[1] * f[0] * f[2] / 8.0, s[2] * f[0] * f[1] / 8.0]
+    })
+}
+
+/// Values of the eight shape functions at ξ ∈ [−1, 1]³.
+pub fn shape_values(xi: [f64; 3]) -> [f64; 8] {
+    std::array::from_fn(|a| {
+        let s = [sign(a >> 2 & 1), sign(a >> 1 & 1), sign(a & 1)];
+        (1.0 + s[0] * xi[0]) * (1.0 + s[1] * xi[1]) * (1.0 + s[2] * xi[2]) / 8.0
+    })
+}
+
+/// The eight Gauss points of a brick. A `volume` ≤ 0 marks an inverted element.
+pub fn gauss_points<T: Scalar>(nodes: &Nodes<T>) -> [GaussPoint<T>; 8] {
+    std::array::from_fn(|point| sample(nodes, [2, 1, 0].map(|shift| sign(point >> shift & 1) * ABSCISSA)))
+}
+
+/// Gradients at ξ ∈ [−1, 1]³, with det(∂x/∂ξ) as `volume`.
+pub fn sample<T: Scalar>(nodes: &Nodes<T>, xi: [f64; 3]) -> GaussPoint<T> {
+    let reference = reference_gradients(xi);
+    let mut jacobian = [[T::zero(); 3]; 3];
+    for (node, gradient) in nodes.iter().zip(&reference) {
+        for (i, row) in jacobian.iter_mut().enumerate() {
+            for (entry, &derivative) in row.iter_mut().zip(gradient) {
+                *entry += node[i] * T::constant(derivative);
+            }
+        }
+    }
+    let (inverse, volume) = invert(&jacobian);
+    let gradients = std::array::from_fn(|a| {
+        std::array::from_fn(|i| {
+            let mut sum = T::zero();
+            for (k, &derivative) in reference[a].iter().enumerate() {
+                sum += inverse[k][i] * T::constant(derivative);
+            }
+            sum
+        })
+    });
+    GaussPoint { gradients, volume }
+}
+
+/// Inverse and determinant of a 3×3 matrix `m[i][k] = ∂x_i/∂ξ_k`; the inverse is `[k][i] = ∂ξ_k/∂x_i`.
+fn invert<T: Scalar>(m: &[[T; 3]; 3]) -> ([[T; 3]; 3], T) {
+    let cofactor = |i: usize, k: usize| {
+        let (i1, i2, k1, k2) = ((i + 1) % 3, (i + 2) % 3, (k + 1) % 3, (k + 2) % 3);
+        m[i1][k1] * m[i2][k2] - m[i1][k2] * m[i2][k1]
+    };
+    let determinant = m[0][0] * cofactor(0, 0) + m[0][1] * cofactor(0, 1) + m[0][2] * cofactor(0, 2);
+    (std::array::from_fn(|k| std::array::from_fn(|i| cofactor(i, k) / determinant)), determinant)
+}
+
+/// Volume of a brick, mm³; exact, the determinant is of degree two along each axis.
+pub fn volume(nodes: &Nodes<f64>) -> f64 {
+    gauss_points(nodes).iter().map(|point| point.volume).sum()
+}
+
+/// λ at the Gauss points: of the whole material, or of its deviatoric part.
+pub(super) fn pointwise_lambda(material: &Material) -> f64 {
+    match material.formulation() {
+        Formulation::Standard => material.lame_lambda(),
+        Formulation::MeanDilatation => -2.0 / 3.0 * material.shear_modulus(),
+    }
+}
+
+/// Stiffness matrix of a brick, 24 × 24 row major (symmetric), N/mm.
+pub fn stiffness<T: Scalar>(nodes: &Nodes<T>, material: &Material) -> [[T; DOFS]; DOFS] {
+    let (lambda, mu) = (T::constant(pointwise_lambda(material)), T::constant(material.shear_modulus()));
+    let mut matrix = [[T::zero(); DOFS]; DOFS];
+    let points = gauss_points(nodes);
+    for point in &points {
+        let g = &point.gradients;
+        for a in 0..8 {
+            for b in 0..=a {
+                let dot = (g[a][0] * g[b][0] + g[a][1] * g[b][1] + g[a][2] * g[b][2]) * mu * point.volume;
+                for i in 0..3 {
+                    for j in 0..3 {
+                        let entry = (lambda * g[a][i] * g[b][j] + mu * g[a][j] * g[b][i]) * point.volume;
+                        matrix[3 * a + i][3 * b + j] += entry;
+                    }
+                    matrix[3 * a + i][3 * b + i] += dot;
+                }
+            }
+        }
+    }
+    if material.formulation() == Formulation::MeanDilatation {
+        mean_dilatation::add_stiffness(&points, material.bulk_modulus(), &mut matrix);
+    }
+    for row in 0..DOFS {
+        for column in row + 1..DOFS {
+            matrix[row][column] = matrix[column][row];
+        }
+    }
+    matrix
+}
+
+/// ∂(qᵀK u)/∂x₃ of each of the eight nodes; method.md (5.2). `u`, `q`: 24 dofs each.
+pub fn height_derivative(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS], q: &[f64; DOFS]) -> [f64; 8] {
+    let mut result = [0.0; 8];
+    let lame = (pointwise_lambda(material), material.shear_modulus());
+    let points = gauss_points(nodes);
+    for point in &points {
+        let (grad_u, grad_q) = (displacement_gradient(point, u), displacement_gradient(point, q));
+        let (stress_u, stress_q) = (stress(&grad_u, lame), stress(&grad_q, lame));
+        let energy: f64 = (0..3).map(|i| (0..3).map(|j| stress_u[i][j] * grad_q[i][j]).sum::<f64>()).sum();
+        let mut flux = [0.0; 3];
+        for (i, flux) in flux.iter_mut().enumerate() {
+            for j in 0..3 {
+                *flux += stress_u[j][i] * grad_q[j][2] + stress_q[j][i] * grad_u[j][2];
+            }
+        }
+        for (node, gradient) in result.iter_mut().zip(&point.gradients) {
+            let moved = flux[0] * gradient[0] + flux[1] * gradient[1] + flux[2] * gradient[2];
+            *node += point.volume * (energy * gradient[2] - moved);
+        }
+    }
+    if material.formulation() == Formulation::MeanDilatation {
+        mean_dilatation::add_height_derivative(&points, material.bulk_modulus(), u, q, &mut result);
+    }
+    result
+}
+
+/// ∂u_j/∂x_i as `[j][i]` at one Gauss point.
+pub fn displacement_gradient(point: &GaussPoint<f64>, u: &[f64; DOFS]) -> [[f64; 3]; 3] {
+    let mut gradient = [[0.0; 3]; 3];
+    for (a, shape) in point.gradients.iter().enumerate() {
+        for (j, row) in gradient.iter_mut().enumerate() {
+            for (entry, derivative) in row.iter_mut().zip(shape) {
+                *entry += u[3 * a + j] * derivative;
+            }
+        }
+    }
+    gradient
+}
+
+/// Stress λ tr(ε) I + 2 μ ε of a displacement gradient and (λ, μ) at a Gauss point, MPa.
+pub fn stress(gradient: &[[f64; 3]; 3], (lambda, mu): (f64, f64)) -> [[f64; 3]; 3] {
+    let volumetric = lambda * (gradient[0][0] + gradient[1][1] + gradient[2][2]);
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| mu * (gradient[i][j] + gradient[j][i]) + if i == j { volumetric } else { 0.0 })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scalar::Dual;
+
+    fn distorted() -> Nodes<f64> {
+        std::array::from_fn(|a| {
+            let (i, j, k) = ((a >> 2 & 1) as f64, (a >> 1 & 1) as f64, (a & 1) as f64);
+            [2.0 * i, 1.5 * j, k * (1.0 + 0.2 * i - 0.1 * j + 0.15 * i * j) + 0.1 * i]
+        })
+    }
+
+    /// Both formulations of one material.
+    fn materials() -> [Material; 2] {
+        let material = Material::new(1.1e5, 0.33).expect("valid material");
+        [material, material.with_formulation(Formulation::MeanDilatation)]
+    }
+
+    fn vector(seed: f64) -> [f64; DOFS] {
+        std::array::from_fn(|i| (seed * (i as f64 + 1.0)).sin())
+    }
+
+    /// K u.
+    fn product(matrix: &[[f64; DOFS]; DOFS], u: &[f64; DOFS]) -> [f64; DOFS] {
+        std::array::from_fn(|i| matrix[i].iter().zip(u).map(|(k, u)| k * u).sum())
+    }
+
+    #[test]
+    fn rigid_motions_carry_no_force() {
+        for material in materials() {
+            let (nodes, matrix) = (distorted(), stiffness(&distorted(), &material));
+            for axis in 0..3 {
+                let mut rotation = [0.0; DOFS];
+                for (a, x) in nodes.iter().enumerate() {
+                    rotation[3 * a + (axis + 1) % 3] = -x[(axis + 2) % 3];
+                    rotation[3 * a + (axis + 2) % 3] = x[(axis + 1) % 3];
+                }
+                let translation: [f64; DOFS] = std::array::from_fn(|dof| f64::from(u8::from(dof % 3 == axis)));
+                for force in product(&matrix, &rotation).into_iter().chain(product(&matrix, &translation)) {
+                    assert!(force.abs() < 1e-13 * material.young_modulus() * 6.0, "{force}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rigid_motions_are_the_whole_kernel() {
+        for material in materials() {
+            let matrix = stiffness(&distorted(), &material);
+            let dense = nalgebra::DMatrix::from_fn(DOFS, DOFS, |i, j| matrix[i][j]);
+            let mut values: Vec<f64> = dense.symmetric_eigen().eigenvalues.iter().copied().collect();
+            values.sort_by(f64::total_cmp);
+            assert!(values[5].abs() < 1e-12 * values[23] && values[6] > 1e-4 * values[23], "{values:?}");
+        }
+    }
+
+    #[test]
+    fn constant_strain_gives_the_forces_of_its_constant_stress() {
+        // u = H x: nodal forces ∫ σ ∇N_a dV, the same in both formulations.
+        let h = [[1e-3, 2e-4, -3e-4], [5e-4, -7e-4, 1e-4], [0.0, 6e-4, 4e-4]];
+        let nodes = distorted();
+        let u: [f64; DOFS] = std::array::from_fn(|dof| (0..3).map(|j| h[dof % 3][j] * nodes[dof / 3][j]).sum());
+        let [standard, mean] = materials().map(|material| product(&stiffness(&nodes, &material), &u));
+        let sigma = stress(&h, (materials()[0].lame_lambda(), materials()[0].shear_modulus()));
+        for dof in 0..DOFS {
+            let exact: f64 = gauss_points(&nodes)
+                .iter()
+                .map(|point| {
+                    point.volume * (0..3).map(|j| sigma[dof % 3][j] * point.gradients[dof / 3][j]).sum::<f64>()
+                })
+                .sum();
+            for force in [standard[dof], mean[dof]] {
+                assert!((force - exact).abs() < 1e-12 * 150.0, "{force} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn height_derivative_equals_that_of_dual_numbers() {
+        let (nodes, u, q) = (distorted(), vector(0.7), vector(1.3));
+        for material in materials() {
+            let closed = height_derivative(&nodes, &material, &u, &q);
+            for (node, closed) in closed.iter().enumerate() {
+                let mut moved = nodes.map(|x| x.map(Dual::constant));
+                moved[node][2].derivative = 1.0;
+                let matrix = stiffness(&moved, &material);
+                let mut exact = 0.0;
+                for (i, row) in matrix.iter().enumerate() {
+                    for (j, entry) in row.iter().enumerate() {
+                        exact += q[i] * entry.derivative * u[j];
+                    }
+                }
+                assert!((closed - exact).abs() < 1e-12 * exact.abs().max(1e5), "{closed} {exact}");
+            }
+        }
+    }
+}

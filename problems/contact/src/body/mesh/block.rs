@@ -1,0 +1,164 @@
+//! A block of bricks in columns over a uniform grid between a lower and an upper surface.
+//!
+//! ```text
+//! x₁ = i·a/n₁,  x₂ = j·b/n₂,  x₃ = lower_ij + (upper_ij − lower_ij)·k/n₃                              method.md section 2
+//! ```
+
+use crate::body::elasticity::hex8::Nodes;
+use crate::error::ContactError;
+
+/// Topology and plan of a block: numbers of bricks and the size of its base.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// Bricks along x₁, x₂, x₃.
+    pub cells: [usize; 3],
+    /// Lengths a, b of the base along x₁, x₂, mm.
+    pub size: [f64; 2],
+}
+
+/// A side of a block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+pub enum Face {
+    /// x₁ = 0.
+    X1Min,
+    /// x₁ = a.
+    X1Max,
+    /// x₂ = 0.
+    X2Min,
+    /// x₂ = b.
+    X2Max,
+    /// Lower surface.
+    Bottom,
+    /// Upper surface.
+    Top,
+}
+
+impl Grid {
+    /// Nodes along the three axes.
+    pub fn nodes(&self) -> [usize; 3] {
+        self.cells.map(|cells| cells + 1)
+    }
+
+    /// Number of nodes of the block.
+    pub fn node_count(&self) -> usize {
+        self.nodes().iter().product()
+    }
+
+    /// Index of node (i, j, k).
+    pub fn node(&self, [i, j, k]: [usize; 3]) -> usize {
+        (i * (self.cells[1] + 1) + j) * (self.cells[2] + 1) + k
+    }
+
+    /// Number of bricks of the block.
+    pub fn brick_count(&self) -> usize {
+        self.cells.iter().product()
+    }
+
+    /// Index of brick (i, j, k).
+    pub fn brick(&self, [i, j, k]: [usize; 3]) -> usize {
+        (i * self.cells[1] + j) * self.cells[2] + k
+    }
+
+    /// All bricks (i, j, k) in index order.
+    pub fn bricks(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
+        let [_, n2, n3] = self.cells;
+        (0..self.brick_count()).map(move |brick| [brick / (n2 * n3), brick / n3 % n2, brick % n3])
+    }
+
+    /// Indices of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::hex8`].
+    pub fn brick_nodes(&self, [i, j, k]: [usize; 3]) -> [usize; 8] {
+        std::array::from_fn(|a| self.node([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]))
+    }
+
+    /// Number of vertical columns of nodes, the points of a surface.
+    pub fn column_count(&self) -> usize {
+        (self.cells[0] + 1) * (self.cells[1] + 1)
+    }
+
+    /// Index of the column of nodes (i, j).
+    pub fn column(&self, i: usize, j: usize) -> usize {
+        i * (self.cells[1] + 1) + j
+    }
+
+    /// Position (x₁, x₂) of column (i, j), mm.
+    pub fn position(&self, i: usize, j: usize) -> [f64; 2] {
+        [self.size[0] * i as f64 / self.cells[0] as f64, self.size[1] * j as f64 / self.cells[1] as f64]
+    }
+
+    /// All columns (i, j) in index order.
+    pub fn columns(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let rows = self.cells[1] + 1;
+        (0..self.column_count()).map(move |column| (column / rows, column % rows))
+    }
+
+    /// Lumped tributary area of column (i, j) on the projected grid: h₁h₂ inside, half on edges, quarter in corners; mm².
+    pub fn tributary_area(&self, i: usize, j: usize) -> f64 {
+        let share = |index: usize, cells: usize| if index == 0 || index == cells { 0.5 } else { 1.0 };
+        let cell = self.size[0] / self.cells[0] as f64 * self.size[1] / self.cells[1] as f64;
+        cell * share(i, self.cells[0]) * share(j, self.cells[1])
+    }
+
+    /// Whether node (i, j, k) lies on a face.
+    pub fn is_on(&self, face: Face, [i, j, k]: [usize; 3]) -> bool {
+        match face {
+            Face::X1Min => i == 0,
+            Face::X1Max => i == self.cells[0],
+            Face::X2Min => j == 0,
+            Face::X2Max => j == self.cells[1],
+            Face::Bottom => k == 0,
+            Face::Top => k == self.cells[2],
+        }
+    }
+}
+
+/// A grid with its two surfaces: the geometry of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Block {
+    /// Topology and plan.
+    pub grid: Grid,
+    /// Height of the lower surface per column of nodes, mm.
+    pub lower: Vec<f64>,
+    /// Height of the upper surface per column of nodes, mm.
+    pub upper: Vec<f64>,
+}
+
+impl Block {
+    /// Coordinates of node (i, j, k), mm.
+    pub fn coordinates(&self, [i, j, k]: [usize; 3]) -> [f64; 3] {
+        let column = self.grid.column(i, j);
+        let share = k as f64 / self.grid.cells[2] as f64;
+        let [x1, x2] = self.grid.position(i, j);
+        [x1, x2, self.lower[column] + (self.upper[column] - self.lower[column]) * share]
+    }
+
+    /// Coordinates of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::hex8`].
+    pub fn brick(&self, [i, j, k]: [usize; 3]) -> Nodes<f64> {
+        std::array::from_fn(|a| self.coordinates([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]))
+    }
+
+    /// Refuses a block with an inverted or flat brick. `body` is its number in messages (1 lower, 2 upper).
+    ///
+    /// Columns are vertical over a uniform grid, so det(∂x/∂ξ) of a brick interpolates h₁h₂·(height of the column)/n₃ between
+    /// its four columns: it is positive everywhere exactly if all columns have positive height.
+    ///
+    /// # Errors
+    /// [`ContactError::InvertedElement`] naming a brick at the first such column.
+    pub fn check_orientation(&self, body: usize) -> Result<(), ContactError> {
+        let [n1, n2, n3] = self.grid.cells;
+        let base = self.grid.size[0] / n1 as f64 * self.grid.size[1] / n2 as f64;
+        for (i, j) in self.grid.columns() {
+            let column = self.grid.column(i, j);
+            let determinant = base * (self.upper[column] - self.lower[column]) / n3 as f64;
+            if !(determinant > 0.0 && determinant.is_finite()) {
+                return Err(ContactError::InvertedElement {
+                    body,
+                    i: i.min(n1 - 1),
+                    j: j.min(n2 - 1),
+                    k: 0,
+                    determinant,
+                });
+            }
+        }
+        Ok(())
+    }
+}

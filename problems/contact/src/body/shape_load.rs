@@ -1,0 +1,54 @@
+//! Faces that carry a traction, for loads and for their derivative with respect to node heights.
+
+use crate::body::elasticity::traction::face_weights;
+use crate::body::mesh::{Block, Face, Grid, Subdomain};
+use crate::scalar::Dual;
+
+/// Four block nodes of every brick face on a side of the block, optionally only those of one subdomain.
+pub fn loaded_faces(grid: &Grid, face: Face, place: Option<&Subdomain>) -> Vec<[[usize; 3]; 4]> {
+    let (first, cells) = place.map_or(([0; 3], grid.cells), |place| (place.first_cell, place.cells));
+    let (axis, level) = match face {
+        Face::X1Min => (0, 0),
+        Face::X1Max => (0, grid.cells[0]),
+        Face::X2Min => (1, 0),
+        Face::X2Max => (1, grid.cells[1]),
+        Face::Bottom => (2, 0),
+        Face::Top => (2, grid.cells[2]),
+    };
+    let touches = level == if level == 0 { first[axis] } else { first[axis] + cells[axis] };
+    if !touches {
+        return Vec::new();
+    }
+    let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut faces = Vec::new();
+    for p in first[second]..first[second] + cells[second] {
+        for q in first[third]..first[third] + cells[third] {
+            faces.push(std::array::from_fn(|corner| {
+                let mut node = [0; 3];
+                node[axis] = level;
+                node[second] = p + (corner >> 1);
+                node[third] = q + (corner & 1);
+                node
+            }));
+        }
+    }
+    faces
+}
+
+/// Adds ∂(p·f)/∂x₃ of the face's nodes to `add(node, value)`, for a traction and adjoint displacements `p(node)`.
+pub fn height_derivative(
+    block: &Block,
+    face: &[[usize; 3]; 4],
+    traction: [f64; 3],
+    p: impl Fn([usize; 3]) -> [f64; 3],
+    mut add: impl FnMut([usize; 3], f64),
+) {
+    let nodes = face.map(|node| block.coordinates(node));
+    let work: [f64; 4] = face.map(|node| p(node).iter().zip(traction).map(|(p, t)| p * t).sum());
+    for moved in 0..4 {
+        let mut dual = nodes.map(|x| x.map(|value| Dual::new(value, 0.0)));
+        dual[moved][2].derivative = 1.0;
+        let weights = face_weights(&dual);
+        add(face[moved], weights.iter().zip(&work).map(|(weight, work)| weight.derivative * work).sum());
+    }
+}

@@ -1,0 +1,136 @@
+//! Costs of the contact pressure σ_i = λ_N,i / A_i; method.md (3.4).
+
+use crate::contact_shape::ContactState;
+use crate::equilibrium::ContactBoundary;
+use crate::error::SceneError;
+use nonsmooth::{Cost, CostGradient, Vector};
+
+/// A function of the contact pressures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PressureMeasure {
+    /// Σσ^p, MPa^p.
+    Norm {
+        /// The exponent p > 1.
+        exponent: f64,
+    },
+    /// max σ, MPa; nonsmooth on its own, with one subgradient at the first node of largest pressure.
+    Peak,
+}
+
+/// J(α, y) as a measure of the contact pressure.
+#[derive(Debug, Clone)]
+pub struct PressureCost {
+    measure: PressureMeasure,
+    areas: Vec<f64>,
+    dual_dimension: usize,
+}
+
+impl PressureCost {
+    /// The cost on a contact boundary.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1.
+    pub fn new(measure: PressureMeasure, boundary: &ContactBoundary) -> Result<Self, SceneError> {
+        if let PressureMeasure::Norm { exponent } = measure
+            && !(exponent > 1.0 && exponent.is_finite())
+        {
+            return Err(SceneError::out_of_range("exponent of the pressure norm", exponent, "a finite number > 1"));
+        }
+        let areas = boundary.points.iter().map(|point| point.area).collect();
+        Ok(Self { measure, areas, dual_dimension: boundary.dual_dimension() })
+    }
+
+    /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that carries
+    /// this force is below it.
+    ///
+    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1} (Hölder), max σ ≥ Λ/ΣA, with Λ = Σλ_N ≥ 0 in N.
+    pub fn lower_bound(&self, total_force: f64) -> f64 {
+        match self.measure {
+            PressureMeasure::Norm { exponent: p } => {
+                // Relative to the largest area, so that the sum is at least 1 for every p.
+                let largest = self.areas.iter().copied().fold(0.0, f64::max);
+                let weights: f64 = self.areas.iter().map(|area| (area / largest).powf(p / (p - 1.0))).sum();
+                (total_force / largest).powf(p) / weights.powf(p - 1.0)
+            }
+            PressureMeasure::Peak => total_force / self.areas.iter().sum::<f64>(),
+        }
+    }
+
+    /// σ per contact node, MPa.
+    pub fn pressures(&self, state: &ContactState) -> Vec<f64> {
+        state.forces.normal.iter().zip(&self.areas).map(|(force, area)| force / area).collect()
+    }
+}
+
+impl Cost<ContactState> for PressureCost {
+    fn value(&self, _control: &Vector, state: &ContactState) -> f64 {
+        let pressures = self.pressures(state);
+        match self.measure {
+            PressureMeasure::Norm { exponent } => pressures.iter().map(|p| p.max(0.0).powf(exponent)).sum(),
+            PressureMeasure::Peak => pressures.into_iter().fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+
+    fn gradient(&self, control: &Vector, state: &ContactState) -> CostGradient {
+        let pressures = self.pressures(state);
+        let mut dual = Vector::zeros(self.dual_dimension);
+        match self.measure {
+            PressureMeasure::Norm { exponent } => {
+                for (index, (pressure, area)) in pressures.iter().zip(&self.areas).enumerate() {
+                    dual[index] = exponent * pressure.max(0.0).powf(exponent - 1.0) / area;
+                }
+            }
+            PressureMeasure::Peak => {
+                let mut peak = 0;
+                for (index, pressure) in pressures.iter().enumerate() {
+                    if *pressure > pressures[peak] {
+                        peak = index;
+                    }
+                }
+                dual[peak] = 1.0 / self.areas[peak];
+            }
+        }
+        CostGradient { control: Vector::zeros(control.len()), state: dual }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Σσ^p of forces over areas.
+    fn norm(forces: &[f64], areas: &[f64], p: f64) -> f64 {
+        forces.iter().zip(areas).map(|(force, area)| (force / area).powf(p)).sum()
+    }
+
+    #[test]
+    fn the_lower_bound_is_attained_and_never_undercut() {
+        let areas = vec![1.0, 2.0, 4.0, 0.5];
+        for p in [1.02, 1.5, 4.0, 12.0] {
+            let measure = PressureMeasure::Norm { exponent: p };
+            let cost = PressureCost { measure, areas: areas.clone(), dual_dimension: 4 };
+            let weights: Vec<f64> = areas.iter().map(|area: &f64| area.powf(p / (p - 1.0))).collect();
+            let forces: Vec<f64> = weights.iter().map(|w| 30.0 * w / weights.iter().sum::<f64>()).collect();
+            let bound = cost.lower_bound(30.0);
+            assert!((norm(&forces, &areas, p) / bound - 1.0).abs() < 1e-12);
+            for other in [[30.0, 0.0, 0.0, 0.0], [7.5; 4], [4.0, 8.0, 16.0, 2.0]] {
+                assert!(norm(&other, &areas, p) >= bound * (1.0 - 1e-12));
+            }
+        }
+        // Near p = 1 everything goes to the largest area: (30/4)^p.
+        let nearly = PressureMeasure::Norm { exponent: 1.001 };
+        let cost = PressureCost { measure: nearly, areas: areas.clone(), dual_dimension: 4 };
+        assert!((cost.lower_bound(30.0) / 7.5_f64.powf(1.001) - 1.0).abs() < 1e-12);
+        let cost = PressureCost { measure: PressureMeasure::Peak, areas, dual_dimension: 4 };
+        assert!((cost.lower_bound(30.0) - 4.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_lower_bound_of_the_paper_s_example() {
+        // method.md section 7: (3e7)⁴/(Σ A^{4/3})³ = 1.294e16 on 12 × 12 bricks of a 100 mm square.
+        let grid = crate::body::mesh::Grid { cells: [12, 12, 12], size: [100.0, 100.0] };
+        let areas = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
+        let cost = PressureCost { measure: PressureMeasure::Norm { exponent: 4.0 }, areas, dual_dimension: 169 };
+        assert!((cost.lower_bound(3e7) / 1.294e16 - 1.0).abs() < 5e-4);
+    }
+}

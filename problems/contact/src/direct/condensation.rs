@@ -1,0 +1,147 @@
+//! One body condensed onto its contact nodes by a sparse Cholesky factorisation with the contact dofs last.
+//!
+//! ```text
+//! K + σ I_c = L Lᵀ,   S = L₂₂ L₂₂ᵀ − σ I,   f_c = (S + σ I) x_c with (K + σ I_c) x = f
+//! ```
+//! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly.
+
+use crate::body::elasticity::traction::face_weights;
+use crate::body::mesh::{Block, Grid, Subdomain};
+use crate::body::shape_load::loaded_faces;
+use crate::error::ContactError;
+use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
+use crate::linear::dense::multiply;
+use crate::scene::BodyScene;
+use crate::tfeti::LocalPattern;
+use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use faer::{Accum, Mat, Par};
+use std::sync::Arc;
+
+/// What all shapes of a body share.
+#[derive(Debug)]
+pub struct CondensationPattern {
+    pattern: LocalPattern,
+    symbolic: Arc<SymbolicFactor>,
+    /// First dof of every contact node.
+    contact: Vec<usize>,
+    held: Vec<bool>,
+}
+
+/// A condensed body.
+#[derive(Debug)]
+pub struct CondensedBody {
+    /// S over contact dofs 3·node + component, N/mm.
+    pub schur: Mat<f64>,
+    /// f_c, N.
+    pub load: Vec<f64>,
+    factor: NumericFactor,
+    full_load: Vec<f64>,
+    contact: Vec<usize>,
+    shift: f64,
+}
+
+impl CondensationPattern {
+    /// The pattern of a body whose contact nodes lie in layer `layer` of its grid.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when the analysis fails.
+    pub fn new(grid: &Grid, scene: &BodyScene, layer: usize) -> Result<Self, ContactError> {
+        let pattern = LocalPattern::new(grid.cells, &[]);
+        let nodes: Vec<usize> = grid.columns().map(|(i, j)| grid.node([i, j, layer])).collect();
+        let symbolic = pattern.symbolic(&nodes)?;
+        let mut held = Vec::with_capacity(3 * grid.node_count());
+        for node in 0..grid.node_count() {
+            held.extend(scene.held(grid, pattern.shape.local_position(node)));
+        }
+        Ok(Self { pattern, symbolic, contact: nodes.into_iter().map(|node| 3 * node).collect(), held })
+    }
+
+    /// Condenses one shape.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when the stiffness matrix is not positive definite.
+    pub fn condense(&self, block: &Block, scene: &BodyScene) -> Result<CondensedBody, ContactError> {
+        let mut values = self.pattern.assemble(&scene.material, |brick| block.brick(brick));
+        let mut full_load = body_load(block, scene, &self.pattern.shape);
+        let shift = self.impose(&mut values, &mut full_load);
+        let factor = self.symbolic.factorize(&values, Par::Seq)?;
+        let size = 3 * self.contact.len();
+        let lower = factor.trailing_block(size)?;
+        let mut schur = Mat::<f64>::zeros(size, size);
+        matmul(
+            schur.as_mut(),
+            BlockStructure::Rectangular,
+            Accum::Replace,
+            lower.as_ref(),
+            BlockStructure::TriangularLower,
+            lower.transpose(),
+            BlockStructure::TriangularUpper,
+            1.0,
+            Par::Seq,
+        );
+        let mut solution = full_load.clone();
+        factor.solve_in_place(&mut solution, 1, Par::Seq);
+        let load = multiply(&schur, &contact_part(&self.contact, &solution));
+        for dof in 0..size {
+            schur[(dof, dof)] -= shift;
+        }
+        Ok(CondensedBody { schur, load, factor, full_load, contact: self.contact.clone(), shift })
+    }
+
+    /// Decouples held dofs and adds the shift; returns the shift.
+    fn impose(&self, values: &mut [f64], load: &mut [f64]) -> f64 {
+        let lower = &self.pattern.pattern;
+        for column in 0..lower.dimension() {
+            for position in lower.starts()[column] + 1..lower.starts()[column + 1] {
+                if self.held[column] || self.held[lower.rows()[position]] {
+                    values[position] = 0.0;
+                }
+            }
+            if self.held[column] {
+                load[column] = 0.0;
+            }
+        }
+        let diagonal = |dof: usize| lower.starts()[dof];
+        let dofs = || self.contact.iter().flat_map(|&first| first..first + 3);
+        let shift = dofs().map(|dof| values[diagonal(dof)]).sum::<f64>() / (3 * self.contact.len()) as f64;
+        for dof in dofs() {
+            values[diagonal(dof)] += shift;
+        }
+        shift
+    }
+}
+
+impl CondensedBody {
+    /// Extends contact displacements to the whole body; `forces` act on the contact dofs, `loaded` adds the loads.
+    pub fn extend(&self, contact_displacement: &[f64], forces: &[f64], loaded: bool) -> Vec<f64> {
+        let mut u = if loaded { self.full_load.clone() } else { vec![0.0; self.full_load.len()] };
+        for (node, &first) in self.contact.iter().enumerate() {
+            for component in 0..3 {
+                let dof = 3 * node + component;
+                u[first + component] += forces[dof] + self.shift * contact_displacement[dof];
+            }
+        }
+        self.factor.solve_in_place(&mut u, 1, Par::Seq);
+        u
+    }
+}
+
+fn contact_part(contact: &[usize], values: &[f64]) -> Vec<f64> {
+    contact.iter().flat_map(|&first| values[first..first + 3].iter().copied()).collect()
+}
+
+/// Consistent nodal loads of a whole body.
+fn body_load(block: &Block, scene: &BodyScene, shape: &Subdomain) -> Vec<f64> {
+    let mut load = vec![0.0; shape.dof_count()];
+    for part in &scene.loads {
+        for face in loaded_faces(&block.grid, part.face, None) {
+            let weights = face_weights(&face.map(|node| block.coordinates(node)));
+            for (node, weight) in face.into_iter().zip(weights) {
+                for (component, traction) in part.traction.iter().enumerate() {
+                    load[3 * shape.local_node(node) + component] += weight * traction;
+                }
+            }
+        }
+    }
+    load
+}

@@ -1,0 +1,90 @@
+//! The contact nodes and the layout of their multipliers.
+//!
+//! A *packed* contact vector holds, node by node, the normal row and the tangential rows that exist: none without friction,
+//! and none for a tangential dof that supports hold on all bodies (method.md section 3).
+
+use crate::body::mesh::Grid;
+use crate::scene::Scene;
+
+/// One contact node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactPoint {
+    /// Column of nodes (i, j) of the grid.
+    pub position: [usize; 2],
+    /// Tributary area A of the projected grid, mm².
+    pub area: f64,
+    /// Position of its normal row in a packed contact vector.
+    pub start: usize,
+    /// Tangential directions (0 for x₁, 1 for x₂) that have a row, in order.
+    pub tangents: Vec<usize>,
+    /// Whether any tangential dof is free, with or without a row.
+    pub can_slide: bool,
+}
+
+impl ContactPoint {
+    /// Number of rows of this node.
+    pub fn row_count(&self) -> usize {
+        1 + self.tangents.len()
+    }
+}
+
+/// All contact nodes of a scene.
+#[derive(Debug, Clone)]
+pub struct ContactBoundary {
+    /// The nodes, in the order of the grid's columns.
+    pub points: Vec<ContactPoint>,
+    /// Length of a packed contact vector.
+    pub row_count: usize,
+    /// Friction coefficient 𝓕.
+    pub friction: f64,
+}
+
+impl ContactBoundary {
+    /// The contact boundary of a scene: the top of the lower body.
+    pub fn new(scene: &Scene, grid: &Grid) -> Self {
+        let mut row_count = 0;
+        let points = grid
+            .columns()
+            .map(|(i, j)| {
+                let mut held = scene.lower.held(grid, [i, j, grid.cells[2]]);
+                if let Some(upper) = &scene.upper {
+                    let above = upper.body.held(grid, [i, j, 0]);
+                    held = std::array::from_fn(|axis| held[axis] && above[axis]);
+                }
+                let free: Vec<usize> = (0..2).filter(|&axis| !held[axis]).collect();
+                let can_slide = !free.is_empty();
+                let tangents = if scene.friction > 0.0 { free } else { Vec::new() };
+                let point = ContactPoint {
+                    position: [i, j],
+                    area: grid.tributary_area(i, j),
+                    start: row_count,
+                    tangents,
+                    can_slide,
+                };
+                row_count += point.row_count();
+                point
+            })
+            .collect();
+        Self { points, row_count, friction: scene.friction }
+    }
+
+    /// Whether the scene has friction, and with it tangential multipliers.
+    pub fn has_friction(&self) -> bool {
+        self.friction > 0.0
+    }
+
+    /// Length of the dual of a contact state: normal forces, then (with friction) two tangential forces per node.
+    pub fn dual_dimension(&self) -> usize {
+        self.points.len() * if self.has_friction() { 3 } else { 1 }
+    }
+
+    /// From the dual layout [normal; tangential pairs] to a packed contact vector.
+    pub fn pack(&self, dual: &[f64]) -> Vec<f64> {
+        let mut packed = Vec::with_capacity(self.row_count);
+        for (index, point) in self.points.iter().enumerate() {
+            packed.push(dual[index]);
+            packed.extend(point.tangents.iter().map(|tangent| dual[self.points.len() + 2 * index + tangent]));
+        }
+        packed
+    }
+}

@@ -1,0 +1,139 @@
+//! Residual certificates of a contact state and its distance to the nearest kink.
+
+use crate::equilibrium::law::{self, tangential_norm};
+use crate::equilibrium::{ContactBoundary, ContactStatus};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Relative residuals of (3.1)–(3.3), recomputed from the final state; dimensionless.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Residuals {
+    /// Resultant of loads and contact forces along the motions that supports leave free, over the total load.
+    pub equilibrium: f64,
+    /// Largest of |min(λ_N, c·(gap opening))| over the total load.
+    pub complementarity: f64,
+    /// Largest excess of |λ_T| over 𝓕λ_N, over the total load.
+    pub friction_cone: f64,
+    /// Largest defect of the dissipation, c·|𝓕λ_N|slip| − λ_T·slip| over the square of the load: zero in stick (no slip) and
+    /// in aligned slip.
+    pub dissipation: f64,
+    /// |(c (B_E u − c_E), λ − Π(λ + c(B u − g)))|₂ over the total load: what the Newton iteration drives to zero.
+    pub newton: f64,
+}
+
+impl Residuals {
+    /// The largest of all residuals; NaN if one is not a number.
+    pub fn largest(&self) -> f64 {
+        [self.equilibrium, self.complementarity, self.friction_cone, self.dissipation, self.newton].into_iter().fold(
+            0.0,
+            |largest: f64, value| if value.is_nan() || largest.is_nan() { f64::NAN } else { largest.max(value) },
+        )
+    }
+}
+
+impl fmt::Display for Residuals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "equilibrium {:.1e}, complementarity {:.1e}, friction cone {:.1e}, dissipation {:.1e}, Newton {:.1e}",
+            self.equilibrium, self.complementarity, self.friction_cone, self.dissipation, self.newton
+        )
+    }
+}
+
+/// Numbers of nodes per status.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct StatusCounts {
+    /// No contact.
+    pub open: usize,
+    /// Closed, no sliding.
+    pub stick: usize,
+    /// Closed, sliding.
+    pub slip: usize,
+}
+
+impl StatusCounts {
+    /// Counts a list of statuses.
+    pub fn of(statuses: &[ContactStatus]) -> Self {
+        let count = |status| statuses.iter().filter(|&&other| other == status).count();
+        Self { open: count(ContactStatus::Open), stick: count(ContactStatus::Stick), slip: count(ContactStatus::Slip) }
+    }
+}
+
+/// How far the state is from the nearest point where S is not differentiable.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Kink {
+    /// Smallest over all nodes of |x_N|/max|x_N| and ||x_T| − 𝓕x_N|/max(|x_T|, 𝓕x_N), x = λ + c(B u − g).
+    pub smallest_margin: f64,
+    /// Nodes whose margin is at most [`WEAKLY_ACTIVE`]; their derivative is a selection.
+    pub weakly_active: usize,
+}
+
+/// Relative margin up to which a node counts as weakly active.
+pub const WEAKLY_ACTIVE: f64 = 1e-6;
+
+impl Kink {
+    /// From the packed projection arguments x of all nodes.
+    pub fn of(boundary: &ContactBoundary, arguments: &[f64]) -> Self {
+        let largest = boundary.points.iter().map(|point| arguments[point.start].abs()).fold(0.0, f64::max);
+        let mut kink = Self { smallest_margin: f64::INFINITY, weakly_active: 0 };
+        for point in &boundary.points {
+            let x = &arguments[point.start..point.start + point.row_count()];
+            let mut margin = if largest > 0.0 { x[0].abs() / largest } else { 0.0 };
+            if x[0] > 0.0 && x.len() > 1 {
+                let (radius, length) = (boundary.friction * x[0], tangential_norm(x));
+                margin = margin.min((length - radius).abs() / length.max(radius));
+            }
+            kink.smallest_margin = kink.smallest_margin.min(margin);
+            kink.weakly_active += usize::from(margin <= WEAKLY_ACTIVE);
+        }
+        kink
+    }
+}
+
+/// |λ − Π(λ + c w)| entry by entry, for packed multipliers λ and jumps w = B u − g.
+pub fn projection_residual(boundary: &ContactBoundary, forces: &[f64], jumps: &[f64], stiffness: f64) -> Vec<f64> {
+    let mut residual = vec![0.0; boundary.row_count];
+    for point in &boundary.points {
+        let range = point.start..point.start + point.row_count();
+        let x: Vec<f64> = range.clone().map(|row| forces[row] + stiffness * jumps[row]).collect();
+        law::project(&x, boundary.friction, &mut residual[range.clone()]);
+        for row in range {
+            residual[row] = forces[row] - residual[row];
+        }
+    }
+    residual
+}
+
+/// Complementarity, cone and dissipation residuals of packed multipliers and jumps, relative to `load`.
+pub fn law_residuals(
+    boundary: &ContactBoundary,
+    forces: &[f64],
+    jumps: &[f64],
+    stiffness: f64,
+    load: f64,
+) -> Residuals {
+    let mut residuals = Residuals::default();
+    for point in &boundary.points {
+        let range = point.start..point.start + point.row_count();
+        let (force, jump) = (&forces[range.clone()], &jumps[range]);
+        let opening = -stiffness * jump[0];
+        residuals.complementarity = residuals.complementarity.max(force[0].min(opening).abs());
+        if force.len() > 1 {
+            let (traction, slip) = (tangential_norm(force), stiffness * tangential_norm(jump));
+            let bound = boundary.friction * force[0].max(0.0);
+            residuals.friction_cone = residuals.friction_cone.max(traction - bound);
+            if force[0] > 0.0 {
+                let power: f64 = force[1..].iter().zip(&jump[1..]).map(|(f, j)| f * j * stiffness).sum();
+                // In contact λ_T·s = 𝓕λ_N|s|; both stick (s = 0) and slip (aligned) satisfy it.
+                residuals.dissipation = residuals.dissipation.max((bound * slip - power).abs());
+            }
+        }
+    }
+    if load > 0.0 {
+        residuals.complementarity /= load;
+        residuals.friction_cone /= load;
+        residuals.dissipation /= load * load;
+    }
+    residuals
+}

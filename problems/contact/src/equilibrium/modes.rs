@@ -1,0 +1,241 @@
+//! Rigid body motions of the whole scene: what supports leave free, what contact must carry, what nothing holds.
+//!
+//! ```text
+//! equilibrium needs   Z^T (f − Bᵀλ) = 0   for the motions Z that supports leave free, with λ in the friction cone
+//! ```
+//! A load outside that cone has no equilibrium and is refused before any iteration; a motion that neither supports nor
+//! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero, so λ does not change).
+
+use crate::equilibrium::ContactBoundary;
+use crate::error::ContactError;
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+/// Six motions per body: translations, and rotations about a common centre divided by a common length.
+pub const MOTIONS: usize = 6;
+
+/// Relative size of an eigenvalue (square of a restraint) that counts as zero.
+const FREE: f64 = 1e-12;
+
+/// Relative resultant that counts as zero.
+const UNLOADED: f64 = 1e-9;
+
+/// Displacement (three components) of the six motions at a point; `centre`, `length` in mm.
+pub fn motions(point: [f64; 3], centre: [f64; 3], length: f64) -> [[f64; 3]; MOTIONS] {
+    let x: [f64; 3] = std::array::from_fn(|axis| (point[axis] - centre[axis]) / length);
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]]
+}
+
+/// What the analysis needs to know of a scene's geometry.
+#[derive(Debug, Clone)]
+pub struct RigidScene {
+    /// Number of bodies, 1 or 2.
+    pub bodies: usize,
+    /// Held dofs: (body, point, component).
+    pub held: Vec<(usize, [f64; 3], usize)>,
+    /// Nodal loads: (body, point, force).
+    pub loads: Vec<(usize, [f64; 3], [f64; 3])>,
+    /// Contact nodes: position on the lower and (if there is one) on the upper body.
+    pub contact: Vec<[[f64; 3]; 2]>,
+    /// Centre of the rotations.
+    pub centre: [f64; 3],
+    /// Length that scales the rotations, mm.
+    pub length: f64,
+}
+
+/// A motion of all bodies: six coefficients per body.
+pub type Motion = Vec<f64>;
+
+impl RigidScene {
+    /// Total load Σ|f|₁ over the nodes, N.
+    pub fn total_load(&self) -> f64 {
+        self.loads.iter().map(|(_, _, force)| force.iter().map(|f| f.abs()).sum::<f64>()).sum()
+    }
+
+    fn row(&self, body: usize, point: [f64; 3], component: usize, sign: f64) -> DVector<f64> {
+        let mut row = DVector::zeros(MOTIONS * self.bodies);
+        for (mode, motion) in motions(point, self.centre, self.length).iter().enumerate() {
+            row[MOTIONS * body + mode] = sign * motion[component];
+        }
+        row
+    }
+
+    /// The jump (lower minus upper) of a contact node along a component.
+    fn contact_row(&self, points: &[[f64; 3]; 2], component: usize) -> DVector<f64> {
+        let mut row = self.row(0, points[0], component, 1.0);
+        if self.bodies == 2 {
+            row += self.row(1, points[1], component, -1.0);
+        }
+        row
+    }
+
+    /// Orthonormal basis of the motions that no held dof restrains.
+    fn free_of_supports(&self) -> Vec<DVector<f64>> {
+        kernel(self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0)), self.bodies)
+    }
+
+    /// Checks that contact within its friction cone can carry the load; returns the motions that nothing holds, which are
+    /// to be grounded.
+    ///
+    /// # Errors
+    /// [`ContactError::NoEquilibrium`] naming the motion and the resultant that cannot be carried.
+    pub fn analyse(&self, boundary: &ContactBoundary) -> Result<Vec<Motion>, ContactError> {
+        let free = self.free_of_supports();
+        if free.is_empty() {
+            return Ok(Vec::new());
+        }
+        let project = |row: &DVector<f64>| DVector::from_iterator(free.len(), free.iter().map(|mode| mode.dot(row)));
+        let mut load = DVector::zeros(MOTIONS * self.bodies);
+        for &(body, point, force) in &self.loads {
+            for (component, value) in force.into_iter().enumerate() {
+                load += self.row(body, point, component, value);
+            }
+        }
+        let rows: Vec<Vec<DVector<f64>>> = self
+            .contact
+            .iter()
+            .zip(&boundary.points)
+            .map(|(points, point)| {
+                let components = std::iter::once(2).chain(point.tangents.iter().copied());
+                components.map(|component| project(&self.contact_row(points, component))).collect()
+            })
+            .collect();
+        let scale = self.total_load();
+        let rest = ConeProjection { rows: &rows, friction: boundary.friction }.residual(&project(&load));
+        if rest.norm() > UNLOADED * scale {
+            let mut motion = DVector::zeros(MOTIONS * self.bodies);
+            for (coefficient, mode) in rest.iter().zip(&free) {
+                motion += mode * *coefficient;
+            }
+            return Err(ContactError::NoEquilibrium {
+                direction: self.describe(&motion),
+                resultant: rest.norm(),
+                allowed: UNLOADED * scale,
+            });
+        }
+        let held = self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0));
+        let contact = self.contact.iter().zip(&boundary.points).flat_map(|(points, point)| {
+            std::iter::once(2)
+                .chain(point.tangents.iter().copied())
+                .map(|component| self.contact_row(points, component))
+                .collect::<Vec<_>>()
+        });
+        let grounded = kernel(held.chain(contact), self.bodies);
+        Ok(grounded.into_iter().map(|mode| mode.iter().copied().collect()).collect())
+    }
+
+    /// The largest parts of a motion in words.
+    fn describe(&self, motion: &DVector<f64>) -> String {
+        const NAMES: [&str; MOTIONS] = [
+            "translation along x1",
+            "translation along x2",
+            "translation along x3",
+            "rotation about x1",
+            "rotation about x2",
+            "rotation about x3",
+        ];
+        let largest = motion.amax();
+        let parts: Vec<String> = motion
+            .iter()
+            .enumerate()
+            .filter(|(_, value)| value.abs() > 0.3 * largest)
+            .map(|(index, value)| {
+                let body = if index < MOTIONS { "lower" } else { "upper" };
+                let sign = if *value < 0.0 { "negative " } else { "" };
+                format!("{sign}{} of the {body} body", NAMES[index % MOTIONS])
+            })
+            .collect();
+        parts.join(" with ")
+    }
+}
+
+/// Orthonormal basis of the common kernel of some rows of length `MOTIONS·bodies`.
+fn kernel(rows: impl Iterator<Item = DVector<f64>>, bodies: usize) -> Vec<DVector<f64>> {
+    let size = MOTIONS * bodies;
+    let mut gram = DMatrix::zeros(size, size);
+    for row in rows {
+        gram += &row * row.transpose();
+    }
+    let eigen = SymmetricEigen::new(gram);
+    let largest = eigen.eigenvalues.amax();
+    (0..size)
+        .filter(|&index| eigen.eigenvalues[index] <= FREE * largest)
+        .map(|index| eigen.eigenvectors.column(index).into_owned())
+        .collect()
+}
+
+/// Projection of a resultant onto the cone of contact resultants, by a nonnegative least squares active set whose columns
+/// are generated from the exact friction cones.
+struct ConeProjection<'a> {
+    /// Per node: the normal row and its tangential rows, in coordinates of the free motions.
+    rows: &'a [Vec<DVector<f64>>],
+    friction: f64,
+}
+
+impl ConeProjection<'_> {
+    /// What remains of `load` after the nearest resultant of the cone is taken off.
+    fn residual(&self, load: &DVector<f64>) -> DVector<f64> {
+        let mut columns: Vec<DVector<f64>> = Vec::new();
+        let mut weights: Vec<f64> = Vec::new();
+        let mut rest = load.clone();
+        for _iteration in 0..400 {
+            let Some(column) = self.support(&rest) else { break };
+            if rest.norm() <= 1e-13 * load.norm() || column.dot(&rest) <= 1e-13 * column.norm() * load.norm() {
+                break;
+            }
+            columns.push(column);
+            weights.push(0.0);
+            nonnegative_fit(&mut columns, &mut weights, load);
+            rest = load.clone();
+            for (column, weight) in columns.iter().zip(&weights) {
+                rest -= column * *weight;
+            }
+        }
+        rest
+    }
+
+    /// The extreme force of unit normal part whose resultant has the largest product with `direction`.
+    fn support(&self, direction: &DVector<f64>) -> Option<DVector<f64>> {
+        let mut best: Option<(f64, DVector<f64>)> = None;
+        for rows in self.rows {
+            let tangential: Vec<f64> = rows[1..].iter().map(|row| row.dot(direction)).collect();
+            let length = tangential.iter().map(|t| t * t).sum::<f64>().sqrt();
+            let mut column = rows[0].clone();
+            if length > 0.0 {
+                for (row, entry) in rows[1..].iter().zip(&tangential) {
+                    column += row * (self.friction * entry / length);
+                }
+            }
+            let norm = column.norm();
+            let value = if norm > 0.0 { column.dot(direction) / norm } else { 0.0 };
+            if best.as_ref().is_none_or(|(largest, _)| value > *largest) {
+                best = Some((value, column));
+            }
+        }
+        best.map(|(_, column)| column)
+    }
+}
+
+/// Lawson–Hanson inner loop: least squares on all columns, with columns of negative weight taken out on the way.
+fn nonnegative_fit(columns: &mut Vec<DVector<f64>>, weights: &mut Vec<f64>, load: &DVector<f64>) {
+    for _pass in 0..columns.len() + 1 {
+        let matrix = DMatrix::from_columns(columns);
+        let Ok(fit) = matrix.svd(true, true).solve(load, 1e-13) else { return };
+        let blocking = (0..fit.len()).filter(|&i| fit[i] < 0.0);
+        let step = blocking.map(|i| weights[i] / (weights[i] - fit[i])).fold(1.0, f64::min);
+        for (weight, fit) in weights.iter_mut().zip(fit.iter()) {
+            *weight += step * (fit - *weight);
+        }
+        if step == 1.0 {
+            return;
+        }
+        let largest = weights.iter().copied().fold(0.0, f64::max);
+        let keep: Vec<bool> = weights.iter().map(|&weight| weight > 1e-15 * largest).collect();
+        let mut kept = keep.iter();
+        columns.retain(|_| *kept.next().unwrap_or(&false));
+        let mut kept = keep.iter();
+        weights.retain(|_| *kept.next().unwrap_or(&false));
+        if columns.is_empty() {
+            return;
+        }
+    }
+}

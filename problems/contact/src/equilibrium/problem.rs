@@ -1,0 +1,148 @@
+//! A scene made discrete: contact boundary, blocks of a shape, gaps, rigid motions. What both contact solvers share.
+
+use crate::body::elasticity::traction::face_weights;
+use crate::body::mesh::{Block, Grid};
+use crate::body::shape_load::loaded_faces;
+use crate::equilibrium::ContactBoundary;
+use crate::equilibrium::modes::RigidScene;
+use crate::error::{ContactError, SceneError};
+use crate::scene::{BodyScene, Scene};
+use crate::shape::{AdmissibleSet, HeightMap};
+
+/// The discrete problem behind a scene.
+#[derive(Debug)]
+pub struct ContactProblem {
+    /// The scene.
+    pub scene: Scene,
+    /// Grid of both bodies.
+    pub grid: Grid,
+    /// Contact nodes.
+    pub boundary: ContactBoundary,
+    /// From controls to heights of the contact nodes.
+    pub height_map: HeightMap,
+    /// Admissible controls.
+    pub admissible: AdmissibleSet,
+    counter_heights: Vec<f64>,
+}
+
+impl ContactProblem {
+    /// Checks a scene and makes it discrete.
+    ///
+    /// # Errors
+    /// [`SceneError`] naming the field.
+    pub fn new(scene: Scene) -> Result<Self, SceneError> {
+        scene.validate()?;
+        let grid = scene.grid();
+        let surface = scene.spline_surface()?;
+        let boundary = ContactBoundary::new(&scene, &grid);
+        let counter = &scene.counter_surface;
+        let admissible = AdmissibleSet::new(&surface, &grid, &scene.bounds, |x1, x2| counter.height(x1, x2))?;
+        let counter_heights: Vec<f64> = grid
+            .columns()
+            .map(|(i, j)| {
+                let [x1, x2] = grid.position(i, j);
+                counter.height(x1, x2)
+            })
+            .collect();
+        if let Some(height) = counter_heights.iter().find(|height| !height.is_finite()) {
+            return Err(SceneError::out_of_range("counter surface", height, "finite heights over the whole base"));
+        }
+        Ok(Self { grid, boundary, height_map: surface.height_map(&grid), admissible, counter_heights, scene })
+    }
+
+    /// Scenes of the bodies, lower first.
+    pub fn bodies(&self) -> impl Iterator<Item = &BodyScene> {
+        std::iter::once(&self.scene.lower).chain(self.scene.upper.as_ref().map(|upper| &upper.body))
+    }
+
+    /// The lower body of a shape.
+    ///
+    /// # Errors
+    /// [`ContactError::InvertedElement`].
+    pub fn lower_block(&self, controls: &[f64]) -> Result<Block, ContactError> {
+        let block = Block {
+            grid: self.grid,
+            lower: vec![0.0; self.grid.column_count()],
+            upper: self.height_map.heights(controls),
+        };
+        block.check_orientation(1)?;
+        Ok(block)
+    }
+
+    /// The upper body, if there is one.
+    ///
+    /// # Errors
+    /// [`ContactError::InvertedElement`].
+    pub fn upper_block(&self) -> Result<Option<Block>, ContactError> {
+        let Some(upper) = &self.scene.upper else { return Ok(None) };
+        let block = Block {
+            grid: self.grid,
+            lower: self.counter_heights.clone(),
+            upper: vec![upper.top; self.grid.column_count()],
+        };
+        block.check_orientation(2)?;
+        Ok(Some(block))
+    }
+
+    /// All blocks of a shape, lower first.
+    ///
+    /// # Errors
+    /// [`ContactError::InvertedElement`].
+    pub fn blocks(&self, controls: &[f64]) -> Result<Vec<Block>, ContactError> {
+        Ok(std::iter::once(self.lower_block(controls)?).chain(self.upper_block()?).collect())
+    }
+
+    /// Initial gap c_N = F² − F_α per contact node, mm.
+    pub fn gaps(&self, lower: &Block) -> Vec<f64> {
+        self.counter_heights.iter().zip(&lower.upper).map(|(counter, height)| counter - height).collect()
+    }
+
+    /// The scene as a rigid body analysis sees it.
+    pub fn rigid_scene(&self, blocks: &[Block]) -> RigidScene {
+        let (mut held, mut loads) = (Vec::new(), Vec::new());
+        for (body, (block, scene)) in blocks.iter().zip(self.bodies()).enumerate() {
+            let [n1, n2, n3] = self.grid.nodes();
+            for index in 0..n1 * n2 * n3 {
+                let node = [index / (n2 * n3), index / n3 % n2, index % n3];
+                for (component, fixed) in scene.held(&self.grid, node).into_iter().enumerate() {
+                    if fixed {
+                        held.push((body, block.coordinates(node), component));
+                    }
+                }
+            }
+            for load in &scene.loads {
+                for face in loaded_faces(&self.grid, load.face, None) {
+                    let nodes = face.map(|node| block.coordinates(node));
+                    for (point, weight) in nodes.into_iter().zip(face_weights(&nodes)) {
+                        loads.push((body, point, load.traction.map(|traction| weight * traction)));
+                    }
+                }
+            }
+        }
+        let contact = self
+            .boundary
+            .points
+            .iter()
+            .map(|point| {
+                let [i, j] = point.position;
+                let lower = blocks[0].coordinates([i, j, self.grid.cells[2]]);
+                [
+                    lower,
+                    blocks
+                        .last()
+                        .map_or(lower, |block| if blocks.len() == 2 { block.coordinates([i, j, 0]) } else { lower }),
+                ]
+            })
+            .collect();
+        let [a, b] = self.grid.size;
+        let height = blocks[0].upper.iter().sum::<f64>() / blocks[0].upper.len() as f64;
+        RigidScene {
+            bodies: blocks.len(),
+            held,
+            loads,
+            contact,
+            centre: [a / 2.0, b / 2.0, height],
+            length: a.max(b).max(height),
+        }
+    }
+}

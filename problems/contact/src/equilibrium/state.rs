@@ -1,0 +1,102 @@
+//! The contact part of a state: forces, status, certificates, work.
+
+use crate::equilibrium::{ContactBoundary, ContactStatus, Kink, Residuals, StatusCounts};
+use serde::{Deserialize, Serialize};
+
+/// Work spent on one state and its subgradient.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Work {
+    /// Semismooth Newton steps; for the descent, derivatives taken (one per product with F).
+    pub newton_steps: usize,
+    /// Tresca problems of the successive approximations.
+    pub fixed_point_steps: usize,
+    /// Conjugate gradient steps of the dual QP solver.
+    pub cg_steps: usize,
+    /// Expansion steps of the dual QP solver.
+    pub expansion_steps: usize,
+    /// Proportioning steps of the dual QP solver.
+    pub proportioning_steps: usize,
+    /// Products with the dual operator F (0 for direct condensation).
+    pub dual_operator_applications: usize,
+    /// Of these, products spent on the adjoint.
+    pub adjoint_applications: usize,
+    /// Numeric factorisations of stiffness matrices (subdomains, interiors, bodies).
+    pub factorizations: usize,
+}
+
+/// Wall-clock seconds of the stages of one state and its subgradient.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct StageSeconds {
+    /// Rigid body analysis of the scene.
+    pub equilibrium: f64,
+    /// Assembly and factorisation of subdomains (interiors included) or bodies.
+    pub factorization: f64,
+    /// Coarse space: G and the part of its matrix that all active sets share.
+    pub coarse_space: f64,
+    /// Newton iteration: coarse factors, Krylov, dual operator.
+    pub newton: f64,
+    /// Displacements and certificates.
+    pub recovery: f64,
+    /// Adjoint system.
+    pub adjoint: f64,
+    /// Element sums of the shape derivative.
+    pub shape_derivative: f64,
+}
+
+/// Forces on the contact nodes and what is known about them; physical units, whatever solver found them.
+#[derive(Debug, Clone)]
+pub struct ContactForces {
+    /// λ_N per contact node, N; compression positive.
+    pub normal: Vec<f64>,
+    /// λ_T per contact node along x₁, x₂, N; empty without friction.
+    pub tangential: Vec<[f64; 2]>,
+    /// Normal jump minus gap per node, (N u − c_N), mm; ≤ 0.
+    pub opening: Vec<f64>,
+    /// Tangential jump per node, mm; empty without friction.
+    pub slip: Vec<[f64; 2]>,
+    /// Status per node.
+    pub status: Vec<ContactStatus>,
+    /// Certificates.
+    pub residuals: Residuals,
+    /// Distance to the nearest kink.
+    pub kink: Kink,
+}
+
+impl ContactForces {
+    /// From packed physical multipliers, jumps and statuses.
+    pub fn unpack(
+        boundary: &ContactBoundary,
+        forces: &[f64],
+        jumps: &[f64],
+        status: Vec<ContactStatus>,
+        residuals: Residuals,
+        kink: Kink,
+    ) -> Self {
+        let normal = boundary.points.iter().map(|point| forces[point.start]).collect();
+        let opening = boundary.points.iter().map(|point| jumps[point.start]).collect();
+        let pair = |values: &[f64]| {
+            let points = if boundary.has_friction() { &boundary.points[..] } else { &[] };
+            points
+                .iter()
+                .map(|point| {
+                    let mut pair = [0.0; 2];
+                    for (offset, &tangent) in point.tangents.iter().enumerate() {
+                        pair[tangent] = values[point.start + 1 + offset];
+                    }
+                    pair
+                })
+                .collect::<Vec<[f64; 2]>>()
+        };
+        Self { normal, tangential: pair(forces), opening, slip: pair(jumps), status, residuals, kink }
+    }
+
+    /// Σλ_N, N.
+    pub fn total_normal_force(&self) -> f64 {
+        self.normal.iter().sum()
+    }
+
+    /// Numbers of nodes per status.
+    pub fn counts(&self) -> StatusCounts {
+        StatusCounts::of(&self.status)
+    }
+}

@@ -1,0 +1,180 @@
+//! Fields as VTK files: per state one grid of the bodies and one of the contact boundary, and one list of all of them.
+//!
+//! | array | where | unit | meaning |
+//! |---|---|---|---|
+//! | `displacement` | points of bodies and contact | mm | displacement u; "warp by vector" shows the deformed shape |
+//! | `von_mises_nodal` | points of bodies | MPa | mean of `von_mises` over the adjoining bricks, weighted by volume |
+//! | `body` | cells of bodies | – | 1 lower, 2 upper |
+//! | `subdomain` | cells of bodies | – | subdomain of the total FETI tearing, through all bodies; one per body if not torn |
+//! | `stress` | cells of bodies | MPa | σ at the centre of the brick, components XX, YY, ZZ, XY, YZ, XZ |
+//! | `von_mises` | cells of bodies | MPa | von Mises stress at the centre of the brick |
+//! | `pressure` | points of contact | MPa | λ_N/A, compression positive |
+//! | `traction` | points of contact | MPa | (λ_T/A, 0), what the lower body exerts above; only with friction |
+//! | `slip` | points of contact | mm | tangential jump, lower less upper body; only with friction |
+//! | `status` | points of contact | – | 0 open, 1 stick, 2 slip (closed and free to slide, if there is no friction) |
+//! | `area` | points of contact | mm² | tributary area A; Σ pressure·A is the normal force |
+//! | `gap` | points of contact | mm | gap before loading |
+//! | `remaining_gap` | points of contact | mm | gap under load |
+//! | `sensitivity` | points of contact | unit of J per mm | ∂J/∂(height of the node); only if asked for |
+
+use crate::body::mesh::Grid;
+use crate::equilibrium::ContactStatus;
+use crate::fields::{BodyFields, ContactFields, Fields};
+use crate::vtk::{Array, Cell, Entry, UnstructuredGrid, Values, VtkError, collection, unstructured};
+use thiserror::Error;
+
+/// A solved shape in a series.
+#[derive(Debug, Clone, Copy)]
+pub struct FieldState<'a> {
+    /// Place in the series, for example 0 for the start and 1 for the optimum.
+    pub time: f64,
+    /// Name, the beginning of its files' names: letters, digits, `-` and `_`.
+    pub name: &'a str,
+    /// Its fields.
+    pub fields: &'a Fields,
+}
+
+/// Why fields were not written.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FieldsError {
+    /// The name of a state cannot be the beginning of a file name.
+    #[error("name of state {index} = {name:?} is not allowed; allowed: {allowed}")]
+    Name {
+        /// Its place in the list.
+        index: usize,
+        /// The name.
+        name: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// The data do not make a file.
+    #[error("fields of state `{state}`: {source}")]
+    File {
+        /// Name of the state.
+        state: String,
+        /// What is wrong.
+        source: VtkError,
+    },
+}
+
+/// The list of all files of a series.
+const LIST: &str = "fields.pvd";
+
+/// Names and texts of the files of a series: for each state `NAME_bodies.vtu` and `NAME_contact.vtu`, then `fields.pvd`, the
+/// file to open.
+///
+/// # Errors
+/// [`FieldsError::Name`] for a name that is empty, has other characters or stands twice, [`FieldsError::File`] for fields that
+/// are not finite.
+pub fn vtk_files(states: &[FieldState<'_>]) -> Result<Vec<(String, String)>, FieldsError> {
+    let mut files = Vec::with_capacity(2 * states.len() + 1);
+    let mut entries = Vec::with_capacity(2 * states.len());
+    let in_state = |state: &str| {
+        let state = state.to_owned();
+        move |source| FieldsError::File { state, source }
+    };
+    for (index, FieldState { time, name, fields }) in states.iter().enumerate() {
+        let usable = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        if name.is_empty() || !name.chars().all(usable) || states[..index].iter().any(|other| other.name == *name) {
+            let allowed = "letters, digits, - and _, another name for every state";
+            return Err(FieldsError::Name { index, name: (*name).to_owned(), allowed });
+        }
+        let parts = [("bodies", bodies(&fields.bodies)), ("contact", contact(&fields.contact))];
+        for (part, (kind, grid)) in parts.into_iter().enumerate() {
+            let file = format!("{name}_{kind}.vtu");
+            files.push((file.clone(), unstructured(&grid).map_err(in_state(name))?));
+            entries.push(Entry { time: *time, part, name: kind.to_owned(), file });
+        }
+    }
+    files.push((LIST.to_owned(), collection(&entries).map_err(in_state("all"))?));
+    Ok(files)
+}
+
+/// Corners of a brick in the order of [`crate::body::elasticity::hex8`] that VTK's hexahedron takes one after the other.
+const HEXAHEDRON: [usize; 8] = [0, 4, 6, 2, 1, 5, 7, 3];
+
+/// All bodies as one grid; bodies share no points.
+fn bodies(bodies: &[BodyFields]) -> UnstructuredGrid {
+    let (mut points, mut cells, mut body_numbers) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, body) in (1..).zip(bodies) {
+        let (grid, first) = (body.block.grid, points.len());
+        let [_, n2, n3] = grid.nodes();
+        points.extend((0..grid.node_count()).map(|n| body.block.coordinates([n / (n2 * n3), n / n3 % n2, n % n3])));
+        cells.extend(grid.bricks().map(|brick| {
+            let corners = grid.brick_nodes(brick);
+            Cell::Hexahedron(HEXAHEDRON.map(|corner| first + corners[corner]))
+        }));
+        body_numbers.extend(std::iter::repeat_n(number, grid.brick_count()));
+    }
+    let subdomains = bodies.iter().flat_map(|body| &body.subdomain).map(|&subdomain| subdomain as i32).collect();
+    UnstructuredGrid {
+        description: "Bodies, undeformed. Lengths in mm, stresses in MPa.\n\
+            body: 1 lower, 2 upper. stress: at the centre of the brick, order XX YY ZZ XY YZ XZ."
+            .to_owned(),
+        points,
+        cells,
+        point_data: vec![
+            Array::new("displacement", Values::Vectors(joined(bodies, |body| &body.displacement))),
+            Array::new("von_mises_nodal", Values::Scalars(joined(bodies, |body| &body.nodal_von_mises))),
+        ],
+        cell_data: vec![
+            Array::new("body", Values::Integers(body_numbers)),
+            Array::new("subdomain", Values::Integers(subdomains)),
+            Array::new("stress", Values::Tensors(joined(bodies, |body| &body.stress))),
+            Array::new("von_mises", Values::Scalars(joined(bodies, |body| &body.von_mises))),
+        ],
+    }
+}
+
+/// One field of all bodies, one after the other.
+fn joined<T: Copy>(bodies: &[BodyFields], field: impl Fn(&BodyFields) -> &Vec<T>) -> Vec<T> {
+    bodies.iter().flat_map(|body| field(body).iter().copied()).collect()
+}
+
+/// The contact boundary as quadrilaterals whose normals point upwards.
+fn contact(contact: &ContactFields) -> UnstructuredGrid {
+    let status = contact.status.iter().map(|&status| status_code(status)).collect();
+    let flat =
+        |pairs: &[[f64; 2]]| Values::Vectors(pairs.iter().map(|&[first, second]| [first, second, 0.0]).collect());
+    let mut point_data = vec![
+        Array::new("displacement", Values::Vectors(contact.displacement.clone())),
+        Array::new("pressure", Values::Scalars(contact.pressure.clone())),
+        Array::new("status", Values::Integers(status)),
+        Array::new("area", Values::Scalars(contact.area.clone())),
+        Array::new("gap", Values::Scalars(contact.gap.clone())),
+        Array::new("remaining_gap", Values::Scalars(contact.remaining_gap.clone())),
+    ];
+    for (name, pairs) in [("traction", &contact.traction), ("slip", &contact.slip)] {
+        point_data.extend(pairs.as_deref().map(|pairs| Array::new(name, flat(pairs))));
+    }
+    point_data.extend(contact.sensitivity.clone().map(|values| Array::new("sensitivity", Values::Scalars(values))));
+    UnstructuredGrid {
+        description: "Contact boundary of the lower body, undeformed. Lengths in mm, areas in mm^2, stresses in MPa.\n\
+            status: 0 open, 1 stick, 2 slip. pressure times area: normal force of the node, N.\n\
+            sensitivity: derivative of the objective by the height of the node."
+            .to_owned(),
+        points: contact.position.clone(),
+        cells: quads(&contact.grid),
+        point_data,
+        cell_data: Vec::new(),
+    }
+}
+
+fn quads(grid: &Grid) -> Vec<Cell> {
+    let columns = (0..grid.cells[0]).flat_map(|i| (0..grid.cells[1]).map(move |j| (i, j)));
+    columns
+        .map(|(i, j)| {
+            Cell::Quad([grid.column(i, j), grid.column(i + 1, j), grid.column(i + 1, j + 1), grid.column(i, j + 1)])
+        })
+        .collect()
+}
+
+/// 0 open, 1 stick, 2 slip.
+fn status_code(status: ContactStatus) -> i32 {
+    match status {
+        ContactStatus::Open => 0,
+        ContactStatus::Stick => 1,
+        ContactStatus::Slip => 2,
+    }
+}

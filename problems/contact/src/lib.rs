@@ -1,0 +1,65 @@
+//! 3D contact with Coulomb friction between an optimized elastic body and an obstacle or a second body.
+//!
+//! The controls are spline heights α of the contact surface of the lower body. The state y = S(α) holds the contact
+//! forces of the equilibrium. The cost rates the contact pressure. S is nonsmooth where nodes open, close, stick or
+//! slip; [`contact_shape::ContactShape`] returns one element of its coderivative by an adjoint solve. Units are N, mm,
+//! MPa. The equations are in `docs/method.md` of the repository.
+//!
+//! # Θ of a scene
+//!
+//! ```
+//! use contact::contact_shape::{ContactShape, SolverKind};
+//! use contact::cost::{PressureCost, PressureMeasure};
+//! use contact::scene::{Scene, signorini};
+//! use nonsmooth::{NonsmoothObjective, ReducedObjective, Request, StateSolver};
+//!
+//! // The paper's Example 5.1, a block against a wavy obstacle, on 4 × 4 × 4 bricks.
+//! let scene = Scene { mesh: [4; 3], ..signorini()? };
+//! let shape = ContactShape::new(scene, SolverKind::Newton)?;
+//! let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary)?;
+//! let start = shape.start();
+//! let theta = ReducedObjective::new(shape, cost);
+//!
+//! let evaluation = theta.evaluate(&Request::tight(&start))?.into_evaluation();
+//! assert_eq!(evaluation.subgradient.len(), theta.solver().control_dimension());
+//! assert!(evaluation.error_bound < 1e-8 * evaluation.value);
+//!
+//! // The state alone, with all that is known about it: 3000 MPa on 100 mm × 100 mm must arrive at the obstacle.
+//! let state = theta.solver().solve(&start, None, nonsmooth::Accuracy::TIGHTEST)?;
+//! assert!((state.forces.total_normal_force() / 3e7 - 1.0).abs() < 1e-9);
+//! assert!(state.forces.counts().open > 0 && state.forces.counts().slip > 0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! To optimize, hand `theta` to [`nonsmooth::BundleTrust`] with the set of [`shape::AdmissibleSet`].
+//!
+//! # Modules
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`contact_shape`], [`cost`] | the contact problem in the framework's terms: state solver with coderivative, costs |
+//! | [`scene`], [`shape`] | what a problem is made of; splines and the admissible set |
+//! | [`body`] | bricks and tearing; trilinear elasticity; element sums of the adjoint |
+//! | [`equilibrium`] | boundary, contact law, rigid motions, certificates, the discrete problem and its state |
+//! | [`tfeti`] | total FETI: torn bodies, dual problem, Newton, the paper's method, derivative |
+//! | [`direct`] | direct condensation: an independent path |
+//! | [`qp`], [`linear`], [`scalar`] | dual QPs over half-lines and discs; factorisations and Krylov methods; dual numbers |
+//! | [`fields`], [`vtk`] | displacements, stresses and contact fields of a solved shape; their files |
+//! | [`memory`] | memory estimated before any work |
+//! | [`error`] | what can be wrong with a scene, and why a contact problem has no answer |
+
+pub mod body;
+pub mod contact_shape;
+pub mod cost;
+pub mod direct;
+pub mod equilibrium;
+pub mod error;
+pub mod fields;
+pub mod linear;
+pub mod memory;
+pub mod qp;
+pub mod scalar;
+pub mod scene;
+pub mod shape;
+pub mod tfeti;
+pub mod vtk;

@@ -1,0 +1,72 @@
+//! The paper's examples; data and readings in method.md sections 7 and 8.
+
+use crate::body::elasticity::Material;
+use crate::body::mesh::Face;
+use crate::error::SceneError;
+use crate::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody};
+use crate::shape::{ShapeBounds, SplineKind};
+
+const ALONG_X1: [bool; 3] = [true, false, false];
+const ALONG_X2: [bool; 3] = [false, true, false];
+const ALONG_X3: [bool; 3] = [false, false, true];
+
+/// Example 5.1: an elastic block pressed from below against a rigid wavy obstacle.
+///
+/// # Errors
+/// Never for the constants used here; the material's check is passed on.
+pub fn signorini() -> Result<Scene, SceneError> {
+    Ok(Scene {
+        name: "signorini".into(),
+        size: [100.0, 100.0],
+        mesh: [12; 3],
+        subdomains: [2; 3],
+        lower: BodyScene {
+            material: Material::new(1.1e5, 0.33)?,
+            supports: vec![Support { face: Face::X1Min, components: [true, true, false] }],
+            loads: vec![Load { face: Face::Bottom, traction: [0.0, 0.0, 3000.0] }],
+        },
+        upper: None,
+        counter_surface: CounterSurface::Waves { base: 103.0, first: 1.0, second: 2.0, period: 100.0 },
+        friction: 0.3,
+        surface: SplineKind::BSpline(3),
+        control_points: [6, 6],
+        bounds: ShapeBounds { minimum_height: 50.0, slope: 5.0, volume: [0.8e6, 1.2e6] },
+        start_height: 100.0,
+    })
+}
+
+/// Example 5.2: a quarter of a symmetric contact of an elastic body with a spherical indenter.
+///
+/// # Errors
+/// Never for the constants used here; the material's check is passed on.
+pub fn hertz() -> Result<Scene, SceneError> {
+    let symmetry = || {
+        vec![Support { face: Face::X1Min, components: ALONG_X1 }, Support { face: Face::X2Min, components: ALONG_X2 }]
+    };
+    let mut lower_supports = symmetry();
+    lower_supports.push(Support { face: Face::Bottom, components: ALONG_X3 });
+    Ok(Scene {
+        name: "hertz".into(),
+        size: [10.0, 10.0],
+        mesh: [12; 3],
+        subdomains: [2; 3],
+        lower: BodyScene { material: Material::new(7.0e4, 0.35)?, supports: lower_supports, loads: vec![] },
+        upper: Some(UpperBody {
+            body: BodyScene {
+                material: Material::new(2.1e5, 0.29)?,
+                supports: symmetry(),
+                loads: vec![
+                    Load { face: Face::Top, traction: [0.0, 0.0, -2000.0] },
+                    Load { face: Face::X1Max, traction: [500.0, 0.0, -2000.0] },
+                ],
+            },
+            top: 20.0,
+        }),
+        counter_surface: CounterSurface::Sphere { apex: 10.0, radius: 20.0 },
+        friction: 0.3,
+        surface: SplineKind::BSpline(3),
+        control_points: [6, 6],
+        bounds: ShapeBounds { minimum_height: 5.0, slope: 5.0, volume: [800.0, 1200.0] },
+        start_height: 10.0,
+    })
+}

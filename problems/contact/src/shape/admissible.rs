@@ -1,0 +1,150 @@
+//! The admissible shapes U.
+//!
+//! ```text
+//! C₀ ≤ α_ij ≤ F²(x₁ⁱ, x₂ʲ),   |α_{i+1,j} − α_ij| ≤ C₁a/d₁,   |α_{i,j+1} − α_ij| ≤ C₁b/d₂,   C₂₁ ≤ meas Ω¹(α) ≤ C₂₂
+//! ```
+//! method.md section 2. d₁, d₂ are numbers of intervals between controls. Both the measure of the domain under the spline
+//! and the volume of its bricks are kept within the bounds: they differ by the discretisation error.
+
+use crate::body::mesh::Grid;
+use crate::error::SceneError;
+use crate::shape::SplineSurface;
+use nonsmooth::{Matrix, Polyhedron, Vector};
+
+/// Relative violation that still counts as admissible: rounding in user files and in the optimizer's steps.
+const ADMISSIBLE: f64 = 1e-9;
+
+/// U as a polyhedron, with words for its rows.
+#[derive(Debug, Clone)]
+pub struct AdmissibleSet {
+    polyhedron: Polyhedron,
+    row_names: Vec<String>,
+}
+
+/// The constants of U.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ShapeBounds {
+    /// C₀, smallest control height, mm.
+    pub minimum_height: f64,
+    /// C₁, bound of the slope between neighbouring controls.
+    pub slope: f64,
+    /// [C₂₁, C₂₂], mm³.
+    pub volume: [f64; 2],
+}
+
+impl AdmissibleSet {
+    /// U for a surface over `grid`, below the obstacle of height `ceiling(x₁, x₂)`.
+    ///
+    /// # Errors
+    /// [`SceneError::Set`] when bounds contradict each other.
+    pub fn new(
+        surface: &SplineSurface,
+        grid: &Grid,
+        bounds: &ShapeBounds,
+        ceiling: impl Fn(f64, f64) -> f64,
+    ) -> Result<Self, SceneError> {
+        let counts = surface.counts();
+        let dimension = surface.control_count();
+        let intervals = counts.map(|count| (count - 1) as f64);
+        let upper = Vector::from_fn(dimension, |index, _| {
+            let (i, j) = (index / counts[1], index % counts[1]);
+            ceiling(grid.size[0] * i as f64 / intervals[0], grid.size[1] * j as f64 / intervals[1])
+        });
+        let mut rows = Rows::default();
+        for i in 0..counts[0] {
+            for j in 0..counts[1] {
+                let here = i * counts[1] + j;
+                for (axis, exists, next) in [(0, i + 1 < counts[0], here + counts[1]), (1, j + 1 < counts[1], here + 1)]
+                {
+                    if exists {
+                        let bound = bounds.slope * grid.size[axis] / intervals[axis];
+                        let name = format!("α[{next}] − α[{here}] (slope along x{})", axis + 1);
+                        rows.push(name, vec![(next, 1.0), (here, -1.0)], [-bound, bound]);
+                    }
+                }
+            }
+        }
+        let area = grid.size[0] * grid.size[1];
+        let measure = surface.integrals().iter().map(|value| value * area).collect::<Vec<_>>();
+        rows.push("volume under the surface".into(), measure.into_iter().enumerate().collect(), bounds.volume);
+        let areas: Vec<f64> = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
+        let bricks = surface.height_map(grid).pull_back(&areas);
+        rows.push("volume of the bricks".into(), bricks.into_iter().enumerate().collect(), bounds.volume);
+        let polyhedron = Polyhedron::boxed(Vector::from_element(dimension, bounds.minimum_height), upper)?;
+        let (matrix, lower_side, upper_side) = rows.assemble(dimension);
+        let polyhedron = polyhedron.with_rows(&matrix, &lower_side, &upper_side)?;
+        Ok(Self { polyhedron, row_names: rows.names })
+    }
+
+    /// The set for the optimizer.
+    pub fn polyhedron(&self) -> &Polyhedron {
+        &self.polyhedron
+    }
+
+    /// Bounds and rows that controls attain (up to the tolerance of [`AdmissibleSet::check`]), in words.
+    pub fn active(&self, controls: &Vector) -> Vec<String> {
+        let set = &self.polyhedron;
+        let products = set.rows() * controls;
+        let bounds = (0..controls.len()).map(|i| (format!("α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
+        let rows = (0..products.len())
+            .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
+        let attained = |value: f64, side: f64| (value - side).abs() <= ADMISSIBLE * side.abs().max(f64::MIN_POSITIVE);
+        let words = |(name, value, lower, upper): (String, f64, f64, f64)| match () {
+            () if attained(value, lower) => Some(format!("{name} = {lower}, its least value")),
+            () if attained(value, upper) => Some(format!("{name} = {upper}, its largest value")),
+            () => None,
+        };
+        bounds.chain(rows).filter_map(words).collect()
+    }
+
+    /// Refuses controls outside U.
+    ///
+    /// # Errors
+    /// [`SceneError::NotAdmissible`] naming the most violated bound or row, its value and what is allowed.
+    pub fn check(&self, controls: &Vector) -> Result<(), SceneError> {
+        if self.polyhedron.violation(controls) <= ADMISSIBLE {
+            return Ok(());
+        }
+        let set = &self.polyhedron;
+        let bounds = (0..controls.len()).map(|i| (format!("α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
+        let products = set.rows() * controls;
+        let rows = (0..products.len())
+            .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
+        let excess = |value: f64, lower: f64, upper: f64| {
+            (lower - value).max(value - upper) / lower.abs().max(upper.abs()).max(f64::MIN_POSITIVE)
+        };
+        let worst = bounds.chain(rows).max_by(|a, b| excess(a.1, a.2, a.3).total_cmp(&excess(b.1, b.2, b.3)));
+        match worst {
+            Some((constraint, value, lower, upper)) => {
+                Err(SceneError::NotAdmissible { constraint, value, allowed: format!("[{lower}, {upper}]") })
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+#[derive(Default)]
+struct Rows {
+    names: Vec<String>,
+    entries: Vec<Vec<(usize, f64)>>,
+    sides: Vec<[f64; 2]>,
+}
+
+impl Rows {
+    fn push(&mut self, name: String, entries: Vec<(usize, f64)>, sides: [f64; 2]) {
+        self.names.push(name);
+        self.entries.push(entries);
+        self.sides.push(sides);
+    }
+
+    fn assemble(&self, dimension: usize) -> (Matrix, Vector, Vector) {
+        let mut matrix = Matrix::zeros(self.entries.len(), dimension);
+        for (row, entries) in self.entries.iter().enumerate() {
+            for &(column, value) in entries {
+                matrix[(row, column)] += value;
+            }
+        }
+        let side = |which: usize| Vector::from_iterator(self.sides.len(), self.sides.iter().map(|sides| sides[which]));
+        (matrix, side(0), side(1))
+    }
+}

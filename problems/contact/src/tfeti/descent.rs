@@ -1,0 +1,99 @@
+//! Newton's method one product with F at a time.
+//!
+//! ```text
+//! repeat:  derivatives D at the iterate;  v = (what the active rows demand at once) + T P M P (reduced residual),  G v = 0
+//!          F v (the only product);  iterate := best combination of all directions so far   ([`Recycled`])
+//! ```
+//! A Newton step with GMRES spends one product on its particular part and starts its Krylov space anew; here the space grows
+//! over the whole solve, derivatives follow every product, and the residual falls at the rate of the linear problem. The
+//! projector of an active set is kept while the set stays (a search direction need not know the last slip direction).
+
+use crate::equilibrium::Stage;
+use crate::equilibrium::law::Linearization;
+use crate::error::ContactError;
+use crate::linear::vector::add_scaled;
+use crate::tfeti::coarse::CoarseProblem;
+use crate::tfeti::linear_solve::balancing_amplitudes;
+use crate::tfeti::newton::{Iterate, NewtonSettings, TornContact, stagnates};
+use crate::tfeti::recycling::Recycled;
+use crate::tfeti::{Precision, ReducedRows};
+
+/// Residual reduction after which the projector is renewed although the active set has stayed.
+const RENEWAL: f64 = 0.01;
+
+/// Residual reduction after which single precision images are replaced.
+const REPLACEMENT: f64 = 1e-4;
+
+/// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
+const STAGNATION: usize = 10;
+
+impl TornContact<'_> {
+    /// Brings the residual of an iterate down to the tolerance, or as far as it falls; appends to the history.
+    pub(super) fn descend(
+        &self,
+        iterate: &mut Iterate,
+        directions: &mut Recycled,
+        start: f64,
+        settings: &NewtonSettings,
+        history: &mut Vec<f64>,
+    ) -> Result<f64, ContactError> {
+        let mut residual = directions.combine(self, iterate, start);
+        let mut replaced = residual;
+        while residual > settings.tolerance && directions.len() < 2 * settings.max_krylov {
+            let (rows, coarse) = self.held_at(iterate)?;
+            let held = self.linearize(iterate);
+            let renewal = RENEWAL * residual;
+            loop {
+                self.extend(iterate, &rows, &coarse, directions);
+                residual = directions.combine(self, iterate, residual);
+                if self.precision == Precision::Mixed && residual <= settings.tolerance.max(REPLACEMENT * replaced) {
+                    residual = self.replace_image(iterate);
+                    replaced = residual;
+                }
+                history.push(residual);
+                Stage::Contact.reached(history.len() - 1, residual);
+                let done = residual <= settings.tolerance || stagnates(history, STAGNATION);
+                if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
+                    break;
+                }
+            }
+            if stagnates(history, STAGNATION) {
+                break;
+            }
+        }
+        Ok(residual)
+    }
+
+    /// Residual replacement: the image of the multipliers by a product in double precision.
+    pub(super) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
+        let image = self.operator.apply(&iterate.multipliers);
+        *iterate =
+            self.iterate(std::mem::take(&mut iterate.multipliers), image, std::mem::take(&mut iterate.amplitudes));
+        self.residual(iterate)
+    }
+
+    /// One more direction, and the rigid motion that balances the iterate.
+    fn extend(&self, iterate: &Iterate, rows: &ReducedRows<'_>, coarse: &CoarseProblem<'_>, directions: &mut Recycled) {
+        let current = self.reduced(self.linearize(iterate));
+        let unknowns = current.initial(&iterate.multipliers);
+        let demanded = current.expand(&unknowns, true);
+        let mut direction: Vec<f64> = demanded.iter().zip(&iterate.multipliers).map(|(new, old)| new - old).collect();
+        let mut residual = rows.restrict(&iterate.jumps, false);
+        rows.add_compliance(&rows.initial(&iterate.multipliers), &mut residual, -1.0);
+        let rigid = coarse.amplitudes(&residual);
+        coarse.add_rigid(&rigid, &mut residual);
+        directions.push(self, Vec::new(), Vec::new(), rigid);
+        let mut step = self.precondition(rows, &residual, |z| coarse.project(z));
+        let defect: Vec<f64> = self.space.resultant(&direction).iter().map(|value| -value).collect();
+        coarse.enforce(&mut step, &defect);
+        add_scaled(&mut direction, 1.0, &rows.expand(&step, true));
+        let image = self.operator.apply_direction(&direction, self.precision);
+        let amplitudes = balancing_amplitudes(rows, coarse, &rows.initial(&direction), &image);
+        directions.push(self, direction, image, amplitudes);
+    }
+}
+
+/// Whether two lists of derivatives belong to the same statuses.
+fn same_status(first: &[Linearization], second: &[Linearization]) -> bool {
+    first.iter().zip(second).all(|(a, b)| std::mem::discriminant(a) == std::mem::discriminant(b))
+}

@@ -1,0 +1,248 @@
+//! Recycling of dual directions: the least residual over everything a solve has seen, at no product with F.
+//!
+//! ```text
+//! direction k:  v_k with G v_k = 0, its product F v_k, a change b_k of the rigid amplitudes,   dw_k = −F v_k + Gᵀ b_k
+//! λ + Σ y_k v_k,  a + Σ y_k b_k   change the residual linearly:
+//! c w_E by c Σ y_k (dw_k)_E,      λ − Π(x) by dλ − D (dλ + c dw)   on the contact rows
+//! ```
+//! y minimises the linearised residual (normal equations; products of rows of B_E are kept from step to step). The
+//! combination is taken if the true residual falls, and repeated, with new derivatives D, while it falls well: a change of
+//! status or of a slip direction invalidates nothing, because F v_k does not depend on it.
+
+use crate::equilibrium::certificate::projection_residual;
+use crate::equilibrium::law::Linearization;
+use crate::linear::vector::{add_scaled, dot, norm};
+use crate::tfeti::newton::{Iterate, TornContact};
+use faer::Mat;
+use faer::linalg::solvers::Solve;
+
+/// Residual reduction that makes another round worth its dense algebra.
+const WORTHWHILE: f64 = 0.5;
+/// Rounds in a row.
+const ROUNDS: usize = 4;
+/// Relative ridge of the normal equations: combinations below it carry no digits.
+const RIDGE: f64 = 1e-14;
+
+/// One direction and what it does to the iterate.
+#[derive(Debug)]
+struct Direction {
+    /// v; empty for a change of rigid amplitudes alone.
+    multipliers: Vec<f64>,
+    /// F v; empty likewise.
+    image: Vec<f64>,
+    /// b.
+    amplitudes: Vec<f64>,
+    /// dw over all rows.
+    jumps: Vec<f64>,
+}
+
+/// All directions of a solve.
+#[derive(Debug, Default)]
+pub struct Recycled {
+    directions: Vec<Direction>,
+    /// (dw_k)_E · (dw_l)_E for l ≤ k.
+    products: Vec<Vec<f64>>,
+}
+
+impl Recycled {
+    /// Number of directions.
+    pub fn len(&self) -> usize {
+        self.directions.len()
+    }
+
+    /// Adds a direction v with its product F v and its change of the rigid amplitudes.
+    pub fn push(&mut self, contact: &TornContact<'_>, multipliers: Vec<f64>, image: Vec<f64>, amplitudes: Vec<f64>) {
+        let mut jumps = contact.space.jumps(&amplitudes);
+        if !image.is_empty() {
+            add_scaled(&mut jumps, -1.0, &image);
+        }
+        let equality = contact.operator.model.constraints.equality_count;
+        self.directions.push(Direction { multipliers, image, amplitudes, jumps });
+        let last = &self.directions[self.directions.len() - 1].jumps;
+        let product = |other: &Direction| dot(&other.jumps[..equality], &last[..equality]);
+        self.products.push(self.directions.iter().map(product).collect());
+    }
+
+    /// Combines the directions as long as the residual falls well; returns the residual.
+    pub fn combine(&self, contact: &TornContact<'_>, iterate: &mut Iterate, residual: f64) -> f64 {
+        let mut position = Position::of(self, contact, iterate);
+        let mut best = residual;
+        for _round in 0..ROUNDS {
+            let Some(weights) = self.least_squares(contact, &position) else { break };
+            let trial = position.moved(self, &weights);
+            let value = trial.residual(self, contact);
+            if value.is_nan() || value >= best {
+                break;
+            }
+            let worthwhile = value < WORTHWHILE * best;
+            position = trial;
+            best = value;
+            if !worthwhile {
+                break;
+            }
+        }
+        if best >= residual {
+            return residual;
+        }
+        self.apply(&position.weights, iterate);
+        contact.residual(iterate)
+    }
+
+    /// Adds the weighted directions to an iterate.
+    fn apply(&self, weights: &[f64], iterate: &mut Iterate) {
+        for (&weight, direction) in weights.iter().zip(&self.directions) {
+            if !direction.image.is_empty() {
+                add_scaled(&mut iterate.multipliers, weight, &direction.multipliers);
+                add_scaled(&mut iterate.image, weight, &direction.image);
+            }
+            add_scaled(&mut iterate.amplitudes, weight, &direction.amplitudes);
+            add_scaled(&mut iterate.jumps, weight, &direction.jumps);
+        }
+    }
+
+    /// Changes of the weights that minimise the residual linearised at a position.
+    fn least_squares(&self, contact: &TornContact<'_>, position: &Position) -> Option<Vec<f64>> {
+        let count = self.directions.len();
+        if count == 0 {
+            return None;
+        }
+        let square = contact.stiffness * contact.stiffness;
+        let mut normal = Mat::from_fn(count, count, |k, l| square * self.product(k, l));
+        let slopes = position.equality_slopes(self);
+        let mut right: Vec<f64> = slopes.iter().map(|slope| -square * slope).collect();
+        let changes = self.contact_changes(contact, position);
+        let law = projection_residual(contact.boundary, &position.forces, &position.jumps, contact.stiffness);
+        for (k, left) in changes.iter().enumerate() {
+            right[k] -= dot(left, &law);
+            for (l, other) in changes.iter().enumerate().take(k + 1) {
+                let product = normal[(k, l)] + dot(left, other);
+                normal[(k, l)] = product;
+                normal[(l, k)] = product;
+            }
+        }
+        solve_scaled(&normal, &right)
+    }
+
+    /// (dw_k)_E · (dw_l)_E.
+    fn product(&self, k: usize, l: usize) -> f64 {
+        self.products[k.max(l)][k.min(l)]
+    }
+
+    /// Change of λ − Π(x) over the packed contact rows, per direction.
+    fn contact_changes(&self, contact: &TornContact<'_>, position: &Position) -> Vec<Vec<f64>> {
+        let boundary = contact.boundary;
+        let blocks: Vec<[[f64; 3]; 3]> = boundary
+            .points
+            .iter()
+            .map(|point| {
+                let rows = point.start..point.start + point.row_count();
+                let x: Vec<f64> =
+                    rows.map(|row| position.forces[row] + contact.stiffness * position.jumps[row]).collect();
+                Linearization::at(&x, boundary.friction).derivative(x.len(), boundary.friction)
+            })
+            .collect();
+        let change = |direction: &Direction| {
+            let (forces, jumps) = direction.contact_rows(boundary.row_count);
+            let mut change = vec![0.0; boundary.row_count];
+            for (point, block) in boundary.points.iter().zip(&blocks) {
+                let count = point.row_count();
+                for i in 0..count {
+                    let force = |row: usize| forces.get(row).copied().unwrap_or(0.0);
+                    let mut sum = force(point.start + i);
+                    for (j, entry) in block[i].iter().enumerate().take(count) {
+                        let row = point.start + j;
+                        sum -= entry * (force(row) + contact.stiffness * jumps[row]);
+                    }
+                    change[point.start + i] = sum;
+                }
+            }
+            change
+        };
+        self.directions.iter().map(change).collect()
+    }
+}
+
+impl Direction {
+    /// Contact rows of v (empty for a rigid change) and dw.
+    fn contact_rows(&self, count: usize) -> (&[f64], &[f64]) {
+        let tail = |values: &'_ [f64]| values.len().saturating_sub(count);
+        (&self.multipliers[tail(&self.multipliers)..], &self.jumps[tail(&self.jumps)..])
+    }
+}
+
+/// An iterate moved by weighted directions, known by what its residual needs: contact rows, and equality rows through
+/// their products.
+#[derive(Clone)]
+struct Position {
+    weights: Vec<f64>,
+    forces: Vec<f64>,
+    jumps: Vec<f64>,
+    /// |w_E|² of the iterate it started from.
+    start_square: f64,
+    /// (dw_k)_E · w_E of the iterate it started from.
+    start_slopes: Vec<f64>,
+}
+
+impl Position {
+    fn of(recycled: &Recycled, contact: &TornContact<'_>, iterate: &Iterate) -> Self {
+        let equality = contact.operator.model.constraints.equality_count;
+        let glued = &iterate.jumps[..equality];
+        let slope = |direction: &Direction| dot(&direction.jumps[..equality], glued);
+        Self {
+            weights: vec![0.0; recycled.directions.len()],
+            forces: iterate.multipliers[equality..].to_vec(),
+            jumps: iterate.jumps[equality..].to_vec(),
+            start_square: dot(glued, glued),
+            start_slopes: recycled.directions.iter().map(slope).collect(),
+        }
+    }
+
+    fn moved(&self, recycled: &Recycled, change: &[f64]) -> Self {
+        let mut to = self.clone();
+        for ((direction, &change), weight) in recycled.directions.iter().zip(change).zip(&mut to.weights) {
+            *weight += change;
+            let (forces, jumps) = direction.contact_rows(self.jumps.len());
+            if !forces.is_empty() {
+                add_scaled(&mut to.forces, change, forces);
+            }
+            add_scaled(&mut to.jumps, change, jumps);
+        }
+        to
+    }
+
+    /// (dw_k)_E · w_E here.
+    fn equality_slopes(&self, recycled: &Recycled) -> Vec<f64> {
+        let moved =
+            |k: usize| -> f64 { self.weights.iter().enumerate().map(|(l, y)| y * recycled.product(k, l)).sum() };
+        self.start_slopes.iter().enumerate().map(|(k, start)| start + moved(k)).collect()
+    }
+
+    /// The relative residual here.
+    fn residual(&self, recycled: &Recycled, contact: &TornContact<'_>) -> f64 {
+        let slopes = self.equality_slopes(recycled);
+        let pairs = self.weights.iter().zip(self.start_slopes.iter().zip(&slopes));
+        let square = self.start_square + pairs.map(|(y, (start, here))| y * (start + here)).sum::<f64>();
+        let law = projection_residual(contact.boundary, &self.forces, &self.jumps, contact.stiffness);
+        (contact.stiffness * square.max(0.0).sqrt()).hypot(norm(&law)) / contact.load
+    }
+}
+
+/// Solves normal equations scaled to a unit diagonal, with a small ridge.
+fn solve_scaled(normal: &Mat<f64>, right: &[f64]) -> Option<Vec<f64>> {
+    let count = right.len();
+    let scale: Vec<f64> =
+        (0..count).map(|k| if normal[(k, k)] > 0.0 { 1.0 / normal[(k, k)].sqrt() } else { 0.0 }).collect();
+    let mut ridge = RIDGE;
+    // Nearly dependent directions are normal late in a solve: a larger ridge leaves them out.
+    while ridge < 1e-6 {
+        let matrix = Mat::from_fn(count, count, |k, l| {
+            scale[k] * scale[l] * normal[(k, l)] + if k == l { ridge.max(f64::from(scale[k] == 0.0)) } else { 0.0 }
+        });
+        if let Ok(factor) = matrix.llt(faer::Side::Lower) {
+            let solution = factor.solve(&Mat::from_fn(count, 1, |k, _| scale[k] * right[k]));
+            return Some((0..count).map(|k| scale[k] * solution[(k, 0)]).collect());
+        }
+        ridge *= 10.0;
+    }
+    None
+}

@@ -1,0 +1,39 @@
+//! The six rigid body modes of a floating subdomain, known analytically and orthonormalised.
+
+use crate::equilibrium::modes::{MOTIONS, motions};
+use crate::linear::vector::{add_scaled, dot, norm};
+
+/// Orthonormal basis of the rigid motions of a set of nodes, six columns of three dofs per node.
+pub fn orthonormal_modes(nodes: &[[f64; 3]]) -> Vec<Vec<f64>> {
+    let count = nodes.len() as f64;
+    let centre: [f64; 3] = std::array::from_fn(|axis| nodes.iter().map(|node| node[axis]).sum::<f64>() / count);
+    let length = nodes
+        .iter()
+        .map(|node| (0..3).map(|axis| (node[axis] - centre[axis]).powi(2)).sum::<f64>())
+        .fold(0.0, f64::max)
+        .sqrt();
+    let mut modes = vec![Vec::new(); MOTIONS];
+    for &node in nodes {
+        for (mode, motion) in modes.iter_mut().zip(motions(node, centre, length)) {
+            mode.extend_from_slice(&motion);
+        }
+    }
+    orthonormalise(&mut modes);
+    modes
+}
+
+/// Gram–Schmidt, twice.
+pub fn orthonormalise(vectors: &mut [Vec<f64>]) {
+    for index in 0..vectors.len() {
+        let (done, rest) = vectors.split_at_mut(index);
+        let vector = &mut rest[0];
+        for _pass in 0..2 {
+            for other in done.iter() {
+                let projection = dot(other, vector);
+                add_scaled(vector, -projection, other);
+            }
+        }
+        let length = norm(vector);
+        vector.iter_mut().for_each(|entry| *entry /= length);
+    }
+}

@@ -1,0 +1,7 @@
+//! Subgradients of the contact problem: independent implementation, Taylor tests, error bounds.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+mod error_estimate;
+mod reference_cases;
+mod subgradient_properties;

@@ -1,0 +1,74 @@
+//! The coderivative against central differences over random shapes, friction coefficients and loads.
+
+use contact::contact_shape::{ContactShape, SolverKind};
+use contact::cost::{PressureCost, PressureMeasure};
+use contact::scene::{Scene, hertz, signorini};
+use nonsmooth::{NonsmoothObjective, ReducedObjective, Request, Vector};
+use proptest::prelude::*;
+
+type Objective = ReducedObjective<ContactShape, PressureCost>;
+
+fn objective(mut scene: Scene, friction: f64, load: f64, measure: PressureMeasure) -> Objective {
+    scene.mesh = [4; 3];
+    scene.friction = friction;
+    let bodies = std::iter::once(&mut scene.lower).chain(scene.upper.as_mut().map(|upper| &mut upper.body));
+    for part in bodies.flat_map(|body| &mut body.loads) {
+        part.traction = part.traction.map(|traction| load * traction);
+    }
+    let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
+    let cost = PressureCost::new(measure, &shape.problem().boundary).unwrap();
+    ReducedObjective::new(shape, cost)
+}
+
+/// Relative difference of ⟨ξ, d⟩ and the central quotient, best of several steps; none if every step crosses a kink.
+fn derivative_error(objective: &Objective, control: &Vector, direction: &Vector) -> Option<f64> {
+    let evaluate = |control: &Vector| objective.evaluate(&Request::tight(control)).unwrap().into_evaluation();
+    let product = evaluate(control).subgradient.dot(direction);
+    let size = evaluate(control).subgradient.norm() * direction.norm();
+    let mut best: Option<f64> = None;
+    for exponent in 3..7 {
+        let step = control.norm() / 6.0 * 10.0_f64.powi(-exponent);
+        let (ahead, behind) = (evaluate(&(control + direction * step)), evaluate(&(control - direction * step)));
+        // Across a kink the slopes at both ends differ by more than curvature can explain at the smallest steps.
+        let quotient = (ahead.value - behind.value) / (2.0 * step);
+        let error = (quotient - product).abs() / size;
+        best = Some(best.map_or(error, |best: f64| best.min(error)));
+    }
+    best
+}
+
+fn numbers(seed: u64, count: usize) -> Vector {
+    nonsmooth::verify::seeded_direction(count, seed)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn one_body_against_an_obstacle(
+        seed in 0_u64..1_000_000, friction in prop_oneof![Just(0.0), 0.05..0.8], load in 0.3_f64..2.0, exponent in 2.0_f64..6.0,
+    ) {
+        let objective = objective(signorini().unwrap(), friction, load, PressureMeasure::Norm { exponent });
+        let control = numbers(seed, 36).map(|entry| 98.0 + entry);
+        let error = derivative_error(&objective, &control, &numbers(seed + 1, 36)).unwrap();
+        prop_assert!(error < 1e-6, "{error:.1e}");
+    }
+
+    #[test]
+    fn two_bodies(
+        seed in 0_u64..1_000_000, friction in prop_oneof![Just(0.0), 0.05..0.6], load in 0.5_f64..1.5,
+    ) {
+        let objective = objective(hertz().unwrap(), friction, load, PressureMeasure::Norm { exponent: 4.0 });
+        let control = numbers(seed, 36).map(|entry| 9.7 + 0.1 * entry);
+        let error = derivative_error(&objective, &control, &numbers(seed + 1, 36)).unwrap();
+        prop_assert!(error < 1e-6, "{error:.1e}");
+    }
+}
+
+#[test]
+fn peak_pressure_has_the_subgradient_of_its_node() {
+    let objective = objective(signorini().unwrap(), 0.3, 1.0, PressureMeasure::Peak);
+    let control = numbers(5, 36).map(|entry| 98.0 + entry);
+    let error = derivative_error(&objective, &control, &numbers(6, 36)).unwrap();
+    assert!(error < 1e-6, "{error:.1e}");
+}

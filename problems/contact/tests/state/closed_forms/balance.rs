@@ -1,0 +1,86 @@
+//! What every state must satisfy, whatever the mesh: balance of forces and moments, complementarity, friction cone, dissipation.
+
+use super::setting::{ALL, block, load, solve, support};
+use contact::body::elasticity::Material;
+use contact::body::mesh::Face;
+use contact::contact_shape::{ContactShape, SolverKind};
+use contact::scene::{BodyScene, CounterSurface, Scene, UpperBody, hertz, signorini};
+use nonsmooth::{Accuracy, StateSolver};
+
+fn cross(x: [f64; 3], f: [f64; 3]) -> [f64; 3] {
+    [x[1] * f[2] - x[2] * f[1], x[2] * f[0] - x[0] * f[2], x[0] * f[1] - x[1] * f[0]]
+}
+
+/// A plate on a block, held by contact and friction alone.
+fn plate() -> Scene {
+    let material = Material::new(1.0e3, 0.3).unwrap();
+    let mut scene = block([10.0; 2], 10.0, [4; 3], material, CounterSurface::Plane { height: 10.0 });
+    scene.subdomains = [2; 3];
+    scene.friction = 0.4;
+    scene.lower.supports = vec![support(Face::Bottom, ALL)];
+    let loads = vec![load(Face::Top, [0.05, -0.03, -1.0]), load(Face::X1Max, [0.02, 0.01, -0.1])];
+    scene.upper = Some(UpperBody { body: BodyScene { material, supports: vec![], loads }, top: 20.0 });
+    scene
+}
+
+#[test]
+fn contact_forces_balance_the_loads_of_a_free_body() {
+    let scene = plate();
+    let loads = &scene.upper.as_ref().unwrap().body.loads;
+    // Both loaded faces measure 100 mm².
+    let resultants = [([5.0, 5.0, 20.0], loads[0].traction), ([10.0, 5.0, 15.0], loads[1].traction)];
+    for kind in [SolverKind::Newton, SolverKind::Direct] {
+        let (shape, state) = solve(&scene, kind);
+        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+        let mut add = |x: [f64; 3], f: [f64; 3]| {
+            let turning = cross(x, f);
+            (0..3).for_each(|axis| force[axis] += f[axis]);
+            (0..3).for_each(|axis| moment[axis] += turning[axis]);
+        };
+        for (x, traction) in resultants {
+            add(x, traction.map(|t| 100.0 * t));
+        }
+        for (index, point) in shape.problem().boundary.points.iter().enumerate() {
+            let [x1, x2] = shape.problem().grid.position(point.position[0], point.position[1]);
+            let [t1, t2] = state.forces.tangential[index];
+            add([x1, x2, 10.0], [t1, t2, state.forces.normal[index]]);
+        }
+        let worst =
+            |values: [f64; 3], scale: f64| values.into_iter().map(|value| value.abs() / scale).fold(0.0, f64::max);
+        let (forces, moments) = (worst(force, 110.0), worst(moment, 110.0 * 10.0));
+        println!("balance, {kind:?}: forces {forces:.1e}, moments {moments:.1e} of the load");
+        assert!(forces < 1e-11 && moments < 1e-11, "{kind:?} {forces:.1e} {moments:.1e}");
+    }
+}
+
+#[test]
+fn complementarity_cone_and_dissipation_at_every_node() {
+    for mut scene in [signorini().unwrap(), hertz().unwrap()] {
+        scene.mesh = [6; 3];
+        for kind in [SolverKind::Newton, SolverKind::Direct] {
+            let shape = ContactShape::new(scene.clone(), kind).unwrap();
+            let bend = nonsmooth::verify::seeded_direction(36, 3);
+            let control = shape.start().zip_map(&bend, |height, bend| height * (0.99 + 0.005 * bend));
+            let forces = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap().forces;
+            let largest = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+            let (force, gap) = (largest(&forces.normal), largest(&forces.opening));
+            let slip = forces.slip.iter().map(|slip| slip[0].hypot(slip[1])).fold(0.0, f64::max);
+            let (mut complementarity, mut cone, mut dissipated, mut least) = (0.0_f64, 0.0_f64, 0.0, 0.0_f64);
+            for (index, &normal) in forces.normal.iter().enumerate() {
+                assert!(normal >= -1e-11 * force && forces.opening[index] <= 1e-10 * gap);
+                complementarity = complementarity.max((normal * forces.opening[index]).abs() / (force * gap));
+                let ([t1, t2], [s1, s2]) = (forces.tangential[index], forces.slip[index]);
+                cone = cone.max((t1.hypot(t2) - scene.friction * normal) / force);
+                let power = t1 * s1 + t2 * s2;
+                least = least.min(power / (force * slip));
+                dissipated += power;
+            }
+            println!(
+                "{} {kind:?}: complementarity {complementarity:.1e}, cone {cone:.1e}, least dissipation {least:.1e}",
+                scene.name
+            );
+            assert!(complementarity < 1e-11 && cone < 1e-11, "{complementarity:.1e} {cone:.1e}");
+            assert!(least > -1e-11 && dissipated > 0.0, "{least:.1e} {dissipated}");
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Boussinesq: the surface of an elastic half-space sinks by (1 − ν²)P/(πEr) at the distance r of a normal force P.
+//!
+//! A quarter of a block by symmetry; entries of the inverse of the condensed stiffness. A finite block adds a field that is
+//! smooth and even in r: A/r + B + Cr² is fitted to the entries at distances from 0.2 to 0.7 of the side.
+
+use super::setting::{FIRST, SECOND, THIRD, block, support};
+use contact::body::elasticity::Material;
+use contact::body::mesh::Face;
+use contact::direct::CondensationPattern;
+use contact::equilibrium::ContactProblem;
+use contact::linear::dense::DenseLu;
+use contact::scene::CounterSurface;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
+
+const SIDE: f64 = 10.0;
+const MODULUS: f64 = 1.0e4;
+const POISSON: f64 = 0.3;
+
+/// A·πE/(1 − ν²), which is 1 on the half-space, and the largest misfit relative to A/r.
+fn fitted(bricks: usize) -> (f64, f64) {
+    let material = Material::new(MODULUS, POISSON).unwrap();
+    let mut scene = block([SIDE; 2], SIDE, [bricks; 3], material, CounterSurface::Plane { height: SIDE });
+    scene.lower.supports =
+        vec![support(Face::X1Min, FIRST), support(Face::X2Min, SECOND), support(Face::Bottom, THIRD)];
+    let problem = ContactProblem::new(scene).unwrap();
+    let pattern = CondensationPattern::new(&problem.grid, &problem.scene.lower, bricks).unwrap();
+    let body = pattern.condense(&problem.lower_block(&[SIDE; 4]).unwrap(), &problem.scene.lower).unwrap();
+    // A force on the corner of the quarter is four times as large on the whole block.
+    let mut deflection = vec![0.0; body.schur.nrows()];
+    deflection[2] = 0.25;
+    DenseLu::new(&body.schur).solve_in_place(&mut deflection);
+    let (mut rows, mut right) = (Vec::new(), Vec::new());
+    for (column, (i, j)) in problem.grid.columns().enumerate() {
+        let r = SIDE / bricks as f64 * (i as f64).hypot(j as f64);
+        if (0.2 * SIDE..=0.7 * SIDE).contains(&r) {
+            // Scaled by r: the misfit is relative.
+            rows.extend([1.0, r, r.powi(3)]);
+            right.push(r * deflection[3 * column + 2]);
+        }
+    }
+    let matrix = DMatrix::from_row_slice(right.len(), 3, &rows);
+    let right = DVector::from_vec(right);
+    let fit = matrix.clone().svd(true, true).solve(&right, 1e-14).unwrap();
+    let misfit = (matrix * &fit - right).amax() / fit[0];
+    (fit[0] * PI * MODULUS / (1.0 - POISSON * POISSON), misfit)
+}
+
+#[test]
+fn compliance_decays_like_the_inverse_distance() {
+    let mut errors = Vec::new();
+    for bricks in [12, 20] {
+        let (factor, misfit) = fitted(bricks);
+        println!(
+            "Boussinesq, {bricks}³ bricks: coefficient of 1/r off by {:.2} %, misfit {misfit:.1e}",
+            100.0 * (factor - 1.0)
+        );
+        errors.push(((factor - 1.0).abs(), misfit));
+    }
+    assert!(errors[1].0 < 0.025 && errors[1].1 < 0.04, "{errors:?}");
+    assert!(errors[1].0 < errors[0].0 && errors[1].1 < errors[0].1, "{errors:?}");
+}

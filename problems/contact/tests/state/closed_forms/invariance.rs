@@ -1,0 +1,104 @@
+//! What Θ, ξ and the status must not notice: the unit of force, and the hand of a mirrored shape.
+
+use contact::body::elasticity::Material;
+use contact::body::mesh::Face;
+use contact::contact_shape::{ContactShape, ContactWarmStart, SolverKind};
+use contact::cost::{PressureCost, PressureMeasure};
+use contact::equilibrium::ContactStatus;
+use contact::scene::{Load, Scene, hertz, signorini};
+use contact::tfeti::TornState;
+use nonsmooth::{Accuracy, Evaluation, ReducedObjective, StateSolver, Vector};
+
+struct Outcome {
+    evaluation: Evaluation<ContactWarmStart>,
+    status: Vec<ContactStatus>,
+    opening: Vec<f64>,
+    displacement: Vec<f64>,
+}
+
+fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
+    let shape = ContactShape::new(scene.clone(), kind).unwrap();
+    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
+    let objective = ReducedObjective::new(shape, cost);
+    let state = objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
+    let evaluation = objective.differentiate(control, &state).unwrap();
+    let displacement = state.torn().map(TornState::displacement).unwrap_or_default().to_vec();
+    Outcome { evaluation, status: state.forces.status.clone(), opening: state.forces.opening.clone(), displacement }
+}
+
+fn scaled(scene: &Scene, factor: f64) -> Scene {
+    let mut scene = scene.clone();
+    let bodies = std::iter::once(&mut scene.lower).chain(scene.upper.as_mut().map(|upper| &mut upper.body));
+    for body in bodies {
+        let material = body.material;
+        body.material = Material::new(factor * material.young_modulus(), material.poisson_ratio()).unwrap();
+        for load in &mut body.loads {
+            load.traction = load.traction.map(|traction| factor * traction);
+        }
+    }
+    scene
+}
+
+fn relative(found: &[f64], expected: &[f64]) -> f64 {
+    let size = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    let difference: Vec<f64> = found.iter().zip(expected).map(|(a, b)| a - b).collect();
+    size(&difference) / size(expected).max(f64::MIN_POSITIVE)
+}
+
+fn bent(scene: &Scene) -> Vector {
+    nonsmooth::verify::seeded_direction(36, 11).map(|bend| scene.start_height * (0.99 + 0.005 * bend))
+}
+
+#[test]
+fn stiffness_and_loads_scaled_together_change_the_unit_of_force_only() {
+    for mut scene in [signorini().unwrap(), hertz().unwrap()] {
+        scene.mesh = [6; 3];
+        let control = bent(&scene);
+        for kind in [SolverKind::Newton, SolverKind::Direct] {
+            let unit = evaluate(&scene, &control, kind);
+            for factor in [1e-6, 3.7, 1e9] {
+                let other = evaluate(&scaled(&scene, factor), &control, kind);
+                assert_eq!(unit.status, other.status);
+                let value = (other.evaluation.value / (factor.powi(4) * unit.evaluation.value) - 1.0).abs();
+                let rescaled = &other.evaluation.subgradient / factor.powi(4);
+                let slope = relative(rescaled.as_slice(), unit.evaluation.subgradient.as_slice());
+                let opening = relative(&other.opening, &unit.opening);
+                let displacement = relative(&other.displacement, &unit.displacement);
+                println!(
+                    "{} {kind:?} s = {factor:.0e}: Θ/s⁴ {value:.1e}, ξ/s⁴ {slope:.1e}, gaps {opening:.1e}, u {displacement:.1e}",
+                    scene.name
+                );
+                assert!(value < 1e-10 && slope < 1e-8 && opening < 1e-10 && displacement < 1e-10);
+            }
+        }
+    }
+}
+
+/// Controls, or a subgradient, of the shape seen in a mirror: x₂ ↦ b − x₂, or x₁ ↔ x₂.
+fn mirrored(control: &Vector, swap: bool) -> Vector {
+    Vector::from_fn(36, |index, _| {
+        let (i, j) = (index / 6, index % 6);
+        if swap { control[6 * j + i] } else { control[6 * i + 5 - j] }
+    })
+}
+
+#[test]
+fn a_mirrored_shape_has_the_mirrored_subgradient() {
+    let mut other_hand = hertz().unwrap();
+    let upper = other_hand.upper.as_mut().unwrap();
+    upper.body.loads[1] = Load { face: Face::X2Max, traction: [0.0, 500.0, -2000.0] };
+    // The obstacle of Signorini's example is even about x₂ = b/2; the sphere does not know x₁ from x₂.
+    let cases = [(signorini().unwrap(), signorini().unwrap(), false), (hertz().unwrap(), other_hand, true)];
+    for (mut scene, mut image, swap) in cases {
+        (scene.mesh, image.mesh) = ([6; 3], [6; 3]);
+        let control = bent(&scene);
+        for kind in [SolverKind::Newton, SolverKind::Direct] {
+            let here = evaluate(&scene, &control, kind).evaluation;
+            let there = evaluate(&image, &mirrored(&control, swap), kind).evaluation;
+            let value = (there.value / here.value - 1.0).abs();
+            let slope = relative(mirrored(&there.subgradient, swap).as_slice(), here.subgradient.as_slice());
+            println!("{} {kind:?} mirrored: Θ {value:.1e}, ξ {slope:.1e}", scene.name);
+            assert!(value < 1e-10 && slope < 1e-8, "{value:.1e} {slope:.1e}");
+        }
+    }
+}

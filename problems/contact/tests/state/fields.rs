@@ -1,0 +1,272 @@
+//! Fields of solved shapes: two independent solvers agree, forces are in equilibrium through every section, boundary values are
+//! those of the contact law.
+
+use contact::body::elasticity::stress::{BrickStress, COMPONENTS};
+use contact::body::elasticity::{Formulation, hex8};
+use contact::contact_shape::{ContactShape, ContactState, SolverKind};
+use contact::cost::{PressureCost, PressureMeasure};
+use contact::equilibrium::ContactStatus;
+use contact::fields::{BodyFields, Fields};
+use contact::scene::{Scene, hertz, signorini};
+use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
+
+fn wavy(scene: &Scene) -> Vector {
+    let height = scene.start_height;
+    Vector::from_fn(36, |index, _| height * (1.0 - 0.004 * (1.0 + (1.3 * index as f64).sin())))
+}
+
+fn solve(mut scene: Scene, kind: SolverKind, control: Option<Vector>) -> (ContactShape, ContactState, Vector) {
+    scene.mesh = [6; 3];
+    scene.subdomains = [2, 3, 2];
+    let shape = ContactShape::new(scene, kind).unwrap();
+    let control = control.unwrap_or_else(|| shape.start());
+    let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
+    (shape, state, control)
+}
+
+/// Both examples, with and without friction and in both formulations of the bricks.
+fn scenes() -> Vec<Scene> {
+    let mut scenes = Vec::new();
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        for (friction, formulation) in
+            [(0.3, Formulation::Standard), (0.0, Formulation::Standard), (0.3, Formulation::MeanDilatation)]
+        {
+            let mut scene = Scene { friction, ..scene.clone() };
+            for body in scene.bodies_mut() {
+                body.material = body.material.with_formulation(formulation);
+            }
+            scenes.push(scene);
+        }
+    }
+    scenes
+}
+
+/// Largest difference over the largest entry of the first.
+fn difference<'a>(first: impl IntoIterator<Item = &'a f64>, second: impl IntoIterator<Item = &'a f64>) -> f64 {
+    let (first, second): (Vec<f64>, Vec<f64>) =
+        (first.into_iter().copied().collect(), second.into_iter().copied().collect());
+    assert_eq!(first.len(), second.len());
+    let largest = first.iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+    first.iter().zip(&second).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+}
+
+#[test]
+fn both_solvers_give_the_same_fields() {
+    for scene in scenes() {
+        let control = wavy(&scene);
+        let label = format!("{} friction {}", scene.name, scene.friction);
+        let (torn, direct) = [SolverKind::Newton, SolverKind::Direct]
+            .map(|kind| {
+                let (shape, state, _) = solve(scene.clone(), kind, Some(control.clone()));
+                shape.fields(&state).unwrap()
+            })
+            .into();
+        let bodies = if scene.upper.is_some() { 2 } else { 1 };
+        assert_eq!((torn.bodies.len(), direct.bodies.len()), (bodies, bodies));
+        for (body, (first, second)) in torn.bodies.iter().zip(&direct.bodies).enumerate() {
+            let displacement = difference(first.displacement.as_flattened(), second.displacement.as_flattened());
+            let stress = difference(first.stress.as_flattened(), second.stress.as_flattened());
+            let nodal = difference(&first.nodal_von_mises, &second.nodal_von_mises);
+            let size = first.displacement.as_flattened().iter().fold(0.0, |size: f64, u| size.max(u.abs()));
+            let defect = first.gluing_defect / size;
+            println!(
+                "{label}, body {}: displacement {displacement:.1e}, stress {stress:.1e}, von Mises {nodal:.1e}, \
+                 gluing defect {defect:.1e}",
+                body + 1
+            );
+            // Both states are solved to relative residuals near 1e-12; measured differences are at most 6e-13.
+            assert!(displacement < 1e-10 && stress < 1e-10 && nodal < 1e-10, "{label}");
+            assert!(defect < 1e-10 && second.gluing_defect == 0.0, "{label}: {defect:.1e}");
+            assert_eq!(first.block, second.block);
+            let mut numbers = first.subdomain.clone();
+            numbers.sort_unstable();
+            numbers.dedup();
+            assert_eq!(numbers, (12 * body..12 * (body + 1)).collect::<Vec<_>>());
+            assert!(second.subdomain.iter().all(|&number| number == body));
+        }
+        let contact = [&torn.contact, &direct.contact];
+        assert!(difference(&contact[0].pressure, &contact[1].pressure) < 1e-10);
+        assert!(difference(&contact[0].remaining_gap, &contact[1].remaining_gap) < 1e-9);
+        assert_eq!(contact[0].status, contact[1].status);
+        assert_eq!(contact[0].traction.is_some(), scene.friction > 0.0);
+        assert_eq!(contact[0].slip.is_some(), scene.friction > 0.0);
+    }
+}
+
+/// Force that the bricks of layer k of a body pass upwards: ∫ σ₃ⱼ·∂ⱼφ dV with φ rising from 0 to 1 through the layer.
+fn section_force(fields: &BodyFields, scene: &contact::scene::BodyScene, layer: usize) -> [f64; 3] {
+    let grid = &fields.block.grid;
+    let mut force = [0.0; 3];
+    for brick in grid.bricks().filter(|brick| brick[2] == layer) {
+        let (nodes, corners) = (fields.block.brick(brick), grid.brick_nodes(brick));
+        let u: [f64; 24] = std::array::from_fn(|dof| fields.displacement[corners[dof / 3]][dof % 3]);
+        for (stress, point) in BrickStress::new(&nodes, &scene.material, &u).at_gauss_points() {
+            let mut full = [[0.0; 3]; 3];
+            for (value, (row, column)) in stress.iter().zip(COMPONENTS) {
+                (full[row][column], full[column][row]) = (*value, *value);
+            }
+            for (component, force) in force.iter_mut().enumerate() {
+                for corner in (0..8).filter(|corner| corner & 1 == 1) {
+                    let along: f64 = (0..3).map(|j| full[component][j] * point.gradients[corner][j]).sum();
+                    *force += point.volume * along;
+                }
+            }
+        }
+    }
+    force
+}
+
+#[test]
+fn every_layer_passes_on_what_acts_beyond_it() {
+    for scene in scenes() {
+        for kind in [SolverKind::Newton, SolverKind::Direct] {
+            let (shape, state, _) = solve(scene.clone(), kind, Some(wavy(&scene)));
+            let fields = shape.fields(&state).unwrap();
+            let contact: f64 = fields.contact.pressure.iter().zip(&fields.contact.area).map(|(p, a)| p * a).sum();
+            assert!((contact / state.forces.total_normal_force() - 1.0).abs() < 1e-14);
+            // Nothing else acts along e₃ between the bottom of the lower body and the contact boundary.
+            for layer in 0..6 {
+                let force = section_force(&fields.bodies[0], &scene.lower, layer)[2];
+                assert!((force / -contact - 1.0).abs() < 1e-9, "{kind:?} layer {layer}: {force} {contact}");
+            }
+            let Some(upper) = &scene.upper else {
+                // 3000 MPa on 100 mm × 100 mm.
+                assert!((contact / 3e7 - 1.0).abs() < 1e-9, "{contact}");
+                continue;
+            };
+            // −2000 MPa on the top of 10 mm × 10 mm and on the share of the side above the layer.
+            for layer in 0..6 {
+                let side: f64 = (0..6)
+                    .map(|j| {
+                        let height = |j: usize, k: usize| fields.bodies[1].block.coordinates([6, j, k])[2];
+                        let area = |k: usize| {
+                            (height(j, k + 1) - height(j, k) + height(j + 1, k + 1) - height(j + 1, k)) / 2.0
+                                * (10.0 / 6.0)
+                        };
+                        (layer + 1..6).map(area).sum::<f64>() + half_moment(&height, j, layer)
+                    })
+                    .sum();
+                let expected = -2000.0 * (100.0 + side);
+                let force = section_force(&fields.bodies[1], &upper.body, layer)[2];
+                assert!((force / expected - 1.0).abs() < 1e-9, "{kind:?} upper layer {layer}: {force} {expected}");
+            }
+        }
+    }
+}
+
+/// ∫ φ dA over one side face of the layer, φ rising from 0 at its lower to 1 at its upper edge; edges are straight and the
+/// height is linear along the face, so that φ is ½ on average at every place along it.
+fn half_moment(height: &impl Fn(usize, usize) -> f64, j: usize, layer: usize) -> f64 {
+    let edge = |j: usize| height(j, layer + 1) - height(j, layer);
+    0.5 * (edge(j) + edge(j + 1)) / 2.0 * (10.0 / 6.0)
+}
+
+#[test]
+fn mean_vertical_stress_of_a_flat_layer_is_the_load_over_the_area() {
+    // Bricks of the flat start are boxes: the stress is trilinear at most and its mean is the value at the centre.
+    for formulation in [Formulation::Standard, Formulation::MeanDilatation] {
+        let mut scene = signorini().unwrap();
+        scene.lower.material = scene.lower.material.with_formulation(formulation);
+        for kind in [SolverKind::Newton, SolverKind::Direct] {
+            let (shape, state, _) = solve(scene.clone(), kind, None);
+            let fields = shape.fields(&state).unwrap();
+            let body = &fields.bodies[0];
+            for layer in 0..6 {
+                let bricks = body.block.grid.bricks().zip(&body.stress).filter(|(brick, _)| brick[2] == layer);
+                let (sum, volume) = bricks.fold((0.0, 0.0), |(sum, total), (brick, stress)| {
+                    let volume = hex8::volume(&body.block.brick(brick));
+                    (sum + volume * stress[2], total + volume)
+                });
+                assert!((sum / volume + 3000.0).abs() < 3000.0 * 1e-9, "{formulation:?} {kind:?}: {}", sum / volume);
+            }
+        }
+    }
+}
+
+#[test]
+fn contact_fields_obey_the_contact_law() {
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        let (shape, state, control) = solve(scene.clone(), SolverKind::Newton, Some(wavy(&scene)));
+        let Fields { bodies, contact } = shape.fields(&state).unwrap();
+        let largest = contact.pressure.iter().copied().fold(0.0, f64::max);
+        let (traction, slip) = (contact.traction.as_ref().unwrap(), contact.slip.as_ref().unwrap());
+        let deformed = contact.deformed_position();
+        let heights = shape.problem().height_map.heights(control.as_slice());
+        let [n1, n2, n3] = contact.grid.cells;
+        let mut seen = std::collections::HashSet::new();
+        for (node, status) in contact.status.iter().enumerate() {
+            seen.insert(*status);
+            let (pressure, tangential) = (contact.pressure[node], traction[node][0].hypot(traction[node][1]));
+            assert!(pressure >= 0.0 && tangential <= scene.friction * pressure * (1.0 + 1e-12));
+            assert_eq!(contact.position[node][2], heights[node]);
+            match status {
+                ContactStatus::Open => assert!(pressure == 0.0 && contact.remaining_gap[node] > 0.0),
+                ContactStatus::Stick => assert!(slip[node][0].hypot(slip[node][1]) < 1e-8),
+                ContactStatus::Slip => assert!(tangential > 0.99 * scene.friction * pressure),
+            }
+            // The gap that is left is the distance of the deformed surfaces along e₃ (the contact normal of the model).
+            let column = [node / (n2 + 1), node % (n2 + 1)];
+            let above = match bodies.get(1) {
+                Some(upper) => {
+                    let index = contact.grid.node([column[0], column[1], 0]);
+                    upper.block.coordinates([column[0], column[1], 0])[2] + upper.displacement[index][2]
+                }
+                None => contact.position[node][2] + contact.gap[node],
+            };
+            assert!((above - deformed[node][2] - contact.remaining_gap[node]).abs() < 1e-9, "{node}");
+            assert!(contact.remaining_gap[node] > -1e-9 && largest > 0.0);
+        }
+        assert_eq!(contact.status.len(), (n1 + 1) * (n2 + 1));
+        assert_eq!(bodies[0].block.grid.cells[2], n3);
+        assert!(seen.len() >= 2, "{seen:?}");
+    }
+}
+
+#[test]
+fn height_sensitivities_are_what_the_subgradient_is_made_of() {
+    for kind in [SolverKind::Newton, SolverKind::Direct] {
+        let scene = hertz().unwrap();
+        let (shape, state, control) = solve(scene.clone(), kind, Some(wavy(&scene)));
+        let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
+        let gradient = cost.gradient(&control, &state).state;
+        let (heights, _) = shape.height_sensitivity(&state, &gradient).unwrap();
+        let (subgradient, _) = shape.pull_back(&control, &state, &gradient).unwrap();
+        // Along one control: Σ over nodes of ∂J/∂height × ∂height/∂control.
+        let map = &shape.problem().height_map;
+        let size = subgradient.amax();
+        for index in [0, 7, 20, 35] {
+            let mut moved = vec![0.0; 36];
+            moved[index] = 1.0;
+            let sum: f64 = map.heights(&moved).iter().zip(&heights).map(|(moved, height)| moved * height).sum();
+            assert!((sum - subgradient[index]).abs() < 1e-12 * size, "{sum} {}", subgradient[index]);
+        }
+        // And along the controls against a difference quotient of J.
+        let direction = Vector::from_fn(36, |index, _| (0.9 * index as f64).cos());
+        let value = |step: f64| {
+            let moved = &control + step * &direction;
+            cost.value(&moved, &shape.solve(&moved, None, Accuracy::TIGHTEST).unwrap())
+        };
+        let quotient = (value(1e-5) - value(-1e-5)) / 2e-5;
+        let predicted: f64 =
+            map.heights(direction.as_slice()).iter().zip(&heights).map(|(moved, height)| moved * height).sum();
+        println!("{kind:?}: derivative {predicted:.6e}, difference quotient {quotient:.6e}");
+        // Central differences of a step 1e-5: relative error of the order of 1e-6.
+        assert!((predicted / quotient - 1.0).abs() < 1e-4, "{predicted} {quotient}");
+    }
+}
+
+#[test]
+fn states_of_other_solvers_and_meshes_are_refused() {
+    let (torn, torn_state, _) = solve(signorini().unwrap(), SolverKind::Newton, None);
+    let (direct, direct_state, _) = solve(signorini().unwrap(), SolverKind::Direct, None);
+    let message = |result: Result<Fields, nonsmooth::OracleError>| result.unwrap_err().to_string();
+    assert!(message(torn.fields(&direct_state)).contains("another kind of contact solver"));
+    assert!(message(direct.fields(&torn_state)).contains("another kind of contact solver"));
+    for (kind, state) in [(SolverKind::Newton, &torn_state), (SolverKind::Direct, &direct_state)] {
+        let mut scene = signorini().unwrap();
+        (scene.mesh, scene.subdomains) = ([4; 3], [2; 3]);
+        let other = ContactShape::new(scene, kind).unwrap();
+        let text = message(other.fields(state));
+        assert!(text.contains("another mesh"), "{text}");
+    }
+}

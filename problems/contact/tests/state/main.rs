@@ -1,0 +1,12 @@
+//! States of the contact problem: closed forms, two solvers, structure, fields and their files.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+mod closed_forms;
+mod dual_qp;
+mod fields;
+mod paths_agree;
+mod scene_structure;
+mod successive_approximations;
+mod two_processes;
+mod vtk_files;

@@ -1,0 +1,102 @@
+//! Independent paths give the same state: TFETI against direct condensation, different tearings, different numbers of threads.
+
+use contact::contact_shape::{ContactShape, ContactState, SolverKind};
+use contact::scene::{Scene, hertz, signorini};
+use contact::tfeti::PreconditionerKind;
+use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
+
+fn wavy(scene: &Scene) -> Vector {
+    let height = scene.start_height;
+    Vector::from_fn(36, |index, _| height * (1.0 - 0.004 * (1.0 + (1.3 * index as f64).sin())))
+}
+
+fn solve(mut scene: Scene, kind: SolverKind, mesh: usize, subdomains: usize) -> (ContactShape, ContactState) {
+    scene.mesh = [mesh; 3];
+    scene.subdomains = [subdomains; 3];
+    let control = wavy(&scene);
+    let shape = ContactShape::new(scene, kind).unwrap();
+    let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
+    (shape, state)
+}
+
+fn assert_same(first: &ContactState, second: &ContactState, label: &str) {
+    let largest = first.forces.normal.iter().copied().fold(0.0, f64::max);
+    let pairs = first.forces.normal.iter().zip(&second.forces.normal);
+    let normal = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest;
+    let pairs = first.forces.tangential.iter().flatten().zip(second.forces.tangential.iter().flatten());
+    let tangential = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest;
+    println!("{label}: normal {normal:.1e}, tangential {tangential:.1e}");
+    assert!(normal < 1e-8 && tangential < 1e-8, "{label}: normal {normal:.1e}, tangential {tangential:.1e}");
+    assert_eq!(first.forces.status, second.forces.status, "{label}");
+}
+
+#[test]
+fn tfeti_equals_direct_condensation() {
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        for friction in [0.0, 0.3, 0.8] {
+            let scene = Scene { friction, ..scene.clone() };
+            let (_, torn) = solve(scene.clone(), SolverKind::Newton, 6, 2);
+            let (_, direct) = solve(scene.clone(), SolverKind::Direct, 6, 2);
+            assert_same(&torn, &direct, &format!("{} friction {friction}", scene.name));
+        }
+    }
+}
+
+#[test]
+fn tearing_does_not_change_the_state() {
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        let (_, whole) = solve(scene.clone(), SolverKind::Newton, 6, 1);
+        for subdomains in [2, 3, 6] {
+            let (_, torn) = solve(scene.clone(), SolverKind::Newton, 6, subdomains);
+            assert_same(&whole, &torn, &format!("{} S = {subdomains}", scene.name));
+        }
+    }
+}
+
+#[test]
+fn every_preconditioner_gives_the_same_state() {
+    let mut scene = signorini().unwrap();
+    scene.mesh = [6; 3];
+    let control = wavy(&scene);
+    let state = |kind| {
+        let shape = ContactShape::with_preconditioner(scene.clone(), SolverKind::Newton, kind).unwrap();
+        shape.solve(&control, None, Accuracy::TIGHTEST).unwrap()
+    };
+    let reference = state(PreconditionerKind::Dirichlet);
+    assert_same(&reference, &state(PreconditionerKind::Lumped), "lumped");
+    assert_same(&reference, &state(PreconditionerKind::None), "none");
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let (shape, state) = solve(hertz().unwrap(), SolverKind::Newton, 6, 2);
+            let dual = Vector::from_fn(shape.problem().boundary.dual_dimension(), |i, _| (0.7 * i as f64).cos());
+            let control = wavy(&shape.problem().scene);
+            let slope = shape.coderivative(&control, &state, &dual).unwrap();
+            (state.forces.normal.clone(), slope)
+        })
+    };
+    let reference = run(1);
+    for threads in [2, 4] {
+        assert_eq!(run(threads), reference, "{threads} threads");
+    }
+}
+
+#[test]
+fn warm_start_ends_at_the_same_state() {
+    for (scene, kind) in [
+        (signorini().unwrap(), SolverKind::Newton),
+        (hertz().unwrap(), SolverKind::Newton),
+        (hertz().unwrap(), SolverKind::Direct),
+    ] {
+        let (shape, old) = solve(scene, kind, 6, 2);
+        let control = wavy(&shape.problem().scene).map(|height| height * 0.9995);
+        let cold = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
+        let warm = shape.solve(&control, Some(&shape.warm_start(&old)), Accuracy::TIGHTEST).unwrap();
+        assert_same(&cold, &warm, "warm start");
+        assert!(warm.work().newton_steps <= cold.work().newton_steps, "{:?} {:?}", warm.work(), cold.work());
+    }
+}

@@ -1,0 +1,226 @@
+//! What a scene does not need is not there; what cannot be in equilibrium is refused; certificates hold.
+
+use contact::body::elasticity::Material;
+use contact::body::mesh::Face;
+use contact::contact_shape::{ContactShape, SolverKind};
+use contact::equilibrium::{ContactProblem, ContactStatus};
+use contact::error::{ContactError, SceneError};
+use contact::linear::vector::norm;
+use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody, hertz, signorini};
+use contact::tfeti::{PreconditionerKind, TornSolver};
+use nonsmooth::{Accuracy, StateSolver, Vector};
+
+fn small(mut scene: Scene, mesh: usize, subdomains: usize) -> Scene {
+    scene.mesh = [mesh; 3];
+    scene.subdomains = [subdomains; 3];
+    scene
+}
+
+#[test]
+fn no_friction_means_no_tangential_multipliers() {
+    let scene = Scene { friction: 0.0, ..small(signorini().unwrap(), 6, 2) };
+    let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
+    let boundary = &shape.problem().boundary;
+    assert_eq!(boundary.row_count, boundary.points.len());
+    assert_eq!(boundary.dual_dimension(), boundary.points.len());
+    let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+    assert!(state.forces.tangential.is_empty() && state.forces.slip.is_empty());
+    assert!(shape.left_out().iter().any(|text| text.contains("tangential")));
+}
+
+#[test]
+fn one_subdomain_means_no_gluing_and_more_mean_the_known_rows() {
+    let problem = ContactProblem::new(small(signorini().unwrap(), 6, 1)).unwrap();
+    let whole = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
+    assert_eq!(whole.model().constraints.gluing_count, 0);
+    // Two components of the 7 × 7 nodes on x₁ = 0.
+    assert_eq!(whole.model().constraints.equality_count, 98);
+    let problem = ContactProblem::new(small(signorini().unwrap(), 12, 2)).unwrap();
+    let torn = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
+    assert_eq!(torn.model().dof_count, 8232);
+    assert_eq!(torn.model().constraints.equality_count, 1979);
+}
+
+#[test]
+fn rows_are_orthonormal_and_weights_invert_them() {
+    let problem = ContactProblem::new(small(hertz().unwrap(), 4, 2)).unwrap();
+    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
+    let constraints = &solver.model().constraints;
+    let dense = |row: usize, weighted: bool| {
+        let mut values = vec![0.0; solver.model().dof_count];
+        let source = if weighted { &constraints.weighted } else { &constraints.rows };
+        source.row(row).for_each(|(dof, value)| values[dof] += value);
+        values
+    };
+    for row in 0..constraints.row_count() {
+        let left = dense(row, false);
+        assert!((norm(&left) - 1.0).abs() < 1e-14);
+        for other in 0..constraints.row_count() {
+            let product: f64 = left.iter().zip(dense(other, true)).map(|(a, b)| a * b).sum();
+            let expected = f64::from(u8::from(row == other));
+            assert!((product - expected).abs() < 1e-14, "rows {row}, {other}: {product}");
+        }
+    }
+}
+
+#[test]
+fn rigid_modes_are_the_kernel_and_the_inverse_is_a_generalised_one() {
+    let problem = ContactProblem::new(small(signorini().unwrap(), 6, 2)).unwrap();
+    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
+    let blocks = problem.blocks(&[99.0; 36]).unwrap();
+    let system = solver.model().factorize(&blocks).unwrap();
+    let pattern = &solver.model().pattern.pattern;
+    for part in &system.parts {
+        let factors = part.factors.as_ref().unwrap();
+        let size = pattern.dimension();
+        let scale = factors.stiffness.iter().map(|value| value.abs()).fold(0.0, f64::max);
+        let mut image = vec![0.0; size];
+        for mode in &part.rigid.modes {
+            pattern.multiply(&factors.stiffness, mode, &mut image);
+            assert!(norm(&image) < 1e-12 * scale, "{}", norm(&image) / scale);
+        }
+        let probe: Vec<f64> = (0..size).map(|i| (0.37 * i as f64).sin()).collect();
+        pattern.multiply(&factors.stiffness, &probe, &mut image);
+        let mut solution = image.clone();
+        factors.inverse.solve_in_place(&mut solution, 1, faer::Par::Seq);
+        let mut again = vec![0.0; size];
+        pattern.multiply(&factors.stiffness, &solution, &mut again);
+        let difference: Vec<f64> = again.iter().zip(&image).map(|(a, b)| a - b).collect();
+        assert!(norm(&difference) < 1e-12 * norm(&image), "{}", norm(&difference) / norm(&image));
+    }
+}
+
+#[test]
+fn unchanged_body_is_factored_once() {
+    let scene = small(hertz().unwrap(), 4, 2);
+    for (kind, first, later) in [(SolverKind::Newton, 32, 16), (SolverKind::Direct, 2, 1)] {
+        let shape = ContactShape::new(scene.clone(), kind).unwrap();
+        let counts = [0.0, 0.01].map(|shift| {
+            let control = shape.start().map(|height| height - shift);
+            shape.solve(&control, None, Accuracy::TIGHTEST).unwrap().work().factorizations
+        });
+        assert_eq!(counts, [first, later], "{kind:?}");
+    }
+}
+
+#[test]
+fn a_load_that_pulls_away_is_refused_naming_the_direction() {
+    let mut scene = small(signorini().unwrap(), 4, 2);
+    scene.lower.loads[0].traction = [0.0, 0.0, -3000.0];
+    for kind in [SolverKind::Newton, SolverKind::Direct] {
+        let shape = ContactShape::new(scene.clone(), kind).unwrap();
+        let error = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap_err().to_string();
+        assert!(error.contains("no equilibrium") && error.contains("translation along x3"), "{error}");
+        assert!(error.contains("3.0000"), "{error}");
+    }
+}
+
+/// A block pressed onto a fixed block by a flat plate of equal size: held by contact only, apart from the lower body's base.
+fn plates(friction: f64, push: f64) -> Scene {
+    let material = Material::new(1000.0, 0.0).unwrap();
+    Scene {
+        name: "plates".into(),
+        size: [10.0, 10.0],
+        lower: BodyScene {
+            material,
+            supports: vec![Support { face: Face::Bottom, components: [true; 3] }],
+            loads: vec![],
+        },
+        upper: Some(UpperBody {
+            body: BodyScene {
+                material,
+                supports: vec![],
+                loads: vec![Load { face: Face::Top, traction: [push, 0.0, -1.0] }],
+            },
+            top: 20.0,
+        }),
+        counter_surface: CounterSurface::Plane { height: 10.0 },
+        friction,
+        start_height: 10.0,
+        ..small(hertz().unwrap(), 4, 2)
+    }
+}
+
+#[test]
+fn friction_carries_a_push_below_its_limit_only() {
+    for kind in [SolverKind::Newton, SolverKind::Direct] {
+        let shape = ContactShape::new(plates(0.3, 0.05), kind).unwrap();
+        let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+        assert!((state.forces.total_normal_force() - 100.0).abs() < 1e-7);
+        let push: f64 = state.forces.tangential.iter().map(|force| force[0]).sum();
+        assert!((push + 5.0).abs() < 1e-7, "{push}");
+        let shape = ContactShape::new(plates(0.3, 0.3003), kind).unwrap();
+        let error = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap_err().to_string();
+        assert!(error.contains("no equilibrium") && error.contains("translation along x1"), "{error}");
+    }
+}
+
+#[test]
+fn unloaded_free_motions_are_grounded() {
+    // Without friction nothing holds the upper plate's translations and its rotation about x₃; no load drives them.
+    for kind in [SolverKind::Newton, SolverKind::Direct] {
+        let shape = ContactShape::new(plates(0.0, 0.0), kind).unwrap();
+        let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+        for (force, point) in state.forces.normal.iter().zip(&shape.problem().boundary.points) {
+            assert!((force / point.area - 1.0).abs() < 1e-9, "{}", force / point.area);
+        }
+        let shape = ContactShape::new(plates(0.0, 0.01), kind).unwrap();
+        assert!(shape.solve(&shape.start(), None, Accuracy::TIGHTEST).is_err());
+    }
+}
+
+#[test]
+fn patch_test_uniform_pressure_with_edge_and_corner_weights() {
+    let mut scene = small(signorini().unwrap(), 6, 3);
+    scene.counter_surface = CounterSurface::Plane { height: 100.0 };
+    scene.lower.material = Material::new(1.1e5, 0.0).unwrap();
+    for kind in [SolverKind::Newton, SolverKind::Direct] {
+        let shape = ContactShape::new(scene.clone(), kind).unwrap();
+        let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+        for (force, point) in state.forces.normal.iter().zip(&shape.problem().boundary.points) {
+            assert!((force / point.area / 3000.0 - 1.0).abs() < 1e-11, "{kind:?} {}", force / point.area);
+        }
+        assert!(state.forces.status.iter().all(|status| *status == ContactStatus::Stick));
+    }
+}
+
+#[test]
+fn certificates_hold() {
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        let shape = ContactShape::new(small(scene, 6, 2), SolverKind::Newton).unwrap();
+        let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+        let residuals = state.forces.residuals;
+        for value in [residuals.equilibrium, residuals.complementarity, residuals.friction_cone, residuals.dissipation]
+        {
+            assert!(value < 1e-11, "{residuals:?}");
+        }
+    }
+}
+
+#[test]
+fn bad_scenes_are_refused_naming_the_field() {
+    let refused = |scene: Scene, text: &str| match ContactShape::new(scene, SolverKind::Newton) {
+        Err(error) => assert!(error.to_string().contains(text), "{error}"),
+        Ok(_) => panic!("{text} was accepted"),
+    };
+    refused(small(signorini().unwrap(), 0, 1), "mesh");
+    refused(small(signorini().unwrap(), 6, 4), "subdomains");
+    refused(Scene { friction: -0.1, ..signorini().unwrap() }, "friction");
+    refused(Scene { friction: f64::NAN, ..signorini().unwrap() }, "friction");
+    refused(Scene { control_points: [3, 3], ..signorini().unwrap() }, "degree");
+    assert!(matches!(Material::new(1.0, 0.5), Err(SceneError::OutOfRange { .. })));
+    assert!(matches!(Material::new(-1.0, 0.3), Err(SceneError::OutOfRange { .. })));
+}
+
+#[test]
+fn folded_shape_is_refused_naming_the_element() {
+    let problem = ContactProblem::new(small(signorini().unwrap(), 4, 1)).unwrap();
+    let mut controls = vec![100.0; 36];
+    controls[0] = -50.0;
+    match problem.blocks(&controls) {
+        Err(ContactError::InvertedElement { body: 1, i: 0, j: 0, .. }) => {}
+        other => panic!("{other:?}"),
+    }
+    let shape = ContactShape::new(small(signorini().unwrap(), 4, 1), SolverKind::Newton).unwrap();
+    assert!(shape.solve(&Vector::from_vec(controls), None, Accuracy::TIGHTEST).is_err());
+}

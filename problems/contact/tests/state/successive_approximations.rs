@@ -1,0 +1,151 @@
+//! The paper's path against the Newton path on small scenes: states, subgradients, step counts, limits.
+
+use contact::body::mesh::Face;
+use contact::equilibrium::{ContactForces, ContactProblem, Work};
+use contact::error::ContactError;
+use contact::qp::QpError;
+use contact::scene::{Scene, Support, hertz, signorini};
+use contact::tfeti::{
+    AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornSolver, TornState,
+};
+
+fn small(mut scene: Scene, mesh: usize, subdomains: usize, friction: f64) -> ContactProblem {
+    scene.mesh = [mesh; 3];
+    scene.subdomains = [subdomains; 3];
+    scene.friction = friction;
+    ContactProblem::new(scene).expect("valid scene")
+}
+
+/// A gently wavy surface around the start height.
+fn controls(problem: &ContactProblem) -> Vec<f64> {
+    let height = problem.scene.start_height;
+    (0..36).map(|index| height * (1.0 + 2e-3 * (2.3 * index as f64).sin())).collect()
+}
+
+struct Paper {
+    state: TornState,
+    forces: ContactForces,
+    work: Work,
+    counts: AugmentedLagrangianCounts,
+}
+
+fn paper(
+    solver: &TornSolver,
+    problem: &ContactProblem,
+    start: Option<&[f64]>,
+    settings: &AugmentedLagrangianSettings,
+) -> Result<Paper, ContactError> {
+    let mut counts = AugmentedLagrangianCounts::default();
+    let (state, forces, work) = solver.solve_by(problem, &controls(problem), |contact| {
+        let (solution, spent) = contact.solve_by_successive_approximations(start, settings)?;
+        counts = spent;
+        Ok(solution)
+    })?;
+    Ok(Paper { state, forces, work, counts })
+}
+
+/// Largest difference of the normal and tangential forces over the largest normal force.
+fn difference(a: &ContactForces, b: &ContactForces) -> f64 {
+    let largest = b.normal.iter().fold(0.0_f64, |largest, force| largest.max(force.abs()));
+    let normal = a.normal.iter().zip(&b.normal).map(|(a, b)| (a - b).abs());
+    let tangential = a.tangential.iter().flatten().zip(b.tangential.iter().flatten()).map(|(a, b)| (a - b).abs());
+    normal.chain(tangential).fold(0.0, f64::max) / largest
+}
+
+/// Solves by both paths to 1e-9 and compares forces, statuses and subgradients.
+fn agrees(problem: &ContactProblem, kind: PreconditionerKind, precondition: bool) -> Paper {
+    let solver = TornSolver::new(problem, kind).expect("torn");
+    let (newton_state, newton, _) = solver.solve(problem, &controls(problem), None, 1e-11).expect("Newton");
+    let settings = AugmentedLagrangianSettings { precondition, ..AugmentedLagrangianSettings::to(1e-9) };
+    let paper = paper(&solver, problem, None, &settings).expect("successive approximations");
+    // The largest error of a force is 5 to 70 times the residual.
+    assert!(difference(&paper.forces, &newton) < 1e-6, "{:.1e}", difference(&paper.forces, &newton));
+    assert_eq!(paper.forces.status, newton.status);
+    assert!(paper.forces.residuals.newton <= 1e-9 && paper.forces.residuals.equilibrium < 1e-10);
+    assert_eq!(paper.work.newton_steps, paper.counts.fixed_point_steps);
+    let direction: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
+    let derivative = |state| solver.sensitivities(problem, state, &direction, 1e-10).expect("adjoint").heights;
+    let (ours, theirs) = (derivative(&paper.state), derivative(&newton_state));
+    let size = theirs.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    assert!(ours.iter().zip(&theirs).all(|(a, b)| (a - b).abs() < 1e-5 * size));
+    paper
+}
+
+#[test]
+fn signorini_with_and_without_friction() {
+    let scene = || signorini().expect("preset");
+    let coulomb = agrees(&small(scene(), 6, 2, 0.3), PreconditionerKind::Dirichlet, true);
+    assert!((0.02..0.2).contains(&coulomb.counts.contraction), "{}", coulomb.counts.contraction);
+    assert!(coulomb.work.dual_operator_applications <= 130, "{}", coulomb.work.dual_operator_applications);
+    let frictionless = agrees(&small(scene(), 6, 2, 0.0), PreconditionerKind::Dirichlet, true);
+    assert_eq!((frictionless.counts.fixed_point_steps, frictionless.counts.contraction), (1, 0.0));
+    agrees(&small(scene(), 4, 1, 0.3), PreconditionerKind::Lumped, true);
+    agrees(&small(scene(), 4, 2, 0.3), PreconditionerKind::None, false);
+}
+
+#[test]
+fn two_bodies() {
+    let scene = || hertz().expect("preset");
+    agrees(&small(scene(), 4, 2, 0.3), PreconditionerKind::Dirichlet, true);
+    agrees(&small(scene(), 4, 1, 0.0), PreconditionerKind::Lumped, true);
+}
+
+#[test]
+fn grounded_motion_common_to_both_bodies() {
+    // Nothing holds the translation of both bodies along x₂: contact sees only their difference.
+    let mut scene = hertz().expect("preset");
+    scene.lower.supports.retain(|support: &Support| support.face != Face::X2Min);
+    if let Some(upper) = &mut scene.upper {
+        upper.body.supports.retain(|support| support.face != Face::X2Min);
+    }
+    let solved = agrees(&small(scene, 4, 2, 0.3), PreconditionerKind::Dirichlet, true);
+    assert!(solved.forces.counts().stick + solved.forces.counts().slip > 0);
+}
+
+#[test]
+fn warm_start_needs_fewer_products() {
+    let problem = small(signorini().expect("preset"), 6, 2, 0.3);
+    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).expect("torn");
+    let settings = AugmentedLagrangianSettings::to(1e-7);
+    let cold = paper(&solver, &problem, None, &settings).expect("cold");
+    let warm = paper(&solver, &problem, Some(cold.state.multipliers()), &settings).expect("warm");
+    let (cold_work, warm_work) = (cold.work.dual_operator_applications, warm.work.dual_operator_applications);
+    assert!(3 * warm_work < 2 * cold_work, "{warm_work} against {cold_work}");
+    assert!(difference(&warm.forces, &cold.forces) < 1e-4);
+}
+
+#[test]
+fn products_are_those_counted() {
+    let problem = small(signorini().expect("preset"), 4, 2, 0.3);
+    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).expect("torn");
+    let settings = AugmentedLagrangianSettings::to(1e-6);
+    let Paper { work, counts, .. } = paper(&solver, &problem, None, &settings).expect("solved");
+    let steps = counts.cg_steps + counts.expansion_steps + counts.proportioning_steps + counts.refreshed_gradients;
+    // Beside the steps: λ₀, five Lanczos steps, the bonded start (about four), the final balanced multipliers.
+    let rest = work.dual_operator_applications - steps;
+    assert!((8..=14).contains(&rest), "{rest}");
+}
+
+#[test]
+fn large_friction_still_contracts_on_this_scene() {
+    let problem = small(signorini().expect("preset"), 4, 2, 3.0);
+    agrees(&problem, PreconditionerKind::Dirichlet, true);
+}
+
+#[test]
+fn limits_end_in_typed_errors() {
+    let problem = small(signorini().expect("preset"), 4, 2, 0.3);
+    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).expect("torn");
+    let defaults = AugmentedLagrangianSettings::to(1e-9);
+    let fail = |settings| paper(&solver, &problem, None, &settings).map(|_| ()).expect_err("must fail");
+    match fail(AugmentedLagrangianSettings { max_fixed_point_steps: 2, ..defaults }) {
+        ContactError::NotConverged { solver: "successive approximations", history, .. } => assert_eq!(history.len(), 2),
+        other => panic!("{other}"),
+    }
+    let mut limited = defaults;
+    limited.qp.inner.max_products = 10;
+    assert!(matches!(fail(limited), ContactError::DualProblem(QpError::NotConverged { solver: "MPGP", .. })));
+    let mut wrong = defaults;
+    wrong.qp.eta = f64::NAN;
+    assert!(matches!(fail(wrong), ContactError::DualProblem(QpError::Setting { name: "eta", .. })));
+}

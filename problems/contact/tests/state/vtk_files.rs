@@ -1,0 +1,277 @@
+//! VTU and PVD files read back: by `vtkio` number by number, and what the writer refuses.
+
+use contact::body::elasticity::hex8;
+use contact::contact_shape::{ContactShape, SolverKind};
+use contact::cost::{PressureCost, PressureMeasure};
+use contact::equilibrium::ContactStatus;
+use contact::fields::{FieldState, Fields, FieldsError, vtk_files};
+use contact::scene::{Scene, hertz, signorini};
+use contact::vtk::{Array, Cell, Entry, UnstructuredGrid, Values, VtkError, collection, unstructured};
+use nonsmooth::{Accuracy, Cost, StateSolver};
+use roxmltree;
+use std::collections::HashMap;
+use vtkio::model::{Attribute, CellType, DataSet, Piece, VertexNumbers};
+
+/// One array as read: components per entry, all numbers.
+type Read = (u32, Vec<f64>);
+
+/// A grid as read.
+struct ReadGrid {
+    points: Vec<[f64; 3]>,
+    kinds: Vec<CellType>,
+    /// Points of every cell.
+    cells: Vec<Vec<usize>>,
+    point_data: HashMap<String, Read>,
+    cell_data: HashMap<String, Read>,
+}
+
+fn read(text: &str) -> ReadGrid {
+    let file = vtkio::Vtk::parse_xml(text.as_bytes()).unwrap();
+    let DataSet::UnstructuredGrid { mut pieces, .. } = file.data else { panic!("not an unstructured grid") };
+    assert_eq!(pieces.len(), 1);
+    let Some(Piece::Inline(piece)) = pieces.pop() else { panic!("no inline piece") };
+    let VertexNumbers::XML { connectivity, offsets } = piece.cells.cell_verts else { panic!("legacy cells") };
+    let starts = std::iter::once(&0).chain(&offsets);
+    let cell =
+        |(&start, &end): (&u64, &u64)| connectivity[start as usize..end as usize].iter().map(|&p| p as usize).collect();
+    let arrays = |attributes: Vec<Attribute>| {
+        let array = |attribute| {
+            let Attribute::DataArray(array) = attribute else { panic!("a field") };
+            (array.name.clone(), (array.elem.num_comp(), array.data.cast_into().unwrap()))
+        };
+        attributes.into_iter().map(array).collect()
+    };
+    ReadGrid {
+        points: piece.points.into_vec().unwrap().as_chunks::<3>().0.to_vec(),
+        cells: starts.zip(&offsets).map(cell).collect(),
+        kinds: piece.cells.types,
+        point_data: arrays(piece.data.point),
+        cell_data: arrays(piece.data.cell),
+    }
+}
+
+/// Fields of the flat start of a small scene, with sensitivities.
+fn fields(mut scene: Scene) -> Fields {
+    scene.mesh = [4, 6, 2];
+    scene.subdomains = [2, 3, 1];
+    let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
+    let control = shape.start();
+    let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
+    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
+    let (heights, _) = shape.height_sensitivity(&state, &cost.gradient(&control, &state).state).unwrap();
+    let mut fields = shape.fields(&state).unwrap();
+    fields.contact.sensitivity = Some(heights);
+    fields
+}
+
+fn files(fields: &Fields) -> HashMap<String, String> {
+    vtk_files(&[FieldState { time: 0.0, name: "start", fields }]).unwrap().into_iter().collect()
+}
+
+fn flat<const N: usize>(parts: impl IntoIterator<Item = [f64; N]>) -> Vec<f64> {
+    parts.into_iter().flatten().collect()
+}
+
+#[test]
+fn bodies_are_read_back_bit_by_bit() {
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        let fields = fields(scene);
+        let found = read(&files(&fields)["start_bodies.vtu"]);
+        let bodies = &fields.bodies;
+        let nodes: usize = bodies.iter().map(|body| body.block.grid.node_count()).sum();
+        let bricks: usize = bodies.iter().map(|body| body.block.grid.brick_count()).sum();
+        assert_eq!((nodes, bricks), (bodies.len() * 5 * 7 * 3, bodies.len() * 4 * 6 * 2));
+        assert_eq!((found.points.len(), found.cells.len()), (nodes, bricks));
+        assert!(found.kinds.iter().all(|&kind| kind == CellType::Hexahedron));
+        let expected = [
+            ("displacement", 3, flat(bodies.iter().flat_map(|body| body.displacement.clone()))),
+            ("von_mises_nodal", 1, bodies.iter().flat_map(|body| body.nodal_von_mises.clone()).collect()),
+        ];
+        assert_eq!(found.point_data.len(), expected.len());
+        for (name, components, values) in expected {
+            assert_eq!(found.point_data[name], (components, values), "{name}");
+        }
+        let number = |body: usize| vec![body as f64 + 1.0; bodies[body].block.grid.brick_count()];
+        let expected: [(&str, u32, Vec<f64>); 4] = [
+            ("body", 1, (0..bodies.len()).flat_map(number).collect()),
+            ("subdomain", 1, bodies.iter().flat_map(|body| body.subdomain.iter().map(|&s| s as f64)).collect()),
+            ("stress", 6, flat(bodies.iter().flat_map(|body| body.stress.clone()))),
+            ("von_mises", 1, bodies.iter().flat_map(|body| body.von_mises.clone()).collect()),
+        ];
+        assert_eq!(found.cell_data.len(), expected.len());
+        for (name, components, values) in expected {
+            assert_eq!(found.cell_data[name], (components, values), "{name}");
+        }
+        check_hexahedra(&found, &fields);
+    }
+}
+
+/// Every cell has the volume of its brick, positive in VTK's order of points: first face 0 1 2 3, second face 4 5 6 7 above it.
+fn check_hexahedra(found: &ReadGrid, fields: &Fields) {
+    let bricks = fields.bodies.iter().flat_map(|body| body.block.grid.bricks().map(|brick| body.block.brick(brick)));
+    let corner = |index: usize| [index >> 2 & 1, index >> 1 & 1, index & 1];
+    // Corners of the unit cube in VTK's order, from the definition of its hexahedron.
+    let order = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+    for (cell, nodes) in found.cells.iter().zip(bricks) {
+        let points: Vec<[f64; 3]> = cell.iter().map(|&point| found.points[point]).collect();
+        for (point, place) in points.iter().zip(order) {
+            let ours = (0..8).find(|&index| corner(index) == place).unwrap();
+            assert_eq!(*point, nodes[ours]);
+        }
+        // Vertical columns: base area times mean height.
+        let (lower, upper) = points.split_at(4);
+        let heights: f64 = lower.iter().zip(upper).map(|(below, above)| (above[2] - below[2]) / 4.0).sum();
+        let turn = |i: usize, j: usize| points[i][0] * points[j][1] - points[j][0] * points[i][1];
+        let area = 0.5 * (turn(0, 1) + turn(1, 2) + turn(2, 3) + turn(3, 0));
+        assert!(area > 0.0 && heights > 0.0);
+        assert!((area * heights / hex8::volume(&nodes) - 1.0).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn contact_boundary_is_read_back_bit_by_bit() {
+    for (friction, scene) in [(0.3, signorini().unwrap()), (0.0, signorini().unwrap()), (0.3, hertz().unwrap())] {
+        let fields = fields(Scene { friction, ..scene });
+        let contact = &fields.contact;
+        let found = read(&files(&fields)["start_contact.vtu"]);
+        assert_eq!(found.points, contact.position);
+        assert_eq!((found.points.len(), found.cells.len()), (5 * 7, 4 * 6));
+        assert!(found.kinds.iter().all(|&kind| kind == CellType::Quad));
+        let mut area = 0.0;
+        for cell in &found.cells {
+            let turn = |i: usize, j: usize| {
+                let (first, second) = (found.points[cell[i]], found.points[cell[j]]);
+                first[0] * second[1] - second[0] * first[1]
+            };
+            let part = 0.5 * (turn(0, 1) + turn(1, 2) + turn(2, 3) + turn(3, 0));
+            assert!(part > 0.0, "a normal points down");
+            area += part;
+        }
+        assert!((area / contact.area.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        let code = |status: &ContactStatus| match status {
+            ContactStatus::Open => 0.0,
+            ContactStatus::Stick => 1.0,
+            ContactStatus::Slip => 2.0,
+        };
+        let spatial = |pairs: &[[f64; 2]]| flat(pairs.iter().map(|pair| [pair[0], pair[1], 0.0]));
+        let mut expected = vec![
+            ("displacement", 3, flat(contact.displacement.clone())),
+            ("pressure", 1, contact.pressure.clone()),
+            ("status", 1, contact.status.iter().map(code).collect()),
+            ("area", 1, contact.area.clone()),
+            ("gap", 1, contact.gap.clone()),
+            ("remaining_gap", 1, contact.remaining_gap.clone()),
+            ("sensitivity", 1, contact.sensitivity.clone().unwrap()),
+        ];
+        if friction > 0.0 {
+            expected.push(("traction", 3, spatial(contact.traction.as_ref().unwrap())));
+            expected.push(("slip", 3, spatial(contact.slip.as_ref().unwrap())));
+        }
+        assert_eq!(found.point_data.len(), expected.len());
+        for (name, components, values) in expected {
+            assert_eq!(found.point_data[name], (components, values), "{name}");
+        }
+    }
+}
+
+#[test]
+fn the_list_names_every_file_with_its_time() {
+    let fields = fields(hertz().unwrap());
+    let states = [("start", 0.0), ("optimum", 1.0)].map(|(name, time)| FieldState { time, name, fields: &fields });
+    let files = vtk_files(&states).unwrap();
+    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let grids = ["start_bodies.vtu", "start_contact.vtu", "optimum_bodies.vtu", "optimum_contact.vtu"];
+    assert_eq!(names, [&grids[..], &["fields.pvd"]].concat());
+    let document = roxmltree::Document::parse(&files[4].1).unwrap();
+    let root = document.root_element();
+    assert_eq!((root.tag_name().name(), root.attribute("type")), ("VTKFile", Some("Collection")));
+    let sets = root.descendants().filter(|node| node.has_tag_name("DataSet"));
+    let found: Vec<[&str; 4]> =
+        sets.map(|set| ["timestep", "part", "name", "file"].map(|name| set.attribute(name).unwrap())).collect();
+    let expected = [
+        ["0", "0", "bodies", grids[0]],
+        ["0", "1", "contact", grids[1]],
+        ["1", "0", "bodies", grids[2]],
+        ["1", "1", "contact", grids[3]],
+    ];
+    assert_eq!(found, expected);
+}
+
+/// Two hexahedra's worth of nothing but names and numbers.
+fn small(name: &str, values: Values) -> UnstructuredGrid {
+    UnstructuredGrid {
+        description: "a < b & c".to_owned(),
+        points: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+        cells: vec![Cell::Quad([0, 1, 2, 3])],
+        point_data: vec![Array::new(name, values)],
+        cell_data: vec![],
+    }
+}
+
+#[test]
+fn names_are_escaped_and_extreme_numbers_survive() {
+    let name = "σ < \"µ\" & 'λ' > 0";
+    let values = vec![f64::MAX, -f64::MIN_POSITIVE, 5e-324, -0.0];
+    let text = unstructured(&small(name, Values::Scalars(values.clone()))).unwrap();
+    let found = read(&text);
+    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&found.point_data[name].1), bits(&values));
+    let document = roxmltree::Document::parse(&text).unwrap();
+    assert!(document.descendants().any(|node| node.attribute("Name") == Some(name)));
+    let entry = Entry { time: 0.1, part: 3, name: "a&b".to_owned(), file: "<'\">.vtu".to_owned() };
+    let text = collection(&[entry]).unwrap();
+    let document = roxmltree::Document::parse(&text).unwrap();
+    let set = document.descendants().find(|node| node.has_tag_name("DataSet")).unwrap();
+    assert_eq!(["name", "file", "timestep"].map(|name| set.attribute(name).unwrap()), ["a&b", "<'\">.vtu", "0.1"]);
+}
+
+#[test]
+fn data_that_readers_would_misread_are_refused() {
+    let scalars = |count| Values::Scalars(vec![1.0; count]);
+    let error = |grid: &UnstructuredGrid| unstructured(grid).unwrap_err();
+    assert_eq!(
+        error(&small("p", scalars(3))),
+        VtkError::WrongLength { array: "p".to_owned(), place: "points", expected: 4, found: 3 }
+    );
+    let mut grid = small("p", scalars(4));
+    grid.cell_data.push(Array::new("q", Values::Integers(vec![1, 2])));
+    assert_eq!(error(&grid), VtkError::WrongLength { array: "q".to_owned(), place: "cells", expected: 1, found: 2 });
+    let mut vectors = vec![[0.0; 3]; 4];
+    vectors[2][1] = f64::INFINITY;
+    assert_eq!(
+        error(&small("u", Values::Vectors(vectors))),
+        VtkError::NotFinite { array: "u".to_owned(), index: 7, value: f64::INFINITY }
+    );
+    let mut grid = small("p", scalars(4));
+    grid.points[3][0] = f64::NAN;
+    assert!(matches!(error(&grid), VtkError::NotFinite { array, index: 9, .. } if array == "Points"));
+    let mut grid = small("p", scalars(4));
+    grid.cells.push(Cell::Quad([0, 1, 2, 4]));
+    assert_eq!(error(&grid), VtkError::NoSuchPoint { cell: 1, point: 4, points: 4 });
+    let mut grid = small("p", scalars(4));
+    grid.point_data.push(Array::new("p", scalars(4)));
+    assert_eq!(error(&grid), VtkError::Twice { array: "p".to_owned(), place: "points" });
+    for name in ["", "a\nb", "\u{0}"] {
+        assert!(matches!(error(&small(name, scalars(4))), VtkError::Text { .. }), "{name:?}");
+    }
+    for description in ["a -- b", "ends with -", "bell \u{7}"] {
+        let grid = UnstructuredGrid { description: description.to_owned(), ..small("p", scalars(4)) };
+        assert!(matches!(error(&grid), VtkError::Text { .. }), "{description:?}");
+    }
+    let entry = Entry { time: f64::NAN, part: 0, name: "a".to_owned(), file: "b".to_owned() };
+    assert!(matches!(collection(&[entry]), Err(VtkError::NotFinite { index: 0, .. })));
+}
+
+#[test]
+fn states_need_names_of_files_and_finite_fields() {
+    let mut fields = fields(signorini().unwrap());
+    let state = |name| FieldState { time: 0.0, name, fields: &fields };
+    for name in ["", "a/b", "..", "ä", "a b"] {
+        let refused = vtk_files(&[state(name)]);
+        assert!(matches!(refused, Err(FieldsError::Name { index: 0, .. })), "{name}");
+    }
+    assert!(matches!(vtk_files(&[state("a"), state("a")]), Err(FieldsError::Name { index: 1, .. })));
+    fields.bodies[0].stress[5][2] = f64::NAN;
+    let error = vtk_files(&[FieldState { time: 0.0, name: "start", fields: &fields }]).unwrap_err();
+    assert_eq!(error.to_string(), "fields of state `start`: array `stress`: value 32 is NaN, allowed: finite numbers");
+}

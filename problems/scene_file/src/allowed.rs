@@ -1,0 +1,65 @@
+//! What a field may hold: as words for messages and tables, and as a test.
+
+use crate::schema::Node;
+use serde_json::Value;
+
+/// What is allowed at a place, in words.
+pub(super) fn words(node: &Node<'_>) -> String {
+    let unit = node.text("x-unit").filter(|unit| unit != "1").map_or_else(String::new, |unit| format!(" ({unit})"));
+    if let Some(items) = node.items() {
+        let bounds = [&node.inner["minItems"], &node.inner["maxItems"]].map(Value::as_u64);
+        let count = match bounds {
+            [Some(low), Some(high)] if low == high => format!("{low} entries"),
+            _ => "a list".to_owned(),
+        };
+        let one_of = if items.names().is_empty() { "" } else { "one of " };
+        return format!("{count}, each {one_of}{}{unit}", words(&items));
+    }
+    let names = node.names();
+    if !names.is_empty() {
+        return names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+    }
+    let forms = node.forms();
+    if !forms.is_empty() {
+        let names: Vec<String> = forms.iter().map(|(form, _)| format!("form = \"{form}\"")).collect();
+        return format!("a table with {}", names.join(" or "));
+    }
+    let kind = if node.is("integer") {
+        "an integer"
+    } else if node.is("number") {
+        "a finite number"
+    } else if node.is("boolean") {
+        "true or false"
+    } else if node.is("string") {
+        "a text"
+    } else {
+        "a table"
+    };
+    format!("{kind}{}{unit}", range(node))
+}
+
+/// The range of a number, in words.
+pub(super) fn range(node: &Node<'_>) -> String {
+    let bound =
+        |word: &str, sign: &str| node.keyword(word).and_then(Value::as_f64).map(|x| format!("{sign} {}", short(x)));
+    let bounds: Vec<String> =
+        [bound("exclusiveMinimum", ">"), bound("minimum", "≥"), bound("exclusiveMaximum", "<"), bound("maximum", "≤")]
+            .into_iter()
+            .flatten()
+            .collect();
+    if bounds.is_empty() { String::new() } else { format!(" {}", bounds.join(" and ")) }
+}
+
+fn short(value: f64) -> String {
+    if value.abs() >= 1e6 || (value != 0.0 && value.abs() < 1e-3) { format!("{value:e}") } else { value.to_string() }
+}
+
+/// Whether a number lies in the range of a place.
+pub(super) fn contains(node: &Node<'_>, value: f64) -> bool {
+    let bound = |word: &str| node.keyword(word).and_then(Value::as_f64);
+    value.is_finite()
+        && bound("minimum").is_none_or(|low| value >= low)
+        && bound("exclusiveMinimum").is_none_or(|low| value > low)
+        && bound("maximum").is_none_or(|high| value <= high)
+        && bound("exclusiveMaximum").is_none_or(|high| value < high)
+}

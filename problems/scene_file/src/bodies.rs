@@ -1,0 +1,167 @@
+//! Bodies of a scene file: material, supports, loads.
+
+use contact::body::elasticity::{Formulation, Material};
+use contact::body::mesh::Face;
+use contact::error::SceneError;
+use contact::scene::{BodyScene, Load, Support};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodySection {
+    /// Elastic constants.
+    pub material: MaterialSection,
+    /// Held faces; never the contact boundary.
+    #[serde(default)]
+    pub supports: Vec<SupportSection>,
+    /// Loaded faces; never the contact boundary.
+    #[serde(default)]
+    pub loads: Vec<LoadSection>,
+}
+
+/// The upper body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UpperSection {
+    /// Height of its flat top; must lie above the counter surface.
+    #[schemars(range(min = -1e9, max = 1e9), extend("x-unit" = "mm"))]
+    pub top: f64,
+    /// Elastic constants.
+    pub material: MaterialSection,
+    /// Held faces; never the contact boundary.
+    #[serde(default)]
+    pub supports: Vec<SupportSection>,
+    /// Loaded faces; never the contact boundary.
+    #[serde(default)]
+    pub loads: Vec<LoadSection>,
+}
+
+/// An isotropic elastic material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialSection {
+    /// Young's modulus E.
+    #[schemars(range(max = 1e15), extend("x-unit" = "MPa", "exclusiveMinimum" = 0.0))]
+    pub young_modulus: f64,
+    /// Poisson's ratio.
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]
+    pub poisson_ratio: f64,
+    /// Bricks: `mean-dilatation` against locking of nearly incompressible materials.
+    #[serde(default)]
+    pub formulation: FormulationName,
+}
+
+/// Treatment of the volume change in a brick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are the meaning")]
+pub enum FormulationName {
+    #[default]
+    Standard,
+    MeanDilatation,
+}
+
+impl From<FormulationName> for Formulation {
+    fn from(name: FormulationName) -> Self {
+        match name {
+            FormulationName::Standard => Self::Standard,
+            FormulationName::MeanDilatation => Self::MeanDilatation,
+        }
+    }
+}
+
+/// Displacements held at zero on a face.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SupportSection {
+    /// The face.
+    pub face: FaceName,
+    /// Displacement components that are zero there; u3 only on the face opposite to the contact boundary.
+    pub held: Vec<Component>,
+}
+
+/// A constant traction on a face.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LoadSection {
+    /// The face.
+    pub face: FaceName,
+    /// Traction along x1, x2, x3.
+    #[schemars(inner(range(min = -1e15, max = 1e15)), extend("x-unit" = "MPa"))]
+    pub traction: [f64; 3],
+}
+
+/// A face of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are the meaning")]
+pub enum FaceName {
+    X1Min,
+    X1Max,
+    X2Min,
+    X2Max,
+    Bottom,
+    Top,
+}
+
+/// A displacement component.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are the meaning")]
+pub enum Component {
+    U1,
+    U2,
+    U3,
+}
+
+impl From<FaceName> for Face {
+    fn from(name: FaceName) -> Self {
+        match name {
+            FaceName::X1Min => Self::X1Min,
+            FaceName::X1Max => Self::X1Max,
+            FaceName::X2Min => Self::X2Min,
+            FaceName::X2Max => Self::X2Max,
+            FaceName::Bottom => Self::Bottom,
+            FaceName::Top => Self::Top,
+        }
+    }
+}
+
+impl BodySection {
+    /// The body of a scene.
+    ///
+    /// # Errors
+    /// [`SceneError`] for elastic constants outside their range.
+    pub fn body(&self) -> Result<BodyScene, SceneError> {
+        body(&self.material, &self.supports, &self.loads)
+    }
+}
+
+impl UpperSection {
+    /// The body of a scene.
+    ///
+    /// # Errors
+    /// [`SceneError`] for elastic constants outside their range.
+    pub fn body(&self) -> Result<BodyScene, SceneError> {
+        body(&self.material, &self.supports, &self.loads)
+    }
+}
+
+fn body(
+    material: &MaterialSection,
+    supports: &[SupportSection],
+    loads: &[LoadSection],
+) -> Result<BodyScene, SceneError> {
+    let support = |section: &SupportSection| Support {
+        face: section.face.into(),
+        components: [Component::U1, Component::U2, Component::U3].map(|component| section.held.contains(&component)),
+    };
+    Ok(BodyScene {
+        material: Material::new(material.young_modulus, material.poisson_ratio)?
+            .with_formulation(material.formulation.into()),
+        supports: supports.iter().map(support).collect(),
+        loads: loads.iter().map(|load| Load { face: load.face.into(), traction: load.traction }).collect(),
+    })
+}

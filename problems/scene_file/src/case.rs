@@ -1,0 +1,173 @@
+//! From a scene file to the scene and the settings of a run.
+
+use crate::grid_file;
+use crate::{
+    CounterSection, MeasureName, ObjectiveSection, OptimizerSection, OutputSection, SceneFile, SplineName,
+    StartSection, SurfaceSection, UpperSection,
+};
+use contact::contact_shape::SolverKind;
+use contact::cost::PressureMeasure;
+use contact::error::SceneError;
+use contact::scene::{CounterSurface, Scene, UpperBody};
+use contact::shape::{ShapeBounds, SplineKind};
+use contact::tfeti::PreconditionerKind;
+use std::path::Path;
+
+/// Exponent of the paper's norm.
+const DEFAULT_EXPONENT: f64 = 4.0;
+/// Degree of the paper's B-splines.
+const DEFAULT_DEGREE: usize = 3;
+
+/// A scene and how it is to be solved and optimized.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The scene.
+    pub scene: Scene,
+    /// Control heights at the start, mm, where they are not all the scene's start height.
+    pub start: Option<Vec<f64>>,
+    /// What is minimised.
+    pub measure: PressureMeasure,
+    /// The contact solver.
+    pub solver: SolverKind,
+    /// Its preconditioner.
+    pub preconditioner: PreconditionerKind,
+    /// Settings of the optimizer.
+    pub optimizer: OptimizerSection,
+    /// Outputs.
+    pub output: OutputSection,
+}
+
+impl Case {
+    /// Converts a scene file; files that it names are looked up beside it, in `folder`.
+    ///
+    /// # Errors
+    /// [`SceneError`] naming the field, its value and what is allowed.
+    pub fn new(file: &SceneFile, folder: &Path) -> Result<Self, SceneError> {
+        let control_points = file.surface.control_points;
+        let (start_height, start) = start(&file.surface.start, file.size, control_points, folder)?;
+        let body = |upper: &UpperSection| upper.body().map(|body| UpperBody { body, top: upper.top });
+        let scene = Scene {
+            name: file.name.clone(),
+            size: file.size,
+            mesh: file.mesh.bricks,
+            subdomains: file.mesh.subdomains.unwrap_or_else(|| file.mesh.bricks.map(default_subdomains)),
+            lower: file.lower.body()?,
+            upper: file.upper.as_ref().map(body).transpose()?,
+            counter_surface: counter_surface(&file.counter_surface, file.size, folder)?,
+            friction: file.friction,
+            surface: spline(&file.surface)?,
+            control_points,
+            bounds: ShapeBounds {
+                minimum_height: file.admissible.minimum_height,
+                slope: file.admissible.slope,
+                volume: file.admissible.volume,
+            },
+            start_height,
+        };
+        scene.validate()?;
+        check_continuation(&file.optimizer.continuation)?;
+        Ok(Self {
+            scene,
+            start,
+            measure: measure(&file.objective)?,
+            solver: file.solver.kind.into(),
+            preconditioner: file.solver.preconditioner.into(),
+            optimizer: file.optimizer.clone(),
+            output: file.output.clone(),
+        })
+    }
+}
+
+/// 2 subdomains per edge, or, where 2 does not divide the bricks, the divisor that leaves closest to six bricks.
+pub fn default_subdomains(bricks: usize) -> usize {
+    if bricks.is_multiple_of(2) {
+        return 2;
+    }
+    let divisors = (1..=bricks).filter(|count| bricks.is_multiple_of(*count));
+    let distance = |count: &usize| {
+        let bricks = (bricks / count) as f64 / 6.0;
+        bricks.max(1.0 / bricks)
+    };
+    divisors.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(1)
+}
+
+fn spline(section: &SurfaceSection) -> Result<SplineKind, SceneError> {
+    match (section.spline, section.degree) {
+        (SplineName::Bspline, degree) => Ok(SplineKind::BSpline(degree.unwrap_or(DEFAULT_DEGREE))),
+        (SplineName::Bezier, None) => Ok(SplineKind::Bezier),
+        (SplineName::Bezier, Some(degree)) => {
+            Err(SceneError::out_of_range("surface.degree", degree, "no degree with surface.spline = \"bezier\""))
+        }
+    }
+}
+
+fn measure(section: &ObjectiveSection) -> Result<PressureMeasure, SceneError> {
+    match (section.measure, section.exponent) {
+        (MeasureName::PressureNorm, exponent) => {
+            Ok(PressureMeasure::Norm { exponent: exponent.unwrap_or(DEFAULT_EXPONENT) })
+        }
+        (MeasureName::PeakPressure, None) => Ok(PressureMeasure::Peak),
+        (MeasureName::PeakPressure, Some(exponent)) => {
+            let allowed = "no exponent with the peak pressure, only with the pressure norm";
+            Err(SceneError::out_of_range("objective.exponent", exponent, allowed))
+        }
+    }
+}
+
+fn counter_surface(section: &CounterSection, size: [f64; 2], folder: &Path) -> Result<CounterSurface, SceneError> {
+    Ok(match section {
+        &CounterSection::Plane { height } => CounterSurface::Plane { height },
+        &CounterSection::Waves { base, first, second, period } => CounterSurface::Waves { base, first, second, period },
+        &CounterSection::Sphere { apex, radius } => CounterSurface::Sphere { apex, radius },
+        CounterSection::Grid { file } => CounterSurface::Grid(grid_file::read(&folder.join(file), size)?),
+    })
+}
+
+/// Start height of the scene, and the controls where they differ from it.
+fn start(
+    section: &StartSection,
+    size: [f64; 2],
+    counts: [usize; 2],
+    folder: &Path,
+) -> Result<(f64, Option<Vec<f64>>), SceneError> {
+    let sampled = |surface: CounterSurface| {
+        let along = |axis: usize, index: usize| size[axis] * index as f64 / (counts[axis].max(2) - 1) as f64;
+        let places = (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j)));
+        places.map(|(i, j)| surface.height(along(0, i), along(1, j))).collect::<Vec<f64>>()
+    };
+    let controls = match section {
+        &StartSection::Plane { height } => return Ok((height, None)),
+        &StartSection::Waves { base, first, second, period } => {
+            sampled(CounterSurface::Waves { base, first, second, period })
+        }
+        StartSection::Grid { file } => sampled(CounterSurface::Grid(grid_file::read(&folder.join(file), size)?)),
+        StartSection::Controls { heights } => heights.clone(),
+    };
+    let expected = counts[0] * counts[1];
+    if controls.len() != expected {
+        return Err(SceneError::WrongCount { what: "surface.start.heights".into(), expected, found: controls.len() });
+    }
+    let mean = controls.iter().sum::<f64>() / expected as f64;
+    Ok((mean, Some(controls)))
+}
+
+fn check_continuation(meshes: &[usize]) -> Result<(), SceneError> {
+    match meshes.windows(2).find(|pair| pair[1] <= pair[0]) {
+        Some(pair) => Err(SceneError::out_of_range(
+            "optimizer.continuation",
+            pair[1],
+            format!("growing meshes, here > {}", pair[0]),
+        )),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tearing_of_meshes_that_two_does_not_divide() {
+        assert_eq!([12, 35, 25, 9, 7, 13, 1].map(default_subdomains), [2, 5, 5, 1, 1, 1, 1]);
+    }
+}

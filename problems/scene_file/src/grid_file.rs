@@ -1,0 +1,34 @@
+//! Grids of heights from CSV files.
+
+use contact::error::SceneError;
+use contact::scene::HeightGrid;
+use std::path::Path;
+
+/// Longest edge of a grid, numbers.
+const LARGEST: usize = 2000;
+
+/// Heights of a file over a base of the given size: one line per x₁, one column per x₂.
+pub(super) fn read(file: &Path, size: [f64; 2]) -> Result<HeightGrid, SceneError> {
+    let failed = |reason: String| SceneError::File { path: file.display().to_string(), reason };
+    let text = std::fs::read_to_string(file).map_err(|error| failed(error.to_string()))?;
+    let mut heights = Vec::new();
+    let mut counts = [0, 0];
+    let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.trim().starts_with('#'));
+    for (number, line) in lines {
+        let numbers = line.split(',').map(|entry| entry.trim().parse::<f64>().ok().filter(|height| height.is_finite()));
+        let numbers: Option<Vec<f64>> = numbers.collect();
+        let Some(numbers) = numbers else {
+            return Err(failed(format!("line {}: expected finite numbers (mm) separated by commas", number + 1)));
+        };
+        if counts[0] > 0 && numbers.len() != counts[1] {
+            let (found, expected) = (numbers.len(), counts[1]);
+            return Err(failed(format!("line {}: {found} numbers, the lines above have {expected}", number + 1)));
+        }
+        counts = [counts[0] + 1, numbers.len()];
+        heights.extend(numbers);
+    }
+    if counts.iter().any(|count| !(2..=LARGEST).contains(count)) {
+        return Err(failed(format!("{} lines of {} numbers; allowed: 2 to {LARGEST} of each", counts[0], counts[1])));
+    }
+    HeightGrid::new(size, counts, heights)
+}

@@ -1,0 +1,111 @@
+//! Scenes as TOML files: the format, its checks, and its conversion to [`Scene`](contact::scene::Scene).
+//!
+//! ```text
+//! text → table → checked against the schema (unknown, missing, type, range) → [`SceneFile`] → [`Case`]
+//! ```
+//! The documentation of the fields below, with their units and ranges, is the only source of the JSON schema, of the checks,
+//! of the comments that `--print-scene` writes and of the table in `docs/scenes.md`.
+
+mod allowed;
+mod bodies;
+mod case;
+mod check;
+mod grid_file;
+mod print;
+mod schema;
+mod settings;
+mod surfaces;
+mod table;
+
+pub use bodies::{
+    BodySection, Component, FaceName, FormulationName, LoadSection, MaterialSection, SupportSection, UpperSection,
+};
+pub use case::{Case, default_subdomains};
+pub use schema::schema;
+pub use settings::{
+    AccuracyName, MeasureName, MeshSection, ObjectiveSection, OptimizerSection, OutputSection, PreconditionerName,
+    SolverName, SolverSection,
+};
+pub use surfaces::{AdmissibleSection, CounterSection, SplineName, StartSection, SurfaceSection};
+pub use table::field_table;
+
+use contact::error::SceneError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// A contact shape optimization problem: an elastic body with an optimized upper surface below a rigid obstacle or a second
+/// elastic body. Units: N, mm, MPa. x1, x2 span the base, x3 points upwards; the lower body stands on x3 = 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// Name for reports.
+    pub name: String,
+    /// Lengths a, b of the base of both bodies along x1, x2.
+    #[schemars(inner(range(min = 1e-9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub size: [f64; 2],
+    /// Coulomb friction coefficient between the lower body and what is above it.
+    #[schemars(range(min = 0.0, max = 1e6), extend("x-unit" = "1"))]
+    pub friction: f64,
+    /// Mesh and tearing into subdomains, the same for both bodies.
+    #[serde(default)]
+    pub mesh: MeshSection,
+    /// The body whose upper surface is optimized.
+    pub lower: BodySection,
+    /// The elastic body above; left out for a rigid obstacle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub upper: Option<UpperSection>,
+    /// The rigid obstacle, or the lower surface of the upper body.
+    pub counter_surface: CounterSection,
+    /// The optimized surface: its spline and its start.
+    pub surface: SurfaceSection,
+    /// The admissible set of control heights; they also stay below the counter surface.
+    pub admissible: AdmissibleSection,
+    /// What is minimised.
+    #[serde(default)]
+    pub objective: ObjectiveSection,
+    /// How the contact problem is solved.
+    #[serde(default)]
+    pub solver: SolverSection,
+    /// Settings of the bundle-trust method.
+    #[serde(default)]
+    pub optimizer: OptimizerSection,
+    /// What is written.
+    #[serde(default)]
+    pub output: OutputSection,
+}
+
+impl SceneFile {
+    /// Reads the text of a scene file; `name` stands in messages.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] for text that is no TOML, [`SceneError::UnknownField`] with the nearest name, and
+    /// [`SceneError::Field`] with the path of the field, its value and what is allowed.
+    pub fn parse(text: &str, name: &str) -> Result<Self, SceneError> {
+        let failed = |reason: String| SceneError::File { path: name.to_owned(), reason };
+        let table: toml::Table =
+            toml::from_str(text).map_err(|error| failed(error.to_string().trim_end().to_owned()))?;
+        check::check(&table, name)?;
+        // What the schema admits, the types admit too; a difference between the two is reported like a bad file.
+        table.try_into().map_err(|error: toml::de::Error| failed(error.to_string().trim_end().to_owned()))
+    }
+
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] for a file that cannot be read, and as [`parse`](Self::parse).
+    pub fn read(file: &Path) -> Result<Self, SceneError> {
+        let path = file.display().to_string();
+        let text = std::fs::read_to_string(file)
+            .map_err(|error| SceneError::File { path: path.clone(), reason: error.to_string() })?;
+        Self::parse(&text, &path)
+    }
+
+    /// The complete file with a comment on every field; reads back as the same scene.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] if a value has no form in TOML.
+    pub fn print(&self) -> Result<String, SceneError> {
+        print::print(self)
+    }
+}

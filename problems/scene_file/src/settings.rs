@@ -1,0 +1,174 @@
+//! Mesh, objective, solver, optimizer and outputs of a scene file.
+
+use contact::contact_shape::SolverKind;
+use contact::tfeti::PreconditionerKind;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Mesh and tearing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct MeshSection {
+    /// Bricks along x1, x2, x3 of each body.
+    #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
+    pub bricks: [usize; 3],
+    /// Subdomains along x1, x2, x3 of each body; divisors of the bricks. Default 2 per edge, or, where 2 does not divide the bricks, the divisor that leaves closest to 6 bricks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
+    pub subdomains: Option<[usize; 3]>,
+}
+
+impl Default for MeshSection {
+    fn default() -> Self {
+        Self { bricks: [12; 3], subdomains: None }
+    }
+}
+
+/// The objective.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ObjectiveSection {
+    /// Sum of pressures to a power, or the largest pressure.
+    pub measure: MeasureName,
+    /// Exponent p of the pressure norm. Default 4.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 64.0), extend("x-unit" = "1", "exclusiveMinimum" = 1.0))]
+    pub exponent: Option<f64>,
+}
+
+/// Which function of the contact pressure is minimised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeasureName {
+    /// Σσ^p.
+    #[default]
+    PressureNorm,
+    /// max σ.
+    PeakPressure,
+}
+
+/// The contact solver.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct SolverSection {
+    /// Newton on total FETI, direct condensation, or successive approximations on total FETI.
+    pub kind: SolverName,
+    /// Preconditioner of the dual operator of total FETI.
+    pub preconditioner: PreconditionerName,
+}
+
+/// Which contact solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "explained at the kinds they stand for")]
+pub enum SolverName {
+    #[default]
+    Newton,
+    Direct,
+    AugmentedLagrangian,
+}
+
+/// Which preconditioner.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "explained at the kinds they stand for")]
+pub enum PreconditionerName {
+    #[default]
+    Dirichlet,
+    Lumped,
+    None,
+}
+
+/// The optimizer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct OptimizerSection {
+    /// Largest number of evaluations of objective and subgradient, on every mesh.
+    #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
+    pub max_evaluations: usize,
+    /// Predicted decrease, relative to the objective, at which the run ends.
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))]
+    pub tolerance: f64,
+    /// Longest time of one run; the evaluation under way is finished. Default no limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e9), extend("x-unit" = "s", "exclusiveMinimum" = 0.0))]
+    pub time_limit: Option<f64>,
+    /// Length of the first step; a fifth of it on the later meshes of a continuation. Default half of the mean gap at the start.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
+    pub first_step: Option<f64>,
+    /// Largest number of cuts kept. Default controls + 15, at most 150.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 2, max = 10_000), extend("x-unit" = "1"))]
+    pub bundle_size: Option<usize>,
+    /// Accuracy asked of the contact solver: always the tightest, or as the predicted decrease demands.
+    pub accuracy: AccuracyName,
+    /// Growing meshes of a coarse-to-fine optimization, bricks along the axis that has most, the others in proportion; empty for one run on the mesh of the scene.
+    #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
+    pub continuation: Vec<usize>,
+}
+
+impl Default for OptimizerSection {
+    fn default() -> Self {
+        Self {
+            max_evaluations: 150,
+            tolerance: 1e-7,
+            time_limit: None,
+            first_step: None,
+            bundle_size: None,
+            accuracy: AccuracyName::Tightest,
+            continuation: vec![],
+        }
+    }
+}
+
+/// How accurately the objective is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "explained where the optimizer documents its accuracy")]
+pub enum AccuracyName {
+    #[default]
+    Tightest,
+    OnDemand,
+}
+
+/// The outputs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct OutputSection {
+    /// Folder for the files of a run, relative to where the program is started, made if it does not exist. Default none: nothing is written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub folder: Option<String>,
+    /// Whether pictures are drawn into the folder, as SVG and PNG.
+    pub pictures: bool,
+    /// Whether displacements, stresses and the contact boundary are written for ParaView.
+    pub vtk: bool,
+    /// Whether a report is written as a self-contained HTML page.
+    pub report: bool,
+}
+
+impl Default for OutputSection {
+    fn default() -> Self {
+        Self { folder: None, pictures: true, vtk: true, report: true }
+    }
+}
+
+impl From<SolverName> for SolverKind {
+    fn from(name: SolverName) -> Self {
+        match name {
+            SolverName::Newton => Self::Newton,
+            SolverName::Direct => Self::Direct,
+            SolverName::AugmentedLagrangian => Self::AugmentedLagrangian,
+        }
+    }
+}
+
+impl From<PreconditionerName> for PreconditionerKind {
+    fn from(name: PreconditionerName) -> Self {
+        match name {
+            PreconditionerName::Dirichlet => Self::Dirichlet,
+            PreconditionerName::Lumped => Self::Lumped,
+            PreconditionerName::None => Self::None,
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Scene files: the six examples, their printed form, and what is refused with which words.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+use contact::contact_shape::{ContactShape, SolverKind};
+use contact::scene;
+use nonsmooth::{Accuracy, StateSolver, Vector};
+use scene_file::{Case, SceneFile, field_table, schema};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+const SCENES: [&str; 6] = ["signorini", "hertz", "signorini_frictionless", "flat_punch", "tangential", "thin_layer"];
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
+}
+
+fn text(name: &str) -> String {
+    std::fs::read_to_string(folder().join(format!("{name}.toml"))).unwrap()
+}
+
+fn read(name: &str) -> SceneFile {
+    SceneFile::read(&folder().join(format!("{name}.toml"))).unwrap()
+}
+
+#[test]
+fn the_embedded_scenes_are_the_paper_s_examples() {
+    for (name, expected) in [("signorini", scene::signorini()), ("hertz", scene::hertz())] {
+        let case = Case::new(&read(name), &folder()).unwrap();
+        assert_eq!(case.scene, expected.unwrap());
+        assert_eq!(case.start, None);
+    }
+}
+
+#[test]
+fn a_printed_scene_reads_back_as_the_same_scene() {
+    for name in SCENES {
+        let file = read(name);
+        let printed = file.print().unwrap();
+        assert_eq!(SceneFile::parse(&printed, "printed").unwrap(), file);
+        let commented = printed.lines().filter(|line| line.starts_with('#')).count();
+        assert!(commented > 60, "{name}: {commented} lines of comment");
+    }
+}
+
+/// Both contact solvers, which share no equations, agree on every example, and the residuals certify the state.
+#[test]
+fn all_examples_are_solved_and_certified_on_a_coarse_mesh() {
+    for name in SCENES {
+        let mut file = read(name);
+        file.mesh.bricks = [4; 3];
+        file.mesh.subdomains = Some([2; 3]);
+        let case = Case::new(&file, &folder()).unwrap();
+        let solve = |kind| {
+            let shape = ContactShape::new(case.scene.clone(), kind).unwrap();
+            let controls = case.start.as_ref().map_or_else(|| shape.start(), |start| Vector::from_column_slice(start));
+            shape.problem().admissible.check(&controls).unwrap();
+            shape.solve(&controls, None, Accuracy::TIGHTEST).unwrap()
+        };
+        let (state, other) = (solve(SolverKind::Newton), solve(SolverKind::Direct));
+        let residuals = &state.forces.residuals;
+        let parts = [residuals.equilibrium, residuals.complementarity, residuals.friction_cone, residuals.dissipation];
+        assert!(parts.iter().all(|residual| *residual <= 1e-10), "{name}: {residuals:?}");
+        let largest = state.forces.normal.iter().copied().fold(0.0, f64::max);
+        assert!(largest > 0.0, "{name}: no contact");
+        for (a, b) in state.forces.normal.iter().zip(&other.forces.normal) {
+            assert!((a - b).abs() <= 1e-7 * largest, "{name}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn misspelt_fields_suggest_the_nearest_one() {
+    let scene = text("hertz");
+    for (right, wrong, path) in [
+        ("friction = 0.3", "frction = 0.3", "`frction` (did you mean `friction`?)"),
+        ("bricks =", "brick =", "`mesh.brick` (did you mean `bricks`?)"),
+        (
+            "young_modulus = 2.1e5",
+            "youngs_modulus = 2.1e5",
+            "`upper.material.youngs_modulus` (did you mean `young_modulus`?)",
+        ),
+        ("radius = 20.0", "raduis = 20.0", "`counter_surface.raduis` (did you mean `radius`?)"),
+        ("traction = [500.0", "tration = [500.0", "`upper.loads[1].tration` (did you mean `traction`?)"),
+        ("[admissible]", "[admisible]", "`admisible` (did you mean `admissible`?)"),
+        ("volume =", "zzz =", "`admissible.zzz`; allowed: minimum_height, slope, volume"),
+    ] {
+        assert!(scene.contains(right), "{right}");
+        let message = SceneFile::parse(&scene.replacen(right, wrong, 1), "my.toml").unwrap_err().to_string();
+        assert!(message.contains(path) && message.starts_with("my.toml: "), "{message}");
+    }
+}
+
+#[test]
+fn bad_values_are_refused_with_path_value_and_what_is_allowed() {
+    let scene = text("hertz");
+    for (right, wrong, words) in [
+        ("friction = 0.3", "friction = -0.5", ["friction = -0.5", "≥ 0"]),
+        ("friction = 0.3", "friction = nan", ["friction = nan", "finite"]),
+        ("friction = 0.3", "friction = \"much\"", ["friction = \"much\"", "number"]),
+        ("friction = 0.3\n", "", ["friction is missing", "≥ 0"]),
+        ("bricks = [12, 12, 12]", "bricks = [12, 12]", ["mesh.bricks = [12, 12]", "3 entries"]),
+        ("bricks = [12, 12, 12]", "bricks = [12, 0, 12]", ["mesh.bricks[1] = 0", "≥ 1"]),
+        ("bricks = [12, 12, 12]", "bricks = [12, 1.5, 12]", ["mesh.bricks[1] = 1.5", "integer"]),
+        ("poisson_ratio = 0.29", "poisson_ratio = 0.5", ["upper.material.poisson_ratio = 0.5", "< 0.5"]),
+        ("face = \"x1-max\"", "face = \"x1\"", ["upper.loads[1].face = \"x1\"", "\"x1-min\""]),
+        ("form = \"sphere\"", "form = \"ball\"", ["counter_surface.form = ball", "form = \"sphere\""]),
+        ("held = [\"u1\"]", "held = [\"u4\"]", ["lower.supports[0].held[0] = \"u4\"", "\"u3\""]),
+        ("radius = 20.0", "radius = 1e400", ["my.toml", "overflowed"]),
+        ("[mesh]", "[mesh", ["my.toml", "TOML parse error at line"]),
+    ] {
+        assert!(scene.contains(right), "{right}");
+        let message = SceneFile::parse(&scene.replacen(right, wrong, 1), "my.toml").unwrap_err().to_string();
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
+}
+
+#[test]
+fn contradictions_between_fields_are_refused() {
+    let scene = text("hertz");
+    for (right, wrong, word) in [
+        ("subdomains = [2, 2, 2]", "subdomains = [2, 5, 2]", "divisor of the 12 bricks"),
+        ("degree = 3", "degree = 6", "1 ≤ degree ≤ 5"),
+        ("spline = \"bspline\"", "spline = \"bezier\"", "surface.degree"),
+        ("face = \"bottom\"\nheld", "face = \"top\"\nheld", "any face but the contact boundary"),
+        ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"controls\", heights = [1.0, 2.0] }", "36"),
+        ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"grid\", file = \"none.csv\" }", "none.csv"),
+        ("[admissible]", "[objective]\nmeasure = \"peak-pressure\"\nexponent = 4\n[admissible]", "objective.exponent"),
+        ("[admissible]", "[optimizer]\ncontinuation = [6, 6]\n[admissible]", "optimizer.continuation"),
+    ] {
+        assert!(scene.contains(right), "{right}");
+        let file = SceneFile::parse(&scene.replacen(right, wrong, 1), "my.toml").unwrap();
+        let message = Case::new(&file, &folder()).unwrap_err().to_string();
+        assert!(message.contains(word), "{message}");
+    }
+}
+
+#[test]
+fn starts_of_all_forms_and_grids_from_files() {
+    let scratch = std::env::temp_dir().join(format!("nonsmooth-grid-{}", std::process::id()));
+    std::fs::create_dir_all(&scratch).unwrap();
+    std::fs::write(scratch.join("start.csv"), "# heights\n8.0, 9.0\n9.0, 10.0\n").unwrap();
+    for (form, first, last) in [
+        ("{ form = \"grid\", file = \"start.csv\" }", 8.0, 10.0),
+        ("{ form = \"waves\", base = 9.0, first = 0.5, second = 0.25, period = 10.0 }", 9.25, 9.25),
+    ] {
+        let scene = text("hertz").replacen("{ form = \"plane\", height = 10.0 }", form, 1);
+        let case = Case::new(&SceneFile::parse(&scene, "x").unwrap(), &scratch).unwrap();
+        let start = case.start.unwrap();
+        assert_eq!(start.len(), 36);
+        assert!((start[0] - first).abs() < 1e-12 && (start[35] - last).abs() < 1e-12, "{start:?}");
+    }
+    for (bad, word) in [("1,2\n3\n", "line 2"), ("1,x\n", "line 1"), ("", "2 to 2000"), ("1,inf\n2,3\n", "finite")] {
+        std::fs::write(scratch.join("start.csv"), bad).unwrap();
+        let form = "{ form = \"grid\", file = \"start.csv\" }";
+        let scene = text("hertz").replacen("{ form = \"plane\", height = 10.0 }", form, 1);
+        let message = Case::new(&SceneFile::parse(&scene, "x").unwrap(), &scratch).unwrap_err().to_string();
+        assert!(message.contains(word) && message.contains("start.csv"), "{message}");
+    }
+    std::fs::remove_dir_all(&scratch).unwrap();
+}
+
+/// The schema is the documentation: every field says what it means, every number its unit and its range.
+#[test]
+fn every_field_is_documented_with_unit_and_range() {
+    fn walk(place: &str, schema: &Value, visited: &mut usize) {
+        let Some(fields) = schema["properties"].as_object() else { return };
+        for (name, field) in fields {
+            let place = format!("{place}.{name}");
+            let table = ["$ref", "anyOf", "const"].iter().any(|word| field.get(word).is_some());
+            assert!(table || field["description"].is_string(), "{place} has no description");
+            let entry = field.get("items").unwrap_or(field);
+            let numeric = |kind: &Value| kind.to_string().contains("number") || kind.to_string().contains("integer");
+            if numeric(&entry["type"]) {
+                *visited += 1;
+                assert!(field["x-unit"].is_string(), "{place} has no unit");
+                let bounds = ["minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum"];
+                assert!(bounds.iter().any(|bound| entry.get(bound).is_some()), "{place} has no range");
+            }
+        }
+    }
+    let mut visited = 0;
+    walk("", schema(), &mut visited);
+    for (name, definition) in schema()["$defs"].as_object().unwrap() {
+        walk(name, definition, &mut visited);
+        for choice in definition["oneOf"].as_array().unwrap_or(&Vec::new()) {
+            walk(name, choice, &mut visited);
+        }
+    }
+    assert!(visited >= 30, "{visited} numeric fields");
+}
+
+#[test]
+fn the_documented_table_is_that_of_the_fields() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenes.md")).unwrap();
+    assert!(page.contains(&field_table()), "docs/scenes.md must hold this table:\n{}", field_table());
+}

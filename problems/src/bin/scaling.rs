@@ -1,7 +1,0 @@
-//! `scaling`: tables of work, time and memory of the contact solvers over growing meshes; see `--help`.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    problems::scaling::run()
-}

@@ -1,7 +1,0 @@
-//! `stability`: what the solvers and the optimizer do with stiff and extreme cases; see `--help`.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    problems::stability::run()
-}

@@ -1,0 +1,301 @@
+//! Options of the contact binaries: what to do, and which fields of the scene file they override.
+
+use crate::commands::Failure;
+use clap::{Parser, ValueEnum};
+use contact::error::SceneError;
+use contact::shape::SplineKind;
+use scene_file::{
+    FormulationName, MeasureName, PreconditionerName, SceneFile, SolverName, SplineName, default_subdomains,
+};
+use std::path::PathBuf;
+
+/// What to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Command {
+    /// Optimize the shape.
+    Optimize,
+    /// Optimize with and without friction, and look at both shapes with and without it (Example 5.3 of the paper).
+    Compare,
+    /// Objective, subgradient and certificates at one shape.
+    Evaluate,
+    /// Taylor test of the subgradient at one shape.
+    Verify,
+}
+
+/// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa).
+#[derive(Debug, Clone, PartialEq, Parser)]
+#[command(version, allow_negative_numbers = true)]
+pub struct Arguments {
+    /// What to do.
+    #[arg(value_enum, default_value_t = Command::Optimize)]
+    pub command: Command,
+    /// Bricks per edge of each body.
+    #[arg(long, value_name = "N")]
+    pub mesh: Option<usize>,
+    /// Subdomains per edge of each body; must divide the mesh. Default 2, or, where 2 does not divide the mesh, the divisor
+    /// that leaves closest to 6 bricks per subdomain and edge.
+    #[arg(long, value_name = "S")]
+    pub subdomains: Option<usize>,
+    /// Coulomb friction coefficient.
+    #[arg(long, value_name = "MU")]
+    pub friction: Option<f64>,
+    /// Spline of the contact surface.
+    #[arg(long, value_name = "bspline:DEGREE|bezier", value_parser = parse_surface)]
+    pub surface: Option<SplineKind>,
+    /// Control points along x1 and x2.
+    #[arg(long, value_name = "N1xN2", value_parser = parse_counts)]
+    pub control_points: Option<[usize; 2]>,
+    /// Poisson's ratio of the lower body.
+    #[arg(long, value_name = "NU")]
+    pub poisson_ratio: Option<f64>,
+    /// Young's modulus of the lower body, MPa.
+    #[arg(long, value_name = "E")]
+    pub young_modulus: Option<f64>,
+    /// How bricks of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials.
+    #[arg(long, value_parser = parse_formulation, value_name = "standard|mean-dilatation")]
+    pub formulation: Option<FormulationName>,
+    /// Factor on all loads (negative: reversed).
+    #[arg(long, value_name = "F")]
+    pub load_factor: Option<f64>,
+    /// Contact solver.
+    #[arg(long, value_parser = parse_solver, value_name = "newton|direct|augmented-lagrangian")]
+    pub solver: Option<SolverName>,
+    /// Preconditioner of the dual operator.
+    #[arg(long, value_parser = parse_preconditioner, value_name = "dirichlet|lumped|none")]
+    pub preconditioner: Option<PreconditionerName>,
+    /// What is minimised.
+    #[arg(long, value_enum)]
+    pub objective: Option<MeasureName>,
+    /// Exponent p of the pressure norm.
+    #[arg(long, value_name = "P")]
+    pub exponent: Option<f64>,
+    /// Control heights to evaluate or verify at: a JSON array, row major, index i*n2 + j with i along x1.
+    #[arg(long, value_name = "FILE")]
+    pub controls: Option<PathBuf>,
+    /// Control heights to start the optimization from.
+    #[arg(long, value_name = "FILE")]
+    pub start_controls: Option<PathBuf>,
+    /// Largest number of evaluations of the optimization.
+    #[arg(long, value_name = "K")]
+    pub max_evaluations: Option<usize>,
+    /// Longest time of this run in seconds; the evaluation under way is finished.
+    #[arg(long, value_name = "SECONDS")]
+    pub time_limit: Option<f64>,
+    /// Optimize on growing meshes with so many bricks per edge, each starting from the last optimum.
+    #[arg(long, value_name = "N1,N2,...", value_delimiter = ',')]
+    pub continuation: Option<Vec<usize>>,
+    /// Folder for the report, controls, history and pressures; an optimization can be resumed from there.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --json only).
+    #[arg(long, value_name = "DIR")]
+    pub resume: Option<PathBuf>,
+    /// Threads for the work on subdomains.
+    #[arg(long, value_name = "T")]
+    pub threads: Option<usize>,
+    /// With evaluate: contraction factor and condition at the state (costs some ten adjoint solves; not done unless asked).
+    #[arg(long)]
+    pub diagnose: bool,
+    /// Print one JSON object on stdout.
+    #[arg(long)]
+    pub json: bool,
+    /// Print the scene, options included, as a complete commented file, and do nothing else.
+    #[arg(long)]
+    pub print_scene: bool,
+    /// Print the JSON schema of scene files for editors, and do nothing else.
+    #[arg(long)]
+    pub print_schema: bool,
+}
+
+impl Arguments {
+    /// Refuses options that do not go together.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the option.
+    pub fn check(&self) -> Result<(), Failure> {
+        let optimizing = matches!(self.command, Command::Optimize | Command::Compare);
+        let wrong = |option: &str, allowed: &str| Err(Failure::Input(format!("{option} is allowed {allowed}")));
+        if optimizing && self.controls.is_some() {
+            return wrong("--controls", "with evaluate and verify only (optimize and compare take --start-controls)");
+        }
+        if !optimizing && self.start_controls.is_some() {
+            return wrong("--start-controls", "with optimize and compare only (evaluate and verify take --controls)");
+        }
+        if !optimizing && self.max_evaluations.is_some() {
+            return wrong("--max-evaluations", "with optimize and compare only");
+        }
+        if self.diagnose && self.command != Command::Evaluate {
+            return wrong("--diagnose", "with evaluate only");
+        }
+        for (option, given) in [
+            ("--time-limit", self.time_limit.is_some()),
+            ("--continuation", self.continuation.is_some()),
+            ("--resume", self.resume.is_some()),
+        ] {
+            if !optimizing && given {
+                return wrong(option, "with optimize and compare only");
+            }
+        }
+        if let Some(limit) = self.time_limit.filter(|limit| !(*limit > 0.0 && limit.is_finite())) {
+            return Err(SceneError::out_of_range("--time-limit", limit, "a finite number of seconds > 0").into());
+        }
+        if let Some(bricks) = self.continuation.iter().flatten().find(|bricks| !(1..=400).contains(*bricks)) {
+            return Err(SceneError::out_of_range("--continuation", bricks, "meshes of 1 to 400 bricks per edge").into());
+        }
+        if self.continuation.is_some() && self.mesh.is_some() {
+            return wrong("--mesh", "without --continuation, which names the meshes");
+        }
+        for (option, path) in [("--out", &self.out), ("--resume", &self.resume)] {
+            if let Some(path) = path.as_ref().filter(|path| path.to_str().is_none()) {
+                return Err(SceneError::out_of_range(option, path.display(), "a name in Unicode").into());
+            }
+        }
+        self.check_resume()?;
+        if self.max_evaluations == Some(0) {
+            return Err(SceneError::out_of_range("--max-evaluations", 0, "a number ≥ 1").into());
+        }
+        if self.threads == Some(0) {
+            return Err(SceneError::out_of_range("--threads", 0, "a number ≥ 1").into());
+        }
+        if self.exponent.is_some() && self.objective == Some(MeasureName::PeakPressure) {
+            return wrong("--exponent", "with --objective pressure-norm only");
+        }
+        Ok(())
+    }
+
+    /// A run that is continued has its scene and its options from its folder, apart from limits.
+    fn check_resume(&self) -> Result<(), Failure> {
+        if self.resume.is_none() {
+            return Ok(());
+        }
+        let Ok(nothing) = Self::try_parse_from(["resume"]) else { return Ok(()) };
+        let allowed = Self {
+            command: self.command,
+            resume: self.resume.clone(),
+            max_evaluations: self.max_evaluations,
+            time_limit: self.time_limit,
+            threads: self.threads,
+            json: self.json,
+            ..nothing
+        };
+        if *self == allowed {
+            return Ok(());
+        }
+        let allowed = "with --max-evaluations, --time-limit, --threads, --json only: all else is in the folder";
+        Err(Failure::Input(format!("--resume is allowed {allowed}")))
+    }
+
+    /// The scene file with the options put in; checked when it becomes a case.
+    pub fn apply(&self, mut file: SceneFile) -> SceneFile {
+        let mesh = &mut file.mesh;
+        if let Some(bricks) = self.mesh {
+            mesh.bricks = [bricks; 3];
+            // Subdomains of the file that do not fit the new mesh give way to those that do.
+            let fits = |counts: [usize; 3]| counts.iter().all(|&count| count > 0 && bricks % count == 0);
+            mesh.subdomains =
+                Some(mesh.subdomains.filter(|&counts| fits(counts)).unwrap_or([default_subdomains(bricks); 3]));
+        }
+        mesh.subdomains = self.subdomains.map(|count| [count; 3]).or(mesh.subdomains);
+        file.friction = self.friction.unwrap_or(file.friction);
+        if let Some(kind) = self.surface {
+            (file.surface.spline, file.surface.degree) = match kind {
+                SplineKind::BSpline(degree) => (SplineName::Bspline, Some(degree)),
+                SplineKind::Bezier => (SplineName::Bezier, None),
+            };
+        }
+        file.surface.control_points = self.control_points.unwrap_or(file.surface.control_points);
+        let material = &mut file.lower.material;
+        material.young_modulus = self.young_modulus.unwrap_or(material.young_modulus);
+        material.poisson_ratio = self.poisson_ratio.unwrap_or(material.poisson_ratio);
+        if let Some(formulation) = self.formulation {
+            let upper = file.upper.iter_mut().map(|upper| &mut upper.material);
+            std::iter::once(&mut file.lower.material).chain(upper).for_each(|m| m.formulation = formulation);
+        }
+        if let Some(factor) = self.load_factor {
+            let upper = file.upper.iter_mut().flat_map(|upper| &mut upper.loads);
+            for load in file.lower.loads.iter_mut().chain(upper) {
+                load.traction = load.traction.map(|traction| factor * traction);
+            }
+        }
+        file.solver.kind = self.solver.unwrap_or(file.solver.kind);
+        file.solver.preconditioner = self.preconditioner.unwrap_or(file.solver.preconditioner);
+        if let Some(measure) = self.objective {
+            file.objective.measure = measure;
+            // The file's exponent belongs to the file's measure.
+            file.objective.exponent = None;
+        }
+        file.objective.exponent = self.exponent.or(file.objective.exponent);
+        file.optimizer.max_evaluations = self.max_evaluations.unwrap_or(file.optimizer.max_evaluations);
+        file.optimizer.time_limit = self.time_limit.or(file.optimizer.time_limit);
+        if let Some(meshes) = &self.continuation {
+            file.optimizer.continuation.clone_from(meshes);
+        }
+        if let Some(folder) = &self.out {
+            file.output.folder = Some(folder.display().to_string());
+        }
+        file
+    }
+}
+
+fn parse_surface(text: &str) -> Result<SplineKind, String> {
+    match text.split_once(':') {
+        None if text == "bezier" => Ok(SplineKind::Bezier),
+        Some(("bspline", degree)) => degree
+            .parse()
+            .map(SplineKind::BSpline)
+            .map_err(|_| format!("the degree {degree:?} is not a number; allowed: bspline:1, bspline:2, …")),
+        _ => Err("allowed: bspline:DEGREE or bezier".into()),
+    }
+}
+
+fn parse_counts(text: &str) -> Result<[usize; 2], String> {
+    let allowed = "allowed: two numbers from 2 to 40 such as 6x6".to_owned();
+    let (first, second) = text.split_once('x').ok_or_else(|| allowed.clone())?;
+    let counts = [first, second].map(|count| count.parse::<usize>().ok().filter(|count| (2..=40).contains(count)));
+    match counts {
+        [Some(first), Some(second)] => Ok([first, second]),
+        _ => Err(allowed),
+    }
+}
+
+fn parse_solver(text: &str) -> Result<SolverName, String> {
+    match text {
+        "newton" => Ok(SolverName::Newton),
+        "direct" => Ok(SolverName::Direct),
+        "augmented-lagrangian" => Ok(SolverName::AugmentedLagrangian),
+        _ => Err("allowed: newton, direct, augmented-lagrangian".into()),
+    }
+}
+
+fn parse_formulation(text: &str) -> Result<FormulationName, String> {
+    match text {
+        "standard" => Ok(FormulationName::Standard),
+        "mean-dilatation" => Ok(FormulationName::MeanDilatation),
+        _ => Err("allowed: standard, mean-dilatation".into()),
+    }
+}
+
+fn parse_preconditioner(text: &str) -> Result<PreconditionerName, String> {
+    match text {
+        "dirichlet" => Ok(PreconditionerName::Dirichlet),
+        "lumped" => Ok(PreconditionerName::Lumped),
+        "none" => Ok(PreconditionerName::None),
+        _ => Err("allowed: dirichlet, lumped, none".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surfaces_and_counts_are_parsed_or_refused() {
+        assert_eq!(parse_surface("bspline:3"), Ok(SplineKind::BSpline(3)));
+        assert_eq!(parse_surface("bezier"), Ok(SplineKind::Bezier));
+        assert!(parse_surface("spline").is_err() && parse_surface("bspline:x").is_err());
+        assert_eq!(parse_counts("6x8"), Ok([6, 8]));
+        for bad in ["6", "6x", "1x6", "6x41", "-6x6", "axb"] {
+            assert!(parse_counts(bad).is_err(), "{bad}");
+        }
+    }
+}

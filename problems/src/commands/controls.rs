@@ -1,0 +1,47 @@
+//! Control files: a JSON array of numbers.
+
+use contact::contact_shape::ContactShape;
+use contact::error::SceneError;
+use nonsmooth::{StateSolver, Vector};
+use scene_file::Case;
+use std::path::Path;
+
+/// The controls of a file, or those the case starts from; checked against the admissible set.
+///
+/// # Errors
+/// [`SceneError`] for an unreadable file, a wrong count, numbers that are not finite, controls outside U.
+pub fn load(shape: &ContactShape, case: &Case, file: Option<&Path>) -> Result<Vector, SceneError> {
+    let controls = match (file, &case.start) {
+        (Some(file), _) => parse(&read(file)?, &file.display().to_string(), shape.control_dimension())?,
+        (None, Some(controls)) => Vector::from_column_slice(controls),
+        (None, None) => shape.start(),
+    };
+    shape.problem().admissible.check(&controls)?;
+    Ok(controls)
+}
+
+fn read(file: &Path) -> Result<String, SceneError> {
+    std::fs::read_to_string(file)
+        .map_err(|error| SceneError::File { path: file.display().to_string(), reason: error.to_string() })
+}
+
+/// The controls in a text; `name` stands in messages.
+///
+/// # Errors
+/// [`SceneError`] for a text that is no JSON array, a wrong count, numbers that are not finite.
+pub fn parse(text: &str, name: &str, expected: usize) -> Result<Vector, SceneError> {
+    let values: Vec<Option<f64>> = serde_json::from_str(text).map_err(|error| SceneError::File {
+        path: name.to_owned(),
+        reason: format!("{error}; expected a JSON array of {expected} numbers"),
+    })?;
+    if values.len() != expected {
+        return Err(SceneError::WrongCount { what: format!("controls in {name}"), expected, found: values.len() });
+    }
+    let mut controls = Vector::zeros(expected);
+    for (index, value) in values.into_iter().enumerate() {
+        controls[index] = value.filter(|value| value.is_finite()).ok_or_else(|| {
+            SceneError::out_of_range(format!("control {index} in {name}"), "null", "a finite number (mm)")
+        })?;
+    }
+    Ok(controls)
+}

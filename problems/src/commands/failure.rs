@@ -1,0 +1,111 @@
+//! Why a binary fails, and with which exit status.
+
+use contact::error::{ContactError, SceneError};
+use nonsmooth::verify::VerifyError;
+use nonsmooth::{InputError, OptimizeError, OracleError};
+use std::process::ExitCode;
+use thiserror::Error;
+
+/// A failed command.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Failure {
+    /// Bad input: exit status 2.
+    #[error("{0}")]
+    Input(String),
+    /// The computation failed: exit status 1.
+    #[error("{0}")]
+    Computation(String),
+    /// There is a result for stdout, and something to say about it.
+    #[error("{reason}")]
+    Incomplete {
+        /// The result.
+        text: String,
+        /// What is to be said.
+        reason: String,
+        /// Exit status.
+        status: u8,
+    },
+}
+
+impl Failure {
+    /// A failed computation, for the reason that an error gives.
+    pub fn computation(error: impl std::fmt::Display) -> Self {
+        Self::Computation(error.to_string())
+    }
+
+    /// 2 for bad input, 1 for a failed computation, 130 for an interrupted one.
+    pub fn status(&self) -> u8 {
+        match self {
+            Self::Input(_) => 2,
+            Self::Computation(_) => 1,
+            Self::Incomplete { status, .. } => *status,
+        }
+    }
+
+    /// [`Failure::status`] for the operating system.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(self.status())
+    }
+
+    /// The same failure after something for stdout is there already: it is not lost.
+    #[must_use]
+    pub fn after(self, printed: &str) -> Self {
+        let status = self.status();
+        match self {
+            failure if printed.is_empty() => failure,
+            Self::Incomplete { text, reason, .. } => {
+                Self::Incomplete { text: format!("{printed}{text}"), reason, status }
+            }
+            other => Self::Incomplete { text: printed.to_owned(), reason: other.to_string(), status },
+        }
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<OracleError> for Failure {
+    fn from(error: OracleError) -> Self {
+        let text = error.to_string();
+        match error {
+            OracleError::OutsideDomain { .. } => Self::Input(text),
+            OracleError::Failed(source)
+                if source.is::<InputError>()
+                    || matches!(source.downcast_ref(), Some(ContactError::NoEquilibrium { .. })) =>
+            {
+                Self::Input(text)
+            }
+            _ => Self::Computation(text),
+        }
+    }
+}
+
+impl From<OptimizeError> for Failure {
+    fn from(error: OptimizeError) -> Self {
+        match error {
+            OptimizeError::Oracle(source) => source.into(),
+            OptimizeError::Input(_) | OptimizeError::Infeasible { .. } => Self::Input(error.to_string()),
+            _ => Self::Computation(error.to_string()),
+        }
+    }
+}
+
+impl From<VerifyError> for Failure {
+    fn from(error: VerifyError) -> Self {
+        match error {
+            VerifyError::Input(error) => error.into(),
+            VerifyError::Oracle(error) => error.into(),
+            _ => Self::Computation(error.to_string()),
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The folder of a run: what was asked for, so that the run can be continued from the folder alone.
+
+use crate::commands::long_run::journal::{Entry, Journal};
+use crate::commands::{Failure, Folder, Source, output};
+use contact::error::SceneError;
+use scene_file::{CounterSection, SceneFile, StartSection};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+const SCENE: &str = "scene.toml";
+const START: &str = "start.json";
+const REPORT: &str = "report.json";
+/// What would be wrong beside another run.
+const REPORTS: [&str; 5] = [REPORT, "report.html", "report.txt", "controls.json", "certificate.json"];
+
+/// Folders of the two runs of a comparison.
+pub const COMPARED: [&str; 2] = ["with_friction", "without_friction"];
+
+/// A folder in which a run is kept.
+#[derive(Debug)]
+pub struct RunFolder {
+    folder: Folder,
+    /// Whether the run continues what the folder holds.
+    resumed: bool,
+}
+
+impl RunFolder {
+    /// The scene of a run that is to be continued; `comparison`: of a run that has others in folders of its own.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] if the folder holds no run of this kind.
+    pub fn scene(folder: &Path, comparison: bool) -> Result<Source, SceneError> {
+        if !folder.join(SCENE).exists() || !folder.join(START).exists() {
+            let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
+            return Err(SceneError::File { path: folder.display().to_string(), reason });
+        }
+        let path = folder.display().to_string();
+        if COMPARED.iter().any(|part| folder.join(part).join(START).exists()) != comparison {
+            let found = if comparison {
+                "an optimization: continue it with optimize"
+            } else {
+                "a comparison: continue it with compare"
+            };
+            return Err(SceneError::File { path, reason: format!("holds {found} --resume") });
+        }
+        Ok(Source::file(&folder.join(SCENE))?.map(|mut scene| {
+            scene.output.folder = Some(path);
+            scene
+        }))
+    }
+
+    /// Whether a folder holds a run, ended or not.
+    pub fn is_one(folder: &Path) -> bool {
+        folder.join(START).exists() && folder.join(SCENE).exists()
+    }
+
+    /// Prepares the folder for a run; `bytes` must fit into it.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] if the folder cannot be written to, or holds another run that has not ended.
+    pub fn open(path: &str, bytes: u64, resumed: bool) -> Result<Self, SceneError> {
+        let folder = Folder::with_room(Path::new(path), bytes)?;
+        let this = Self { folder, resumed };
+        if !resumed && !this.journals()?.is_empty() && !this.path(REPORT).exists() {
+            let reason = "holds a run that has not ended; continue it with --resume, or remove the folder".to_owned();
+            return Err(SceneError::File { path: path.to_owned(), reason });
+        }
+        Ok(this)
+    }
+
+    /// Folders with a journal: this one, those of its stages, and those of the parts of a comparison.
+    fn journals(&self) -> Result<Vec<PathBuf>, SceneError> {
+        let failed = |error: std::io::Error| SceneError::File {
+            path: self.folder.path().display().to_string(),
+            reason: error.to_string(),
+        };
+        let mut found = vec![self.folder.path().to_owned()];
+        found.extend(COMPARED.iter().map(|part| self.path(part)).filter(|part| part.exists()));
+        for place in found.clone() {
+            for entry in std::fs::read_dir(place).map_err(failed)? {
+                let path = entry.map_err(failed)?.path();
+                if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("stage_")) {
+                    found.push(path);
+                }
+            }
+        }
+        found.retain(|path| Journal::exists(path));
+        Ok(found)
+    }
+
+    /// Control heights that the run starts from: those kept in the folder, or `given`, which are kept from now on.
+    ///
+    /// # Errors
+    /// [`Failure`] if a file cannot be written or read.
+    pub fn begin(&self, source: &Source, given: &[f64]) -> Result<Vec<f64>, Failure> {
+        // From here on a folder without report is that of a run that has not ended.
+        // What a continued run has found so far stays until its end replaces it.
+        self.remove_old(if self.resumed { &REPORTS[..1] } else { &REPORTS })?;
+        let mut scene = source.scene.clone();
+        // The folder is where the file lies; a file that named it would send other commands there.
+        scene.output.folder = None;
+        if self.resumed {
+            self.folder.replace(SCENE, &scene.print()?)?;
+            let path = self.path(START).display().to_string();
+            let failed = |reason: String| SceneError::File { path: path.clone(), reason };
+            let text = std::fs::read_to_string(self.path(START)).map_err(|error| failed(error.to_string()))?;
+            return Ok(crate::commands::parse_controls(&text, &path, given.len())?.as_slice().to_vec());
+        }
+        // No journal may ever stand beside a scene that is not its own.
+        let journals = self.journals()?;
+        if !journals.is_empty() {
+            eprintln!("warning: {}: the run that it held is replaced", self.folder.path().display());
+        }
+        for path in journals {
+            Journal::remove(&path)
+                .map_err(|error| SceneError::File { path: path.display().to_string(), reason: error.to_string() })?;
+        }
+        for part in COMPARED {
+            self.remove_old(&[SCENE, START, REPORT].map(|file| format!("{part}/{file}")))?;
+        }
+        self.keep_grids(&mut scene, source.folder())?;
+        self.folder.replace(START, &output::json(&given)?)?;
+        self.folder.replace(SCENE, &scene.print()?)?;
+        Ok(given.to_vec())
+    }
+
+    /// Removes files of an earlier run, as far as there are any.
+    fn remove_old(&self, names: &[impl AsRef<Path>]) -> Result<(), SceneError> {
+        for name in names {
+            let path = self.folder.path().join(name);
+            match std::fs::remove_file(&path) {
+                Err(error) if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                    return Err(SceneError::File { path: path.display().to_string(), reason: error.to_string() });
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Copies the grids that the scene names, and names the copies.
+    fn keep_grids(&self, scene: &mut SceneFile, from: &Path) -> Result<(), Failure> {
+        let copy = |file: &mut String, name: &str| {
+            let path = from.join(&*file);
+            let text = std::fs::read_to_string(&path)
+                .map_err(|error| SceneError::File { path: path.display().to_string(), reason: error.to_string() })?;
+            *file = name.to_owned();
+            self.folder.replace(name, &text)
+        };
+        if let CounterSection::Grid { file } = &mut scene.counter_surface {
+            copy(file, "counter_surface.csv")?;
+        }
+        if let StartSection::Grid { file } = &mut scene.surface.start {
+            copy(file, "start.csv")?;
+        }
+        Ok(())
+    }
+
+    /// The journal of the run or of one of its stages, with the evaluations that it holds already.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for a folder that cannot be written to or a journal that cannot be read.
+    pub fn journal(&self, stage: Option<&str>) -> Result<(PathBuf, Journal, Vec<Entry>), Failure> {
+        let path = stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage));
+        let failed = |error: std::io::Error| SceneError::File {
+            path: path.display().to_string(),
+            reason: format!("cannot write there: {error}"),
+        };
+        std::fs::create_dir_all(&path).map_err(failed)?;
+        if self.resumed && Journal::exists(&path) {
+            let (journal, entries) = Journal::open(&path)?;
+            return Ok((path, journal, entries));
+        }
+        let journal = Journal::create(&path).map_err(failed)?;
+        Ok((path, journal, vec![]))
+    }
+
+    /// Number of evaluations that the journal of the run, or of one of its stages, holds.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] for a journal that cannot be read.
+    pub fn evaluations(&self, stage: Option<&str>) -> Result<usize, SceneError> {
+        let path = stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage));
+        if Journal::exists(&path) { Journal::count(&path) } else { Ok(0) }
+    }
+
+    /// The folder for the files of the report.
+    pub fn folder(&self) -> &Folder {
+        &self.folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+}

@@ -1,0 +1,135 @@
+//! JSON, files, and numbers that several commands report.
+
+use crate::commands::long_run::RunFolder;
+use crate::commands::{ContactObjective, Failure};
+use contact::contact_shape::ContactState;
+use contact::error::SceneError;
+use figures::Figure;
+use serde::Serialize;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Pixels of a PNG per point of the SVG.
+const PNG_SCALE: f64 = 2.0;
+
+/// An output folder that was found writable before the work began.
+#[derive(Debug)]
+pub struct Folder(PathBuf);
+
+impl Folder {
+    /// Creates the folder and proves that it can be written to; none if none is asked for.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] with the system's reason.
+    pub fn prepare(path: Option<impl AsRef<Path>>) -> Result<Option<Self>, SceneError> {
+        path.map(|path| Self::with_room(path.as_ref(), 1)).transpose()
+    }
+
+    /// As [`prepare`](Self::prepare); refuses the folder of an optimization, whose report would be replaced.
+    ///
+    /// # Errors
+    /// As [`prepare`](Self::prepare).
+    pub fn for_results(path: Option<&str>) -> Result<Option<Self>, SceneError> {
+        match path.filter(|path| RunFolder::is_one(Path::new(path))) {
+            None => Self::prepare(path),
+            Some(path) => {
+                let reason = "holds an optimization, whose report would be replaced; --out takes another folder".into();
+                Err(SceneError::File { path: path.to_owned(), reason })
+            }
+        }
+    }
+
+    /// As [`prepare`](Self::prepare), for files of so many bytes.
+    ///
+    /// # Errors
+    /// [`SceneError::File`] with the system's reason.
+    pub fn with_room(path: &Path, bytes: u64) -> Result<Self, SceneError> {
+        let failed = |error: std::io::Error| SceneError::File {
+            path: path.display().to_string(),
+            reason: format!("cannot write {bytes} bytes there: {error}"),
+        };
+        std::fs::create_dir_all(path).map_err(failed)?;
+        let probe = path.join(format!(".nonsmooth-probe-{}", std::process::id()));
+        let written = std::fs::File::create(&probe).and_then(|mut file| {
+            let block = vec![0_u8; 1 << 16];
+            let mut left = bytes;
+            while left > 0 {
+                let now = left.min(block.len() as u64);
+                file.write_all(&block[..now as usize])?;
+                left -= now;
+            }
+            file.sync_all()
+        });
+        let removed = std::fs::remove_file(&probe);
+        written.and(removed).map_err(failed)?;
+        Ok(Self(path.to_owned()))
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// A folder in it, made if it does not exist.
+    ///
+    /// # Errors
+    /// [`Failure::Computation`] with the system's reason.
+    pub fn within(&self, name: &str) -> Result<Self, Failure> {
+        let path = self.0.join(name);
+        match std::fs::create_dir_all(&path) {
+            Ok(()) => Ok(Self(path)),
+            Err(error) => Err(Failure::Computation(format!("{}: {error}", path.display()))),
+        }
+    }
+
+    /// Writes one file.
+    ///
+    /// # Errors
+    /// [`Failure::Computation`] with the system's reason.
+    pub fn write(&self, name: &str, text: &str) -> Result<(), Failure> {
+        self.write_bytes(name, text.as_bytes())
+    }
+
+    /// Writes one file that is not text.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn write_bytes(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        let path = self.0.join(name);
+        std::fs::write(&path, bytes).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
+    }
+
+    /// Writes a figure as SVG and as PNG.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write); [`Failure::Computation`] if it cannot be drawn.
+    pub fn draw(&self, figure: &Figure) -> Result<(), Failure> {
+        self.write(&format!("{}.svg", figure.name), &figure.svg)?;
+        self.write_bytes(&format!("{}.png", figure.name), &figure.png(PNG_SCALE).map_err(Failure::computation)?)
+    }
+
+    /// Writes one file at once: it holds the old text or the new one, never a part.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn replace(&self, name: &str, text: &str) -> Result<(), Failure> {
+        let (path, temporary) = (self.0.join(name), self.0.join(format!("{name}.tmp")));
+        let written = std::fs::File::create(&temporary)
+            .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
+            .and_then(|()| std::fs::rename(&temporary, &path));
+        written.map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
+    }
+}
+
+/// One line-wrapped JSON object.
+///
+/// # Errors
+/// [`Failure::Computation`] if a value cannot be written.
+pub fn json(value: &(impl Serialize + ?Sized)) -> Result<String, Failure> {
+    serde_json::to_string_pretty(value).map(|text| text + "\n").map_err(|error| Failure::Computation(error.to_string()))
+}
+
+/// max σ, MPa.
+pub fn peak_pressure(objective: &ContactObjective, state: &ContactState) -> f64 {
+    objective.cost().pressures(state).into_iter().fold(f64::NEG_INFINITY, f64::max)
+}

@@ -1,0 +1,133 @@
+//! Error of the contact solvers against tolerance and seconds, with the estimate that they report beside the true error.
+
+use crate::accuracy::objective::{Method, Objective, norm};
+use crate::scaling::SceneName;
+use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
+use problems::commands::Failure;
+use serde::Serialize;
+use std::time::Instant;
+
+/// One solver at one tolerance; errors relative to the tightest state of direct condensation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AlgebraRow {
+    /// Name of the solver.
+    pub method: &'static str,
+    /// Relative accuracy of Θ asked for.
+    pub tolerance: f64,
+    /// Seconds of state and subgradient.
+    pub seconds: f64,
+    /// Products with the dual operator; 0 for direct condensation.
+    pub products: usize,
+    /// Relative residual reached.
+    pub residual: f64,
+    /// Largest error of a pressure over the largest pressure.
+    pub pressure: f64,
+    /// Error of Θ over Θ.
+    pub value: f64,
+    /// Bound of the error of Θ that the solver reports, over Θ.
+    pub bound: f64,
+    /// Error of Θ less the reported first order error, over Θ.
+    pub corrected: f64,
+    /// |ξ − ξ*| over |ξ*|.
+    pub subgradient: f64,
+}
+
+/// All solvers and tolerances on one scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AlgebraStudy {
+    /// The scene.
+    pub scene: SceneName,
+    /// Bricks per edge.
+    pub bricks: usize,
+    /// The rows, by solver, tolerances descending.
+    pub rows: Vec<AlgebraRow>,
+    /// Rows whose bound lies below the true error, rounding of the reference apart.
+    pub violations: usize,
+    /// Rows whose error lies above rounding, and the median of bound over error among them.
+    pub judged: usize,
+    /// See `judged`.
+    pub median_ratio: f64,
+}
+
+/// Relative rounding error of the reference.
+pub const ROUNDING: f64 = 1e-13;
+
+struct Exact {
+    pressures: Vec<f64>,
+    value: f64,
+    subgradient: Vector,
+}
+
+/// Runs all solvers.
+///
+/// # Errors
+/// [`Failure`] from a scene or a solver.
+pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<AlgebraStudy, Failure> {
+    let reference = Method::DIRECT.objective(scene, bricks, norm())?;
+    let control = bent(&reference);
+    let state = reference.solver().solve(&control, None, Accuracy::TIGHTEST)?;
+    let evaluation = reference.differentiate(&control, &state)?;
+    let exact = Exact {
+        pressures: reference.cost().pressures(&state),
+        value: evaluation.value,
+        subgradient: evaluation.subgradient,
+    };
+    let mut rows = Vec::new();
+    for method in Method::ALL {
+        let objective = method.objective(scene, bricks, norm())?;
+        // The first solve pays for what is kept from solve to solve.
+        objective.solver().solve(&control, None, Accuracy::relative(0.1)?)?;
+        for &exponent in exponents {
+            rows.push(row(&objective, method.name, &control, 10.0_f64.powi(-exponent), &exact)?);
+        }
+    }
+    let mut ratios: Vec<f64> =
+        rows.iter().filter(|row| row.value > ROUNDING).map(|row| row.bound / row.value).collect();
+    ratios.sort_by(f64::total_cmp);
+    Ok(AlgebraStudy {
+        scene,
+        bricks,
+        violations: rows.iter().filter(|row| row.value > row.bound + ROUNDING).count(),
+        judged: ratios.len(),
+        median_ratio: ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN),
+        rows,
+    })
+}
+
+/// A shape that is nothing special.
+pub fn bent(objective: &Objective) -> Vector {
+    const SEED: u64 = 5;
+    let start = objective.solver().start();
+    start.zip_map(&nonsmooth::verify::seeded_direction(start.len(), SEED), |height, bend| height * (0.98 + 0.01 * bend))
+}
+
+fn row(
+    objective: &Objective,
+    method: &'static str,
+    control: &Vector,
+    tolerance: f64,
+    exact: &Exact,
+) -> Result<AlgebraRow, Failure> {
+    let (shape, cost) = (objective.solver(), objective.cost());
+    let clock = Instant::now();
+    let state = shape.solve(control, None, Accuracy::relative(tolerance)?)?;
+    let gradient = cost.gradient(control, &state);
+    let (subgradient, error) = shape.pull_back(control, &state, &gradient.state)?;
+    let seconds = clock.elapsed().as_secs_f64();
+    let largest = exact.pressures.iter().copied().fold(0.0, f64::max);
+    let pressures = cost.pressures(&state);
+    let worst = pressures.iter().zip(&exact.pressures).map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max);
+    let value = cost.value(control, &state);
+    Ok(AlgebraRow {
+        method,
+        tolerance,
+        seconds,
+        products: state.work().dual_operator_applications,
+        residual: state.forces.residuals.newton,
+        pressure: worst / largest,
+        value: (value / exact.value - 1.0).abs(),
+        bound: error.bound / exact.value,
+        corrected: ((value - error.first_order) / exact.value - 1.0).abs(),
+        subgradient: (subgradient - &exact.subgradient).norm() / exact.subgradient.norm(),
+    })
+}

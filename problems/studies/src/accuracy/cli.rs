@@ -1,0 +1,127 @@
+//! The command line of the study.
+
+use crate::accuracy::extent::SCENES;
+use crate::accuracy::{Extent, Part, Report, algebra, csv, discretisation, manufactured_errors, optimization};
+use crate::accuracy::{pictures, subgradient, tables};
+use crate::scaling::SceneName;
+use clap::Parser;
+use problems::commands::{Failure, Folder, json};
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// Error against run time: discretisation, contact solvers, subgradient, optimization.
+#[derive(Debug, Clone, Parser)]
+#[command(version)]
+pub struct Arguments {
+    /// About two minutes (the default).
+    #[arg(long, conflicts_with_all = ["full", "smoke"])]
+    pub quick: bool,
+    /// Meshes up to 35 bricks per edge, optimization up to 24.
+    #[arg(long, conflicts_with = "smoke")]
+    pub full: bool,
+    /// A few seconds on the smallest meshes: shows that everything works, not what is true.
+    #[arg(long)]
+    pub smoke: bool,
+    /// One part only.
+    #[arg(long, value_enum)]
+    pub part: Option<Part>,
+    /// Print one JSON object on stdout.
+    #[arg(long, conflicts_with = "csv")]
+    pub json: bool,
+    /// Print all numbers as comma-separated values on stdout.
+    #[arg(long)]
+    pub csv: bool,
+    /// Folder for report.json, report.md, report.csv and the pictures (SVG, PNG).
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+impl Arguments {
+    fn extent(&self) -> Extent {
+        match (self.smoke, self.full) {
+            (true, _) => Extent::Smoke,
+            (_, true) => Extent::Full,
+            _ => Extent::Quick,
+        }
+    }
+
+    fn wants(&self, part: Part) -> bool {
+        self.part.is_none_or(|only| only == part)
+    }
+}
+
+/// Runs the binary.
+pub fn run() -> ExitCode {
+    let arguments = Arguments::parse();
+    match execute(&arguments) {
+        Ok(text) => {
+            // A reader that closes the pipe early has seen what it wanted.
+            let _ = std::io::stdout().write_all(text.as_bytes());
+            ExitCode::SUCCESS
+        }
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            failure.exit_code()
+        }
+    }
+}
+
+/// Measures, writes the folder, and returns what belongs on stdout.
+fn execute(arguments: &Arguments) -> Result<String, Failure> {
+    let folder = arguments.out.as_deref().map(|path| Folder::with_room(path, 1 << 20)).transpose()?;
+    let report = measure(arguments)?;
+    let (object, page, table) = (json(&report)?, tables::markdown(&report), csv::table(&report));
+    if let Some(folder) = folder {
+        folder.write("report.json", &object)?;
+        folder.write("report.md", &page)?;
+        folder.write("report.csv", &table)?;
+        for figure in pictures::all(&report).map_err(Failure::computation)? {
+            folder.draw(&figure)?;
+        }
+    }
+    Ok(if arguments.json {
+        object
+    } else if arguments.csv {
+        table
+    } else {
+        page
+    })
+}
+
+fn measure(arguments: &Arguments) -> Result<Report, Failure> {
+    let (clock, extent) = (Instant::now(), arguments.extent());
+    let machine_threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let mut report = Report { machine_threads, ..Report::default() };
+    let progress = |what: &str| eprintln!("{:>7.1} s  {what}", clock.elapsed().as_secs_f64());
+    if arguments.wants(Part::Discretisation) {
+        for &bricks in extent.meshes().iter().filter(|bricks| **bricks <= LARGEST_SMOOTH) {
+            let errors = manufactured_errors(bricks).map_err(|error| Failure::Computation(error.to_string()))?;
+            report.smooth.push(errors);
+        }
+        for scene in SCENES {
+            report.discretisation.push(discretisation::study(scene, extent.meshes())?);
+        }
+        progress("discretisation");
+    }
+    if arguments.wants(Part::Algebra) {
+        for scene in SCENES {
+            report.algebra.push(algebra::study(scene, extent.algebra_mesh(), &extent.exponents())?);
+        }
+        progress("contact solvers");
+    }
+    if arguments.wants(Part::Subgradient) {
+        report.subgradient = Some(subgradient::study(extent)?);
+        progress("subgradient");
+    }
+    if arguments.wants(Part::Optimization) {
+        report.optimization.push(optimization::study(SceneName::Signorini, extent)?);
+        progress("optimization");
+    }
+    report.seconds = clock.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// Largest mesh of the smooth solution: one sparse factor of the whole block.
+const LARGEST_SMOOTH: usize = 24;

@@ -1,0 +1,249 @@
+//! Θ(best) − Θ* against evaluations and seconds: always tight, accuracy on demand, coarse to fine; pressure norms against the
+//! true peak pressure.
+//!
+//! Work is counted in products with the dual operator of the finest mesh: one on a coarser mesh counts as its share of dofs. It
+//! leaves out factorisations, one set per evaluation.
+
+use crate::accuracy::extent::{Extent, case};
+use crate::accuracy::objective::{Method, Objective, norm};
+use crate::scaling::SceneName;
+use contact::contact_shape::ContactWarmStart;
+use contact::cost::PressureMeasure;
+use nonsmooth::{
+    Accuracy, AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Cost, NonsmoothObjective, OracleError,
+    Reparametrized, Request, StateSolver, Vector,
+};
+use problems::commands::{Failure, first_step, mean_height_coordinates};
+use serde::Serialize;
+use std::cell::RefCell;
+use std::time::Instant;
+
+/// What a course has come to.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Milestone {
+    /// Evaluations on all meshes so far.
+    pub evaluations: usize,
+    /// Products with the dual operator of the finest mesh, or what they are worth.
+    pub work: f64,
+    /// Seconds since the start.
+    pub seconds: f64,
+    /// Best Θ so far.
+    pub best: f64,
+}
+
+/// The course of one strategy on the finest mesh.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Course {
+    /// The strategy.
+    pub strategy: &'static str,
+    /// One milestone per evaluation on the finest mesh.
+    pub points: Vec<Milestone>,
+    /// Evaluations on the finest mesh.
+    pub evaluations: usize,
+    /// Evaluations on coarser meshes.
+    pub coarse_evaluations: usize,
+    /// Seconds, coarser meshes included.
+    pub seconds: f64,
+    /// Θ at the end, to the tightest accuracy.
+    pub value: f64,
+    /// First milestone at which (Θ(best) − Θ*)/Θ* is at most 1, 0.1 and 0.02.
+    pub reached: [Option<Milestone>; TARGETS.len()],
+}
+
+/// One measure of pressure as the objective.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PeakRow {
+    /// The measure.
+    pub measure: String,
+    /// Evaluations.
+    pub evaluations: usize,
+    /// Seconds.
+    pub seconds: f64,
+    /// Peak pressure at the end, MPa.
+    pub peak: f64,
+    /// Σσ⁴ at the end.
+    pub norm: f64,
+}
+
+/// All courses on one scene.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OptimizationStudy {
+    /// The scene.
+    pub scene: SceneName,
+    /// The meshes, coarse to fine.
+    pub levels: Vec<usize>,
+    /// Σσ⁴ at the start.
+    pub start: f64,
+    /// Lowest Σσ⁴ of all strategies, Θ*.
+    pub lowest: f64,
+    /// The strategies.
+    pub courses: Vec<Course>,
+    /// Mesh of the measures of pressure.
+    pub peak_mesh: usize,
+    /// Measures of pressure; the first row is the start.
+    pub peaks: Vec<PeakRow>,
+}
+
+/// Relative distances from Θ* whose price is reported.
+pub const TARGETS: [f64; 3] = [1.0, 0.1, 0.02];
+
+/// One run on one mesh.
+struct Run {
+    controls: Vector,
+    /// One milestone per evaluation of this run.
+    history: Vec<Milestone>,
+    seconds: f64,
+}
+
+/// Θ that counts its products with the dual operator, evaluation by evaluation.
+struct Metered<'a> {
+    objective: &'a Objective,
+    products: RefCell<Vec<usize>>,
+}
+
+impl NonsmoothObjective for Metered<'_> {
+    type WarmStart = ContactWarmStart;
+
+    fn dimension(&self) -> usize {
+        self.objective.dimension()
+    }
+
+    fn evaluate(&self, request: &Request<'_, ContactWarmStart>) -> Result<Answer<ContactWarmStart>, OracleError> {
+        let before = self.products.borrow().last().copied().unwrap_or(0);
+        // A failed evaluation has no count of its own.
+        self.products.borrow_mut().push(before);
+        let state = self.objective.solver().solve(request.point, request.warm_start, request.accuracy)?;
+        let evaluation = self.objective.differentiate(request.point, &state)?;
+        if let Some(last) = self.products.borrow_mut().last_mut() {
+            *last += state.work().dual_operator_applications;
+        }
+        Ok(Answer::Accurate(evaluation))
+    }
+}
+
+/// Runs all strategies on the levels of `extent`.
+///
+/// # Errors
+/// [`Failure`] from a scene, a solver or the optimizer.
+pub fn study(scene: SceneName, extent: Extent) -> Result<OptimizationStudy, Failure> {
+    let levels = extent.levels();
+    let fine = levels[levels.len() - 1];
+    let evaluations = extent.evaluations();
+    let objective = Method::DESCENT.objective(scene, fine, norm())?;
+    let start = objective.solver().start();
+    // The first solve pays for what is kept from solve to solve.
+    let before = value(&objective, &start)?;
+    let mut courses = Vec::new();
+    for (strategy, policy) in
+        [("always tight", AccuracyPolicy::Tightest), ("accuracy on demand", AccuracyPolicy::ON_DEMAND)]
+    {
+        let run = minimize(&objective, start.clone(), policy, evaluations)?;
+        courses.push(course(strategy, &objective, &run, Milestone::START)?);
+    }
+    let clock = Instant::now();
+    let (mut controls, mut passed) = (start.clone(), Milestone::START);
+    for &level in &levels[..levels.len() - 1] {
+        let objective = Method::DESCENT.objective(scene, level, norm())?;
+        let run = minimize(&objective, controls, AccuracyPolicy::ON_DEMAND, evaluations)?;
+        let products = run.history.last().map_or(0.0, |milestone| milestone.work);
+        passed.evaluations += run.history.len();
+        passed.work += products * torn_dofs(level) / torn_dofs(fine);
+        controls = run.controls;
+    }
+    passed.seconds = clock.elapsed().as_secs_f64();
+    let run = minimize(&objective, controls, AccuracyPolicy::ON_DEMAND, evaluations)?;
+    courses.push(course("coarse to fine, on demand", &objective, &run, passed)?);
+    let lowest = courses.iter().map(|course| course.value).fold(f64::INFINITY, f64::min);
+    for course in &mut courses {
+        course.reached =
+            TARGETS.map(|target| course.points.iter().find(|point| point.best <= (1.0 + target) * lowest).copied());
+    }
+    let peak_mesh = levels[1.min(levels.len() - 1)];
+    let peaks = peaks(scene, peak_mesh, evaluations)?;
+    Ok(OptimizationStudy { scene, levels: levels.to_vec(), start: before, lowest, courses, peak_mesh, peaks })
+}
+
+impl Milestone {
+    const START: Self = Self { evaluations: 0, work: 0.0, seconds: 0.0, best: f64::INFINITY };
+}
+
+/// Torn dofs per body, the size of a product with the dual operator.
+fn torn_dofs(mesh: usize) -> f64 {
+    let case = case(mesh);
+    (3 * case.subdomains.pow(3) * (case.ratio() + 1).pow(3)) as f64
+}
+
+fn value(objective: &Objective, control: &Vector) -> Result<f64, Failure> {
+    let state = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
+    Ok(objective.cost().value(control, &state))
+}
+
+fn peak(objective: &Objective, control: &Vector) -> Result<f64, Failure> {
+    let state = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
+    Ok(objective.cost().pressures(&state).into_iter().fold(f64::NEG_INFINITY, f64::max))
+}
+
+/// As the command `optimize` does it, with a policy of accuracy.
+fn minimize(
+    objective: &Objective,
+    start: Vector,
+    accuracy: AccuracyPolicy,
+    max_evaluations: usize,
+) -> Result<Run, Failure> {
+    let clock = Instant::now();
+    let first_step = first_step(objective, &start);
+    let config =
+        BundleTrustConfig { max_evaluations, accuracy, first_step: Some(first_step), ..BundleTrustConfig::default() };
+    let metered = Metered { objective, products: RefCell::default() };
+    let scaled = Reparametrized::new(&metered, mean_height_coordinates(&start, first_step))?;
+    let set = objective.solver().problem().admissible.polyhedron();
+    let report = BundleTrust::new(config)?
+        .constraints(scaled.transformed_set(set)?)
+        .minimize(&scaled, scaled.transformed(&start))?;
+    let products = metered.products.borrow();
+    let mut best = f64::INFINITY;
+    let milestones = report.history.iter().zip(products.iter()).enumerate().map(|(index, (record, &products))| {
+        best = best.min(record.center_value);
+        Milestone { evaluations: index + 1, work: products as f64, seconds: record.seconds, best }
+    });
+    Ok(Run {
+        controls: scaled.original(&report.solution),
+        history: milestones.collect(),
+        seconds: clock.elapsed().as_secs_f64(),
+    })
+}
+
+fn course(strategy: &'static str, objective: &Objective, run: &Run, passed: Milestone) -> Result<Course, Failure> {
+    let points = run.history.iter().map(|point| Milestone {
+        evaluations: passed.evaluations + point.evaluations,
+        work: passed.work + point.work,
+        seconds: passed.seconds + point.seconds,
+        best: point.best,
+    });
+    Ok(Course {
+        strategy,
+        points: points.collect(),
+        evaluations: run.history.len(),
+        coarse_evaluations: passed.evaluations,
+        seconds: passed.seconds + run.seconds,
+        value: value(objective, &run.controls)?,
+        reached: [None; TARGETS.len()],
+    })
+}
+
+/// Norms of several exponents and the peak pressure itself, each with the same number of evaluations.
+fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRow>, Failure> {
+    let judge = Method::DESCENT.objective(scene, mesh, norm())?;
+    let row = |measure: String, evaluations: usize, seconds: f64, controls: &Vector| -> Result<PeakRow, Failure> {
+        let (peak, norm) = (peak(&judge, controls)?, value(&judge, controls)?);
+        Ok(PeakRow { measure, evaluations, seconds, peak, norm })
+    };
+    let norms = [4.0, 8.0, 16.0].map(|exponent| (format!("Σσ^{exponent}"), PressureMeasure::Norm { exponent }));
+    let mut rows = vec![row("nothing (start)".into(), 0, 0.0, &judge.solver().start())?];
+    for (measure, kind) in norms.into_iter().chain([("max σ".to_owned(), PressureMeasure::Peak)]) {
+        let objective = Method::DESCENT.objective(scene, mesh, kind)?;
+        let run = minimize(&objective, objective.solver().start(), AccuracyPolicy::Tightest, evaluations)?;
+        rows.push(row(measure, run.history.len(), run.seconds, &run.controls)?);
+    }
+    Ok(rows)
+}

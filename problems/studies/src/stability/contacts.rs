@@ -1,0 +1,107 @@
+//! No contact, one node, all nodes; stick and slip everywhere; onset of sliding; gaps of every size.
+
+use crate::stability::Case;
+use crate::stability::contact::ContactCase;
+use crate::stability::scenes::{HELD, block, footed, pair, stacked};
+use contact::body::mesh::Face;
+use contact::equilibrium::{ContactForces, ContactProblem};
+use contact::scene::{CounterSurface, Load, Scene, Support};
+
+const GROUP: &str = "contact";
+
+/// Expects numbers of (open, stick, slip) nodes.
+pub fn counts(expected: [usize; 3]) -> impl Fn(&ContactProblem, &ContactForces) -> Result<String, String> {
+    move |_, forces| {
+        let found = forces.counts();
+        let found = [found.open, found.stick, found.slip];
+        let text = format!("{} open, {} stick, {} slip", found[0], found[1], found[2]);
+        if found == expected { Ok(text) } else { Err(format!("{text}; expected {expected:?}")) }
+    }
+}
+
+/// Expects uniform pressure and shear; how exactly they are met depends on the condition of the scene and is reported.
+pub fn uniform(pressure: f64, shear: f64) -> impl Fn(&ContactProblem, &ContactForces) -> Result<String, String> {
+    move |problem, forces| {
+        let mut error = 0.0_f64;
+        for (index, point) in problem.boundary.points.iter().enumerate() {
+            error = error.max((forces.normal[index] / point.area / pressure - 1.0).abs());
+            let traction = forces.tangential.get(index).map_or([0.0; 2], |force| force.map(|f| f / point.area));
+            error = error.max((traction[0] + shear).abs() / pressure).max(traction[1].abs() / pressure);
+        }
+        let text = format!("exact state within {error:.1e}");
+        if error < 1e-5 { Ok(text) } else { Err(text) }
+    }
+}
+
+pub fn cases() -> Vec<Case> {
+    let mut cases = vec![
+        ContactCase::new(footed(1.0)).check(counts([25, 0, 0])).case(GROUP, "no contact at all (held base)"),
+        ContactCase::new(footed(1e12)).check(counts([25, 0, 0])).case(GROUP, "gap of 1e12 mm (held base)"),
+        ContactCase::new(footed(1e-12)).case(GROUP, "gap of 1e-12 mm"),
+        ContactCase::new(footed(0.0)).case(GROUP, "gap of 0"),
+        ContactCase::new(stacked(0.3, 1.0, 0.0))
+            .check(uniform(1.0, 0.0))
+            .case(GROUP, "contact at all nodes, all stick"),
+    ];
+    let ball = |radius: f64, load: f64| {
+        pair().map(|mut scene| {
+            scene.counter_surface = CounterSurface::Sphere { apex: 10.0, radius };
+            scene.friction = 0.3;
+            if let Some(upper) = &mut scene.upper {
+                upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -load] }];
+            }
+            scene
+        })
+    };
+    cases.push(ContactCase::new(ball(20.0, 1.0)).check(counts([24, 1, 0])).case(GROUP, "contact at one node"));
+    // The lower block is drawn along x₁ below a plate that presses on it: every node slides.
+    let dragged = |friction: f64| {
+        stacked(friction, 1.0, 0.0).map(|mut scene| {
+            scene.lower.supports = vec![Support { face: Face::Bottom, components: HELD }];
+            if let Some(upper) = &mut scene.upper {
+                upper.body.supports = vec![Support { face: Face::X1Max, components: [true, true, false] }];
+                upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
+            }
+            scene.lower.loads = vec![
+                Load { face: Face::X1Min, traction: [0.02, 0.0, 0.0] },
+                Load { face: Face::X2Min, traction: [0.02, 0.0, 0.0] },
+                Load { face: Face::X2Max, traction: [0.02, 0.0, 0.0] },
+            ];
+            scene
+        })
+    };
+    cases.push(ContactCase::new(dragged(1e-3)).check(counts([0, 0, 25])).case(GROUP, "all slip"));
+    for share in [0.9, 0.999, 0.999_999] {
+        let shear = 0.3 * share;
+        let case = ContactCase::new(stacked(0.3, 1.0, shear)).check(uniform(1.0, shear));
+        cases.push(case.case(GROUP, format!("onset of sliding: tangential load {share} of the limit")));
+    }
+    for share in [1.001, 1.1] {
+        let case = ContactCase::new(stacked(0.3, 1.0, 0.3 * share)).refused("NoEquilibrium");
+        cases.push(case.case(GROUP, format!("onset of sliding: tangential load {share} of the limit")));
+    }
+    for (label, depth) in [("1 µm", 1e-3), ("1 mm", 1.0), ("half of the height", 5.0)] {
+        let scene = stacked(0.3, 1.0, 0.0)
+            .map(|scene| Scene { counter_surface: CounterSurface::Plane { height: 10.0 - depth }, ..scene });
+        cases
+            .push(ContactCase::new(scene).check(uniform(1.0, 0.0)).case(GROUP, format!("initial penetration {label}")));
+    }
+    let scene = block().map(|scene| Scene {
+        counter_surface: CounterSurface::Waves { base: 95.0, first: 1.0, second: 2.0, period: 100.0 },
+        ..scene
+    });
+    cases.push(ContactCase::new(scene).case(GROUP, "initial penetration of a wavy obstacle"));
+    for distance in [1e3, 1e6, 1e12] {
+        let scene = block().map(|scene| Scene {
+            counter_surface: CounterSurface::Waves { base: 100.0 + distance, first: 1.0, second: 2.0, period: 100.0 },
+            ..scene
+        });
+        let mut case = ContactCase::new(scene);
+        if distance > 1e9 {
+            case = case.refused("BeyondPrecision");
+        }
+        let case = case.case(GROUP, format!("obstacle {distance:e} mm away, held by contact only"));
+        cases.push(if distance > 1e9 { case.slow() } else { case });
+    }
+    cases
+}

@@ -1,0 +1,32 @@
+//! Friction from nothing to far beyond one; where contraction, and with it the proof of uniqueness, is lost.
+
+use crate::stability::Case;
+use crate::stability::contact::ContactCase;
+use crate::stability::scenes::{block, footed, pair, wavy};
+use contact::body::mesh::Face;
+use contact::scene::{Load, Scene};
+
+const GROUP: &str = "friction";
+
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for friction in [0.0, 1e-12, 0.3, 0.9, 1.5, 5.0] {
+        for (name, scene) in [("block", block()), ("two bodies", pair())] {
+            let scene = scene.map(|scene| Scene { friction, ..scene });
+            let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
+            let case = ContactCase::new(scene).at(controls).with_paper();
+            cases.push(case.case(GROUP, format!("𝓕 = {friction:?}, {name}")));
+        }
+    }
+    for friction in [0.3, 0.9, 1.5, 2.0, 3.0, 5.0] {
+        let scene = footed(0.0).map(|mut scene| {
+            scene.lower.loads = vec![
+                Load { face: Face::X1Max, traction: [40.0, 7.0, 20.0] },
+                Load { face: Face::X1Min, traction: [40.0, 0.0, 20.0] },
+            ];
+            Scene { friction, ..scene }
+        });
+        cases.push(ContactCase::new(scene).with_paper().case(GROUP, format!("𝓕 = {friction:?}, held base, pushed")));
+    }
+    cases
+}

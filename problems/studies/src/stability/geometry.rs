@@ -1,0 +1,57 @@
+//! Flat and tall bricks, slivers, shapes that nearly fold and one that does.
+
+use crate::stability::Case;
+use crate::stability::contact::ContactCase;
+use crate::stability::contacts::uniform;
+use crate::stability::scenes::{block, stacked};
+use contact::scene::CounterSurface;
+
+const GROUP: &str = "geometry";
+const FACTORS: &str =
+    "factors of floating subdomains of such bricks lose too many digits; condensed bodies do not float";
+
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for height in [1e-2, 0.1, 1.0, 100.0, 1e3, 1e4] {
+        let scene = stacked(0.3, 1.0, 0.05).map(|mut scene| {
+            scene.start_height = height;
+            scene.counter_surface = CounterSurface::Plane { height };
+            if let Some(upper) = &mut scene.upper {
+                upper.top = 2.0 * height;
+            }
+            scene
+        });
+        let mut case = ContactCase::new(scene).check(uniform(1.0, 0.05));
+        if height <= 0.1 || height >= 1e4 {
+            case = case.limit([Some("BeyondPrecision"), None], FACTORS);
+        }
+        let case = case.case(GROUP, format!("height to width {:e}", height / 10.0));
+        cases.push(if (1.0..=1e3).contains(&height) { case } else { case.slow() });
+    }
+    for (label, size) in [("1000 : 1 plan", [10.0, 1e4]), ("1 : 1000 plan", [10.0, 1e-2])] {
+        let scene = stacked(0.3, 1.0, 0.05).map(|scene| contact::scene::Scene { size, ..scene });
+        let case = ContactCase::new(scene).check(uniform(1.0, 0.05));
+        let case = case.limit([Some("BeyondPrecision"), None], FACTORS);
+        cases.push(case.case(GROUP, label).slow());
+    }
+    for (label, height) in [
+        ("one corner column of 1 % of the height", 1.0),
+        ("one corner column of 1e-4 of the height (slivers)", 1e-2),
+        ("one corner column of 1e-8 of the height (nearly folded)", 1e-6),
+    ] {
+        let mut controls = vec![97.0; 36];
+        controls[35] = height;
+        cases.push(ContactCase::new(block()).at(controls).case(GROUP, label));
+    }
+    for (label, height) in [("corner column of height 0", 0.0), ("folded: corner column of height −50 mm", -50.0)] {
+        let mut controls = vec![97.0; 36];
+        controls[35] = height;
+        cases.push(ContactCase::new(block()).at(controls).refused("InvertedElement").case(GROUP, label));
+    }
+    let scene = block().map(|mut scene| {
+        scene.counter_surface = CounterSurface::Sphere { apex: 100.0, radius: 50.0 };
+        scene
+    });
+    cases.push(ContactCase::new(scene).refused("Scene").case(GROUP, "counter surface that ends above the base"));
+    cases
+}

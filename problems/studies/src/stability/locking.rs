@@ -1,0 +1,162 @@
+//! Volumetric locking, measured: a divergence-free field in the unit cube, whose load does not depend on λ.
+//!
+//! ```text
+//! u = (sin²πx₁ sin 2πx₂, −sin 2πx₁ sin²πx₂, 0)·sin πx₃,   u = 0 on the boundary,   div u = 0,   f = −μ Δu
+//! ```
+//! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, bricks of mean dilatation keep it.
+
+use crate::stability::{Case, Outcome, Record};
+use contact::body::elasticity::hex8::{DOFS, Nodes, gauss_points};
+use contact::body::elasticity::{Formulation, Material};
+use contact::body::mesh::{Block, Grid};
+use contact::error::{ContactError, SceneError};
+use contact::linear::cholesky::SymbolicFactor;
+use contact::tfeti::LocalPattern;
+use std::f64::consts::PI;
+use std::sync::Arc;
+use thiserror::Error;
+
+const GROUP: &str = "locking";
+/// Meshes of a case.
+const MESHES: [usize; 3] = [4, 8, 16];
+/// Rate below which a formulation counts as locked (2 is that of trilinear bricks).
+const LOCKED: f64 = 1.5;
+
+/// Why an error was not measured.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LockingError {
+    /// The material.
+    #[error(transparent)]
+    Material(#[from] SceneError),
+    /// The linear system.
+    #[error(transparent)]
+    System(#[from] ContactError),
+}
+
+/// The field, and −Δ of it.
+fn field([x, y, z]: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+    let square = |t: f64| (PI * t).sin().powi(2);
+    let square_second = |t: f64| 2.0 * PI * PI * (2.0 * PI * t).cos();
+    let double = |t: f64| (2.0 * PI * t).sin();
+    let height = (PI * z).sin();
+    let laplacian =
+        |p: f64, q: f64| (square_second(p) * double(q) - (4.0 + 1.0) * PI * PI * square(p) * double(q)) * height;
+    ([square(x) * double(y) * height, -double(x) * square(y) * height, 0.0], [-laplacian(x, y), laplacian(y, x), 0.0])
+}
+
+/// Relative error of the displacements (2-norm over the nodes) on n³ bricks of the unit cube.
+///
+/// # Errors
+/// [`LockingError`] for a bad Poisson ratio or a matrix that cannot be factored.
+pub fn field_error(cells: usize, poisson_ratio: f64, formulation: Formulation) -> Result<f64, LockingError> {
+    let material = Material::new(1.0, poisson_ratio)?.with_formulation(formulation);
+    let grid = Grid { cells: [cells; 3], size: [1.0; 2] };
+    let columns = grid.column_count();
+    let block = Block { grid, lower: vec![0.0; columns], upper: vec![1.0; columns] };
+    let pattern = LocalPattern::new(grid.cells, &[]);
+    let mut values = pattern.assemble(&material, |brick| block.brick(brick));
+    let mut solution = vec![0.0; pattern.pattern.dimension()];
+    for brick in pattern.bricks() {
+        let forces = brick_load(&block.brick(brick), material.shear_modulus());
+        for (dof, force) in pattern.brick_dofs(brick).into_iter().zip(forces) {
+            solution[dof] += force;
+        }
+    }
+    let position = |dof: usize| pattern.shape.local_position(dof / 3);
+    let held = |dof: usize| position(dof).iter().any(|&index| index == 0 || index == cells);
+    for column in 0..pattern.pattern.dimension() {
+        for entry in pattern.pattern.starts()[column] + 1..pattern.pattern.starts()[column + 1] {
+            if held(column) || held(pattern.pattern.rows()[entry]) {
+                values[entry] = 0.0;
+            }
+        }
+        if held(column) {
+            solution[column] = 0.0;
+        }
+    }
+    let symbolic = Arc::new(SymbolicFactor::new(Arc::clone(&pattern.pattern), pattern.elimination_order(&[]))?);
+    symbolic.solve_refined(&values, &mut solution)?;
+    let (mut error, mut size) = (0.0, 0.0);
+    for (dof, value) in solution.iter().enumerate() {
+        let exact = field(block.coordinates(position(dof))).0[dof % 3];
+        error += (value - exact).powi(2);
+        size += exact.powi(2);
+    }
+    Ok((error / size).sqrt())
+}
+
+/// ∫ N_a f dV at the Gauss points.
+fn brick_load(nodes: &Nodes<f64>, shear_modulus: f64) -> [f64; DOFS] {
+    let mut forces = [0.0; DOFS];
+    for (index, point) in gauss_points(nodes).iter().enumerate() {
+        let abscissa = 1.0 / 3.0_f64.sqrt();
+        let sign = |bit: usize| if bit == 1 { 1.0 } else { -1.0 };
+        let shape: [f64; 8] = std::array::from_fn(|a| {
+            (0..3)
+                .map(|axis| 0.5 * (1.0 + sign(a >> (2 - axis) & 1) * sign(index >> (2 - axis) & 1) * abscissa))
+                .product()
+        });
+        let place: [f64; 3] = std::array::from_fn(|axis| shape.iter().zip(nodes).map(|(n, x)| n * x[axis]).sum());
+        let load = field(place).1;
+        for (dof, force) in forces.iter_mut().enumerate() {
+            *force += shear_modulus * load[dof % 3] * shape[dof / 3] * point.volume;
+        }
+    }
+    forces
+}
+
+fn record(name: String, poisson_ratio: f64, formulation: Formulation) -> Record {
+    let errors: Result<Vec<f64>, LockingError> =
+        MESHES.iter().map(|&cells| field_error(cells, poisson_ratio, formulation)).collect();
+    let errors = match errors {
+        Ok(errors) => errors,
+        Err(error) => return Record::plain(GROUP, name, Outcome::Broken, error.to_string()),
+    };
+    let rate = (errors[1] / errors[2]).log2();
+    let listed: Vec<String> = errors.iter().map(|error| format!("{error:.2e}")).collect();
+    let text = format!("relative error for n = 4, 8, 16: {}; last rate {rate:.2}", listed.join(", "));
+    if rate > LOCKED {
+        return Record::plain(GROUP, name, Outcome::Solved, text);
+    }
+    let known = formulation == Formulation::Standard && poisson_ratio > 0.49;
+    let outcome = if known { Outcome::Limit } else { Outcome::Broken };
+    let cause = "eight volume constraints per brick leave too few deformations; choose mean dilatation";
+    Record::plain(GROUP, name, outcome, format!("{text}; locks: {cause}"))
+}
+
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (formulation, label) in [(Formulation::Standard, "standard"), (Formulation::MeanDilatation, "mean dilatation")]
+    {
+        for poisson_ratio in [0.3, 0.499, 0.4999, 0.499_999] {
+            let name = format!("ν = {poisson_ratio}, {label}, divergence-free field");
+            let label = name.clone();
+            cases.push(Case::new(GROUP, name, move || record(label.clone(), poisson_ratio, formulation)).slow());
+        }
+    }
+    cases
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_load_is_minus_the_laplacian_of_a_divergence_free_field() {
+        let (x, h) = ([0.3, 0.6, 0.2], 1e-4);
+        let at = |axis: usize, step: f64| {
+            let mut place = x;
+            place[axis] += step;
+            field(place).0
+        };
+        let divergence: f64 = (0..3).map(|axis| (at(axis, h)[axis] - at(axis, -h)[axis]) / (2.0 * h)).sum();
+        assert!(divergence.abs() < 1e-6);
+        for component in 0..3 {
+            let laplacian: f64 = (0..3)
+                .map(|axis| (at(axis, h)[component] - 2.0 * field(x).0[component] + at(axis, -h)[component]) / (h * h))
+                .sum();
+            assert!((laplacian + field(x).1[component]).abs() < 1e-5, "{laplacian}");
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Poisson's ratio towards ½ and below zero; bodies of very different stiffness.
+
+use crate::stability::Case;
+use crate::stability::contact::ContactCase;
+use crate::stability::scenes::{block, pair, wavy, with_materials};
+use contact::body::elasticity::Formulation;
+
+const POISSON: &str = "Poisson's ratio";
+const STIFFNESS: &str = "stiffness ratio";
+const FACTORS: &str = "λ ≫ μ: factors of floating subdomains lose the digits; condensed bodies do not float";
+
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (formulation, label) in [(Formulation::Standard, "standard"), (Formulation::MeanDilatation, "mean dilatation")]
+    {
+        for ratio in [-0.99, -0.5, 0.0, 0.499, 0.4999, 0.499_999] {
+            if ratio <= 0.0 && formulation == Formulation::MeanDilatation {
+                continue;
+            }
+            for (name, scene, materials) in
+                [("block", block(), vec![(1.1e5, ratio)]), ("two bodies", pair(), vec![(7.0e4, ratio), (2.1e5, ratio)])]
+            {
+                let scene = with_materials(scene, &materials).map(|mut scene| {
+                    for body in scene.bodies_mut() {
+                        body.material = body.material.with_formulation(formulation);
+                    }
+                    scene
+                });
+                let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
+                let mut case = ContactCase::new(scene).at(controls);
+                if ratio > 0.4985 {
+                    case = case.limit([Some("BeyondPrecision"), None], FACTORS);
+                }
+                let case = case.case(POISSON, format!("ν = {ratio}, {label}, {name}"));
+                cases.push(if ratio > 0.4995 { case.slow() } else { case });
+            }
+        }
+    }
+    for exponent in [-8, -6, -4, -2, 2, 4, 6, 8] {
+        let ratio = 10.0_f64.powi(exponent);
+        let scene = with_materials(pair(), &[(7.0e4, 0.35), (7.0e4 * ratio, 0.29)]);
+        let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
+        let mut case = ContactCase::new(scene).at(controls);
+        if exponent >= 6 {
+            let cause =
+                "condensation rounds the rigid motion of the upper body at its own stiffness; TFETI keeps it apart";
+            case = case.limit([None, Some("BeyondPrecision")], cause);
+        }
+        cases.push(case.case(STIFFNESS, format!("upper E = 1e{exponent} · lower E")));
+    }
+    cases
+}

@@ -1,0 +1,46 @@
+//! Shapes and numbers of subdomains; supports whose rows would be redundant if tearing did not know better.
+
+use crate::stability::Case;
+use crate::stability::contact::ContactCase;
+use crate::stability::scenes::{HELD, block, pair, wavy};
+use contact::body::mesh::Face;
+use contact::scene::{Scene, Support};
+
+const GROUP: &str = "subdomains";
+
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for (label, subdomains) in [
+        ("one per body", [1, 1, 1]),
+        ("columns 1 × 1 × 4 bricks", [4, 4, 1]),
+        ("plates 4 × 4 × 1 bricks", [1, 1, 4]),
+        ("beams 1 × 4 × 1 bricks", [4, 1, 4]),
+        ("one brick each (64 per body, nearly all floating)", [4, 4, 4]),
+        ("unequal 2 × 1 × 4", [2, 4, 1]),
+    ] {
+        for (name, scene) in [("block", block()), ("two bodies", pair())] {
+            let scene = scene.map(|scene| Scene { subdomains, ..scene });
+            let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
+            cases.push(ContactCase::new(scene).at(controls).case(GROUP, format!("{label}, {name}")));
+        }
+    }
+    let thin = block().map(|scene| Scene { mesh: [4, 4, 1], subdomains: [2, 2, 1], ..scene });
+    cases.push(ContactCase::new(thin).case(GROUP, "one layer of bricks"));
+    let single = block().map(|scene| Scene { mesh: [1; 3], subdomains: [1; 3], ..scene });
+    cases.push(ContactCase::new(single).case(GROUP, "one brick in all"));
+    // Edges and corners held by several faces at once: every dof has one row per copy, whatever the number of supports.
+    let redundant = block().map(|mut scene| {
+        scene.lower.supports = vec![
+            Support { face: Face::X1Min, components: [true, true, false] },
+            Support { face: Face::X2Min, components: [true, true, false] },
+            Support { face: Face::X1Max, components: [true, true, false] },
+            Support { face: Face::X1Min, components: [true, true, false] },
+            Support { face: Face::Bottom, components: HELD },
+        ];
+        Scene { subdomains: [4; 3], ..scene }
+    });
+    cases.push(ContactCase::new(redundant).case(GROUP, "faces held several times over, loaded face held"));
+    let odd = block().map(|scene| Scene { subdomains: [3, 2, 2], ..scene });
+    cases.push(ContactCase::new(odd).refused("Scene").case(GROUP, "subdomains that do not divide the mesh"));
+    cases
+}

@@ -1,0 +1,127 @@
+//! The same scene in N–mm and in N–m gives the same dimensionless results: no tolerance knows a unit.
+//!
+//! ```text
+//! lengths × s, moduli and tractions / s²:   forces stay, displacements × s, pressures / s²
+//! ```
+
+use crate::stability::contact::{Attempt, by_condensation, by_tfeti};
+use crate::stability::judge::{difference_over, force_difference, relative_difference};
+use crate::stability::scenes::{block, footed, pair, stacked, wavy, with_loads};
+use crate::stability::{Case, Outcome, Record};
+use contact::body::elasticity::Material;
+use contact::equilibrium::{ContactForces, ContactProblem};
+use contact::error::SceneError;
+use contact::scene::{CounterSurface, Scene};
+
+const GROUP: &str = "units";
+/// Largest difference of dimensionless results.
+const EQUAL: f64 = 1e-10;
+
+/// A scene with its unit of length changed: lengths × s at equal forces.
+fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
+    let mut scene = scene.clone();
+    scene.size = scene.size.map(|length| s * length);
+    scene.start_height *= s;
+    scene.bounds.minimum_height *= s;
+    scene.bounds.volume = scene.bounds.volume.map(|volume| s.powi(3) * volume);
+    if let Some(upper) = &mut scene.upper {
+        upper.top *= s;
+    }
+    scene.counter_surface = match scene.counter_surface {
+        CounterSurface::Waves { base, first, second, period } => {
+            CounterSurface::Waves { base: s * base, first: s * first, second: s * second, period: s * period }
+        }
+        CounterSurface::Sphere { apex, radius } => CounterSurface::Sphere { apex: s * apex, radius: s * radius },
+        CounterSurface::SphereAt { apex, radius, centre } => {
+            CounterSurface::SphereAt { apex: s * apex, radius: s * radius, centre: centre.map(|x| s * x) }
+        }
+        CounterSurface::Punch { height, half_width, relief } => {
+            CounterSurface::Punch { height: s * height, half_width: s * half_width, relief: s * relief }
+        }
+        CounterSurface::Plane { height } => CounterSurface::Plane { height: s * height },
+        CounterSurface::Grid(grid) => CounterSurface::Grid(grid.scaled(s)),
+    };
+    for body in scene.bodies_mut() {
+        let material = body.material;
+        body.material = Material::new(material.young_modulus() / (s * s), material.poisson_ratio())?
+            .with_formulation(material.formulation());
+        for load in &mut body.loads {
+            load.traction = load.traction.map(|traction| traction / (s * s));
+        }
+    }
+    Ok(scene)
+}
+
+fn solve(scene: Scene, amplitude: f64, direct: bool) -> Result<(Attempt, f64), SceneError> {
+    let controls = wavy(&scene, amplitude);
+    let length = scene.start_height;
+    let problem = ContactProblem::new(scene)?;
+    let attempt = if direct { by_condensation(&problem, &controls) } else { by_tfeti(&problem, &controls) };
+    Ok((attempt, length))
+}
+
+/// Openings over a length.
+fn openings(forces: &ContactForces, length: f64) -> Vec<f64> {
+    forces.opening.iter().map(|opening| opening / length).collect()
+}
+
+/// Strain that the normal forces stand for: openings of closed nodes are zero compared with it.
+fn strain(scene: &Scene, forces: &ContactForces) -> f64 {
+    forces.total_normal_force() / (scene.lower.material.young_modulus() * scene.size[0] * scene.size[1])
+}
+
+fn compare(record: &mut Record, scene: &Scene, s: f64, amplitude: f64) -> Result<(Outcome, String), SceneError> {
+    let mut worst = 0.0_f64;
+    for direct in [false, true] {
+        let ((path, first), length) = solve(scene.clone(), amplitude, direct)?;
+        let ((other_path, second), other_length) = solve(rescaled(scene, s)?, amplitude, direct)?;
+        let (Some(first), Some(second)) = (first, second) else {
+            let alike = path.refusal == other_path.refusal;
+            let text = format!("refused in both units: {}", path.reason.unwrap_or_default());
+            return Ok((if alike { Outcome::Refused } else { Outcome::Broken }, text));
+        };
+        let forces = force_difference(&first.forces, &second.forces);
+        let (openings, floor) =
+            ([openings(&first.forces, length), openings(&second.forces, other_length)], strain(scene, &first.forces));
+        let gaps = difference_over(&openings[0], &openings[1], floor);
+        // Sensitivities are forces per length.
+        let times = |heights: &Result<Vec<f64>, String>, length: f64| -> Vec<f64> {
+            heights.as_ref().map(|heights| heights.iter().map(|value| value * length).collect()).unwrap_or_default()
+        };
+        let slopes = relative_difference(&times(&first.heights, length), &times(&second.heights, other_length));
+        if first.forces.status != second.forces.status {
+            return Ok((Outcome::Broken, "statuses differ".into()));
+        }
+        record.paths.push(path);
+        record.force_difference = Some(record.force_difference.unwrap_or(0.0).max(forces));
+        record.subgradient_difference = Some(record.subgradient_difference.unwrap_or(0.0).max(slopes));
+        worst = worst.max(forces).max(gaps);
+        if forces.is_nan() || gaps.is_nan() || slopes.is_nan() || slopes > 1e3 * EQUAL {
+            worst = f64::NAN;
+        }
+    }
+    let outcome = if worst <= EQUAL { Outcome::Solved } else { Outcome::Broken };
+    Ok((outcome, format!("largest difference of dimensionless results {worst:.1e}")))
+}
+
+fn case(name: &'static str, scene: Result<Scene, SceneError>, s: f64, amplitude: f64) -> Case {
+    Case::new(GROUP, name, move || {
+        let mut record = Record::plain(GROUP, name.into(), Outcome::Broken, String::new());
+        let result = match &scene {
+            Ok(scene) => compare(&mut record, scene, s, amplitude).map_err(|error| error.to_string()),
+            Err(error) => Err(error.to_string()),
+        };
+        (record.outcome, record.remark) = result.unwrap_or_else(|reason| (Outcome::Broken, reason));
+        record
+    })
+}
+
+pub fn cases() -> Vec<Case> {
+    vec![
+        case("block, N–mm against N–m", block(), 1e-3, 0.004),
+        case("two bodies, N–mm against N–m", pair(), 1e-3, 0.004),
+        case("stacked blocks, N–mm against N–µm", stacked(0.3, 1.0, 0.1), 1e3, 0.0),
+        case("held base, N–mm against N–km", footed(1e-4), 1e-6, 0.0),
+        case("load reversed, N–mm against N–m", with_loads(block(), -1.0), 1e-3, 0.004),
+    ]
+}

@@ -1,0 +1,77 @@
+//! The scaling binary's contract: JSON keys, counts, exit statuses.
+
+use serde_json::Value;
+use std::process::{Command, Output};
+
+/// Products with the dual operator of the cold states to 1e-6, 1e-8, 1e-10 (measured: 15, 19, 22).
+const COLD_BOUNDS: [u64; 3] = [19, 24, 28];
+/// The same for a warm state to 1e-8 (measured: 13).
+const WARM_BOUND: u64 = 17;
+/// The same for an adjoint to 1e-8 (measured: 12).
+const ADJOINT_BOUND: u64 = 16;
+
+fn run(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_scaling")).args(arguments).output().unwrap()
+}
+
+/// Products with the dual operator of the cold states to 1e-6, 1e-8, 1e-10.
+fn cold_counts(row: &Value) -> Vec<u64> {
+    let others = row["others"].as_array().unwrap();
+    let mut solves: Vec<&Value> = others.iter().chain([&row["cold"]["state"]]).collect();
+    solves.retain(|solve| solve["start"] == "cold");
+    solves.sort_by(|a, b| b["tolerance"].as_f64().unwrap().total_cmp(&a["tolerance"].as_f64().unwrap()));
+    solves.iter().map(|solve| solve["work"]["dual_operator_applications"].as_u64().unwrap()).collect()
+}
+
+#[test]
+fn a_tiny_case_prints_its_keys_and_counts() {
+    let output = run(&["--case", "6/2", "--json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = report["rows"].as_array().unwrap();
+    let variants: Vec<&str> = rows.iter().map(|row| row["variant"].as_str().unwrap()).collect();
+    assert_eq!(variants, ["dirichlet", "lumped", "none", "augmented-lagrangian", "direct"]);
+    assert!(report["failures"].as_array().unwrap().is_empty());
+    let row = &rows[0];
+    for key in ["mesh", "subdomains", "setup_seconds", "cold", "warm", "others", "threads", "bandwidth"] {
+        assert!(!row[key].is_null(), "{key}");
+    }
+    for key in ["equilibrium", "factorization", "coarse_space", "newton", "recovery"] {
+        assert!(row["cold"]["state"]["stages"][key].is_f64(), "{key}");
+    }
+    assert_eq!((row["dofs"].as_u64(), row["contact_nodes"].as_u64()), (Some(8 * 3 * 64), Some(49)));
+    assert_eq!(row["threads"]["bitwise_equal"], true);
+    assert_eq!(row["bandwidth"].as_array().unwrap().len(), 2);
+    if cfg!(target_os = "linux") {
+        assert!(row["peak_memory"].as_f64().unwrap() > 0.0);
+    }
+    // Counts are the price of a state: a change is to be noticed.
+    let counts = cold_counts(row);
+    assert!(counts.is_sorted() && counts[0] > 0, "{counts:?}");
+    for (count, bound) in counts.iter().zip(COLD_BOUNDS) {
+        assert!(*count <= bound, "{counts:?}");
+    }
+    assert!(
+        row["warm"]["state"]["work"]["dual_operator_applications"].as_u64().unwrap() <= WARM_BOUND,
+        "{}",
+        row["warm"]
+    );
+    assert!(row["cold"]["adjoint"]["applications"].as_u64().unwrap() <= ADJOINT_BOUND, "{}", row["cold"]);
+    // All paths find the same pressures.
+    let [torn, paper, direct] =
+        [0, 3, 4].map(|index: usize| rows[index]["cold"]["state"]["objective"].as_f64().unwrap());
+    assert!((torn / direct - 1.0).abs() < 1e-5 && (paper / direct - 1.0).abs() < 1e-5, "{torn} {paper} {direct}");
+    let work = &rows[3]["cold"]["state"]["work"];
+    assert!(work["fixed_point_steps"].as_u64().unwrap() > 1 && work["cg_steps"].as_u64().unwrap() > 0, "{work}");
+}
+
+#[test]
+fn unknown_cases_are_refused_with_what_is_allowed() {
+    for bad in ["7/2", "6", "0/1", "six/2"] {
+        let output = run(&["--case", bad]);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(output.stdout.is_empty() && message.contains(bad) && message.contains("divisor"), "{message}");
+    }
+    assert_eq!(run(&["--quick", "--full"]).status.code(), Some(2));
+}

@@ -1,0 +1,162 @@
+//! The fast subset of the stability study, and random scenes: certificates, not numbers.
+
+use contact::body::elasticity::{Formulation, Material};
+use contact::direct::DirectSolver;
+use contact::equilibrium::{ContactForces, ContactProblem};
+use contact::error::ContactError;
+use contact::linear::vector::norm;
+use contact::scene::{CounterSurface, Scene, hertz, signorini};
+use contact::tfeti::{AugmentedLagrangianSettings, PreconditionerKind, TornSolver};
+use proptest::prelude::*;
+use studies::stability::{Outcome, Report, all, field_error};
+
+#[test]
+fn the_fast_subset_is_as_expected() {
+    let records: Vec<_> = all().iter().filter(|case| case.quick).map(studies::stability::Case::run).collect();
+    let report = Report::new(records);
+    let broken: Vec<String> = report
+        .records
+        .iter()
+        .filter(|record| record.outcome == Outcome::Broken)
+        .map(|record| format!("{}: {}: {}", record.group, record.name, record.remark))
+        .collect();
+    assert!(broken.is_empty(), "{broken:#?}");
+    assert!(report.counts.solved > 90 && report.counts.refused > 10, "{:?}", report.counts);
+}
+
+#[test]
+fn mean_dilatation_keeps_the_rate_that_standard_bricks_lose() {
+    let rate = |formulation| {
+        let error = |cells| field_error(cells, 0.4999, formulation).unwrap();
+        (error(4) / error(8)).log2()
+    };
+    assert!(rate(Formulation::MeanDilatation) > 1.5, "{}", rate(Formulation::MeanDilatation));
+    assert!(rate(Formulation::Standard) < 0.2, "{}", rate(Formulation::Standard));
+}
+
+#[test]
+fn patch_test_with_mean_dilatation() {
+    for ratio in [0.0, 0.33, 0.499] {
+        let mut scene = Scene { mesh: [6; 3], subdomains: [3; 3], friction: 0.0, ..signorini().unwrap() };
+        scene.counter_surface = CounterSurface::Plane { height: 100.0 };
+        scene.lower.material = Material::new(1.1e5, ratio).unwrap().with_formulation(Formulation::MeanDilatation);
+        // Free to widen: supports hold only what friction would not.
+        scene.lower.supports[0].components = [true, false, false];
+        let problem = ContactProblem::new(scene).unwrap();
+        let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
+        let (_, forces, _) = solver.solve(&problem, &[100.0; 36], None, 0.0).unwrap();
+        for (force, point) in forces.normal.iter().zip(&problem.boundary.points) {
+            let error = (force / point.area / 3000.0 - 1.0).abs();
+            assert!(error < 1e-12, "ν = {ratio}: {error:.1e}");
+        }
+    }
+}
+
+#[test]
+fn contraction_of_both_paths_agrees() {
+    for (scene, friction) in [(signorini().unwrap(), 0.9), (hertz().unwrap(), 0.3)] {
+        let problem = ContactProblem::new(Scene { mesh: [4; 3], friction, ..scene }).unwrap();
+        let controls = vec![0.99 * problem.scene.start_height; 36];
+        let torn = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
+        let direct = DirectSolver::new(&problem).unwrap();
+        let (state, ..) = torn.solve(&problem, &controls, None, 1e-11).unwrap();
+        let estimate = torn.diagnose(&problem, &state).unwrap().contraction;
+        let (state, ..) = direct.solve(&problem, &controls, None, 1e-11).unwrap();
+        let exact = direct.diagnose(&problem, &state).unwrap();
+        assert!((estimate - exact.contraction).abs() < 1e-3 * (1.0 + exact.contraction), "{estimate} {exact}");
+        assert!(exact.condition.unwrap() >= 1.0);
+    }
+}
+
+#[test]
+fn accurate_successive_approximations_contract_as_diagnosed() {
+    let problem = ContactProblem::new(Scene { mesh: [4; 3], friction: 0.3, ..signorini().unwrap() }).unwrap();
+    let controls = vec![100.0; 36];
+    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
+    let settings = AugmentedLagrangianSettings { adaptivity: 1e-3, ..AugmentedLagrangianSettings::to(1e-9) };
+    let mut observed = 0.0;
+    let (state, ..) = solver
+        .solve_by(&problem, &controls, |contact| {
+            let (solution, counts) = contact.solve_by_successive_approximations(None, &settings)?;
+            observed = counts.contraction;
+            Ok(solution)
+        })
+        .unwrap();
+    let diagnosed = solver.diagnose(&problem, &state).unwrap().contraction;
+    println!("observed {observed:.4}, diagnosed {diagnosed:.4}");
+    assert!((observed / diagnosed - 1.0).abs() < 0.25, "{observed} {diagnosed}");
+}
+
+/// A number in (−1, 1) from a seed and an index.
+fn number(seed: u64, index: u64) -> f64 {
+    nonsmooth::verify::seeded_direction(2, seed.wrapping_mul(1000).wrapping_add(index))[0].clamp(-1.0, 1.0)
+}
+
+/// A random scene: mesh, tearing, materials and loads over eight decades, friction, obstacle, formulation.
+fn random_scene(seed: u64, cells: usize, torn: bool, friction: f64, two: bool) -> Scene {
+    let mut scene = if two { hertz().unwrap() } else { signorini().unwrap() };
+    scene.mesh = [cells; 3];
+    scene.subdomains = [if torn { cells } else { 1 }; 3];
+    scene.friction = friction;
+    let mut index = 0;
+    let mut draw = || {
+        index += 1;
+        number(seed, index)
+    };
+    for body in scene.bodies_mut() {
+        let formulation = if draw() > 0.0 { Formulation::Standard } else { Formulation::MeanDilatation };
+        let young = 1e5 * 10.0_f64.powf(4.0 * draw());
+        body.material = Material::new(young, 0.2 + 0.28 * draw()).unwrap().with_formulation(formulation);
+    }
+    let factor = 10.0_f64.powf(4.0 * draw());
+    for load in scene.bodies_mut().flat_map(|body| &mut body.loads) {
+        load.traction = load.traction.map(|traction| factor * traction);
+    }
+    scene
+}
+
+/// What every state promises, checked from its forces and jumps alone.
+fn certified(problem: &ContactProblem, controls: &[f64], forces: &ContactForces) {
+    assert!(forces.residuals.largest() < 1e-8, "{:?}", forces.residuals);
+    let friction = problem.boundary.friction;
+    for (index, &normal) in forces.normal.iter().enumerate() {
+        assert!(normal >= 0.0 && normal.is_finite());
+        if let Some(traction) = forces.tangential.get(index) {
+            assert!(norm(traction) <= friction * normal * (1.0 + 1e-7) + 1e-300, "{} {normal}", norm(traction));
+        }
+    }
+    // Vertical equilibrium of the body that nothing but contact holds along x₃.
+    let blocks = problem.blocks(controls).unwrap();
+    let rigid = problem.rigid_scene(&blocks);
+    let body = if problem.scene.upper.is_some() { 1 } else { 0 };
+    let pressed: f64 = rigid.loads.iter().filter(|load| load.0 == body).map(|load| load.2[2]).sum();
+    let carried = forces.total_normal_force();
+    assert!((pressed.abs() - carried).abs() < 1e-7 * rigid.total_load(), "{pressed} {carried}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn random_scenes_are_certified_or_refused_with_a_cause(
+        seed in 0_u64..1_000_000, cells in 2_usize..=4, torn: bool, friction in prop_oneof![Just(0.0), 1e-3..1.5], two: bool,
+    ) {
+        let scene = random_scene(seed, cells, torn, friction, two);
+        let controls: Vec<f64> =
+            (0..36).map(|index| scene.start_height * (1.0 + 0.01 * number(seed, 100 + index) - 0.01)).collect();
+        let problem = ContactProblem::new(scene).unwrap();
+        let torn = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
+        let direct = DirectSolver::new(&problem).unwrap();
+        let attempts = [
+            torn.solve(&problem, &controls, None, 1e-11).map(|(_, forces, _)| forces),
+            direct.solve(&problem, &controls, None, 1e-11).map(|(_, forces, _)| forces),
+        ];
+        for attempt in &attempts {
+            match attempt {
+                Ok(forces) => certified(&problem, &controls, forces),
+                // Where rounding decides, the refusal says so; nothing else is an answer.
+                Err(error) => prop_assert!(matches!(error, ContactError::BeyondPrecision { .. }), "{error}"),
+            }
+        }
+    }
+}

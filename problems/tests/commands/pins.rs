@@ -1,0 +1,81 @@
+//! Θ, ξ and the histories of optimizations, pinned: a change of the code's order must not change a bit of them.
+//!
+//! `data/pins.json` was written by the build before the packages were split. The dense kernels choose their instructions by the
+//! processor: where it lacks those of the processor that wrote the file (AVX-512), numbers are compared to 1e-8 and of a history
+//! only the first 15, which rounding cannot yet have led apart.
+
+use serde_json::Value;
+use std::process::Command;
+
+/// How far a number may be off where the kernels round differently.
+const OTHER_PROCESSOR: f64 = 1e-8;
+
+/// Entries of a history that are compared there.
+const COMMON_HISTORY: usize = 15;
+
+#[cfg(target_arch = "x86_64")]
+fn rounds_alike() -> bool {
+    std::arch::is_x86_feature_detected!("avx512f")
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn rounds_alike() -> bool {
+    false
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|entry| entry.as_f64().unwrap()).collect()
+}
+
+fn computed(pin: &Value) -> Vec<f64> {
+    let text = |key: &str| pin[key].as_str().unwrap();
+    let binary = match text("binary") {
+        "hertz3d" => env!("CARGO_BIN_EXE_hertz3d"),
+        _ => env!("CARGO_BIN_EXE_signorini3d"),
+    };
+    let mut command = Command::new(binary);
+    command.args([text("command"), "--mesh", text("mesh"), "--solver", text("solver"), "--json"]);
+    if text("command") == "optimize" {
+        command.args(["--max-evaluations", "60"]);
+    }
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    if text("command") == "optimize" {
+        return numbers(&report["history"]);
+    }
+    let mut values = vec![report["objective"].as_f64().unwrap()];
+    values.extend(numbers(&report["subgradient"]));
+    values
+}
+
+fn check(command: &str) {
+    let pins: Vec<Value> = serde_json::from_str(include_str!("../data/pins.json")).unwrap();
+    let mut wrong = Vec::new();
+    for pin in pins.iter().filter(|pin| pin["command"] == command) {
+        let (mut expected, mut found) = (numbers(&pin["values"]), computed(pin));
+        let tolerance = if rounds_alike() { 0.0 } else { OTHER_PROCESSOR };
+        if command == "optimize" && !rounds_alike() {
+            expected.truncate(COMMON_HISTORY);
+            found.truncate(COMMON_HISTORY);
+        }
+        let scale = expected.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+        let same = |(a, b): (&f64, &f64)| (a - b).abs() <= tolerance * scale;
+        let equal = expected.len() == found.len() && expected.iter().zip(&found).all(same);
+        if !equal {
+            let first = expected.iter().zip(&found).position(|(a, b)| a != b);
+            wrong.push(format!("{} {} mesh {}: entry {first:?}", pin["binary"], pin["solver"], pin["mesh"]));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn states_and_subgradients_are_the_pinned_ones() {
+    check("evaluate");
+}
+
+#[test]
+fn histories_are_the_pinned_ones() {
+    check("optimize");
+}

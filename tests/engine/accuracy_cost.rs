@@ -1,0 +1,123 @@
+//! What accuracy on demand saves on the convex problems of the collection.
+//!
+//! The oracle stands for an inner solver that gains one decade of accuracy per unit of work: a relative error 10^−k costs k.
+//! Its answer after k decades is value and slope at y of the tangent plane at a point y' near y, so close that the plane lies
+//! at most 10^−k |Θ(y)| below Θ(y): a valid cut, as inexact solves of convex inner problems give. It stops at the accuracy
+//! asked for, or as soon as the plane lies above the descent target. An answer at the point of the warm start continues
+//! there and costs the missing decades only.
+use nonsmooth::{
+    AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Evaluation, NonsmoothObjective, OracleError, Request,
+    Vector,
+};
+use std::cell::Cell;
+use testset::{Family, Problem};
+
+/// Decades of the tightest answer.
+const TIGHTEST: i32 = 12;
+
+struct Decades<'a> {
+    problem: &'a Problem,
+    cost: Cell<f64>,
+}
+
+impl Decades<'_> {
+    fn exact(&self, x: &Vector) -> (f64, Vector) {
+        let (value, gradient) = self.problem.evaluate(x.as_slice());
+        (value, Vector::from_vec(gradient))
+    }
+
+    /// Tangent plane from a point nearby, at most `error` below the value: (value, slope) at y.
+    fn plane(&self, y: &Vector, error: f64) -> (f64, Vector) {
+        let (value, slope) = self.exact(y);
+        let mut away = direction(y) * (0.1 * (1.0 + y.norm()));
+        for _ in 0..60 {
+            let (there, gradient) = self.exact(&(y + &away));
+            let plane = there - gradient.dot(&away);
+            if plane <= value && value - plane <= error {
+                return (plane, gradient);
+            }
+            away *= 0.5;
+        }
+        (value, slope)
+    }
+}
+
+/// A unit vector that jumps from point to point, always the same at the same point.
+fn direction(y: &Vector) -> Vector {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let entry = |y: &f64| {
+        hash = (hash ^ y.to_bits()).wrapping_mul(0x0100_0000_01b3);
+        hash ^= hash >> 29;
+        (hash >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    Vector::from_iterator(y.len(), y.iter().map(entry)).normalize()
+}
+
+impl NonsmoothObjective for Decades<'_> {
+    type WarmStart = (Vector, i32);
+
+    fn dimension(&self) -> usize {
+        self.problem.dimension
+    }
+
+    fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {
+        let y = request.point;
+        let size = self.exact(y).0.abs();
+        let done = request.warm_start.filter(|warm| warm.0 == *y).map_or(0, |warm| warm.1);
+        let wanted = (-request.accuracy.tolerance().log10()).ceil().clamp(1.0, f64::from(TIGHTEST)) as i32;
+        for decades in done.max(1)..=wanted.max(done) {
+            let (value, subgradient) = self.plane(y, 10.0_f64.powi(-decades) * size);
+            let no_descent =
+                request.accuracy.tolerance() > 0.0 && request.descent_target.is_some_and(|target| value > target);
+            if no_descent || decades >= wanted {
+                self.cost.set(self.cost.get() + f64::from(decades - done));
+                let error_bound = 10.0_f64.powi(-decades) * size;
+                let evaluation = Evaluation { value, subgradient, error_bound, warm_start: (y.clone(), decades) };
+                let accurate = !no_descent || decades >= wanted;
+                return Ok(if accurate { Answer::Accurate(evaluation) } else { Answer::NoDescent(evaluation) });
+            }
+        }
+        Err(OracleError::NotFinite { what: "accuracy" })
+    }
+}
+
+/// Cost of a whole run, its evaluations, and the true gap at its end relative to 1 + |f*|.
+fn run(problem: &Problem, accuracy: AccuracyPolicy) -> (f64, usize, f64) {
+    let theta = Decades { problem, cost: Cell::new(0.0) };
+    let config = BundleTrustConfig { accuracy, ..Default::default() };
+    let report = BundleTrust::new(config).unwrap().minimize(&theta, Vector::from_vec(problem.start.clone())).unwrap();
+    let value = problem.evaluate(report.solution.as_slice()).0;
+    let gap = (value - problem.optimal_value) / (1.0 + problem.optimal_value.abs());
+    assert!(report.termination.is_stationary(), "{}: {report}", problem.name);
+    (theta.cost.get(), report.counts.evaluations, gap)
+}
+
+#[test]
+fn accuracy_on_demand_halves_the_cost_on_the_convex_problems() {
+    let everywhere = |problem: &Problem| problem.convex_lower.iter().all(|lower| *lower == f64::NEG_INFINITY);
+    let convex: Vec<Problem> = testset::all()
+        .into_iter()
+        .filter(|problem| problem.convex && everywhere(problem) && problem.family == Family::Unconstrained)
+        .collect();
+    let (mut total, mut logs) = ((0.0, 0.0), vec![]);
+    for problem in &convex {
+        let (tight, demand) = (run(problem, AccuracyPolicy::Tightest), run(problem, AccuracyPolicy::ON_DEMAND));
+        println!(
+            "{:<18} tight {:>6} {:>4} {:.1e}  on demand {:>6} {:>4} {:.1e}",
+            problem.name, tight.0, tight.1, tight.2, demand.0, demand.1, demand.2
+        );
+        assert!(tight.2 <= 1e-6 && demand.2 <= 1e-6, "{}: {tight:?} {demand:?}", problem.name);
+        total = (total.0 + tight.0, total.1 + demand.0);
+        logs.push((demand.0 / tight.0).ln());
+    }
+    let mean = (logs.iter().sum::<f64>() / logs.len() as f64).exp();
+    println!(
+        "{} problems: total {} against {}, ratio {:.3}, mean {mean:.3}",
+        convex.len(),
+        total.1,
+        total.0,
+        total.1 / total.0
+    );
+    assert!(convex.len() >= 8);
+    assert!(total.1 <= 0.5 * total.0);
+}

@@ -1,0 +1,16 @@
+//! The engine: what it promises, on small functions and on the collection.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod accuracy_cost;
+mod certificate;
+mod evaluation_counts;
+mod feasibility;
+mod generic_use;
+mod inexact_oracle;
+mod reparametrized;
+mod restart;
+mod terminations;

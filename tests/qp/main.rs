@@ -1,0 +1,9 @@
+//! The quadratic subproblem: random programs, recorded runs, an independent solver.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+mod qp_properties;
+#[path = "../common/qps.rs"]
+mod qps;
+#[path = "../common/reference.rs"]
+mod reference;

@@ -1,0 +1,81 @@
+//! The sizes of files and functions. The directions of dependency of docs/architecture.md are those of the package graph.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Longest file allowed, lines.
+const LONGEST_FILE: usize = 450;
+
+/// Longest function allowed, lines from `fn` to the closing brace.
+const LONGEST_FUNCTION: usize = 60;
+
+/// All Rust files below `folder`, without build products.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).expect("a folder of the repository") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() && !path.ends_with("target") {
+            files.extend(sources(&path));
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+    files
+}
+
+/// Files of the repository with their text.
+fn texts() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let name = |path: &Path| path.strip_prefix(root).expect("below the root").display().to_string();
+    let read = |path: PathBuf| (name(&path), fs::read_to_string(&path).expect("a readable source"));
+    sources(root).into_iter().map(read).collect()
+}
+
+#[test]
+fn files_are_short() {
+    let long = |(name, text): &(String, String)| {
+        let lines = text.lines().count();
+        (lines > LONGEST_FILE).then(|| format!("{name}: {lines} lines"))
+    };
+    let texts = texts();
+    assert!(texts.len() > 200, "{} files found", texts.len());
+    assert_eq!(
+        texts.iter().filter_map(long).collect::<Vec<_>>(),
+        Vec::<String>::new(),
+        "allowed: {LONGEST_FILE} lines"
+    );
+}
+
+/// Functions of a formatted text as (line, length): each ends with the first brace at its own indentation.
+fn functions(text: &str) -> Vec<(usize, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut found = Vec::new();
+    for (start, line) in lines.iter().enumerate() {
+        let code = line.trim_start();
+        let indent = line.len() - code.len();
+        let heads = ["fn ", "pub fn ", "pub(crate) fn ", "pub(super) fn ", "const fn ", "pub const fn "];
+        if heads.iter().any(|head| code.starts_with(head)) && !line.ends_with(';') {
+            let closing = format!("{}}}", " ".repeat(indent));
+            let end = lines[start..]
+                .iter()
+                .position(|line| *line == closing || (line.ends_with('}') && *line == lines[start]));
+            found.extend(end.map(|end| (start + 1, end + 1)));
+        }
+    }
+    found
+}
+
+#[test]
+fn functions_are_short() {
+    let (mut long, mut count) = (Vec::new(), 0);
+    for (name, text) in texts() {
+        for (line, length) in functions(&text) {
+            count += 1;
+            if length > LONGEST_FUNCTION {
+                long.push(format!("{name}:{line}: {length} lines"));
+            }
+        }
+    }
+    assert!(count > 2000, "{count} functions found");
+    assert_eq!(long, Vec::<String>::new(), "allowed: {LONGEST_FUNCTION} lines");
+}

@@ -1,0 +1,6 @@
+//! What the repository promises about itself: packages, licences, sizes of files.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+mod architecture;
+mod published;
