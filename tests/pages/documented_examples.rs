@@ -71,7 +71,7 @@ fn links(text: &str) -> Vec<&str> {
 /// Paths from the root of the repository that a text names as code.
 fn paths(text: &str) -> Vec<&str> {
     let plain = |span: &&str| span.chars().all(|c| c.is_ascii_alphanumeric() || "/._-".contains(c));
-    let folders = ["docs/", "src/", "examples/", "tests/", "problems/src/", "problems/tests/", "problems/scenes/"];
+    let folders = ["docs/", "src/", "examples/", "tests/", "testset/", "problems/"];
     let code = text.split('`').skip(1).step_by(2).filter(plain);
     code.filter(|span| folders.iter().any(|folder| span.starts_with(folder))).collect()
 }

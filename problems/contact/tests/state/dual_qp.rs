@@ -221,8 +221,8 @@ proptest! {
 
 /// Programs that are compared with the conic solver.
 const COMPARED: u32 = 200;
-/// Largest share of them that the conic solver may leave without an answer; found: PLACEHOLDER.
-const UNANSWERED: f64 = 0.1;
+/// Largest share of them that the conic solver may leave without an answer; found: none of 200.
+const UNANSWERED: f64 = 0.02;
 
 #[test]
 fn random_programs_satisfy_kkt_and_agree_with_the_conic_solver() {

@@ -17,5 +17,6 @@ fn binary(name: &str) -> Option<&'static str> {
 fn commands_of_all_pages() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let (ran, parsed) = run_commands(&root, "studies", binary);
-    assert!(ran >= 1 && parsed >= 1, "{ran} commands ran, {parsed} were parsed: pages have lost their commands");
+    // Studies are long: the pages mark all of them so.
+    assert!(ran + parsed >= 11, "{ran} commands ran, {parsed} were parsed: pages have lost their commands");
 }

@@ -26,7 +26,7 @@ fn outcomes(groups: &[&str]) -> [usize; 4] {
 /// The whole matrix runs in the test `long`.
 #[test]
 fn supports_kinks_units_and_hostile_oracles_are_as_expected() {
-    assert_eq!(outcomes(&["supports", "kinks", "units", "optimizer"]), [0, 0, 0, 0]);
+    assert_eq!(outcomes(&["supports", "kinks", "units", "optimizer"]), [35, 5, 0, 0]);
 }
 
 #[test]
@@ -141,8 +141,8 @@ fn certified(problem: &ContactProblem, controls: &[f64], forces: &ContactForces)
 
 /// Random scenes that are tried.
 const SCENES: u32 = 24;
-/// Largest share of the attempts that may be refused as beyond double precision; found: PLACEHOLDER.
-const REFUSED: f64 = 0.25;
+/// Largest share of the attempts that may be refused as beyond double precision; found: 0 of 48.
+const REFUSED: f64 = 0.1;
 
 #[test]
 fn random_scenes_are_certified_or_refused_with_a_cause() {
