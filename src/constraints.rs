@@ -149,8 +149,8 @@ impl Polyhedron {
         self.violation_near(x, x)
     }
 
-    /// [`violation`](Self::violation) with the terms measured at a second point where they are larger: next to a
-    /// reference of ordinary size, a point whose entries cancel to zero is not judged by its rounding errors.
+    /// As [`violation`](Self::violation), but each term has the larger of its sizes at x and at `reference`. A point whose
+    /// entries happen to be near zero is then not judged by its rounding errors.
     pub fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
         let mut worst: f64 = 0.0;
         for i in 0..self.dimension() {
