@@ -147,7 +147,8 @@
 //! * States from an iterative solver: every request states the [`Accuracy`] it needs, and the answer states its
 //!   [`Evaluation::error_bound`]. [`AccuracyPolicy::ON_DEMAND`] asks for no more than a step needs, and
 //!   [`Answer::NoDescent`] ends an evaluation early that cannot become a serious step.
-//! * Long runs: [`BundleTrust::checkpoint`], [`BundleTrust::resume`], [`Observer`], [`StopRule`].
+//! * Long runs: [`Journaled`] keeps every evaluation, so that a run that was killed continues bit by bit; [`Observer`] and
+//!   [`StopRule`] watch and end it.
 //! * The examples of the repository: `own_problem` (three traits), `closure`, `constrained_minimax`, `inexact_oracle`,
 //!   `checkpoint`, `observer`, `testset`. Its guides: `docs/plug_in_your_problem.md` (the steps above with all
 //!   details), `docs/bundle.md` (the method's rules, constants and measured evaluation counts).
@@ -162,9 +163,10 @@
 //! | [`reduced`] | [`ReducedObjective`]: Θ = J∘S and its subgradient by the chain rule |
 //! | [`objective`] | [`NonsmoothObjective`], [`Request`] and [`Answer`]: what the method sees; closures as objectives |
 //! | [`constraints`] | [`Polyhedron`]: box and two-sided rows |
-//! | [`bundle`] | [`BundleTrust`]: configuration, runs, snapshots |
+//! | [`bundle`] | [`BundleTrust`]: configuration, runs |
 //! | [`report`] | [`Report`], [`Termination`], [`Certificate`], history, observers, stopping rules |
 //! | [`verify`] | Taylor tests of any objective |
+//! | [`journal`] | [`Journaled`]: an objective whose evaluations survive the run |
 //! | [`counted`], [`reparametrized`] | objectives around objectives: counting; a linear change of variables |
 //! | [`qp`] | the subproblem as a convex QP of its own, with certificate; projection onto a polyhedron |
 //! | [`error`], [`linalg`] | error types; the vector and matrix types |
@@ -176,6 +178,7 @@ pub mod bundle;
 pub mod constraints;
 pub mod counted;
 pub mod error;
+pub mod journal;
 pub mod linalg;
 pub mod objective;
 pub mod problem;
@@ -186,15 +189,14 @@ pub mod report;
 pub mod verify;
 
 mod accuracy;
+mod panics;
 
 pub use accuracy::Accuracy;
-pub use bundle::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run, ScaledNorm, Snapshot, SnapshotError,
-    VariableScaling,
-};
+pub use bundle::{AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run, ScaledNorm, VariableScaling};
 pub use constraints::Polyhedron;
 pub use counted::Counted;
 pub use error::{InputError, OptimizeError, OracleError};
+pub use journal::{Journal, JournalError, Journaled};
 pub use linalg::{Matrix, Vector};
 pub use objective::{Answer, Evaluation, FnObjective, NonsmoothObjective, Request};
 pub use problem::{Coderivative, Cost, CostGradient, StateSolver};

@@ -17,7 +17,6 @@ use super::pieces::Curvature;
 use super::state::State;
 use super::weight::Comparison;
 use crate::{Matrix, Vector};
-use serde::{Deserialize, Serialize};
 
 /// More variables than this make the dense matrix too dear.
 pub(super) const LARGEST_DIMENSION: usize = 200;
@@ -58,7 +57,7 @@ pub(crate) enum Origin {
 }
 
 /// A pause that doubles with every failure.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Pause {
     left: usize,
     failures: u32,
@@ -80,7 +79,7 @@ impl Pause {
 }
 
 /// Record of the curved model and of the explorations.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
 pub(crate) struct CurvatureRecord {
     /// Weight added to B.
     pub weight: f64,

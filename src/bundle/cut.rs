@@ -58,8 +58,7 @@ struct ConcavePair {
 }
 
 /// The cuts of a run and the pairs of them that prove nonconvexity.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(from = "Vec<Cut>", into = "Vec<Cut>")]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Bundle {
     cuts: Vec<Cut>,
     pairs: Vec<ConcavePair>,
@@ -70,12 +69,6 @@ pub(crate) struct Bundle {
 impl From<Vec<Cut>> for Bundle {
     fn from(cuts: Vec<Cut>) -> Self {
         Self { cuts, ..Self::default() }
-    }
-}
-
-impl From<Bundle> for Vec<Cut> {
-    fn from(bundle: Bundle) -> Self {
-        bundle.cuts
     }
 }
 

@@ -35,14 +35,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.state.history.push(record);
     }
 
-    /// Observers, stopping rules, checkpoint, divergence.
+    /// Observers, stopping rules, divergence.
     pub(super) fn after_evaluation(&mut self) -> ControlFlow<Termination> {
         let Some(record) = self.state.history.last().cloned() else { return Continue(()) };
-        if let (StepKind::Start | StepKind::Serious, Some(file)) = (record.kind, &self.method.checkpoint)
-            && let Err(error) = self.snapshot().write(file)
-        {
-            self.state.warnings.push(format!("checkpoint not written: {error}"));
-        }
         let mut stop = false;
         for observer in &mut self.method.observers {
             stop |= observer.observe(&record).is_break();
@@ -78,7 +73,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             counts: state.counts,
             largest_violation: state.history.iter().map(|record| record.violation).fold(0.0, f64::max),
             history: state.history,
-            warnings: state.warnings,
+            warnings: vec![],
             seconds,
         }
     }

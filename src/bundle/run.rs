@@ -4,15 +4,12 @@ use super::builder::BundleTrust;
 use super::config::AccuracyPolicy;
 use super::model::Model;
 use super::oracle::{Outcome, evaluate};
-use super::snapshot::Snapshot;
 use super::start::{admissible_start, first_evaluation};
 use super::state::State;
 use super::subproblem::{self, Proposal, SubproblemError};
 use crate::qp::{EpigraphQpSolver, QpCounts};
 use crate::report::{IterationRecord, StepKind, Termination};
-use crate::{
-    Accuracy, Answer, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector,
-};
+use crate::{Accuracy, Answer, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
 
@@ -27,10 +24,9 @@ const REFINEMENT: f64 = 0.03;
 /// let mut method = BundleTrust::new(BundleTrustConfig::default())?;
 /// let mut run = method.start(&theta, Vector::from_element(1, 2.5))?;
 /// while run.step().is_continue() && run.value() > 1.0 {}
-/// let snapshot = run.snapshot();
-/// assert!(snapshot.value() <= 1.0);
-/// let report = method.continue_from(&theta, snapshot)?;
-/// assert!(report.value < 1e-9);
+/// assert!(run.value() <= 1.0);
+/// while run.step().is_continue() {}
+/// assert!(run.finish().value < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Run<'r, 'o, O: NonsmoothObjective> {
@@ -56,38 +52,21 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         if let Some(first) = state.history.first_mut() {
             first.seconds = clock.elapsed().as_secs_f64();
         }
-        let mut run = Self::assemble(method, objective, set, state, clock);
-        run.warm_start = Some(warm_start);
+        let mut run = Self {
+            method,
+            objective,
+            set,
+            state,
+            warm_start: Some(warm_start),
+            solver: EpigraphQpSolver::default(),
+            proposal: None,
+            termination: None,
+            clock,
+        };
         if let Break(termination) = run.after_evaluation() {
             run.termination = Some(termination);
         }
         Ok(run)
-    }
-
-    pub(super) fn resume(
-        method: &'r mut BundleTrust<'o>,
-        objective: &'r O,
-        from: Snapshot,
-    ) -> Result<Self, OptimizeError> {
-        let (expected, found) = (objective.dimension(), from.state.center.len());
-        if expected != found {
-            return Err(InputError::Dimension { what: "snapshot", expected, found }.into());
-        }
-        if method.constraints.as_ref().is_some_and(|set| *set != from.set) {
-            return Err(OptimizeError::ChangedConstraints);
-        }
-        Ok(Self::assemble(method, objective, from.set, from.state, Instant::now()))
-    }
-
-    fn assemble(
-        method: &'r mut BundleTrust<'o>,
-        objective: &'r O,
-        set: Polyhedron,
-        state: State,
-        clock: Instant,
-    ) -> Self {
-        let solver = EpigraphQpSolver::default();
-        Self { method, objective, set, state, warm_start: None, solver, proposal: None, termination: None, clock }
     }
 
     /// One step: at most one evaluation (and one more of the center where its accuracy no longer suffices). `Break` when
@@ -105,7 +84,7 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
 
     fn advance(&mut self) -> ControlFlow<Termination> {
         self.check_limits()?;
-        // A resumed run has no memory of earlier subproblems; neither has this one, so both go the same way bit by bit.
+        // A step depends on the state of the run alone, not on what the solver remembers of earlier subproblems.
         self.solver.forget();
         let proposal = self.propose()?;
         let proposal = self.compete(proposal);
@@ -243,9 +222,9 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         Continue(())
     }
 
-    /// Seconds since the start, those before a resume included.
+    /// Seconds since the start.
     pub(super) fn seconds(&self) -> f64 {
-        self.state.seconds_before + self.clock.elapsed().as_secs_f64()
+        self.clock.elapsed().as_secs_f64()
     }
 
     /// The stability center, the best admissible point so far.
@@ -261,12 +240,5 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
     /// One record per evaluation so far.
     pub fn history(&self) -> &[IterationRecord] {
         &self.state.history
-    }
-
-    /// The run as data.
-    pub fn snapshot(&self) -> Snapshot {
-        let mut state = self.state.clone();
-        state.seconds_before = self.seconds();
-        Snapshot::new(self.set.clone(), state)
     }
 }

@@ -90,8 +90,6 @@ pub(super) fn first_evaluation<O: NonsmoothObjective>(
         curvature: CurvatureRecord::new(weight),
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],
-        seconds_before: 0.0,
-        warnings: vec![],
     };
     state.history.push(first_record(&state, set, slope));
     Ok((state, warm_start))

@@ -1,14 +1,13 @@
-//! Everything a run carries from step to step; what a snapshot stores.
+//! Everything a run carries from step to step.
 
 use super::curvature::CurvatureRecord;
 use super::cut::{Bundle, Cut, IDLE};
 use super::norm::ScaledNorm;
 use crate::report::{Counts, IterationRecord};
 use crate::{BundleTrustConfig, Vector};
-use serde::{Deserialize, Serialize};
 
 /// State of a run between two steps. The weight is u = 1/t of the trust parameter t.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
 pub(crate) struct State {
     pub norm: ScaledNorm,
     pub start: Vector,
@@ -39,9 +38,6 @@ pub(crate) struct State {
     pub curvature: CurvatureRecord,
     pub counts: Counts,
     pub history: Vec<IterationRecord>,
-    /// Seconds spent before the last resume.
-    pub seconds_before: f64,
-    pub warnings: Vec<String>,
 }
 
 impl State {

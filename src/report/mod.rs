@@ -36,9 +36,9 @@ pub struct Report {
     pub history: Vec<IterationRecord>,
     /// Largest relative violation of the admissible set among all points evaluated.
     pub largest_violation: f64,
-    /// Things that went wrong without ending the run.
+    /// Things that went wrong without ending the run, for whoever completes the report; the method itself has none.
     pub warnings: Vec<String>,
-    /// Seconds used, those before a resume included.
+    /// Seconds used; with those of earlier invocations after [`Journaled::complete`](crate::Journaled::complete).
     pub seconds: f64,
 }
 

@@ -2,7 +2,7 @@
 
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
-use nonsmooth::{InputError, OptimizeError, OracleError};
+use nonsmooth::{InputError, JournalError, OptimizeError, OracleError};
 use std::process::ExitCode;
 use thiserror::Error;
 
@@ -64,6 +64,12 @@ impl Failure {
 
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<JournalError> for Failure {
+    fn from(error: JournalError) -> Self {
         Self::Input(error.to_string())
     }
 }

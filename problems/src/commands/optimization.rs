@@ -1,18 +1,16 @@
 //! An optimization from start to end: on one mesh or on growing ones, kept on disk if asked for.
 
-use crate::commands::long_run::{
-    Entry, Journal, Journaled, Progress, RunFolder, StatusLine, interrupted, watch_interrupts,
-};
+use crate::commands::long_run::{Progress, RunFolder, StatusLine, interrupted, watch_interrupts};
 use crate::commands::optimized::Finished;
 use crate::commands::stages::{Stage, stages};
 use crate::commands::{Arguments, ContactObjective, Failure, Source, controls, objective};
 use contact::error::SceneError;
 use nonsmooth::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, Matrix, NonsmoothObjective, Reparametrized, Report, Termination,
-    Vector,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, NonsmoothObjective, Observer,
+    Reparametrized, Report, Termination, Vector,
 };
 use scene_file::{AccuracyName, Case};
-use std::path::{Path, PathBuf};
+use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// First step on every mesh but the first, in first steps of the first mesh. The gap at a coarse optimum says nothing about the
@@ -109,8 +107,7 @@ pub fn optimize(
             .optimizer
             .time_limit
             .map(|limit| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE));
-        let kept = folder.as_ref().map(|folder| folder.journal(stage.name.as_deref())).transpose()?;
-        let result = run_stage(&objective, stage, (&start, step), left, kept, &session.status)?;
+        let result = run_stage(&objective, stage, (&start, step), left, folder.as_ref(), &session.status)?;
         if finished.is_empty() {
             step *= LATER_STEP;
         }
@@ -125,16 +122,19 @@ pub fn optimize(
 }
 
 /// Refuses fewer evaluations than a run that is continued has made already: its report would become worse.
-pub fn check_limit(folder: &RunFolder, stages: &[Stage]) -> Result<(), SceneError> {
+pub fn check_limit(folder: &RunFolder, stages: &[Stage]) -> Result<(), Failure> {
     for stage in stages {
         let (held, limit) = (folder.evaluations(stage.name.as_deref())?, stage.case.optimizer.max_evaluations);
         if held > limit {
             let allowed = format!("at least the {held} evaluations that the folder holds");
-            return Err(SceneError::out_of_range("--max-evaluations", limit, allowed));
+            return Err(SceneError::out_of_range("--max-evaluations", limit, allowed).into());
         }
     }
     Ok(())
 }
+
+/// Bytes of a number in the restart data.
+const NUMBER_BYTES: u64 = 24;
 
 /// Bytes per torn node of the fields of one state (some 260 bytes per brick were written at 35³).
 const FIELD_BYTES: u64 = 300;
@@ -147,7 +147,7 @@ pub fn room(stages: &[Stage]) -> u64 {
         let torn = scene.mesh.iter().zip(&scene.subdomains).map(|(cells, count)| (cells + count) as u64);
         torn.product::<u64>() * if scene.upper.is_some() { 2 } else { 1 }
     });
-    (3 * 3 * 8 + 2 * FIELD_BYTES) * nodes.max().unwrap_or(0) + (4 << 20)
+    (3 * 3 * NUMBER_BYTES + 2 * FIELD_BYTES) * nodes.max().unwrap_or(0) + (4 << 20)
 }
 
 struct Optimized {
@@ -170,7 +170,7 @@ fn run_stage(
     stage: &Stage,
     (start, first_step): (&Vector, f64),
     time_limit: Option<f64>,
-    kept: Option<(PathBuf, Journal, Vec<Entry>)>,
+    folder: Option<&RunFolder>,
     status: &StatusLine,
 ) -> Result<Optimized, Failure> {
     let optimizer = &stage.case.optimizer;
@@ -191,23 +191,33 @@ fn run_stage(
     let matrix = mean_height_coordinates(start, first_step);
     let set = objective.solver().problem().admissible.polyhedron();
     let set = Reparametrized::new(objective, matrix.clone())?.transformed_set(set)?;
-    let replayed = kept.as_ref().map_or(0, |(_, _, entries)| entries.len());
+    let journaled = folder.map(|folder| folder.journaled(objective, stage.name.as_deref())).transpose()?;
+    let replayed = journaled.as_ref().map_or(0, Journaled::held);
     let progress = Progress::new(&label, config.max_evaluations, time_limit, replayed, status.clone());
     let method = BundleTrust::new(config)?.constraints(set).observer(progress);
-    let report = match kept {
-        None => minimize(method, &Reparametrized::new(objective, matrix)?, start, None)?,
-        Some((folder, mut journal, entries)) => {
-            let seconds: Vec<f64> = entries.iter().map(|entry| entry.seconds).collect();
-            let journaled = Journaled::new(objective, &mut journal, entries);
-            let scaled = Reparametrized::new(&journaled, matrix)?;
-            let mut report = minimize(method, &scaled, start, Some(&folder.join("snapshot.json")))?;
-            report.warnings.extend(journaled.into_warnings());
-            report.warnings.dedup();
-            add_earlier_seconds(&mut report, &seconds);
+    let report = match &journaled {
+        None => minimize(method, &Reparametrized::new(objective, matrix)?, start)?,
+        Some(journaled) => {
+            let method = method.observer(warner(journaled));
+            let mut report = minimize(method, &Reparametrized::new(journaled, matrix)?, start)?;
+            journaled.complete(&mut report);
             report
         }
     };
     Ok(Optimized { report, replayed, name: stage.name.clone(), start: start.clone() })
+}
+
+/// Says what the journal warns of as soon as it does.
+fn warner<O>(journaled: &Journaled<O>) -> impl Observer {
+    let mut said = 0;
+    move |_: &IterationRecord| {
+        let warnings = journaled.warnings();
+        for words in &warnings[said..] {
+            eprintln!("warning: {words}");
+        }
+        said = warnings.len();
+        ControlFlow::Continue(())
+    }
 }
 
 /// Runs the optimizer; the solution is in the original coordinates.
@@ -215,29 +225,10 @@ fn minimize<O: NonsmoothObjective>(
     mut method: BundleTrust<'_>,
     scaled: &Reparametrized<O>,
     start: &Vector,
-    snapshot: Option<&Path>,
 ) -> Result<Report, Failure> {
-    if let Some(file) = snapshot {
-        method = method.checkpoint(file);
-    }
-    let mut run = method.start(scaled, scaled.transformed(start))?;
-    while run.step().is_continue() {}
-    let written = snapshot.map(|file| run.snapshot().write(file));
-    let mut report = run.finish();
-    if let Some(Err(error)) = written {
-        report.warnings.push(format!("snapshot not written: {error}"));
-    }
+    let mut report = method.minimize(scaled, scaled.transformed(start))?;
     report.solution = scaled.original(&report.solution);
     Ok(report)
-}
-
-/// The time of a resumed run includes that of its earlier parts.
-fn add_earlier_seconds(report: &mut Report, earlier: &[f64]) {
-    let before = earlier.last().copied().unwrap_or(0.0);
-    for (index, record) in report.history.iter_mut().enumerate() {
-        record.seconds = earlier.get(index).copied().unwrap_or(before + record.seconds);
-    }
-    report.seconds += before;
 }
 
 /// Half of the mean distance between the starting surface and its counterpart: the length on which contact changes, mm. A

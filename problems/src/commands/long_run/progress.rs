@@ -32,6 +32,7 @@ impl Progress {
     /// The evaluation that begins, on the status line.
     fn announce(&self, evaluation: usize) {
         if evaluation <= self.limit {
+            tracing::debug!(evaluation, "evaluation begins");
             self.status.begin(format!("{}evaluation {evaluation:>4}/{}: ", self.label, self.limit));
         }
     }
