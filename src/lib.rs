@@ -155,6 +155,12 @@
 //! * State problems in the same repository: contact with friction in the crate `contact`, a membrane over an obstacle and
 //!   a closed-form toy in the crate `problems`.
 //!
+//! # Features
+//!
+//! `interior-point` (on by default) brings an interior-point method as the second path of the subproblem, and 18 packages.
+//! Without it, a subproblem that the active-set method cannot finish is tried again with shorter steps; if that does not help,
+//! the run ends with [`Termination::SubproblemFailed`]. None of the test problems needs it.
+//!
 //! # Modules
 //!
 //! | module | what it holds |
@@ -167,7 +173,7 @@
 //! | [`report`] | [`Report`], [`Termination`], [`Certificate`], history, observers, stopping rules |
 //! | [`verify`] | Taylor tests of any objective |
 //! | [`journal`] | [`Journaled`]: an objective whose evaluations survive the run |
-//! | [`counted`], [`reparametrized`] | objectives around objectives: counting; a linear change of variables |
+//! | [`reparametrized`] | an objective under a linear change of variables |
 //! | [`qp`] | the subproblem as a convex QP of its own, with certificate; projection onto a polyhedron |
 //! | [`error`], [`linalg`] | error types; the vector and matrix types |
 
@@ -176,7 +182,6 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 pub mod bundle;
 pub mod constraints;
-pub mod counted;
 pub mod error;
 pub mod journal;
 pub mod linalg;
@@ -189,12 +194,15 @@ pub mod report;
 pub mod verify;
 
 mod accuracy;
+mod checks;
 mod panics;
 
 pub use accuracy::Accuracy;
-pub use bundle::{AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run, ScaledNorm, VariableScaling};
+pub use bundle::{
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, CurvedModelConfig, Cut, ExplorationConfig, Run,
+    ScaledNorm, VariableScaling,
+};
 pub use constraints::Polyhedron;
-pub use counted::Counted;
 pub use error::{InputError, OptimizeError, OracleError};
 pub use journal::{Journal, JournalError, Journaled};
 pub use linalg::{Matrix, Vector};
@@ -203,6 +211,6 @@ pub use problem::{Coderivative, Cost, CostGradient, StateSolver};
 pub use reduced::ReducedObjective;
 pub use reparametrized::Reparametrized;
 pub use report::{
-    Certificate, CertificateCheck, Counts, IterationRecord, Observer, Report, StepKind, StopRule, TablePrinter,
-    Termination,
+    Certificate, CertificateCheck, Counts, IterationRecord, Observer, Origin, Report, StepKind, StopRule, TablePrinter,
+    Termination, TrialCounts,
 };

@@ -1,8 +1,8 @@
-//! The entry point: configuration, admissible set, observers, and the ways to run.
+//! The entry point: configuration, admissible set, observers, stopping rules.
 
-use super::run::Run;
-use crate::report::{Observer, Report, StopRule};
-use crate::{BundleTrustConfig, InputError, NonsmoothObjective, OptimizeError, Polyhedron, Vector};
+use super::config::BundleTrustConfig;
+use crate::report::{Observer, StopRule};
+use crate::{InputError, Polyhedron};
 
 /// The bundle-trust method with its settings.
 ///
@@ -75,28 +75,5 @@ impl<'o> BundleTrust<'o> {
     /// The settings.
     pub fn config(&self) -> &BundleTrustConfig {
         &self.config
-    }
-
-    /// Minimises the objective from a start that need not be admissible.
-    ///
-    /// # Errors
-    /// As [`start`](Self::start). Everything that happens later ends in a [`Report`].
-    pub fn minimize<O: NonsmoothObjective>(&mut self, objective: &O, x0: Vector) -> Result<Report, OptimizeError> {
-        let mut run = self.start(objective, x0)?;
-        while run.step().is_continue() {}
-        Ok(run.finish())
-    }
-
-    /// Projects the start on the admissible set and evaluates it.
-    ///
-    /// # Errors
-    /// [`OptimizeError::Input`] on sizes and numbers, [`OptimizeError::Infeasible`] if the set is empty,
-    /// [`OptimizeError::Oracle`] if the first evaluation fails.
-    pub fn start<'r, O: NonsmoothObjective>(
-        &'r mut self,
-        objective: &'r O,
-        x0: Vector,
-    ) -> Result<Run<'r, 'o, O>, OptimizeError> {
-        Run::start(self, objective, x0)
     }
 }

@@ -1,7 +1,6 @@
 //! Everything a run carries from step to step.
 
-use super::curvature::CurvatureRecord;
-use super::cut::{Bundle, Cut, IDLE};
+use super::cut::{Bundle, Cut};
 use super::norm::ScaledNorm;
 use crate::report::{Counts, IterationRecord};
 use crate::{BundleTrustConfig, Vector};
@@ -34,8 +33,6 @@ pub(crate) struct State {
     pub noise: f64,
     /// Failed evaluations in a row.
     pub failures: usize,
-    /// What the curved model is worth.
-    pub curvature: CurvatureRecord,
     pub counts: Counts,
     pub history: Vec<IterationRecord>,
 }
@@ -49,7 +46,7 @@ impl State {
 
     /// Rounding level of the model: what differences of the values behind its active cuts cannot resolve.
     pub(crate) fn rounding(&self) -> f64 {
-        let cuts = self.bundle.cuts().iter().filter(|cut| cut.multiplier > IDLE);
+        let cuts = self.bundle.cuts().iter().filter(|cut| !cut.is_idle());
         let sizes =
             cuts.map(|cut| cut.value.abs().max(self.norm.dual_length(&cut.subgradient) * self.norm.length(&cut.point)));
         8.0 * f64::EPSILON * sizes.fold(self.center_value.abs(), f64::max)

@@ -8,7 +8,7 @@ mod termination;
 
 pub use certificate::{Certificate, CertificateCheck};
 pub use observer::{Observer, TablePrinter};
-pub use record::{Counts, IterationRecord, StepKind};
+pub use record::{Counts, IterationRecord, Origin, StepKind, TrialCounts};
 pub use stop::StopRule;
 pub use termination::Termination;
 
@@ -62,6 +62,12 @@ impl fmt::Display for Report {
             f,
             "work:        {} evaluations: {} serious, {} null, {} refined, {} failed; {} restarts",
             counts.evaluations, counts.serious, counts.null, counts.refined, counts.failed, counts.restarts
+        )?;
+        let trials = &counts.trials;
+        writeln!(
+            f,
+            "             trial points: {} of the cuts, {} of the curved model, {} explorations",
+            trials.cuts, trials.curved_model, trials.exploration
         )?;
         writeln!(
             f,

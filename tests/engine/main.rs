@@ -11,6 +11,7 @@ mod evaluation_counts;
 mod feasibility;
 mod generic_use;
 mod inexact_oracle;
+mod proposers;
 mod reparametrized;
 mod restart;
 mod terminations;

@@ -90,13 +90,14 @@ fn time(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nonsmooth::StepKind;
+    use nonsmooth::{Origin, StepKind};
 
     #[test]
     fn a_line_has_count_best_value_prediction_and_times() {
         let record = IterationRecord {
             evaluation: 30,
             kind: StepKind::Serious,
+            origin: Origin::Cuts,
             value: Some(1.0),
             center_value: 1.5e16,
             predicted_decrease: 2e14,

@@ -8,22 +8,20 @@
 //! B_i starts from zero and stays positive semidefinite; on a quadratic it is the multisecant matrix. A pair lies on one
 //! piece if its two linearization errors agree: both are ½ sᵀBs on a quadratic, and a kink in between drives them apart.
 
-use super::cut::Cut;
-use super::state::State;
+use crate::bundle::cut::Cut;
+use crate::bundle::state::State;
 use crate::{Matrix, Vector};
-
-/// Least cosine between r and s of a rank-one update.
-const LEAST_COSINE: f64 = 1e-3;
 
 /// A symmetric matrix Σ c v vᵀ.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Curvature {
+pub(super) struct Curvature {
     terms: Vec<(f64, Vector)>,
 }
 
 impl Curvature {
-    /// The curvature around a cut; errors of a pair agree if the smaller is at least `same_piece` times the larger.
-    pub(crate) fn around(base: &Cut, state: &State, same_piece: f64) -> Self {
+    /// The curvature around a cut; errors of a pair agree if the smaller is at least `same_piece` times the larger, and r and s
+    /// of a rank-one update have at least the cosine given.
+    pub(super) fn around(base: &Cut, state: &State, (same_piece, least_cosine): (f64, f64)) -> Self {
         let mut curvature = Self::default();
         // The value of a certified cut says nothing about curvature.
         if base.certified {
@@ -48,7 +46,7 @@ impl Curvature {
             curvature.cut_down(&s, if one_piece { z.dot(&s) } else { 2.0 * (low + open).max(0.0) });
             let r = &z - curvature.apply(&s);
             let along = r.dot(&s);
-            if one_piece && along > LEAST_COSINE * state.norm.dual_length(&r) * state.norm.length(&s) {
+            if one_piece && along > least_cosine * state.norm.dual_length(&r) * state.norm.length(&s) {
                 curvature.terms.push((1.0 / along, r));
             }
         }
@@ -56,7 +54,7 @@ impl Curvature {
     }
 
     /// B s.
-    pub(crate) fn apply(&self, s: &Vector) -> Vector {
+    pub(super) fn apply(&self, s: &Vector) -> Vector {
         let mut product = Vector::zeros(s.len());
         for (factor, v) in &self.terms {
             product.axpy(factor * v.dot(s), v, 1.0);
@@ -65,12 +63,12 @@ impl Curvature {
     }
 
     /// sᵀB s.
-    pub(crate) fn along(&self, s: &Vector) -> f64 {
+    pub(super) fn along(&self, s: &Vector) -> f64 {
         s.dot(&self.apply(s))
     }
 
     /// Adds `share` · B to a dense matrix.
-    pub(crate) fn add_to(&self, matrix: &mut Matrix, share: f64) {
+    pub(super) fn add_to(&self, matrix: &mut Matrix, share: f64) {
         for (factor, v) in &self.terms {
             matrix.ger(share * factor, v, v, 1.0);
         }

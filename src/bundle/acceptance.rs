@@ -2,38 +2,48 @@
 
 use super::config::Convexity;
 use super::cut::Cut;
+use super::proposers::proposal::Proposal;
+use super::proposers::proposer::{Comparison, Trial};
 use super::run::Run;
-use super::subproblem::Proposal;
-use super::weight::{self, Comparison};
 use crate::report::StepKind;
 use crate::{Accuracy, Answer, Evaluation, NonsmoothObjective, Vector};
 
+/// Only steps shorter than this share of the length scale tell noise from slope.
+const NOISE_STEP: f64 = 1e-4;
+/// A change of Θ beyond this many times the steepest slope along the step is noise.
+const STEEPNESS_MARGIN: f64 = 4.0;
+/// Times the promised errors and rounding that a change must exceed to be noise.
+const NOISE_MARGIN: f64 = 8.0;
+/// Cuts in the bundle beyond the number of variables, unless `bundle_size` is set.
+const EXTRA_CUTS: usize = 15;
+/// Largest number of cuts, unless `bundle_size` is set.
+const MAX_CUTS: usize = 150;
+
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// Serious or null: updates weight, bundle and center.
-    pub(super) fn judge(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<O::WarmStart>) {
-        let may_be_serious = matches!(answer, Answer::Accurate(_));
+    pub(super) fn accept_or_reject(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<O::WarmStart>) {
+        let accurate = matches!(answer, Answer::Accurate(_));
         let evaluation = answer.into_evaluation();
         let value = evaluation.value;
         let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
-        let serious = may_be_serious && comparison.is_serious(&self.method.config);
+        let serious = accurate && comparison.is_serious(&self.method.config);
         self.state.failures = 0;
-        self.keep_record(&proposal, may_be_serious.then_some(&comparison), serious);
-        if may_be_serious {
+        if accurate {
             self.watch_noise(&proposal, &evaluation);
         }
+        let trial = Trial { proposal: &proposal, comparison, accurate, serious };
+        self.proposers.learn(&mut self.state, &self.method.config, &trial);
         let kind = if serious {
-            weight::after_serious(&mut self.state, &self.method.config, &proposal, &comparison);
             if -comparison.change > self.tolerance() {
                 self.state.restarts = 0;
             }
             self.state.counts.serious += 1;
             StepKind::Serious
         } else {
-            weight::after_null(&mut self.state, &self.method.config, &proposal, &comparison);
             self.state.counts.null += 1;
-            if may_be_serious { StepKind::Null } else { StepKind::NoDescent }
+            if accurate { StepKind::Null } else { StepKind::NoDescent }
         };
-        self.add_cut(proposal.trial.clone(), &evaluation, !may_be_serious);
+        self.add_cut(proposal.trial.clone(), &evaluation, !accurate);
         if serious {
             self.move_center(proposal.trial.clone(), evaluation, accuracy);
         }
@@ -45,23 +55,23 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let state = &mut self.state;
         let change = evaluation.value - state.center_value;
         let promised = evaluation.error_bound + state.center_error_bound() + state.rounding();
-        if proposal.step_length <= 1e-4 * state.length_scale() {
+        if proposal.step_length <= NOISE_STEP * state.length_scale() {
             let slopes = state.bundle.cuts().iter().map(|cut| state.norm.dual_length(&cut.subgradient));
             let steepest = slopes.fold(state.norm.dual_length(&evaluation.subgradient), f64::max);
-            if change.abs() > 4.0 * steepest * proposal.step_length + 8.0 * promised {
+            if change.abs() > STEEPNESS_MARGIN * steepest * proposal.step_length + NOISE_MARGIN * promised {
                 state.noise = state.noise.max(change.abs());
             }
         }
         if self.method.config.convexity == Convexity::Convex {
             let error = evaluation.subgradient.dot(&proposal.step) - change;
-            if error < -8.0 * promised {
+            if error < -NOISE_MARGIN * promised {
                 state.noise = state.noise.max(-error);
             }
         }
     }
 
     pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>, certified: bool) {
-        let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + 15).min(150));
+        let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + EXTRA_CUTS).min(MAX_CUTS));
         let state = &mut self.state;
         state.bundle.make_room(size, state.center_id);
         state.bundle.push(Cut {
@@ -75,7 +85,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             idle: 0,
         });
         state.next_id += 1;
-        self.proposal = None;
+        self.forget_model();
     }
 
     /// Makes the newest cut the center.

@@ -7,16 +7,17 @@
 //! c = 0 as long as no pair of cuts proves Θ nonconvex: then this is the plain model of a convex function.
 //! References: \[SchrammZowe1992\] (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
 
-use super::config::Convexity;
-use super::state::State;
-use crate::{BundleTrustConfig, Vector};
+use crate::Vector;
+use crate::bundle::config::{BundleTrustConfig, Convexity};
+use crate::bundle::proposers::subproblem::Cuts;
+use crate::bundle::state::State;
 
 /// Slopes and offsets of the model, in the order of the cuts.
 #[derive(Debug, Clone)]
 pub(crate) struct Model {
-    pub slopes: Vec<Vector>,
-    pub offsets: Vec<f64>,
-    pub ids: Vec<u64>,
+    slopes: Vec<Vector>,
+    offsets: Vec<f64>,
+    ids: Vec<u64>,
     /// The curvature c added to make the model convex.
     pub convexification: f64,
     /// θ_i ≤ 1: share of the cut itself in what the subproblem sees; the rest is the center's cut.
@@ -26,7 +27,13 @@ pub(crate) struct Model {
 }
 
 /// A cut this much steeper than the median drowns the others in rounding and is mixed with the center's cut.
-const STEEPEST: f64 = 1e7;
+const MAX_RELATIVE_SLOPE: f64 = 1e7;
+/// Pairs of cuts closer than this share of the length scale prove nothing about curvature.
+const LEAST_PAIR_DISTANCE: f64 = 1e-6;
+/// Linearization errors below this share of the size of Θ prove nothing about curvature.
+const LEAST_PAIR_ERROR: f64 = 1e-9;
+/// The same for the errors at the center, as a share of the one of pairs.
+const CENTER_SHARE: f64 = 0.1;
 
 impl Model {
     /// Builds the model at the center.
@@ -64,7 +71,7 @@ impl Model {
         let norms: Vec<f64> = self.slopes.iter().map(|slope| state.norm.dual_length(slope)).collect();
         let mut sorted = norms.clone();
         sorted.sort_by(f64::total_cmp);
-        let limit = STEEPEST * sorted[sorted.len() / 2].max(norms[center]);
+        let limit = MAX_RELATIVE_SLOPE * sorted[sorted.len() / 2].max(norms[center]);
         let base = self.slopes[center].clone();
         for (i, norm) in norms.iter().enumerate().filter(|(_, norm)| **norm > limit && limit > 0.0) {
             let share = limit / norm;
@@ -72,6 +79,11 @@ impl Model {
             self.offsets[i] = share * self.offsets[i] + (1.0 - share) * self.offsets[center];
             self.shares[i] = share;
         }
+    }
+
+    /// The cuts as the subproblem sees them.
+    pub(crate) fn cuts(&self) -> Cuts<'_> {
+        Cuts { slopes: &self.slopes, offsets: &self.offsets, ids: &self.ids }
     }
 
     /// Multipliers of the cuts themselves from those of the subproblem.
@@ -88,14 +100,14 @@ impl Model {
 
 /// The curvature c that the bundle proves to be necessary.
 fn convexification(state: &State, config: &BundleTrustConfig, errors: &[f64], distances: &[f64]) -> f64 {
-    let resolution = 1e-6 * state.length_scale();
-    let value_resolution = 1e-9 * state.value_scale(config);
+    let resolution = LEAST_PAIR_DISTANCE * state.length_scale();
+    let value_resolution = LEAST_PAIR_ERROR * state.value_scale(config);
     let curvatures = state.bundle.proven_curvatures(resolution, value_resolution);
     let pairs = quantile(&curvatures, config.curvature_quantile);
     let mut at_center = 0.0_f64;
     for (cut, (error, distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(distances)) {
         let allowance = cut.excess() + state.center_error_bound();
-        if *error < -0.1 * value_resolution - allowance && *distance > 0.0 {
+        if *error < -CENTER_SHARE * value_resolution - allowance && *distance > 0.0 {
             at_center = at_center.max(-error / distance);
         }
     }
