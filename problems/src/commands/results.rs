@@ -5,7 +5,7 @@ use crate::commands::compared::Compared;
 use crate::commands::gallery::{self, Seen};
 use crate::commands::long_run::{COMPARED, RunFolder};
 use crate::commands::optimized::{Finished, history_table};
-use crate::commands::output::{self, Folder};
+use crate::commands::output::{self, Folder, PICTURE_ENDINGS};
 use crate::commands::report_pages::{self, Context};
 use crate::commands::solved::Solved;
 use crate::commands::{ContactObjective, Failure, Source, tables};
@@ -35,10 +35,10 @@ impl<'a> Delivery<'a> {
         self.folder.write(name, text)
     }
 
-    /// A picture as SVG and PNG, and in the report.
+    /// A picture in files of its own and in the report.
     fn draw(&mut self, figure: Figure, what: &'static str) -> Result<(), Failure> {
         self.folder.within(FIGURES)?.draw(&figure)?;
-        self.files.push((format!("{FIGURES}/{}.svg, .png", figure.name), what));
+        self.files.push((format!("{FIGURES}/{}{PICTURE_ENDINGS}", figure.name), what));
         self.figures.push(figure);
         Ok(())
     }

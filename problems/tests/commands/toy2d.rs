@@ -50,10 +50,7 @@ fn pictures_show_every_evaluation_of_the_first_run() {
     let svg = std::fs::read_to_string(folder.join("landscape.svg")).expect("the landscape");
     let marks = ["start", "serious", "null", "refined"].map(|kind| svg.matches(&format!("class=\"{kind}\"")).count());
     assert_eq!(marks.iter().sum::<usize>(), evaluations, "{marks:?}");
-    for name in ["landscape", "convergence"] {
-        let png = std::fs::read(folder.join(format!("{name}.png"))).expect("a picture");
-        assert!(png.starts_with(b"\x89PNG") && png.len() > 5000, "{name}");
-    }
+    assert!(folder.join("convergence.svg").exists());
     std::fs::remove_dir_all(&folder).expect("removable");
 }
 

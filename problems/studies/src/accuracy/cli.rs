@@ -33,7 +33,7 @@ pub struct Arguments {
     /// Print all numbers as comma-separated values on stdout.
     #[arg(long)]
     pub csv: bool,
-    /// Folder for report.json, report.md, report.csv and the pictures (SVG, PNG).
+    /// Folder for report.json, report.md, report.csv and the pictures (SVG; PNG as well with the feature `png`).
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
