@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
-#[path = "../common/mod.rs"]
 mod common;
 
 mod accuracy_cost;

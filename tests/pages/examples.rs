@@ -14,6 +14,7 @@ mod observer;
 mod own_problem;
 
 use nonsmooth::{AccuracyPolicy, Termination};
+use testset::kit::scratch;
 
 #[test]
 fn string_just_touches_the_table() {
@@ -57,9 +58,8 @@ fn string_is_level_with_fewer_sweeps_on_demand() {
 
 #[test]
 fn continued_run_equals_the_uninterrupted_one() {
-    let folder = std::env::temp_dir().join(format!("nonsmooth-example-test-{}", std::process::id()));
-    let [whole, resumed] = checkpoint::both_ways(&folder).expect("two reports");
-    std::fs::remove_dir_all(&folder).expect("the journal is there");
+    let folder = scratch();
+    let [whole, resumed] = checkpoint::both_ways(folder.path()).expect("two reports");
     assert!(whole.value < 1e-6 && whole.termination.is_stationary(), "{whole}");
     assert_eq!(whole.solution, resumed.solution);
     assert_eq!(whole.counts, resumed.counts);

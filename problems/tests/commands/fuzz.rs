@@ -1,6 +1,6 @@
 //! Mutated scene, control, grid and journal files: every one is accepted or refused with an error, none panics or hangs.
 //!
-//! `FUZZ_INPUTS=100000 cargo test --release -p problems --test fuzz -- --nocapture` runs 100 000 inputs; without the variable
+//! `FUZZ_INPUTS=100000 cargo test --release -p problems --test commands fuzz -- --nocapture` runs 100 000 inputs; without the variable
 //! a few thousand. Inputs are a function of their number alone. Nothing is solved: reading, conversion, validation, the
 //! memory estimate, and for small scenes the discrete problem with its admissible set.
 
@@ -14,13 +14,14 @@ use scene_file::{Case, SceneFile};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use testset::kit::{self, Random};
 
 /// Inputs of an ordinary test run.
 const FEW: u64 = 3000;
 /// A scene with more contact nodes or controls than this is not made discrete.
 const SMALL: usize = 400;
 /// Longest time for one input.
-const PATIENCE: Duration = Duration::from_secs(5);
+const LONGEST: Duration = Duration::from_secs(5);
 
 /// Numbers and words that parsers and checks get wrong.
 const TOKENS: [&str; 40] = [
@@ -65,23 +66,6 @@ const TOKENS: [&str; 40] = [
     "[output]",
     "../../x",
 ];
-
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() % count.max(1) as u64) as usize
-    }
-}
 
 /// Splits into words, numbers, quoted names and single other characters.
 fn tokens(text: &str) -> Vec<String> {
@@ -222,7 +206,8 @@ fn journal() -> String {
 }
 
 impl Corpus {
-    fn new() -> Self {
+    /// The inputs; files go to the folder `scratch`.
+    fn new(scratch: &Path) -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
         let names = ["signorini", "hertz", "signorini_frictionless", "flat_punch", "tangential", "thin_layer"];
         let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
@@ -230,11 +215,9 @@ impl Corpus {
         let printed = scenes.iter().map(|text| SceneFile::parse(text, "x").unwrap().print().unwrap());
         scenes.extend(printed.collect::<Vec<_>>());
         let heights: Vec<String> = (0..36).map(|i| format!("{}", 100.0 + 0.125 * f64::from(i))).collect();
-        let scratch = std::env::temp_dir().join(format!("nonsmooth-fuzz-{}", std::process::id()));
-        std::fs::create_dir_all(&scratch).unwrap();
         std::fs::copy(folder.join("flat_punch.csv"), scratch.join("flat_punch.csv")).unwrap();
         let controls = format!("[{}]", heights.join(", "));
-        Self { scenes, controls, grid: read("flat_punch.csv"), journal: journal(), folder: scratch }
+        Self { scenes, controls, grid: read("flat_punch.csv"), journal: journal(), folder: scratch.to_path_buf() }
     }
 
     /// Input `number` and whether it was accepted.
@@ -270,7 +253,8 @@ impl Corpus {
 #[test]
 fn mutated_files_are_accepted_or_refused() {
     let inputs = std::env::var("FUZZ_INPUTS").map_or(FEW, |count| count.parse().expect("FUZZ_INPUTS: a number"));
-    let corpus = Corpus::new();
+    let scratch = kit::scratch();
+    let corpus = Corpus::new(scratch.path());
     for text in &corpus.scenes {
         assert!(scene(text, &corpus.folder).is_ok(), "an input is wrong before it is mutated");
     }
@@ -280,7 +264,7 @@ fn mutated_files_are_accepted_or_refused() {
         let (text, result) = corpus.try_input(number);
         let time = clock.elapsed();
         slowest = slowest.max(time);
-        assert!(time < PATIENCE, "input {number} took {time:?}:\n{text}");
+        assert!(time < LONGEST, "input {number} took {time:?}:\n{text}");
         match result {
             Ok(valid) => accepted += u64::from(valid),
             Err(_) => panic!("input {number} panicked:\n{text}"),
@@ -289,5 +273,4 @@ fn mutated_files_are_accepted_or_refused() {
     println!("{inputs} inputs: {accepted} accepted, {} refused, slowest {slowest:?}", inputs - accepted);
     // Mutations that leave nothing valid, or break nothing, would test little.
     assert!(accepted > inputs / 50 && accepted < inputs / 2, "{accepted} of {inputs} accepted");
-    std::fs::remove_dir_all(&corpus.folder).unwrap();
 }

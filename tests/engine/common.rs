@@ -1,5 +1,4 @@
 //! Small objectives and sets that several tests share.
-#![allow(dead_code, clippy::unwrap_used)]
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, NonsmoothObjective, Polyhedron, Report, Vector};
 

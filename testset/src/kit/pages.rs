@@ -4,11 +4,10 @@
 //! that: the tests have their options parsed. `#` begins a comment. Blocks of another kind hold no command that begins with
 //! `cargo` or `git`, except those marked `text`: output, or usage.
 
-#![allow(dead_code, reason = "two tests share this, each uses its part")]
-
 use std::path::{Path, PathBuf};
 
 /// One page of the repository.
+#[derive(Debug)]
 pub struct Page {
     /// Path below the root of the repository.
     pub name: String,
@@ -17,6 +16,7 @@ pub struct Page {
 }
 
 /// One command of a page.
+#[derive(Debug)]
 pub struct Command {
     /// Where it stands, for messages.
     pub place: String,
@@ -51,6 +51,9 @@ impl Command {
 }
 
 /// All pages of the repository with this root.
+///
+/// # Panics
+/// When a page cannot be read, or holds a block that is not closed or not marked as it should be.
 pub fn all(root: &Path) -> Vec<Page> {
     let folder = std::fs::read_dir(root.join("docs")).expect("the folder docs");
     let mut files: Vec<PathBuf> = folder.map(|entry| entry.expect("an entry").path()).collect();

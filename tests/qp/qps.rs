@@ -1,37 +1,12 @@
-//! Random QPs of all kinds, from a seed.
+//! Random quadratic programs of all kinds, from a seed.
 
 use nonsmooth::qp::{EpigraphQp, Metric};
 use nonsmooth::{Matrix, Vector};
+use testset::kit::Random;
 
-/// A small reproducible generator (SplitMix64).
-pub struct Numbers(pub u64);
-
-impl Numbers {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Uniform in [−1, 1).
-    pub fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
-
-    pub fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound as u64) as usize
-    }
-
-    pub fn vector(&mut self, size: usize) -> Vector {
-        Vector::from_fn(size, |_, _| self.signed())
-    }
+/// Entries uniform in [−1, 1).
+pub fn vector(random: &mut Random, size: usize) -> Vector {
+    Vector::from_fn(size, |_, _| random.signed())
 }
 
 #[derive(Clone, Debug)]
@@ -101,14 +76,14 @@ pub struct Shape {
 
 /// A random QP whose rows and box contain a known point near 0 (not always 0 itself).
 pub fn random_qp(seed: u64, shape: Shape) -> OwnedQp {
-    let mut numbers = Numbers(seed);
+    let mut random = Random(seed);
     let Shape { dimension: n, cuts, rows: p } = shape;
-    let inside = if numbers.below(3) == 0 { numbers.vector(n) * 0.5 } else { Vector::zeros(n) };
-    let (slopes, offsets) = random_cuts(&mut numbers, n, cuts);
-    let (rows, row_lower, row_upper) = random_rows(&mut numbers, &inside, p);
-    let (lower, upper) = random_box(&mut numbers, &inside);
+    let inside = if random.below(3) == 0 { vector(&mut random, n) * 0.5 } else { Vector::zeros(n) };
+    let (slopes, offsets) = random_cuts(&mut random, n, cuts);
+    let (rows, row_lower, row_upper) = random_rows(&mut random, &inside, p);
+    let (lower, upper) = random_box(&mut random, &inside);
     OwnedQp {
-        metric: random_metric(&mut numbers, n),
+        metric: random_metric(&mut random, n),
         cut_ids: (0..cuts as u64).map(|id| 1000 + 7 * id).collect(),
         slopes,
         offsets,
@@ -120,13 +95,13 @@ pub fn random_qp(seed: u64, shape: Shape) -> OwnedQp {
     }
 }
 
-fn random_metric(numbers: &mut Numbers, n: usize) -> OwnedMetric {
-    let weight = 10f64.powf(3.0 * numbers.signed());
-    match numbers.below(3) {
+fn random_metric(random: &mut Random, n: usize) -> OwnedMetric {
+    let weight = 10f64.powf(3.0 * random.signed());
+    match random.below(3) {
         0 => OwnedMetric::ScaledIdentity(weight),
-        1 => OwnedMetric::Diagonal(Vector::from_fn(n, |_, _| weight * 10f64.powf(2.0 * numbers.signed()))),
+        1 => OwnedMetric::Diagonal(Vector::from_fn(n, |_, _| weight * 10f64.powf(2.0 * random.signed()))),
         _ => {
-            let root = Matrix::from_fn(n, n, |_, _| numbers.signed());
+            let root = Matrix::from_fn(n, n, |_, _| random.signed());
             let mut matrix = &root * root.transpose() * weight;
             for i in 0..n {
                 matrix[(i, i)] += 0.01 * weight;
@@ -137,18 +112,18 @@ fn random_metric(numbers: &mut Numbers, n: usize) -> OwnedMetric {
 }
 
 /// Fresh cuts mixed with duplicates, near duplicates (1e-8), and convex combinations of others.
-fn random_cuts(numbers: &mut Numbers, n: usize, cuts: usize) -> (Vec<Vector>, Vec<f64>) {
+fn random_cuts(random: &mut Random, n: usize, cuts: usize) -> (Vec<Vector>, Vec<f64>) {
     let (mut slopes, mut offsets): (Vec<Vector>, Vec<f64>) = (Vec::new(), Vec::new());
-    let degenerate = numbers.below(2) == 0;
+    let degenerate = random.below(2) == 0;
     for j in 0..cuts {
-        let kind = if j < 2 || !degenerate { 9 } else { numbers.below(6) };
-        let (i, k) = (numbers.below(j.max(1)), numbers.below(j.max(1)));
+        let kind = if j < 2 || !degenerate { 9 } else { random.below(6) };
+        let (i, k) = (random.below(j.max(1)), random.below(j.max(1)));
         let (slope, offset) = match kind {
             0 => (slopes[i].clone(), offsets[i]),
-            1 => (&slopes[i] + numbers.vector(n) * 1e-8, offsets[i] + 1e-8 * numbers.signed()),
+            1 => (&slopes[i] + vector(random, n) * 1e-8, offsets[i] + 1e-8 * random.signed()),
             2 => ((&slopes[i] + &slopes[k]) * 0.5, 0.5 * (offsets[i] + offsets[k])),
-            3 => (&slopes[i] + numbers.vector(n) * 1e-4, offsets[i]),
-            _ => (numbers.vector(n), 0.3 * numbers.signed()),
+            3 => (&slopes[i] + vector(random, n) * 1e-4, offsets[i]),
+            _ => (vector(random, n), 0.3 * random.signed()),
         };
         slopes.push(slope);
         offsets.push(offset);
@@ -156,13 +131,13 @@ fn random_cuts(numbers: &mut Numbers, n: usize, cuts: usize) -> (Vec<Vector>, Ve
     (slopes, offsets)
 }
 
-fn random_rows(numbers: &mut Numbers, inside: &Vector, p: usize) -> (Matrix, Vector, Vector) {
+fn random_rows(random: &mut Random, inside: &Vector, p: usize) -> (Matrix, Vector, Vector) {
     let n = inside.len();
     let (mut rows, mut low, mut high) = (Matrix::zeros(p, n), Vector::zeros(p), Vector::zeros(p));
     for i in 0..p {
-        if i > 0 && numbers.below(4) == 0 {
+        if i > 0 && random.below(4) == 0 {
             // A repetition of an earlier row, perhaps scaled: redundant rows, repeated equalities.
-            let (k, factor) = (numbers.below(i), if numbers.below(2) == 0 { 1.0 } else { 2.0 });
+            let (k, factor) = (random.below(i), if random.below(2) == 0 { 1.0 } else { 2.0 });
             for j in 0..n {
                 rows[(i, j)] = factor * rows[(k, j)];
             }
@@ -170,29 +145,29 @@ fn random_rows(numbers: &mut Numbers, inside: &Vector, p: usize) -> (Matrix, Vec
             continue;
         }
         for _ in 0..3 {
-            let j = numbers.below(n);
-            rows[(i, j)] = numbers.signed();
+            let j = random.below(n);
+            rows[(i, j)] = random.signed();
         }
         let value = rows.row(i).transpose().dot(inside);
-        (low[i], high[i]) = match numbers.below(6) {
+        (low[i], high[i]) = match random.below(6) {
             0 if i < n / 3 => (value, value),
-            1 => (f64::NEG_INFINITY, value + 0.3 * numbers.unit()),
-            2 => (value - 0.3 * numbers.unit(), f64::INFINITY),
-            3 => (value, value + 0.2 * numbers.unit()),
-            _ => (value - 0.2 * numbers.unit(), value + 0.2 * numbers.unit()),
+            1 => (f64::NEG_INFINITY, value + 0.3 * random.unit()),
+            2 => (value - 0.3 * random.unit(), f64::INFINITY),
+            3 => (value, value + 0.2 * random.unit()),
+            _ => (value - 0.2 * random.unit(), value + 0.2 * random.unit()),
         };
     }
     (rows, low, high)
 }
 
-fn random_box(numbers: &mut Numbers, inside: &Vector) -> (Vector, Vector) {
+fn random_box(random: &mut Random, inside: &Vector) -> (Vector, Vector) {
     let (mut lower, mut upper) = (inside.clone(), inside.clone());
     for k in 0..inside.len() {
-        match numbers.below(8) {
+        match random.below(8) {
             0 => {}
             1 | 2 => (lower[k], upper[k]) = (f64::NEG_INFINITY, f64::INFINITY),
             3 => lower[k] = f64::NEG_INFINITY,
-            _ => (lower[k], upper[k]) = (lower[k] - 0.5 * numbers.unit(), upper[k] + 0.5 * numbers.unit()),
+            _ => (lower[k], upper[k]) = (lower[k] - 0.5 * random.unit(), upper[k] + 0.5 * random.unit()),
         }
     }
     (lower, upper)
@@ -224,13 +199,13 @@ impl MaxOfQuadratics {
 impl BundleSequence {
     /// The QPs of a proximal bundle loop with weight control.
     pub fn record(&self, seed: u64) -> Vec<OwnedQp> {
-        let mut numbers = Numbers(seed);
+        let mut random = Random(seed);
         let n = self.dimension;
-        let pieces = (0..self.pieces).map(|_| (numbers.unit(), numbers.vector(n), numbers.vector(n)));
+        let pieces = (0..self.pieces).map(|_| (random.unit(), vector(&mut random, n), vector(&mut random, n)));
         let function = MaxOfQuadratics(pieces.collect());
         let mut rows = Matrix::zeros(self.rows, n);
         for i in 0..self.rows {
-            (0..3).for_each(|_| rows[(i, numbers.below(n))] = numbers.signed());
+            (0..3).for_each(|_| rows[(i, random.below(n))] = random.signed());
         }
         let (low, high) = (Vector::from_element(self.rows, -0.3), Vector::from_element(self.rows, 0.3));
         let mut center = Vector::zeros(n);
@@ -262,8 +237,8 @@ impl BundleSequence {
             bundle.push((solve as u64 + 1, trial.clone(), trial_value, slope));
             if trial_value - value <= 0.1 * solution.epigraph {
                 (center, value) = (trial, trial_value);
-                weight *= if numbers.below(2) == 0 { 0.4 } else { 1.0 };
-            } else if numbers.below(6) == 0 {
+                weight *= if random.below(2) == 0 { 0.4 } else { 1.0 };
+            } else if random.below(6) == 0 {
                 weight *= 2.0;
             }
         }
