@@ -1,8 +1,9 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
-use crate::commands::output::{self, Folder};
-use crate::commands::solved::Solved;
-use crate::commands::{Arguments, ContactObjective, Failure, Source, controls, results};
+use crate::commands::folder::{Folder, json, peak_pressure};
+use crate::commands::report::files;
+use crate::commands::solved_shape::SolvedShape;
+use crate::commands::{Arguments, ContactObjective, Failure, Source, controls};
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
 use nonsmooth::{Accuracy, StateSolver};
 use scene_file::Case;
@@ -54,7 +55,7 @@ pub fn run(
     let result = Evaluated {
         objective: evaluation.value,
         subgradient: evaluation.subgradient.as_slice().to_vec(),
-        peak_pressure: output::peak_pressure(objective, &state),
+        peak_pressure: peak_pressure(objective, &state),
         total_normal_force: state.forces.total_normal_force(),
         status: state.forces.counts(),
         kink: state.forces.kink,
@@ -65,11 +66,12 @@ pub fn run(
         seconds: Seconds { state: state_seconds, subgradient: subgradient_seconds },
         left_out: shape.left_out(),
     };
-    let json = output::json(&result)?;
+    let json = json(&result)?;
     if let Some(folder) = folder {
-        let solved = Solved { controls: control, value: result.objective, peak_pressure: result.peak_pressure, state };
+        let solved =
+            SolvedShape { controls: control, value: result.objective, peak_pressure: result.peak_pressure, state };
         let printed = if arguments.json { json.clone() } else { result.to_string() };
-        results::write_evaluation(&folder, source, case, objective, &solved, &json)
+        files::write_evaluation(&folder, source, case, objective, &solved, &json)
             .map_err(|failure| failure.after(&printed))?;
     }
     Ok(if arguments.json { json } else { result.to_string() })

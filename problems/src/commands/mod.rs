@@ -6,36 +6,27 @@
 
 mod arguments;
 mod compare;
-mod compared;
 mod controls;
 mod evaluate;
 mod failure;
-mod gallery;
+mod folder;
+mod loaded_scene;
 pub mod long_run;
-mod optimization;
 mod optimize;
-mod optimized;
-mod output;
-mod report_pages;
-mod report_sections;
-mod results;
-mod solved;
-mod source;
-mod stages;
-mod tables;
+mod report;
+mod solved_shape;
 mod verify;
 
 pub use arguments::{Arguments, Command};
 pub use controls::parse as parse_controls;
 pub use failure::Failure;
-pub use optimization::{first_step, mean_height_coordinates};
-pub use output::Folder;
-pub use output::json;
-pub use source::Source;
+pub use folder::{Folder, json};
+pub use loaded_scene::Source;
+pub use optimize::run::{first_step, mean_height_coordinates};
 pub use verify::smooth_step;
 
 use crate::commands::long_run::{StageLayer, StatusLine};
-use crate::commands::optimization::Session;
+use crate::commands::optimize::run::Session;
 use clap::{Parser, ValueEnum};
 use contact::contact_shape::ContactShape;
 use contact::cost::PressureCost;
@@ -113,7 +104,7 @@ fn finish(result: Result<String, Failure>) -> ExitCode {
 /// [`Failure`] with its exit status.
 pub fn execute(open: impl FnOnce() -> Result<Source, Failure>, arguments: &Arguments) -> Result<String, Failure> {
     if arguments.print_schema {
-        return output::json(schema());
+        return folder::json(schema());
     }
     arguments.check()?;
     let status = listen()?;

@@ -1,7 +1,6 @@
 //! `verify`: Taylor test of the subgradient on the smooth piece around one shape.
 
-use crate::commands::output;
-use crate::commands::{Arguments, ContactObjective, Failure, Folder, controls};
+use crate::commands::{Arguments, ContactObjective, Failure, Folder, controls, json};
 use contact::equilibrium::{ContactStatus, Residuals};
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -48,7 +47,7 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
         weakly_active: here.forces.kink.weakly_active,
         residuals: here.forces.residuals,
     };
-    let json = output::json(&result)?;
+    let json = json(&result)?;
     let text = format!(
         "{}no contact node changes its status up to the step {:.1e} mm (nearest kink: relative margin {:.1e}, {} nodes weakly active)\n\
          relative residuals of the state: {}\n",

@@ -1,7 +1,7 @@
 //! The folder of a run: what was asked for, so that the run can be continued from the folder alone.
 
 use crate::commands::long_run::journal::{Entry, Journal};
-use crate::commands::{Failure, Folder, Source, output};
+use crate::commands::{Failure, Folder, Source, json};
 use contact::error::SceneError;
 use scene_file::{CounterSection, SceneFile, StartSection};
 use std::io::ErrorKind;
@@ -119,7 +119,7 @@ impl RunFolder {
             self.remove_old(&[SCENE, START, REPORT].map(|file| format!("{part}/{file}")))?;
         }
         self.keep_grids(&mut scene, source.folder())?;
-        self.folder.replace(START, &output::json(&given)?)?;
+        self.folder.replace(START, &json(&given)?)?;
         self.folder.replace(SCENE, &scene.print()?)?;
         Ok(given.to_vec())
     }

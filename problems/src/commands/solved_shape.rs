@@ -6,7 +6,7 @@ use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
 
 /// A shape, its state as accurate as rounding allows, and the objective there.
 #[derive(Debug)]
-pub struct Solved {
+pub struct SolvedShape {
     /// Control heights, mm.
     pub controls: Vector,
     /// The state.
@@ -17,7 +17,7 @@ pub struct Solved {
     pub peak_pressure: f64,
 }
 
-impl Solved {
+impl SolvedShape {
     /// Solves a shape.
     ///
     /// # Errors

@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn meshes_keep_their_proportions() {
-        let text = include_str!("../../scenes/thin_layer.toml");
+        let text = include_str!("../../../scenes/thin_layer.toml");
         let file = SceneFile::parse(text, "thin_layer.toml").expect("an example");
         let mut case = Case::new(&file, Path::new("")).expect("an example");
         assert!(stages(&case).len() == 1 && stages(&case)[0].name.is_none());

@@ -1,10 +1,10 @@
 //! The HTML report of each command: self-contained, opens offline.
 
 use crate::commands::ContactObjective;
-use crate::commands::compared::Compared;
-use crate::commands::optimized::{Finished, active_constraints};
-use crate::commands::report_sections::{certificate, course, files, origin, pictures, states};
-use crate::commands::solved::Solved;
+use crate::commands::compare::comparison::Comparison;
+use crate::commands::optimize::summary::{Finished, active_constraints};
+use crate::commands::report::sections::{certificate, course, files, origin, pictures, states};
+use crate::commands::solved_shape::SolvedShape;
 use contact::equilibrium::StageSeconds;
 use figures::Figure;
 use figures::page::{Block, Page, Section};
@@ -20,7 +20,7 @@ pub struct Context<'a> {
 }
 
 /// The report of an optimization.
-pub fn optimization(context: &Context<'_>, meshes: &[Finished], last: &Finished, shapes: &[Solved; 2]) -> Page {
+pub fn optimization(context: &Context<'_>, meshes: &[Finished], last: &Finished, shapes: &[SolvedShape; 2]) -> Page {
     let Finished { objective, report, .. } = last;
     let confirmed = if report.termination.is_confirmed() {
         "The optimum is confirmed by its certificate."
@@ -53,7 +53,7 @@ pub fn optimization(context: &Context<'_>, meshes: &[Finished], last: &Finished,
 }
 
 /// The report of an evaluation.
-pub fn evaluation(context: &Context<'_>, objective: &ContactObjective, shape: &Solved) -> Page {
+pub fn evaluation(context: &Context<'_>, objective: &ContactObjective, shape: &SolvedShape) -> Page {
     let counts = shape.state.forces.counts();
     let lead = format!(
         "Θ = {:.10e}, peak pressure {:.2} MPa; {} contact nodes open, {} stick, {} slip.",
@@ -71,7 +71,7 @@ pub fn evaluation(context: &Context<'_>, objective: &ContactObjective, shape: &S
 }
 
 /// The report of a comparison with and without friction.
-pub fn comparison(context: &Context<'_>, compared: &Compared<'_>) -> Page {
+pub fn comparison(context: &Context<'_>, compared: &Comparison<'_>) -> Page {
     let objective = &compared.runs[0].objective;
     let sentences = compared.conclusion();
     let confirmed = compared.runs.iter().all(|run| run.report.termination.is_confirmed());
@@ -157,7 +157,7 @@ fn controls(objective: &ContactObjective, heights: &[f64]) -> Section {
 }
 
 /// Where the time of one state went; empty for a solver that does not keep it.
-fn seconds(shape: &Solved) -> Section {
+fn seconds(shape: &SolvedShape) -> Section {
     let Some(torn) = shape.state.torn() else { return Section::default() };
     let StageSeconds { equilibrium, factorization, coarse_space, newton, recovery, .. } = torn.seconds();
     let stages = [

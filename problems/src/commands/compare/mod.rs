@@ -1,13 +1,16 @@
 //! `compare`: what friction is worth in the optimization (Example 5.3 of the paper). Two optimizations, with and without
 //! friction, and both shapes seen with and without friction.
 
-use crate::commands::compared::Compared;
+pub mod comparison;
+
+use crate::commands::compare::comparison::Comparison;
 use crate::commands::long_run::{COMPARED, RunFolder, STATUS};
-use crate::commands::optimization::{Begin, Optimization, Session, check_limit, optimize, room};
+use crate::commands::optimize::run::{Begin, Optimization, Session, check_limit, optimize, room};
+use crate::commands::optimize::stages::stages;
 use crate::commands::optimize::{deliver, interruption};
-use crate::commands::solved::Solved;
-use crate::commands::stages::stages;
-use crate::commands::{Failure, Source, controls, objective, output, results};
+use crate::commands::report::files;
+use crate::commands::solved_shape::SolvedShape;
+use crate::commands::{Failure, Source, controls, json, objective};
 use contact::error::SceneError;
 use nonsmooth::Vector;
 use scene_file::Case;
@@ -51,12 +54,12 @@ pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String
     if let Some(folder) = folder.as_ref().filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
         text += &format!("to continue: compare --resume {}\n", folder.folder().path().display());
     }
-    let json = output::json(&compared.summary())?;
+    let json = json(&compared.summary())?;
     let printed = if session.arguments.json { json.clone() } else { format!("{printed}\n{text}") };
     if let Some(folder) = &folder {
         let folder = folder.folder();
         let write = || -> Result<(), Failure> {
-            results::write_comparison(folder, source, case, &compared)?;
+            files::write_comparison(folder, source, case, &compared)?;
             folder.write("report.txt", &text)?;
             folder.replace("report.json", &json)
         };
@@ -98,16 +101,16 @@ fn part(source: &Source, folder: Option<&RunFolder>, friction: f64, name: &str) 
 }
 
 /// Both optimal shapes, and the start, seen with and without friction.
-fn cross(runs: &[(Optimization, [Solved; 2])]) -> Result<Compared<'_>, Failure> {
+fn cross(runs: &[(Optimization, [SolvedShape; 2])]) -> Result<Comparison<'_>, Failure> {
     let missing = || Failure::Computation("a run of the comparison is missing".into());
     let [(with, with_shapes), (without, without_shapes)] = runs else { return Err(missing()) };
     let (Some(with), Some(without)) = (with.finished.last(), without.finished.last()) else { return Err(missing()) };
-    Ok(Compared {
+    Ok(Comparison {
         runs: [with, without],
         own: [with_shapes, without_shapes],
         crossed: [
-            Solved::at(&with.objective, &without_shapes[1].controls)?,
-            Solved::at(&without.objective, &with_shapes[1].controls)?,
+            SolvedShape::at(&with.objective, &without_shapes[1].controls)?,
+            SolvedShape::at(&without.objective, &with_shapes[1].controls)?,
         ],
     })
 }

@@ -3,8 +3,8 @@
 use crate::commands::long_run::{
     Entry, Journal, Journaled, Progress, RunFolder, StatusLine, interrupted, watch_interrupts,
 };
-use crate::commands::optimized::Finished;
-use crate::commands::stages::{Stage, stages};
+use crate::commands::optimize::stages::{Stage, stages};
+use crate::commands::optimize::summary::Finished;
 use crate::commands::{Arguments, ContactObjective, Failure, Source, controls, objective};
 use contact::error::SceneError;
 use nonsmooth::{

@@ -1,14 +1,15 @@
 //! The files of a run: tables, pictures, meshes for ParaView, report page. Nothing of this is computed unless a folder is asked
 //! for.
 
-use crate::commands::compared::Compared;
-use crate::commands::gallery::{self, Seen};
+use crate::commands::compare::comparison::Comparison;
+use crate::commands::folder::{Folder, json};
 use crate::commands::long_run::{COMPARED, RunFolder};
-use crate::commands::optimized::{Finished, history_table};
-use crate::commands::output::{self, Folder};
-use crate::commands::report_pages::{self, Context};
-use crate::commands::solved::Solved;
-use crate::commands::{ContactObjective, Failure, Source, tables};
+use crate::commands::optimize::summary::{Finished, history_table};
+use crate::commands::report::contact_table;
+use crate::commands::report::gallery::{self, Seen};
+use crate::commands::report::pages::{self, Context};
+use crate::commands::solved_shape::SolvedShape;
+use crate::commands::{ContactObjective, Failure, Source};
 use contact::fields::{FieldState, vtk_files};
 use figures::Figure;
 use scene_file::Case;
@@ -49,7 +50,7 @@ impl<'a> Delivery<'a> {
             let what = "pressure, traction, remaining gap and status of every contact node";
             self.write(
                 &format!("pressure_{}.csv", shape.name),
-                &tables::contact(objective, &shape.solved.state),
+                &contact_table::contact(objective, &shape.solved.state),
                 what,
             )?;
         }
@@ -108,14 +109,14 @@ pub fn write_optimization(
     source: &Source,
     case: &Case,
     finished: &[Finished],
-    shapes: &[Solved; 2],
+    shapes: &[SolvedShape; 2],
 ) -> Result<(), Failure> {
     let Some(last) = finished.last() else { return Ok(()) };
     let Finished { objective, report, .. } = last;
     let mut delivery = Delivery::new(folder, case);
-    delivery.write("controls.json", &output::json(report.solution.as_slice())?, "the control heights found")?;
+    delivery.write("controls.json", &json(report.solution.as_slice())?, "the control heights found")?;
     let what = "all cuts and multipliers behind the certificate";
-    delivery.write("certificate.json", &output::json(&report.certificate)?, what)?;
+    delivery.write("certificate.json", &json(&report.certificate)?, what)?;
     delivery.write("history.csv", &history_table(report), "one line per evaluation")?;
     let wanted = &case.output;
     let seen = [
@@ -137,7 +138,7 @@ pub fn write_evaluation(
     source: &Source,
     case: &Case,
     objective: &ContactObjective,
-    shape: &Solved,
+    shape: &SolvedShape,
     json: &str,
 ) -> Result<(), Failure> {
     let mut delivery = Delivery::new(folder, case);
@@ -150,13 +151,18 @@ pub fn write_evaluation(
 }
 
 /// The files of a comparison.
-pub fn write_comparison(folder: &Folder, source: &Source, case: &Case, compared: &Compared<'_>) -> Result<(), Failure> {
+pub fn write_comparison(
+    folder: &Folder,
+    source: &Source,
+    case: &Case,
+    compared: &Comparison<'_>,
+) -> Result<(), Failure> {
     let objective = &compared.runs[0].objective;
     let mut delivery = Delivery::new(folder, case);
     for part in COMPARED {
         delivery.files.push((format!("{part}/report.html"), "the optimization itself, with its files"));
     }
-    let caption = |words: &str, shape: &Solved| format!("{words}, Θ = {:.4e}", shape.value);
+    let caption = |words: &str, shape: &SolvedShape| format!("{words}, Θ = {:.4e}", shape.value);
     let (with, without) = (&compared.own[0][1], &compared.crossed[0]);
     let wanted = &case.output;
     let seen = [

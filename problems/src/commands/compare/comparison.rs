@@ -1,7 +1,7 @@
 //! What a comparison with and without friction reports: table, conclusion, JSON.
 
-use crate::commands::optimized::{Ending, Finished, ending};
-use crate::commands::solved::Solved;
+use crate::commands::optimize::summary::{Ending, Finished, ending};
+use crate::commands::solved_shape::SolvedShape;
 use serde::Serialize;
 use std::fmt;
 
@@ -11,13 +11,13 @@ const NEGLIGIBLE: f64 = 0.02;
 const SAME: f64 = 1e-4;
 
 /// Two optimizations, with and without friction, and their shapes seen from the other side. Pairs: with, without.
-pub struct Compared<'a> {
+pub struct Comparison<'a> {
     /// The optimizations, on their last mesh.
     pub runs: [&'a Finished; 2],
     /// Start and optimum of each, in its own model.
-    pub own: [&'a [Solved; 2]; 2],
+    pub own: [&'a [SolvedShape; 2]; 2],
     /// The shape found without friction, seen with friction; the shape found with friction, seen without.
-    pub crossed: [Solved; 2],
+    pub crossed: [SolvedShape; 2],
 }
 
 /// A shape in both models.
@@ -59,14 +59,14 @@ pub struct SurfaceDifference {
     pub variation: f64,
 }
 
-impl Compared<'_> {
+impl Comparison<'_> {
     fn friction(&self) -> f64 {
         self.runs[0].objective.solver().problem().scene.friction
     }
 
     /// The start and both optima, in both models.
     pub fn rows(&self) -> [Row; 3] {
-        let row = |shape, with: &Solved, without: &Solved| Row {
+        let row = |shape, with: &SolvedShape, without: &SolvedShape| Row {
             shape,
             objective_with_friction: with.value,
             peak_pressure_with_friction: with.peak_pressure,
@@ -164,7 +164,7 @@ fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
     (mean, (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt())
 }
 
-impl fmt::Display for Compared<'_> {
+impl fmt::Display for Comparison<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let friction = self.friction();
         writeln!(f, "comparison:  friction {friction} against none")?;

@@ -1,7 +1,7 @@
 //! What an optimization reports: page, JSON, tables.
 
 use crate::commands::ContactObjective;
-use crate::commands::solved::Solved;
+use crate::commands::solved_shape::SolvedShape;
 use contact::equilibrium::{Kink, Residuals};
 use nonsmooth::{Report, Termination, Vector};
 use serde::Serialize;
@@ -116,7 +116,7 @@ pub fn stages_page(finished: &[Finished], asked: usize) -> String {
 }
 
 /// The JSON of a run: its last stage, and a line for every stage.
-pub fn summary<'a>(finished: &'a [Finished], shapes: &[Solved; 2]) -> Option<impl Serialize + use<'a>> {
+pub fn summary<'a>(finished: &'a [Finished], shapes: &[SolvedShape; 2]) -> Option<impl Serialize + use<'a>> {
     let Finished { report, objective, replayed, .. } = finished.last()?;
     let active = |multipliers: &Vector| multipliers.iter().filter(|multiplier| **multiplier != 0.0).count();
     Some(Optimized {
@@ -151,7 +151,7 @@ pub fn summary<'a>(finished: &'a [Finished], shapes: &[Solved; 2]) -> Option<imp
 }
 
 /// The one-page report.
-pub fn page(finished: &Finished, shapes: &[Solved; 2]) -> String {
+pub fn page(finished: &Finished, shapes: &[SolvedShape; 2]) -> String {
     let Finished { report, objective, .. } = finished;
     let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;

@@ -1,10 +1,15 @@
 //! `optimize`: the shape of least contact pressure measure, on one mesh or on growing ones, kept on disk if asked for.
 
+pub mod run;
+pub mod stages;
+pub mod summary;
+
 use crate::commands::long_run::{RunFolder, STATUS, interrupted};
-use crate::commands::optimization::{Begin, Optimization, Session, optimize};
-use crate::commands::optimized::{page, stages_page, summary};
-use crate::commands::solved::Solved;
-use crate::commands::{Failure, Source, output, results};
+use crate::commands::optimize::run::{Begin, Optimization, Session, optimize};
+use crate::commands::optimize::summary::{page, stages_page, summary};
+use crate::commands::report::files;
+use crate::commands::solved_shape::SolvedShape;
+use crate::commands::{Failure, Source, json};
 use scene_file::Case;
 
 pub fn run(source: &Source, case: &Case, session: &Session<'_>) -> Result<String, Failure> {
@@ -27,15 +32,16 @@ pub fn deliver(
     case: &Case,
     session: &Session<'_>,
     continued: Option<&str>,
-) -> Result<(String, [Solved; 2]), Failure> {
+) -> Result<(String, [SolvedShape; 2]), Failure> {
     let finished = &optimization.finished;
     let (Some(first), Some(last)) = (finished.first(), finished.last()) else {
         return Err(Failure::Computation("no mesh was begun".into()));
     };
-    let solved =
-        |controls| Solved::at(&last.objective, controls).map_err(|failure| failure.after(&last.report.to_string()));
+    let solved = |controls| {
+        SolvedShape::at(&last.objective, controls).map_err(|failure| failure.after(&last.report.to_string()))
+    };
     let shapes = [solved(&first.start)?, solved(&last.report.solution)?];
-    let json = output::json(&summary(finished, &shapes))?;
+    let json = json(&summary(finished, &shapes))?;
     let mut text = page(last, &shapes);
     text += &stages_page(finished, optimization.asked);
     if let Some(options) = continued.filter(|_| optimization.can_continue()) {
@@ -47,7 +53,7 @@ pub fn deliver(
         let write = || -> Result<(), Failure> {
             folder.write("report.txt", &text)?;
             folder.replace("report.json", &json)?;
-            results::write_optimization(folder, source, case, finished, &shapes)
+            files::write_optimization(folder, source, case, finished, &shapes)
         };
         if let Err(failure) = write() {
             let reason = format!("{failure}; the report above is complete");

@@ -1,6 +1,6 @@
 //! The pictures of solved shapes and of a run.
 
-use crate::commands::solved::Solved;
+use crate::commands::solved_shape::SolvedShape;
 use crate::commands::{ContactObjective, Failure};
 use contact::body::mesh::Block;
 use contact::cost::PressureMeasure;
@@ -18,7 +18,7 @@ pub struct Seen<'a> {
     /// Beginning of the names of its files.
     pub name: &'static str,
     /// The shape.
-    pub solved: &'a Solved,
+    pub solved: &'a SolvedShape,
     /// Its fields, if a picture or a file shows them.
     pub fields: Option<Fields>,
 }
@@ -33,7 +33,7 @@ impl<'a> Seen<'a> {
         objective: &ContactObjective,
         name: &'static str,
         caption: impl Into<String>,
-        solved: &'a Solved,
+        solved: &'a SolvedShape,
         wanted: &OutputSection,
     ) -> Result<Self, Failure> {
         let shape = objective.solver();
@@ -76,7 +76,7 @@ pub fn convergence(
     objective: &ContactObjective,
     measure: PressureMeasure,
     report: &Report,
-    optimum: &Solved,
+    optimum: &SolvedShape,
 ) -> Result<Figure, FigureError> {
     let steps = report.history.iter().map(|record| Step {
         kind: record.kind.to_string(),

@@ -1,7 +1,7 @@
 //! Sections that the report pages of several commands share.
 
 use crate::commands::ContactObjective;
-use crate::commands::solved::Solved;
+use crate::commands::solved_shape::SolvedShape;
 use figures::Figure;
 use figures::page::{Block, Section};
 use nonsmooth::{Certificate, Report};
@@ -13,13 +13,13 @@ pub fn pictures(title: &str, figures: &[Figure]) -> Section {
 }
 
 /// States side by side: what the objective is made of, and how far the numbers can be trusted.
-pub fn states(objective: &ContactObjective, shapes: &[(&str, &Solved)]) -> Section {
+pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> Section {
     let areas: f64 = objective.solver().problem().boundary.points.iter().map(|point| point.area).sum();
-    let row = |name: &str, cell: &dyn Fn(&Solved) -> String| -> Vec<String> {
+    let row = |name: &str, cell: &dyn Fn(&SolvedShape) -> String| -> Vec<String> {
         std::iter::once(name.to_owned()).chain(shapes.iter().map(|(_, shape)| cell(shape))).collect()
     };
-    let force = |shape: &Solved| shape.state.forces.total_normal_force();
-    let bound = |shape: &Solved| objective.cost().lower_bound(force(shape));
+    let force = |shape: &SolvedShape| shape.state.forces.total_normal_force();
+    let bound = |shape: &SolvedShape| objective.cost().lower_bound(force(shape));
     let rows = vec![
         row("objective Θ", &|shape| format!("{:.10e}", shape.value)),
         row("least value for this total force", &|shape| format!("{:.4e}", bound(shape))),
