@@ -48,6 +48,20 @@ impl Failure {
         ExitCode::from(self.status())
     }
 
+    /// The text for stdout after files were written; a file that could not be written does not lose the text.
+    ///
+    /// # Errors
+    /// [`Failure::Incomplete`] with the text if a file could not be written.
+    pub fn printed_with_files(text: String, written: Result<(), Self>) -> Result<String, Self> {
+        match written {
+            Ok(()) => Ok(text),
+            Err(failure) => {
+                let reason = format!("{failure}; the report above is complete");
+                Err(Self::Incomplete { text, reason, status: 1 })
+            }
+        }
+    }
+
     /// The same failure after something for stdout is there already: it is not lost.
     #[must_use]
     pub fn after(self, printed: &str) -> Self {

@@ -1,8 +1,6 @@
-//! JSON, files, and numbers that several commands report.
+//! Output folders, and JSON as text.
 
-use crate::commands::long_run::RunFolder;
-use crate::commands::{ContactObjective, Failure};
-use contact::contact_shape::ContactState;
+use crate::commands::failure::Failure;
 use contact::error::SceneError;
 use figures::Figure;
 use serde::Serialize;
@@ -23,20 +21,6 @@ impl Folder {
     /// [`SceneError::File`] with the system's reason.
     pub fn prepare(path: Option<impl AsRef<Path>>) -> Result<Option<Self>, SceneError> {
         path.map(|path| Self::with_room(path.as_ref(), 1)).transpose()
-    }
-
-    /// As [`prepare`](Self::prepare); refuses the folder of an optimization, whose report would be replaced.
-    ///
-    /// # Errors
-    /// As [`prepare`](Self::prepare).
-    pub fn for_results(path: Option<&str>) -> Result<Option<Self>, SceneError> {
-        match path.filter(|path| RunFolder::is_one(Path::new(path))) {
-            None => Self::prepare(path),
-            Some(path) => {
-                let reason = "holds an optimization, whose report would be replaced; --out takes another folder".into();
-                Err(SceneError::File { path: path.to_owned(), reason })
-            }
-        }
     }
 
     /// As [`prepare`](Self::prepare), for files of so many bytes.
@@ -127,9 +111,4 @@ impl Folder {
 /// [`Failure::Computation`] if a value cannot be written.
 pub fn json(value: &(impl Serialize + ?Sized)) -> Result<String, Failure> {
     serde_json::to_string_pretty(value).map(|text| text + "\n").map_err(|error| Failure::Computation(error.to_string()))
-}
-
-/// max σ, MPa.
-pub fn peak_pressure(objective: &ContactObjective, state: &ContactState) -> f64 {
-    objective.cost().pressures(state).into_iter().fold(f64::NEG_INFINITY, f64::max)
 }

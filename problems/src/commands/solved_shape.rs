@@ -1,6 +1,7 @@
 //! A shape with its contact state.
 
-use crate::commands::{ContactObjective, Failure};
+use crate::commands::contact_objective::ContactObjective;
+use crate::commands::failure::Failure;
 use contact::contact_shape::ContactState;
 use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
 
@@ -9,7 +10,7 @@ use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
 pub struct SolvedShape {
     /// Control heights, mm.
     pub controls: Vector,
-    /// The state.
+    /// The contact state.
     pub state: ContactState,
     /// Θ.
     pub value: f64,
@@ -18,7 +19,7 @@ pub struct SolvedShape {
 }
 
 impl SolvedShape {
-    /// Solves a shape.
+    /// Solves the contact problem of a shape.
     ///
     /// # Errors
     /// [`Failure`] of the contact solver.

@@ -1,34 +1,42 @@
-//! The files of a run: tables, pictures, meshes for ParaView, report page. Nothing of this is computed unless a folder is asked
-//! for.
+//! The files of each command. None of them is computed unless a folder is asked for.
 
 use crate::commands::compare::comparison::Comparison;
+use crate::commands::contact_objective::ContactObjective;
+use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json};
+use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::{COMPARED, RunFolder};
-use crate::commands::optimize::summary::{Finished, history_table};
-use crate::commands::report::contact_table;
-use crate::commands::report::gallery::{self, Seen};
-use crate::commands::report::pages::{self, Context};
+use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::report::shown_shape::ShownShape;
+use crate::commands::report::{gallery, pages, sections, tables};
 use crate::commands::solved_shape::SolvedShape;
-use crate::commands::{ContactObjective, Failure, Source};
 use contact::fields::{FieldState, vtk_files};
-use figures::Figure;
-use scene_file::Case;
+use figures::page::Page;
+use figures::{Figure, FigureError};
+use scene_file::OutputSection;
 
-/// Folders of pictures and of files for ParaView.
+/// Folder of the figures.
 const FIGURES: &str = "figures";
+/// Folder of the files for ParaView.
 const VTK: &str = "vtk";
 
-/// What a folder receives: a list of the files for the report, and the figures for it.
-struct Delivery<'a> {
+/// The folder of a report, with the list of its files and figures so far.
+struct ReportFolder<'a> {
     folder: &'a Folder,
-    case: &'a Case,
+    loaded: &'a LoadedScene,
+    objective: &'a ContactObjective,
+    /// Names of the files, and what they hold.
     files: Vec<(String, &'static str)>,
     figures: Vec<Figure>,
 }
 
-impl<'a> Delivery<'a> {
-    fn new(folder: &'a Folder, case: &'a Case) -> Self {
-        Self { folder, case, files: vec![], figures: vec![] }
+impl<'a> ReportFolder<'a> {
+    fn new(folder: &'a Folder, loaded: &'a LoadedScene, objective: &'a ContactObjective) -> Self {
+        Self { folder, loaded, objective, files: vec![], figures: vec![] }
+    }
+
+    fn wanted(&self) -> &'a OutputSection {
+        &self.loaded.case.output
     }
 
     fn write(&mut self, name: &str, text: &str, what: &'static str) -> Result<(), Failure> {
@@ -36,146 +44,117 @@ impl<'a> Delivery<'a> {
         self.folder.write(name, text)
     }
 
-    /// A picture as SVG and PNG, and in the report.
-    fn draw(&mut self, figure: Figure, what: &'static str) -> Result<(), Failure> {
+    /// Writes a figure; the page will show it.
+    fn draw(&mut self, figure: Result<Figure, FigureError>, what: &'static str) -> Result<(), Failure> {
+        let figure = figure.map_err(Failure::computation)?;
         self.folder.within(FIGURES)?.draw(&figure)?;
         self.files.push((format!("{FIGURES}/{}.svg, .png", figure.name), what));
         self.figures.push(figure);
         Ok(())
     }
 
-    /// Contact boundary as tables, fields for ParaView.
-    fn tabulate(&mut self, objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<(), Failure> {
-        for shape in shapes {
+    /// Solved shapes, each with the beginning of its files' names and of its caption: the contact boundary as tables, fields for
+    /// ParaView, and figures of pressure, stress and surface.
+    fn show(&mut self, solved: &[(&'static str, &str, &SolvedShape)]) -> Result<(), Failure> {
+        let shown = |&(name, words, shape)| ShownShape::new(self.objective, name, words, shape, self.wanted());
+        let shapes = solved.iter().map(shown).collect::<Result<Vec<_>, _>>()?;
+        for shape in &shapes {
             let what = "pressure, traction, remaining gap and status of every contact node";
-            self.write(
-                &format!("pressure_{}.csv", shape.name),
-                &contact_table::contact(objective, &shape.solved.state),
-                what,
-            )?;
+            let table = tables::contact_nodes(self.objective, &shape.solved.state);
+            self.write(&format!("pressure_{}.csv", shape.name), &table, what)?;
         }
-        if self.case.output.vtk {
-            let states = shapes.iter().enumerate();
-            let states: Vec<FieldState<'_>> = states
-                .filter_map(|(index, shape)| {
-                    shape.fields.as_ref().map(|fields| FieldState { time: index as f64, name: shape.name, fields })
-                })
-                .collect();
-            let folder = self.folder.within(VTK)?;
-            for (name, text) in vtk_files(&states).map_err(Failure::computation)? {
-                folder.write(&name, &text)?;
-            }
-            let what = "displacements, stresses and contact fields: open fields.pvd with ParaView";
-            self.files.push((format!("{VTK}/fields.pvd, *.vtu"), what));
+        if self.wanted().vtk {
+            self.write_fields(&shapes)?;
+        }
+        if self.wanted().pictures {
+            self.draw(gallery::pressure(self.objective, &shapes), "contact pressure on one scale")?;
+            let stress = gallery::von_mises(self.objective, &shapes);
+            self.draw(stress, "von Mises stress on the deformed bodies, on one scale")?;
+            self.draw(gallery::surfaces(self.objective, &shapes), "heights of the contact surface on one scale")?;
         }
         Ok(())
     }
 
-    /// Pressure, stress and surface of some shapes.
-    fn draw_shapes(&mut self, objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<(), Failure> {
-        if !self.case.output.pictures {
-            return Ok(());
+    /// Fields of shapes for ParaView.
+    fn write_fields(&mut self, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
+        let mut states = Vec::new();
+        for (index, shape) in shapes.iter().enumerate() {
+            let fields = shape.fields.iter();
+            states.extend(fields.map(|fields| FieldState { time: index as f64, name: shape.name, fields }));
         }
-        let pressure = gallery::pressure(objective, shapes).map_err(Failure::computation)?;
-        self.draw(pressure, "contact pressure on one scale")?;
-        let stress = gallery::von_mises(objective, shapes).map_err(Failure::computation)?;
-        self.draw(stress, "von Mises stress on the deformed bodies, on one scale")?;
-        let surface = gallery::surfaces(objective, shapes).map_err(Failure::computation)?;
-        self.draw(surface, "heights of the contact surface on one scale")
+        let folder = self.folder.within(VTK)?;
+        for (name, text) in vtk_files(&states).map_err(Failure::computation)? {
+            folder.write(&name, &text)?;
+        }
+        let what = "displacements, stresses and contact fields: open fields.pvd with ParaView";
+        self.files.push((format!("{VTK}/fields.pvd, *.vtu"), what));
+        Ok(())
     }
 
-    /// The page, with a table of all files.
-    fn report(
-        &mut self,
-        source: &Source,
-        page: impl FnOnce(&Context<'_>) -> figures::page::Page,
-    ) -> Result<(), Failure> {
-        if !self.case.output.report {
+    /// Writes the page if it is wanted; sections on the scene, the versions and all files are added to it.
+    fn finish(mut self, page: impl FnOnce(&[Figure]) -> Page, warnings: &[String]) -> Result<(), Failure> {
+        if !self.wanted().report {
             return Ok(());
         }
         if RunFolder::is_one(self.folder.path()) {
             self.files.push(("report.txt, report.json".into(), "the page of text, and the same as one JSON object"));
             self.files.push(("scene.toml, start.json, journal.jsonl, …".into(), "the run itself, for --resume"));
         }
-        let scene = source.scene.print()?;
-        let context = Context { scene: &scene, figures: &self.figures, files: &self.files };
-        self.folder.write("report.html", &page(&context).html())
+        let (scene, left_out) = (self.loaded.file.print()?, self.objective.solver().left_out());
+        let mut page = page(&self.figures);
+        page.sections.push(sections::origin(&scene, &left_out, warnings));
+        page.sections.push(sections::files(&self.files));
+        page.sections.retain(|section| !section.blocks.is_empty());
+        self.folder.write("report.html", &page.html())
     }
 }
 
-/// The files of an optimization.
+/// The files of an optimization, of which `last` is the run on the last mesh.
 pub fn write_optimization(
     folder: &Folder,
-    source: &Source,
-    case: &Case,
-    finished: &[Finished],
+    loaded: &LoadedScene,
+    runs: &[MeshRun],
+    last: &MeshRun,
     shapes: &[SolvedShape; 2],
 ) -> Result<(), Failure> {
-    let Some(last) = finished.last() else { return Ok(()) };
-    let Finished { objective, report, .. } = last;
-    let mut delivery = Delivery::new(folder, case);
-    delivery.write("controls.json", &json(report.solution.as_slice())?, "the control heights found")?;
-    let what = "all cuts and multipliers behind the certificate";
-    delivery.write("certificate.json", &json(&report.certificate)?, what)?;
-    delivery.write("history.csv", &history_table(report), "one line per evaluation")?;
-    let wanted = &case.output;
-    let seen = [
-        Seen::new(objective, "initial", format!("start, Θ = {:.4e}", shapes[0].value), &shapes[0], wanted)?,
-        Seen::new(objective, "optimal", format!("optimum, Θ = {:.4e}", shapes[1].value), &shapes[1], wanted)?,
-    ];
-    delivery.tabulate(objective, &seen)?;
-    delivery.draw_shapes(objective, &seen)?;
-    if case.output.pictures {
-        let figure = gallery::convergence(objective, case.measure, report, &shapes[1]);
-        delivery.draw(figure.map_err(Failure::computation)?, "objective of every evaluation and kinds of steps")?;
+    let MeshRun { objective, report, .. } = last;
+    let mut out = ReportFolder::new(folder, loaded, objective);
+    out.write("controls.json", &json(report.solution.as_slice())?, "the control heights found")?;
+    let what = "all cuts and multipliers behind the certificate, for recheck";
+    out.write("certificate.json", &json(&report.certificate)?, what)?;
+    out.write("history.csv", &tables::history(report), "one line per evaluation")?;
+    out.show(&[("initial", "start, ", &shapes[0]), ("optimal", "optimum, ", &shapes[1])])?;
+    if out.wanted().pictures {
+        let figure = gallery::convergence(objective, loaded.case.measure, report, &shapes[1]);
+        out.draw(figure, "objective of every evaluation and kinds of steps")?;
     }
-    delivery.report(source, |context| report_pages::optimization(context, finished, last, shapes))
+    out.finish(|figures| pages::optimization(figures, runs, last, shapes), &report.warnings)
 }
 
 /// The files of an evaluation.
 pub fn write_evaluation(
     folder: &Folder,
-    source: &Source,
-    case: &Case,
+    loaded: &LoadedScene,
     objective: &ContactObjective,
     shape: &SolvedShape,
     json: &str,
 ) -> Result<(), Failure> {
-    let mut delivery = Delivery::new(folder, case);
-    delivery.write("evaluation.json", json, "everything that evaluate knows, as one JSON object")?;
-    let wanted = &case.output;
-    let seen = [Seen::new(objective, "shape", format!("Θ = {:.4e}", shape.value), shape, wanted)?];
-    delivery.tabulate(objective, &seen)?;
-    delivery.draw_shapes(objective, &seen)?;
-    delivery.report(source, |context| report_pages::evaluation(context, objective, shape))
+    let mut out = ReportFolder::new(folder, loaded, objective);
+    out.write("evaluation.json", json, "everything that evaluate knows, as one JSON object")?;
+    out.show(&[("shape", "", shape)])?;
+    out.finish(|figures| pages::evaluation(figures, objective, shape), &[])
 }
 
 /// The files of a comparison.
-pub fn write_comparison(
-    folder: &Folder,
-    source: &Source,
-    case: &Case,
-    compared: &Comparison<'_>,
-) -> Result<(), Failure> {
-    let objective = &compared.runs[0].objective;
-    let mut delivery = Delivery::new(folder, case);
+pub fn write_comparison(folder: &Folder, loaded: &LoadedScene, comparison: &Comparison<'_>) -> Result<(), Failure> {
+    let mut out = ReportFolder::new(folder, loaded, &comparison.runs[0].objective);
     for part in COMPARED {
-        delivery.files.push((format!("{part}/report.html"), "the optimization itself, with its files"));
+        out.files.push((format!("{part}/report.html"), "the optimization itself, with its files"));
     }
-    let caption = |words: &str, shape: &SolvedShape| format!("{words}, Θ = {:.4e}", shape.value);
-    let (with, without) = (&compared.own[0][1], &compared.crossed[0]);
-    let wanted = &case.output;
-    let seen = [
-        Seen::new(objective, "optimized_with_friction", caption("optimized with friction", with), with, wanted)?,
-        Seen::new(
-            objective,
-            "optimized_without_friction",
-            caption("optimized without friction", without),
-            without,
-            wanted,
-        )?,
-    ];
-    delivery.tabulate(objective, &seen)?;
-    delivery.draw_shapes(objective, &seen)?;
-    delivery.report(source, |context| report_pages::comparison(context, compared))
+    let (with, without) = (&comparison.own[0][1], &comparison.crossed[0]);
+    out.show(&[
+        ("optimized_with_friction", "optimized with friction, ", with),
+        ("optimized_without_friction", "optimized without friction, ", without),
+    ])?;
+    out.finish(|figures| pages::comparison(figures, comparison), &[])
 }
