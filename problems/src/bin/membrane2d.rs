@@ -14,7 +14,7 @@ use std::process::ExitCode;
 /// Loads a membrane over a dome so that it takes a wanted shape without pressing on the dome.
 /// Exit status: 0 a report was printed, 1 the computation failed, 2 bad input.
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(name = "membrane2d", version)]
 struct Arguments {
     /// Grid cells per edge
     #[arg(long, value_name = "N", default_value_t = 48, value_parser = clap::value_parser!(u16).range(2..=512))]

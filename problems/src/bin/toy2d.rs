@@ -13,7 +13,7 @@ use std::process::ExitCode;
 /// Minimises the 2D toy (two nodes on a shaped support with Coulomb friction) and compares with the exact minimiser.
 /// Exit status: 0 every run found it, 1 the computation failed, 2 bad input.
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(name = "toy2d", version)]
 struct Arguments {
     /// One start A,B in [-4, 6]² instead of random ones
     #[arg(long, value_name = "A,B", value_parser = parse_start, allow_hyphen_values = true)]

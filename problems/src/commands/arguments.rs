@@ -1,4 +1,4 @@
-//! Options of the contact binaries: what to do, and which fields of the scene file they override.
+//! The command and the options of the contact binaries, and the fields of the scene file that the options override.
 
 use crate::commands::failure::Failure;
 use clap::{Parser, ValueEnum};
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 pub enum Command {
     /// Optimize the shape.
     Optimize,
-    /// Optimize with and without friction, and look at both shapes with and without it (Example 5.3 of the paper).
+    /// Optimize with and without friction, and solve both shapes with and without it (Example 5.3 of the paper).
     Compare,
     /// Objective, subgradient and certificates at one shape.
     Evaluate,
@@ -24,7 +24,8 @@ pub enum Command {
     Recheck,
 }
 
-/// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa).
+/// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa). An option that is not given leaves the field of the
+/// scene as it is; --print-scene shows all fields.
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(version, allow_negative_numbers = true)]
 pub struct Arguments {

@@ -1,4 +1,4 @@
-//! Why a binary fails, and with which exit status.
+//! The failures of a command, each with its exit status.
 
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
@@ -16,12 +16,12 @@ pub enum Failure {
     /// The computation failed: exit status 1.
     #[error("{0}")]
     Computation(String),
-    /// There is a result for stdout, and something to say about it.
+    /// The result for stdout is there, but something is to be said about it.
     #[error("{reason}")]
     Incomplete {
         /// The result.
         text: String,
-        /// What is to be said.
+        /// The message about it.
         reason: String,
         /// Exit status.
         status: u8,
@@ -62,7 +62,7 @@ impl Failure {
         }
     }
 
-    /// The same failure after something for stdout is there already: it is not lost.
+    /// The same failure after a text for stdout is there already, so that the text is not lost.
     #[must_use]
     pub fn after(self, printed: &str) -> Self {
         let status = self.status();

@@ -15,7 +15,7 @@ const PNG_SCALE: f64 = 2.0;
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Creates the folder and proves that it can be written to; none if none is asked for.
+    /// Creates the folder if one is asked for and proves that it can be written to.
     ///
     /// # Errors
     /// [`SceneError::File`] with the system's reason.
@@ -23,7 +23,7 @@ impl Folder {
         path.map(|path| Self::with_room(path.as_ref(), 1)).transpose()
     }
 
-    /// As [`prepare`](Self::prepare), for files of so many bytes.
+    /// Creates the folder and proves that files of so many bytes can be written to it.
     ///
     /// # Errors
     /// [`SceneError::File`] with the system's reason.
@@ -49,12 +49,12 @@ impl Folder {
         Ok(Self(path.to_owned()))
     }
 
-    /// Where it is.
+    /// The path of the folder.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// A folder in it, made if it does not exist.
+    /// A folder inside this one, made if it does not exist.
     ///
     /// # Errors
     /// [`Failure::Computation`] with the system's reason.
@@ -92,7 +92,7 @@ impl Folder {
         self.write_bytes(&format!("{}.png", figure.name), &figure.png(PNG_SCALE).map_err(Failure::computation)?)
     }
 
-    /// Writes one file at once: it holds the old text or the new one, never a part.
+    /// Writes one file atomically: at any time it holds the old text or the new one, never a part.
     ///
     /// # Errors
     /// As [`write`](Self::write).
@@ -105,7 +105,7 @@ impl Folder {
     }
 }
 
-/// One line-wrapped JSON object.
+/// A value as JSON, one field per line.
 ///
 /// # Errors
 /// [`Failure::Computation`] if a value cannot be written.

@@ -14,6 +14,7 @@ mod fuzz;
 mod long_runs;
 mod pages_run;
 mod pins;
+mod recheck;
 mod reports;
 mod stages;
 mod toy2d;

@@ -1,4 +1,4 @@
-//! What a comparison with and without friction reports: table, conclusion, JSON.
+//! The comparison of optimizations with and without friction: table, conclusion, JSON.
 
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::{Ending, ending};
@@ -21,10 +21,10 @@ pub struct Comparison<'a> {
     pub crossed: [SolvedShape; 2],
 }
 
-/// A shape in both models.
+/// One shape in both models.
 #[derive(Debug, Serialize)]
 pub struct Row {
-    /// Which shape.
+    /// The name of the shape.
     pub shape: &'static str,
     /// Θ with friction.
     pub objective_with_friction: f64,

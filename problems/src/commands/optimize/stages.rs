@@ -1,4 +1,4 @@
-//! Growing meshes of a coarse-to-fine optimization.
+//! The growing meshes of a coarse-to-fine optimization.
 
 use scene_file::{Case, default_subdomains};
 

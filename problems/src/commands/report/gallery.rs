@@ -61,10 +61,10 @@ pub fn convergence(
     .figure()
 }
 
-/// Largest displacement as a share of the largest side of the bodies, as far as rounding the magnification down allows.
-const DISPLACED: f64 = 0.08;
-/// How far an upper body is lifted, as a share of its largest height.
-const LIFTED: f64 = 0.25;
+/// Largest displacement that is drawn, as a share of the largest side of the bodies.
+const MAX_SHOWN_DISPLACEMENT: f64 = 0.08;
+/// Largest lift of an upper body, as a share of its largest height.
+const MAX_LIFT: f64 = 0.25;
 
 /// Von Mises stresses on the deformed bodies side by side on one scale; shapes without fields are left out.
 pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
@@ -75,9 +75,13 @@ pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Res
     let tallest = bodies().map(height).fold(0.0, f64::max);
     let largest =
         bodies().flat_map(|body| &body.displacement).map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
-    let times = if largest > 0.0 { round_below(DISPLACED * a.max(b).max(tallest) / largest).max(1.0) } else { 1.0 };
+    let times = if largest > 0.0 {
+        round_below(MAX_SHOWN_DISPLACEMENT * a.max(b).max(tallest) / largest).max(1.0)
+    } else {
+        1.0
+    };
     let upper = seen().filter_map(|(_, fields)| fields.bodies.get(1)).map(height).fold(0.0, f64::max);
-    let lift = if upper > 0.0 { round_below(LIFTED * upper) } else { 0.0 };
+    let lift = if upper > 0.0 { round_below(MAX_LIFT * upper) } else { 0.0 };
     let panel = |(shape, fields): (&ShownShape<'_>, &Fields)| SolidPanel {
         caption: shape.caption.clone(),
         blocks: fields.bodies.iter().zip([0.0, lift]).map(|(body, lift)| block(body, times, lift)).collect(),

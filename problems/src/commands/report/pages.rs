@@ -1,4 +1,4 @@
-//! The HTML report of each command: self-contained, opens offline.
+//! The HTML report of each command, without the sections on its scene and its files.
 
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::ContactObjective;
@@ -126,7 +126,7 @@ fn stages(runs: &[MeshRun]) -> Section {
     Section::new("Growing meshes", vec![Block::table(head, rows), Block::Text(words.into())])
 }
 
-/// Control heights as the table that they are: one row per control point along x₁.
+/// Control heights, one row per control point along x₁.
 fn controls(objective: &ContactObjective, heights: &[f64]) -> Section {
     let [_, along] = objective.solver().problem().scene.control_points;
     let head = std::iter::once("mm".to_owned()).chain((1..=along).map(|j| format!("x₂: {j}")));
@@ -136,7 +136,7 @@ fn controls(objective: &ContactObjective, heights: &[f64]) -> Section {
     Section::new("Control heights", vec![Block::table(head, rows.collect::<Vec<Vec<String>>>())])
 }
 
-/// Where the time of one state went; empty for a solver that does not keep it.
+/// Seconds of the parts of one state; empty for a solver that does not keep them.
 fn seconds(shape: &SolvedShape) -> Section {
     let Some(torn) = shape.state.torn() else { return Section::default() };
     let StageSeconds { equilibrium, factorization, coarse_space, newton, recovery, .. } = torn.seconds();
