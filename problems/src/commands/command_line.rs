@@ -2,7 +2,7 @@
 
 use crate::commands::arguments::{Arguments, Command};
 use crate::commands::contact_objective::objective;
-use crate::commands::failure::Failure;
+use crate::commands::failure::{Failure, finish};
 use crate::commands::folder::json;
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
@@ -11,7 +11,6 @@ use crate::commands::{compare, evaluate, optimize, recheck, verify};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
 use contact::equilibrium::STAGE_TARGET;
 use scene_file::{SceneFile, schema};
-use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -53,24 +52,6 @@ pub fn run_any() -> ExitCode {
         if command && !scene.exists() { Err(missing()) } else { Ok((SceneFile::read(&scene)?, Some(scene))) }
     };
     finish(execute(open, &arguments))
-}
-
-fn finish(result: Result<String, Failure>) -> ExitCode {
-    // A reader that closes the pipe early has seen what it wanted.
-    let print = |text: &str| drop(std::io::stdout().write_all(text.as_bytes()));
-    match result {
-        Ok(text) => {
-            print(&text);
-            ExitCode::SUCCESS
-        }
-        Err(failure) => {
-            if let Failure::Incomplete { text, .. } = &failure {
-                print(text);
-            }
-            eprintln!("error: {failure}");
-            failure.exit_code()
-        }
-    }
 }
 
 /// Computes what the arguments ask for, on the scene that `open` reads unless a run is resumed. The text belongs on stdout.

@@ -3,6 +3,7 @@
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
 use nonsmooth::{InputError, OptimizeError, OracleError};
+use std::io::{self, Write};
 use std::process::ExitCode;
 use thiserror::Error;
 
@@ -43,6 +44,11 @@ impl Failure {
         }
     }
 
+    /// The text for stdout.
+    fn text(&self) -> &str {
+        if let Self::Incomplete { text, .. } = self { text } else { "" }
+    }
+
     /// [`Failure::status`] for the operating system.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.status())
@@ -74,6 +80,20 @@ impl Failure {
             other => Self::Incomplete { text: printed.to_owned(), reason: other.to_string(), status },
         }
     }
+}
+
+/// Prints the text of a command on stdout and the message of its failure on stderr; the exit status that belongs to them.
+pub fn finish(result: Result<String, Failure>) -> ExitCode {
+    let (text, failure) = match result {
+        Ok(text) => (text, None),
+        Err(failure) => (failure.text().to_owned(), Some(failure)),
+    };
+    // A reader that closes the pipe early has seen what it wanted; then the exit status is the message.
+    let _ = io::stdout().write_all(text.as_bytes());
+    failure.map_or(ExitCode::SUCCESS, |failure| {
+        let _ = writeln!(io::stderr(), "error: {failure}");
+        failure.exit_code()
+    })
 }
 
 impl From<SceneError> for Failure {

@@ -24,7 +24,7 @@ mod verify;
 pub use command_line::{run, run_any};
 pub use contact_objective::{ContactObjective, objective};
 pub use controls::parse as parse_controls;
-pub use failure::Failure;
+pub use failure::{Failure, finish};
 pub use folder::{Folder, json};
 pub use optimize::mesh_run::{first_step, mean_height_coordinates};
 pub use verify::smooth_step;

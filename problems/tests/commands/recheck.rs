@@ -55,6 +55,9 @@ fn recheck(folder: &Path) -> Output {
     Command::new(env!("CARGO_BIN_EXE_contact3d")).args(arguments).env_remove("RUST_LOG").output().unwrap()
 }
 
+/// The key of the JSON that a change of the certificate concerns, and the change.
+type Forgery<'a> = (&'a str, &'a dyn Fn(&mut Value));
+
 /// The JSON of a recheck with this exit status.
 fn result(output: &Output, status: i32) -> Value {
     let message = String::from_utf8_lossy(&output.stderr);
@@ -79,7 +82,7 @@ fn an_honest_certificate_agrees_and_a_changed_one_does_not() {
     let active = certificate["cuts"].as_array().unwrap().iter().position(|cut| cut["multiplier"].as_f64() > Some(0.1));
     let active = active.expect("a cut with a multiplier that matters");
     let double = |value: &mut Value| *value = json!(1.01 * value.as_f64().unwrap());
-    let forged: [(&str, &dyn Fn(&mut Value)); 5] = [
+    let forged: [Forgery<'_>; 5] = [
         ("aggregate_norm", &|certificate| double(&mut certificate["aggregate_norm"])),
         ("aggregate_norm", &|certificate| double(&mut certificate["cuts"][active]["subgradient"][0])),
         ("aggregate_error", &|certificate| double(&mut certificate["cuts"][active]["value"])),
