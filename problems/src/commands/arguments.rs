@@ -1,6 +1,6 @@
-//! Options of the contact binaries: what to do, and which fields of the scene file they override.
+//! The command and the options of the contact binaries, and the fields of the scene file that the options override.
 
-use crate::commands::Failure;
+use crate::commands::failure::Failure;
 use clap::{Parser, ValueEnum};
 use contact::error::SceneError;
 use contact::shape::SplineKind;
@@ -14,21 +14,27 @@ use std::path::PathBuf;
 pub enum Command {
     /// Optimize the shape.
     Optimize,
-    /// Optimize with and without friction, and look at both shapes with and without it (Example 5.3 of the paper).
+    /// Optimize with and without friction, and solve both shapes with and without it (Example 5.3 of the paper).
     Compare,
     /// Objective, subgradient and certificates at one shape.
     Evaluate,
     /// Taylor test of the subgradient at one shape.
     Verify,
+    /// Compute norm and error of the certificate of an optimization again, from the files in its folder DIR.
+    Recheck,
 }
 
-/// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa).
+/// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa). An option that is not given leaves the field of the
+/// scene as it is; --print-scene shows all fields.
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(version, allow_negative_numbers = true)]
 pub struct Arguments {
     /// What to do.
     #[arg(value_enum, default_value_t = Command::Optimize)]
     pub command: Command,
+    /// With recheck: the folder that an optimization of this scene has left.
+    #[arg(value_name = "DIR")]
+    pub certified: Option<PathBuf>,
     /// Bricks per edge of each body.
     #[arg(long, value_name = "N")]
     pub mesh: Option<usize>,
@@ -113,29 +119,7 @@ impl Arguments {
     /// # Errors
     /// [`Failure::Input`] naming the option.
     pub fn check(&self) -> Result<(), Failure> {
-        let optimizing = matches!(self.command, Command::Optimize | Command::Compare);
-        let wrong = |option: &str, allowed: &str| Err(Failure::Input(format!("{option} is allowed {allowed}")));
-        if optimizing && self.controls.is_some() {
-            return wrong("--controls", "with evaluate and verify only (optimize and compare take --start-controls)");
-        }
-        if !optimizing && self.start_controls.is_some() {
-            return wrong("--start-controls", "with optimize and compare only (evaluate and verify take --controls)");
-        }
-        if !optimizing && self.max_evaluations.is_some() {
-            return wrong("--max-evaluations", "with optimize and compare only");
-        }
-        if self.diagnose && self.command != Command::Evaluate {
-            return wrong("--diagnose", "with evaluate only");
-        }
-        for (option, given) in [
-            ("--time-limit", self.time_limit.is_some()),
-            ("--continuation", self.continuation.is_some()),
-            ("--resume", self.resume.is_some()),
-        ] {
-            if !optimizing && given {
-                return wrong(option, "with optimize and compare only");
-            }
-        }
+        self.check_command()?;
         if let Some(limit) = self.time_limit.filter(|limit| !(*limit > 0.0 && limit.is_finite())) {
             return Err(SceneError::out_of_range("--time-limit", limit, "a finite number of seconds > 0").into());
         }
@@ -143,7 +127,7 @@ impl Arguments {
             return Err(SceneError::out_of_range("--continuation", bricks, "meshes of 1 to 400 bricks per edge").into());
         }
         if self.continuation.is_some() && self.mesh.is_some() {
-            return wrong("--mesh", "without --continuation, which names the meshes");
+            return refused("--mesh", "without --continuation, which names the meshes");
         }
         for (option, path) in [("--out", &self.out), ("--resume", &self.resume)] {
             if let Some(path) = path.as_ref().filter(|path| path.to_str().is_none()) {
@@ -158,12 +142,46 @@ impl Arguments {
             return Err(SceneError::out_of_range("--threads", 0, "a number ≥ 1").into());
         }
         if self.exponent.is_some() && self.objective == Some(MeasureName::PeakPressure) {
-            return wrong("--exponent", "with --objective pressure-norm only");
+            return refused("--exponent", "with --objective pressure-norm only");
         }
         Ok(())
     }
 
-    /// A run that is continued has its scene and its options from its folder, apart from limits.
+    /// Refuses options that the command does not take.
+    fn check_command(&self) -> Result<(), Failure> {
+        let evaluating = matches!(self.command, Command::Evaluate | Command::Verify);
+        let optimizing = matches!(self.command, Command::Optimize | Command::Compare);
+        let rechecking = self.command == Command::Recheck;
+        let takes_controls = "with evaluate and verify only (optimize and compare take --start-controls)";
+        let takes_start = "with optimize and compare only (evaluate and verify take --controls)";
+        let limits = "with optimize and compare only";
+        for (option, given, taken, allowed) in [
+            ("--controls", self.controls.is_some(), evaluating, takes_controls),
+            ("--start-controls", self.start_controls.is_some(), optimizing, takes_start),
+            ("--max-evaluations", self.max_evaluations.is_some(), optimizing, limits),
+            ("--diagnose", self.diagnose, self.command == Command::Evaluate, "with evaluate only"),
+            ("--time-limit", self.time_limit.is_some(), optimizing, limits),
+            ("--continuation", self.continuation.is_some(), optimizing, limits),
+            ("--resume", self.resume.is_some(), optimizing, limits),
+            ("--out", self.out.is_some(), !rechecking, "without recheck, which writes no file"),
+            ("DIR", self.certified.is_some(), rechecking, "with recheck only"),
+        ] {
+            if given && !taken {
+                return refused(option, allowed);
+            }
+        }
+        if rechecking && self.certified.is_none() {
+            return Err(Failure::Input("recheck needs DIR, the folder that an optimization has left".into()));
+        }
+        Ok(())
+    }
+
+    /// The result of a command for stdout, in the form that is asked for.
+    pub fn printed(&self, text: String, json: String) -> String {
+        if self.json { json } else { text }
+    }
+
+    /// Refuses options beside --resume that are no limits: a run that is continued has its scene and its options in its folder.
     fn check_resume(&self) -> Result<(), Failure> {
         if self.resume.is_none() {
             return Ok(());
@@ -235,6 +253,10 @@ impl Arguments {
         }
         file
     }
+}
+
+fn refused(option: &str, allowed: &str) -> Result<(), Failure> {
+    Err(Failure::Input(format!("{option} is allowed {allowed}")))
 }
 
 fn parse_surface(text: &str) -> Result<SplineKind, String> {

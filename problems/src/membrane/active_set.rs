@@ -29,12 +29,12 @@ pub struct Solved {
     pub active: Vec<bool>,
     /// Factor of the matrix of the active set.
     pub factor: NumericFactor,
-    /// Systems solved.
+    /// Number of linear systems solved.
     pub steps: usize,
 }
 
-/// Steps after which the method is given up; it needs about as many as there are grid lines.
-const MOST_STEPS: usize = 1000;
+/// Largest number of steps; the method needs about as many as there are grid lines.
+const MAX_STEPS: usize = 1000;
 
 impl ReducedMembrane {
     /// One symbolic analysis for all active sets.
@@ -61,7 +61,7 @@ impl ReducedMembrane {
         let size = load.iter().zip(obstacle).fold(0.0_f64, |size, (b, psi)| size.max(b.abs()).max(psi.abs()));
         let rounding = 64.0 * f64::EPSILON * size;
         let mut changed = 0;
-        for step in 1..=MOST_STEPS {
+        for step in 1..=MAX_STEPS {
             let factor = self.factorize(&active)?;
             let held: Vec<f64> = active.iter().zip(obstacle).map(|(&a, &psi)| if a { psi } else { 0.0 }).collect();
             let from_held = grid.multiply(&held);
@@ -87,7 +87,7 @@ impl ReducedMembrane {
             solver: "primal–dual active sets",
             residual: changed as f64 / load.len() as f64,
             tolerance: 0.0,
-            iterations: MOST_STEPS,
+            iterations: MAX_STEPS,
             history: Vec::new(),
         })
     }

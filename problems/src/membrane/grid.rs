@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// A square with N × N cells; unknowns are the (N − 1)² inner nodes, i·(N − 1) + j with i along x₁.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MembraneGrid {
-    /// N ≥ 2.
+    /// Number N ≥ 2 of cells per edge.
     pub cells: usize,
     /// Lower left corner.
     pub origin: [f64; 2],
@@ -39,7 +39,7 @@ impl MembraneGrid {
         Ok(Self { cells, origin, length })
     }
 
-    /// h.
+    /// The mesh width h.
     pub fn width(&self) -> f64 {
         self.length / self.cells as f64
     }

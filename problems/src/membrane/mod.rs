@@ -30,15 +30,15 @@ pub type MembraneObjective = ReducedObjective<MembraneControl, MembraneCost>;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MembraneError {
-    /// The data describe none.
+    /// The data describe no membrane.
     #[error(transparent)]
     Data(#[from] SceneError),
-    /// Its matrix could not be analysed.
+    /// The matrix could not be analysed or factored.
     #[error(transparent)]
     Solver(#[from] ContactError),
 }
 
-/// Patches of loads per edge of the example.
+/// Number of load patches per edge in the example.
 pub const PATCHES: usize = 4;
 /// Largest load of a patch of the example.
 pub const LARGEST_LOAD: f64 = 40.0;

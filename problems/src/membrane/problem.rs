@@ -16,11 +16,11 @@ use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Ve
 /// A function of the position.
 pub type Field = Box<dyn Fn([f64; 2]) -> f64 + Send + Sync>;
 
-/// What a membrane problem is made of.
+/// The data of a membrane problem.
 pub struct MembraneData {
     /// f₀, load per area without controls.
     pub load: Field,
-    /// ψ.
+    /// ψ, the height of the obstacle.
     pub obstacle: Field,
     /// g, heights of the clamped edge.
     pub boundary: Field,
@@ -48,7 +48,7 @@ pub struct MembraneState {
     pub reaction: Vec<f64>,
     /// Nodes on which the obstacle presses.
     pub active: Vec<bool>,
-    /// Linear systems solved.
+    /// Number of linear systems solved.
     pub steps: usize,
     factor: NumericFactor,
 }

@@ -21,6 +21,7 @@ mod fuzz;
 mod long_runs;
 mod pages_run;
 mod pins;
+mod recheck;
 mod reports;
 mod stages;
 mod toy2d;

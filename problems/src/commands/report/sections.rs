@@ -1,25 +1,25 @@
 //! Sections that the report pages of several commands share.
 
-use crate::commands::ContactObjective;
-use crate::commands::solved::Solved;
+use crate::commands::contact_objective::ContactObjective;
+use crate::commands::solved_shape::SolvedShape;
 use figures::Figure;
 use figures::page::{Block, Section};
 use nonsmooth::{Certificate, Report};
 
 /// The pictures of a page.
-pub fn pictures(title: &str, figures: &[Figure]) -> Section {
+pub fn pictures(figures: &[Figure]) -> Section {
     let block = |figure: &Figure| Block::Figure { svg: figure.svg.clone(), caption: figure.title.clone() };
-    Section::new(title, figures.iter().map(block).collect())
+    Section::new("Pictures", figures.iter().map(block).collect())
 }
 
-/// States side by side: what the objective is made of, and how far the numbers can be trusted.
-pub fn states(objective: &ContactObjective, shapes: &[(&str, &Solved)]) -> Section {
+/// Contact states side by side: the parts of the objective, and residuals that say how far the numbers can be trusted.
+pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> Section {
     let areas: f64 = objective.solver().problem().boundary.points.iter().map(|point| point.area).sum();
-    let row = |name: &str, cell: &dyn Fn(&Solved) -> String| -> Vec<String> {
+    let row = |name: &str, cell: &dyn Fn(&SolvedShape) -> String| -> Vec<String> {
         std::iter::once(name.to_owned()).chain(shapes.iter().map(|(_, shape)| cell(shape))).collect()
     };
-    let force = |shape: &Solved| shape.state.forces.total_normal_force();
-    let bound = |shape: &Solved| objective.cost().lower_bound(force(shape));
+    let force = |shape: &SolvedShape| shape.state.forces.total_normal_force();
+    let bound = |shape: &SolvedShape| objective.cost().lower_bound(force(shape));
     let rows = vec![
         row("objective Θ", &|shape| format!("{:.10e}", shape.value)),
         row("least value for this total force", &|shape| format!("{:.4e}", bound(shape))),
@@ -47,7 +47,7 @@ pub fn states(objective: &ContactObjective, shapes: &[(&str, &Solved)]) -> Secti
     Section::new("States", vec![Block::table(head, rows), Block::Text(words.into())])
 }
 
-/// How the optimization went.
+/// The course of the optimization.
 pub fn course(report: &Report, active: &str) -> Section {
     let counts = &report.counts;
     let first = report.history.first().map_or(0.0, |record| record.seconds);
@@ -72,7 +72,7 @@ pub fn course(report: &Report, active: &str) -> Section {
     Section::new("Course of the optimization", vec![Block::Text(end), Block::table(["quantity", "value"], rows)])
 }
 
-/// How stationary the solution is.
+/// The certificate of stationarity.
 pub fn certificate(certificate: Option<&Certificate>) -> Section {
     let Some(certificate) = certificate else {
         return Section::new("Certificate", vec![Block::Text("No subproblem was solved, so there is none.".into())]);
@@ -93,12 +93,12 @@ pub fn certificate(certificate: Option<&Certificate>) -> Section {
         vec!["noise".into(), format!("{:.1e}", certificate.noise)],
     ];
     let words = "At a stationary point the aggregate subgradient and the aggregate error vanish; the predicted decrease is what \
-                 the model still hopes for. certificate.json holds all cuts and multipliers, from which a program can \
-                 compute these numbers again (Certificate::recheck in the library).";
+                 the model still hopes for. certificate.json holds all cuts and multipliers, from which \
+                 the command recheck computes norm and error again.";
     Section::new("Certificate", vec![Block::table(["quantity", "value"], rows), Block::Text(words.into())])
 }
 
-/// What was computed, with what, and what was not needed.
+/// The scene, the versions of the program, and what the scene did not need.
 pub fn origin(scene: &str, left_out: &[&str], warnings: &[String]) -> Section {
     let build = if cfg!(debug_assertions) { "with debug assertions" } else { "optimized" };
     let versions = vec![

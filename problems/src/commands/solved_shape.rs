@@ -1,15 +1,16 @@
 //! A shape with its contact state.
 
-use crate::commands::{ContactObjective, Failure};
+use crate::commands::contact_objective::ContactObjective;
+use crate::commands::failure::Failure;
 use contact::contact_shape::ContactState;
 use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
 
 /// A shape, its state as accurate as rounding allows, and the objective there.
 #[derive(Debug)]
-pub struct Solved {
+pub struct SolvedShape {
     /// Control heights, mm.
     pub controls: Vector,
-    /// The state.
+    /// The contact state.
     pub state: ContactState,
     /// Θ.
     pub value: f64,
@@ -17,8 +18,8 @@ pub struct Solved {
     pub peak_pressure: f64,
 }
 
-impl Solved {
-    /// Solves a shape.
+impl SolvedShape {
+    /// Solves the contact problem of a shape.
     ///
     /// # Errors
     /// [`Failure`] of the contact solver.

@@ -1,27 +1,17 @@
-//! The HTML report of each command: self-contained, opens offline.
+//! The HTML report of each command, without the sections on its scene and its files.
 
-use crate::commands::ContactObjective;
-use crate::commands::compared::Compared;
-use crate::commands::optimized::{Finished, active_constraints};
-use crate::commands::report_sections::{certificate, course, files, origin, pictures, states};
-use crate::commands::solved::Solved;
+use crate::commands::compare::comparison::Comparison;
+use crate::commands::contact_objective::ContactObjective;
+use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::report::sections::{certificate, course, pictures, states};
+use crate::commands::solved_shape::SolvedShape;
 use contact::equilibrium::StageSeconds;
 use figures::Figure;
 use figures::page::{Block, Page, Section};
 
-/// What every report needs beside its results.
-pub struct Context<'a> {
-    /// The scene as a complete file.
-    pub scene: &'a str,
-    /// Figures, in the order in which they are shown.
-    pub figures: &'a [Figure],
-    /// Names of the other files, with what they hold.
-    pub files: &'a [(String, &'static str)],
-}
-
 /// The report of an optimization.
-pub fn optimization(context: &Context<'_>, meshes: &[Finished], last: &Finished, shapes: &[Solved; 2]) -> Page {
-    let Finished { objective, report, .. } = last;
+pub fn optimization(figures: &[Figure], runs: &[MeshRun], last: &MeshRun, shapes: &[SolvedShape; 2]) -> Page {
+    let MeshRun { objective, report, .. } = last;
     let confirmed = if report.termination.is_confirmed() {
         "The optimum is confirmed by its certificate."
     } else {
@@ -36,45 +26,41 @@ pub fn optimization(context: &Context<'_>, meshes: &[Finished], last: &Finished,
         shapes[0].value / report.value,
         shapes[0].peak_pressure,
         shapes[1].peak_pressure,
-        evaluations(meshes)
+        evaluations(runs)
     );
     let sections = vec![
-        pictures("Pictures", context.figures),
+        pictures(figures),
         states(objective, &[("start", &shapes[0]), ("optimum", &shapes[1])]),
-        stages(meshes),
-        course(report, &active_constraints(objective, &report.solution)),
+        stages(runs),
+        course(report, &last.active_constraints()),
         certificate(report.certificate.as_ref()),
         controls(objective, shapes[1].controls.as_slice()),
         seconds(&shapes[1]),
-        origin(context.scene, &objective.solver().left_out(), &report.warnings),
-        files(context.files),
     ];
     page(objective, "optimized shape", lead, sections)
 }
 
 /// The report of an evaluation.
-pub fn evaluation(context: &Context<'_>, objective: &ContactObjective, shape: &Solved) -> Page {
+pub fn evaluation(figures: &[Figure], objective: &ContactObjective, shape: &SolvedShape) -> Page {
     let counts = shape.state.forces.counts();
     let lead = format!(
         "Θ = {:.10e}, peak pressure {:.2} MPa; {} contact nodes open, {} stick, {} slip.",
         shape.value, shape.peak_pressure, counts.open, counts.stick, counts.slip
     );
     let sections = vec![
-        pictures("Pictures", context.figures),
+        pictures(figures),
         states(objective, &[("value", shape)]),
         controls(objective, shape.controls.as_slice()),
         seconds(shape),
-        origin(context.scene, &objective.solver().left_out(), &[]),
-        files(context.files),
     ];
     page(objective, "one shape", lead, sections)
 }
 
 /// The report of a comparison with and without friction.
-pub fn comparison(context: &Context<'_>, compared: &Compared<'_>) -> Page {
-    let objective = &compared.runs[0].objective;
-    let sentences = compared.conclusion();
-    let confirmed = compared.runs.iter().all(|run| run.report.termination.is_confirmed());
+pub fn comparison(figures: &[Figure], comparison: &Comparison<'_>) -> Page {
+    let objective = &comparison.runs[0].objective;
+    let sentences = comparison.conclusion();
+    let confirmed = comparison.runs.iter().all(|run| run.report.termination.is_confirmed());
     let caveat = if confirmed { "" } else { " Not both runs ended with a proof of optimality." };
     let lead = sentences.first().cloned().unwrap_or_default() + caveat;
     let friction = objective.solver().problem().scene.friction;
@@ -85,7 +71,7 @@ pub fn comparison(context: &Context<'_>, compared: &Compared<'_>) -> Page {
         "Θ, no friction".into(),
         "peak, MPa".into(),
     ];
-    let rows = compared.rows().map(|row| {
+    let rows = comparison.rows().map(|row| {
         vec![
             row.shape.to_owned(),
             format!("{:.6e}", row.objective_with_friction),
@@ -95,16 +81,11 @@ pub fn comparison(context: &Context<'_>, compared: &Compared<'_>) -> Page {
         ]
     });
     let table = Section::new("Shapes in both models", vec![Block::table(head, rows), Block::List(sentences)]);
-    let both = [("optimized with friction", &compared.own[0][1]), ("optimized without friction", &compared.crossed[0])];
+    let both =
+        [("optimized with friction", &comparison.own[0][1]), ("optimized without friction", &comparison.crossed[0])];
     let mut with_friction = states(objective, &both);
     with_friction.title = format!("Both shapes with friction {friction}");
-    let sections = vec![
-        table,
-        pictures("Pictures", context.figures),
-        with_friction,
-        origin(context.scene, &objective.solver().left_out(), &[]),
-        files(context.files),
-    ];
+    let sections = vec![table, pictures(figures), with_friction];
     page(objective, "with and without friction", lead, sections)
 }
 
@@ -113,31 +94,30 @@ fn page(objective: &ContactObjective, what: &str, lead: String, sections: Vec<Se
     let [n1, n2, n3] = scene.mesh;
     let bodies = if scene.upper.is_some() { 2 } else { 1 };
     let title = format!("{}: {what} ({bodies} × {n1}×{n2}×{n3} bricks, friction {})", scene.name, scene.friction);
-    let used = |section: &Section| !section.blocks.is_empty();
-    Page { title, lead, sections: sections.into_iter().filter(used).collect() }
+    Page { title, lead, sections }
 }
 
 /// "20 evaluations", on growing meshes "150 + 37 evaluations on growing meshes".
-fn evaluations(meshes: &[Finished]) -> String {
-    let counts: Vec<String> = meshes.iter().map(|mesh| mesh.report.counts.evaluations.to_string()).collect();
+fn evaluations(runs: &[MeshRun]) -> String {
+    let counts: Vec<String> = runs.iter().map(|run| run.report.counts.evaluations.to_string()).collect();
     let growing = if counts.len() > 1 { " on growing meshes" } else { "" };
     format!("{} evaluations{growing}", counts.join(" + "))
 }
 
 /// The meshes of a coarse-to-fine optimization; empty for a single one.
-fn stages(meshes: &[Finished]) -> Section {
-    if meshes.iter().all(|mesh| mesh.name.is_none()) {
+fn stages(runs: &[MeshRun]) -> Section {
+    if runs.iter().all(|run| run.name.is_none()) {
         return Section::default();
     }
-    let rows = meshes.iter().map(|mesh| {
-        let [n1, n2, n3] = mesh.objective.solver().problem().scene.mesh;
+    let rows = runs.iter().map(|run| {
+        let [n1, n2, n3] = run.objective.solver().problem().scene.mesh;
         vec![
             format!("{n1}×{n2}×{n3}"),
-            format!("{:.4e}", mesh.report.start_value),
-            format!("{:.4e}", mesh.report.value),
-            mesh.report.counts.evaluations.to_string(),
-            format!("{:.1}", mesh.report.seconds),
-            mesh.report.termination.to_string(),
+            format!("{:.4e}", run.report.start_value),
+            format!("{:.4e}", run.report.value),
+            run.report.counts.evaluations.to_string(),
+            format!("{:.1}", run.report.seconds),
+            run.report.termination.to_string(),
         ]
     });
     let head = ["bricks", "Θ at its start", "Θ at its end", "evaluations", "seconds", "ended"];
@@ -146,7 +126,7 @@ fn stages(meshes: &[Finished]) -> Section {
     Section::new("Growing meshes", vec![Block::table(head, rows), Block::Text(words.into())])
 }
 
-/// Control heights as the table that they are: one row per control point along x₁.
+/// Control heights, one row per control point along x₁.
 fn controls(objective: &ContactObjective, heights: &[f64]) -> Section {
     let [_, along] = objective.solver().problem().scene.control_points;
     let head = std::iter::once("mm".to_owned()).chain((1..=along).map(|j| format!("x₂: {j}")));
@@ -156,8 +136,8 @@ fn controls(objective: &ContactObjective, heights: &[f64]) -> Section {
     Section::new("Control heights", vec![Block::table(head, rows.collect::<Vec<Vec<String>>>())])
 }
 
-/// Where the time of one state went; empty for a solver that does not keep it.
-fn seconds(shape: &Solved) -> Section {
+/// Seconds of the parts of one state; empty for a solver that does not keep them.
+fn seconds(shape: &SolvedShape) -> Section {
     let Some(torn) = shape.state.torn() else { return Section::default() };
     let StageSeconds { equilibrium, factorization, coarse_space, newton, recovery, .. } = torn.seconds();
     let stages = [

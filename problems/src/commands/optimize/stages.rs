@@ -1,22 +1,22 @@
-//! Growing meshes of a coarse-to-fine optimization.
+//! The growing meshes of a coarse-to-fine optimization.
 
 use scene_file::{Case, default_subdomains};
 
-/// One stage.
+/// One mesh of an optimization.
 #[derive(Debug, Clone)]
-pub struct Stage {
-    /// Name of its folder; none for a run of a single stage.
+pub struct MeshStage {
+    /// Name of the folder of its journal; none for a run on a single mesh.
     pub name: Option<String>,
-    /// The case on its mesh.
+    /// The case on this mesh.
     pub case: Case,
 }
 
-/// The stages of a case, in order; one for a case without continuation. The axis with most bricks gets the number asked for,
-/// the others keep their proportion to it.
-pub fn stages(case: &Case) -> Vec<Stage> {
+/// The meshes of a case, in order; a case without continuation has one. The axis with most bricks gets the number asked for, the
+/// others keep their proportion to it.
+pub fn stages(case: &Case) -> Vec<MeshStage> {
     let meshes = &case.optimizer.continuation;
     if meshes.is_empty() {
-        return vec![Stage { name: None, case: case.clone() }];
+        return vec![MeshStage { name: None, case: case.clone() }];
     }
     let longest = case.scene.mesh.iter().copied().max().unwrap_or(1);
     let stage = |&bricks: &usize| {
@@ -27,7 +27,7 @@ pub fn stages(case: &Case) -> Vec<Stage> {
         if !fits {
             case.scene.subdomains = case.scene.mesh.map(default_subdomains);
         }
-        Stage { name: Some(format!("stage_{bricks}")), case }
+        MeshStage { name: Some(format!("stage_{bricks}")), case }
     };
     meshes.iter().map(stage).collect()
 }
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn meshes_keep_their_proportions() {
-        let text = include_str!("../../scenes/thin_layer.toml");
+        let text = include_str!("../../../scenes/thin_layer.toml");
         let file = SceneFile::parse(text, "thin_layer.toml").expect("an example");
         let mut case = Case::new(&file, Path::new("")).expect("an example");
         assert!(stages(&case).len() == 1 && stages(&case)[0].name.is_none());

@@ -1,59 +1,21 @@
-//! The pictures of solved shapes and of a run.
+//! The figures of solved shapes and of a run.
 
-use crate::commands::solved::Solved;
-use crate::commands::{ContactObjective, Failure};
+use crate::commands::contact_objective::ContactObjective;
+use crate::commands::report::shown_shape::ShownShape;
+use crate::commands::solved_shape::SolvedShape;
 use contact::body::mesh::Block;
 use contact::cost::PressureMeasure;
 use contact::fields::{BodyFields, Fields};
 use figures::{
     Convergence, Figure, FigureError, Map, MapPanel, SolidBlock, SolidPanel, Solids, Step, SurfacePanel, Surfaces,
 };
-use nonsmooth::{Cost, Report};
-use scene_file::OutputSection;
-
-/// A solved shape with all that is seen of it.
-pub struct Seen<'a> {
-    /// What distinguishes it, for captions.
-    pub caption: String,
-    /// Beginning of the names of its files.
-    pub name: &'static str,
-    /// The shape.
-    pub solved: &'a Solved,
-    /// Its fields, if a picture or a file shows them.
-    pub fields: Option<Fields>,
-}
-
-impl<'a> Seen<'a> {
-    /// A solved shape with as many fields as the outputs show: files for ParaView hold the sensitivity of the objective to the
-    /// height of every contact node as well, which takes an adjoint.
-    ///
-    /// # Errors
-    /// [`Failure`] of the adjoint.
-    pub fn new(
-        objective: &ContactObjective,
-        name: &'static str,
-        caption: impl Into<String>,
-        solved: &'a Solved,
-        wanted: &OutputSection,
-    ) -> Result<Self, Failure> {
-        let shape = objective.solver();
-        let mut fields = None;
-        if wanted.pictures || wanted.vtk {
-            fields = Some(shape.fields(&solved.state)?);
-        }
-        if let Some(fields) = fields.as_mut().filter(|_| wanted.vtk) {
-            let gradient = objective.cost().gradient(&solved.controls, &solved.state);
-            fields.contact.sensitivity = Some(shape.height_sensitivity(&solved.state, &gradient.state)?.0);
-        }
-        Ok(Self { caption: caption.into(), name, solved, fields })
-    }
-}
+use nonsmooth::Report;
 
 /// Contact pressures side by side on one scale.
-pub fn pressure(objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<Figure, FigureError> {
+pub fn pressure(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let [n1, n2, _] = problem.grid.nodes();
-    let panel = |shape: &Seen<'_>| MapPanel {
+    let panel = |shape: &ShownShape<'_>| MapPanel {
         caption: shape.caption.clone(),
         counts: [n1, n2],
         origin: [0.0; 2],
@@ -76,7 +38,7 @@ pub fn convergence(
     objective: &ContactObjective,
     measure: PressureMeasure,
     report: &Report,
-    optimum: &Solved,
+    optimum: &SolvedShape,
 ) -> Result<Figure, FigureError> {
     let steps = report.history.iter().map(|record| Step {
         kind: record.kind.to_string(),
@@ -99,13 +61,13 @@ pub fn convergence(
     .figure()
 }
 
-/// Largest displacement as a share of the largest side of the bodies, as far as rounding the magnification down allows.
-const DISPLACED: f64 = 0.08;
-/// How far an upper body is lifted, as a share of its largest height.
-const LIFTED: f64 = 0.25;
+/// Largest displacement that is drawn, as a share of the largest side of the bodies.
+const MAX_SHOWN_DISPLACEMENT: f64 = 0.08;
+/// Largest lift of an upper body, as a share of its largest height.
+const MAX_LIFT: f64 = 0.25;
 
 /// Von Mises stresses on the deformed bodies side by side on one scale; shapes without fields are left out.
-pub fn von_mises(objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<Figure, FigureError> {
+pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let seen = || shapes.iter().filter_map(|shape| shape.fields.as_ref().map(|fields| (shape, fields)));
     let bodies = || seen().flat_map(|(_, fields)| &fields.bodies);
@@ -113,10 +75,14 @@ pub fn von_mises(objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<Fi
     let tallest = bodies().map(height).fold(0.0, f64::max);
     let largest =
         bodies().flat_map(|body| &body.displacement).map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
-    let times = if largest > 0.0 { round_below(DISPLACED * a.max(b).max(tallest) / largest).max(1.0) } else { 1.0 };
+    let times = if largest > 0.0 {
+        round_below(MAX_SHOWN_DISPLACEMENT * a.max(b).max(tallest) / largest).max(1.0)
+    } else {
+        1.0
+    };
     let upper = seen().filter_map(|(_, fields)| fields.bodies.get(1)).map(height).fold(0.0, f64::max);
-    let lift = if upper > 0.0 { round_below(LIFTED * upper) } else { 0.0 };
-    let panel = |(shape, fields): (&Seen<'_>, &Fields)| SolidPanel {
+    let lift = if upper > 0.0 { round_below(MAX_LIFT * upper) } else { 0.0 };
+    let panel = |(shape, fields): (&ShownShape<'_>, &Fields)| SolidPanel {
         caption: shape.caption.clone(),
         blocks: fields.bodies.iter().zip([0.0, lift]).map(|(body, lift)| block(body, times, lift)).collect(),
     };
@@ -134,10 +100,10 @@ pub fn von_mises(objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<Fi
 }
 
 /// Heights of the contact surface of the lower body side by side on one scale; shapes without fields are left out.
-pub fn surfaces(objective: &ContactObjective, shapes: &[Seen<'_>]) -> Result<Figure, FigureError> {
+pub fn surfaces(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let [n1, n2, _] = problem.grid.nodes();
-    let panel = |shape: &Seen<'_>| {
+    let panel = |shape: &ShownShape<'_>| {
         let heights = &shape.fields.as_ref()?.bodies.first()?.block.upper;
         // The mean height says little, and would hide the shape: contact holds the bodies.
         let mean = heights.iter().sum::<f64>() / heights.len() as f64;

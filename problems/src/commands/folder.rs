@@ -1,8 +1,6 @@
-//! JSON, files, and numbers that several commands report.
+//! Output folders, and JSON as text.
 
-use crate::commands::long_run::RunFolder;
-use crate::commands::{ContactObjective, Failure};
-use contact::contact_shape::ContactState;
+use crate::commands::failure::Failure;
 use contact::error::SceneError;
 use figures::Figure;
 use serde::Serialize;
@@ -24,7 +22,7 @@ pub const PICTURE_ENDINGS: &str = if cfg!(feature = "png") { ".svg, .png" } else
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Creates the folder and proves that it can be written to; none if none is asked for.
+    /// Creates the folder if one is asked for and proves that it can be written to.
     ///
     /// # Errors
     /// [`SceneError::File`] with the system's reason.
@@ -32,21 +30,7 @@ impl Folder {
         path.map(|path| Self::with_room(path.as_ref(), 1)).transpose()
     }
 
-    /// As [`prepare`](Self::prepare); refuses the folder of an optimization, whose report would be replaced.
-    ///
-    /// # Errors
-    /// As [`prepare`](Self::prepare).
-    pub fn for_results(path: Option<&str>) -> Result<Option<Self>, SceneError> {
-        match path.filter(|path| RunFolder::is_one(Path::new(path))) {
-            None => Self::prepare(path),
-            Some(path) => {
-                let reason = "holds an optimization, whose report would be replaced; --out takes another folder".into();
-                Err(SceneError::File { path: path.to_owned(), reason })
-            }
-        }
-    }
-
-    /// As [`prepare`](Self::prepare), for files of so many bytes.
+    /// Creates the folder and proves that files of so many bytes can be written to it.
     ///
     /// # Errors
     /// [`SceneError::File`] with the system's reason.
@@ -72,12 +56,12 @@ impl Folder {
         Ok(Self(path.to_owned()))
     }
 
-    /// Where it is.
+    /// The path of the folder.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// A folder in it, made if it does not exist.
+    /// A folder inside this one, made if it does not exist.
     ///
     /// # Errors
     /// [`Failure::Computation`] with the system's reason.
@@ -123,7 +107,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Writes one file at once: it holds the old text or the new one, never a part.
+    /// Writes one file atomically: at any time it holds the old text or the new one, never a part.
     ///
     /// # Errors
     /// As [`write`](Self::write).
@@ -136,15 +120,10 @@ impl Folder {
     }
 }
 
-/// One line-wrapped JSON object.
+/// A value as JSON, one field per line.
 ///
 /// # Errors
 /// [`Failure::Computation`] if a value cannot be written.
 pub fn json(value: &(impl Serialize + ?Sized)) -> Result<String, Failure> {
     serde_json::to_string_pretty(value).map(|text| text + "\n").map_err(|error| Failure::Computation(error.to_string()))
-}
-
-/// max σ, MPa.
-pub fn peak_pressure(objective: &ContactObjective, state: &ContactState) -> f64 {
-    objective.cost().pressures(state).into_iter().fold(f64::NEG_INFINITY, f64::max)
 }

@@ -1,28 +1,14 @@
-//! What an optimization reports: page, JSON, tables.
+//! The report of an optimization as text and as JSON.
 
-use crate::commands::ContactObjective;
-use crate::commands::solved::Solved;
+use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::solved_shape::SolvedShape;
 use contact::equilibrium::{Kink, Residuals};
 use nonsmooth::{Report, Termination, Vector};
 use serde::Serialize;
 
-/// An optimization on one mesh that has ended.
-pub struct Finished {
-    /// Θ on its mesh.
-    pub objective: ContactObjective,
-    /// How it went.
-    pub report: Report,
-    /// Evaluations that were answered from the journal.
-    pub replayed: usize,
-    /// Name of the stage, if there are several.
-    pub name: Option<String>,
-    /// Where it started.
-    pub start: Vector,
-}
-
-/// What `optimize` reports; the keys of its JSON.
+/// The keys of the JSON of `optimize`.
 #[derive(Debug, Serialize)]
-struct Optimized<'a> {
+struct OptimizationJson<'a> {
     objective_start: f64,
     objective: f64,
     controls: &'a [f64],
@@ -30,24 +16,25 @@ struct Optimized<'a> {
     serious_steps: usize,
     null_steps: usize,
     termination: Ending<'a>,
-    certificate: Option<Summary>,
+    certificate: Option<CertificateJson>,
     largest_constraint_violation: f64,
     history: Vec<Option<f64>>,
     seconds: f64,
-    /// Evaluations of an earlier part of the run, answered from its journal.
+    /// Number of evaluations of an earlier part of the run, which were answered from its journal.
     resumed_evaluations: usize,
     peak_pressure: [f64; 2],
     /// Certificates of the contact states at the start and at the end.
     residuals: [Residuals; 2],
-    /// Their distances to the nearest kink.
+    /// Distances of these states to the nearest kink.
     kinks: [Kink; 2],
     /// One entry per mesh of a coarse-to-fine optimization.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    stages: Vec<StageSummary<'a>>,
+    stages: Vec<MeshRunJson<'a>>,
     warnings: &'a [String],
     left_out: Vec<&'static str>,
 }
 
+/// How a run ended.
 #[derive(Debug, Serialize)]
 pub struct Ending<'a> {
     reason: &'a Termination,
@@ -57,7 +44,7 @@ pub struct Ending<'a> {
 
 /// The certificate without its cuts, which go to a file.
 #[derive(Debug, Serialize)]
-struct Summary {
+struct CertificateJson {
     aggregate_norm: f64,
     aggregate_error: f64,
     predicted_decrease: f64,
@@ -68,9 +55,9 @@ struct Summary {
     noise: f64,
 }
 
-/// One stage of a coarse-to-fine optimization.
+/// One mesh of a coarse-to-fine optimization.
 #[derive(Debug, Serialize)]
-struct StageSummary<'a> {
+struct MeshRunJson<'a> {
     mesh: [usize; 3],
     objective_start: f64,
     objective: f64,
@@ -79,47 +66,48 @@ struct StageSummary<'a> {
     termination: Ending<'a>,
 }
 
-fn stage_summaries(finished: &[Finished]) -> Vec<StageSummary<'_>> {
-    let staged = finished.iter().filter(|stage| stage.name.is_some());
-    staged
-        .map(|stage| StageSummary {
-            mesh: stage.objective.solver().problem().scene.mesh,
-            objective_start: stage.report.start_value,
-            objective: stage.report.value,
-            evaluations: stage.report.counts.evaluations,
-            seconds: stage.report.seconds,
-            termination: ending(&stage.report),
+fn stages(runs: &[MeshRun]) -> Vec<MeshRunJson<'_>> {
+    runs.iter()
+        .filter(|run| run.name.is_some())
+        .map(|run| MeshRunJson {
+            mesh: run.objective.solver().problem().scene.mesh,
+            objective_start: run.report.start_value,
+            objective: run.report.value,
+            evaluations: run.report.counts.evaluations,
+            seconds: run.report.seconds,
+            termination: ending(&run.report),
         })
         .collect()
 }
 
+/// How a run ended.
 pub fn ending(report: &Report) -> Ending<'_> {
     let termination = &report.termination;
     Ending { reason: termination, text: termination.to_string(), confirmed: termination.is_confirmed() }
 }
 
-/// One line per stage; nothing for a run on a single mesh.
-pub fn stages_page(finished: &[Finished], asked: usize) -> String {
+/// One line per mesh; nothing for a run on a single mesh.
+pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
     let mut text = String::new();
-    for stage in finished.iter().filter(|stage| stage.name.is_some()) {
-        let [n1, n2, n3] = stage.objective.solver().problem().scene.mesh;
-        let report = &stage.report;
+    for run in runs.iter().filter(|run| run.name.is_some()) {
+        let [n1, n2, n3] = run.objective.solver().problem().scene.mesh;
+        let report = &run.report;
         text += &format!(
             "stage {n1}x{n2}x{n3}: {:.6e} -> {:.6e} in {} evaluations, {:.1} s; {}\n",
             report.start_value, report.value, report.counts.evaluations, report.seconds, report.termination
         );
     }
-    if finished.len() < asked {
-        text += &format!("stages:      {} of {asked} begun\n", finished.len());
+    if runs.len() < meshes {
+        text += &format!("stages:      {} of {meshes} begun\n", runs.len());
     }
     text
 }
 
-/// The JSON of a run: its last stage, and a line for every stage.
-pub fn summary<'a>(finished: &'a [Finished], shapes: &[Solved; 2]) -> Option<impl Serialize + use<'a>> {
-    let Finished { report, objective, replayed, .. } = finished.last()?;
+/// The JSON of an optimization: the run on its last mesh, and an entry for every mesh if there are several.
+pub fn summary<'a>(last: &'a MeshRun, runs: &'a [MeshRun], shapes: &[SolvedShape; 2]) -> impl Serialize + use<'a> {
+    let MeshRun { report, objective, replayed, .. } = last;
     let active = |multipliers: &Vector| multipliers.iter().filter(|multiplier| **multiplier != 0.0).count();
-    Some(Optimized {
+    OptimizationJson {
         objective_start: shapes[0].value,
         objective: report.value,
         controls: report.solution.as_slice(),
@@ -127,7 +115,7 @@ pub fn summary<'a>(finished: &'a [Finished], shapes: &[Solved; 2]) -> Option<imp
         serious_steps: report.counts.serious,
         null_steps: report.counts.null,
         termination: ending(report),
-        certificate: report.certificate.as_ref().map(|certificate| Summary {
+        certificate: report.certificate.as_ref().map(|certificate| CertificateJson {
             aggregate_norm: certificate.aggregate_norm,
             aggregate_error: certificate.aggregate_error,
             predicted_decrease: certificate.predicted_decrease,
@@ -144,15 +132,15 @@ pub fn summary<'a>(finished: &'a [Finished], shapes: &[Solved; 2]) -> Option<imp
         peak_pressure: shapes.each_ref().map(|shape| shape.peak_pressure),
         residuals: shapes.each_ref().map(|shape| shape.state.forces.residuals),
         kinks: shapes.each_ref().map(|shape| shape.state.forces.kink),
-        stages: stage_summaries(finished),
+        stages: stages(runs),
         warnings: &report.warnings,
         left_out: objective.solver().left_out(),
-    })
+    }
 }
 
 /// The one-page report.
-pub fn page(finished: &Finished, shapes: &[Solved; 2]) -> String {
-    let Finished { report, objective, .. } = finished;
+pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2]) -> String {
+    let MeshRun { report, objective, .. } = last;
     let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
@@ -178,39 +166,7 @@ pub fn page(finished: &Finished, shapes: &[Solved; 2]) -> String {
         at_solution.residuals,
         at_solution.kink.smallest_margin,
         at_solution.kink.weakly_active,
-        active_constraints(objective, &report.solution),
+        last.active_constraints(),
         objective.solver().left_out().join("; "),
     )
-}
-
-/// Constraints of the shape that are attained, in words.
-pub fn active_constraints(objective: &ContactObjective, controls: &Vector) -> String {
-    /// As many as a line holds.
-    const MOST: usize = 3;
-    let active = objective.solver().problem().admissible.active(controls);
-    match active.len() {
-        0 => "no constraint of the shape".into(),
-        count if count > MOST => format!("{}; {} more", active[..MOST].join("; "), count - MOST),
-        _ => active.join("; "),
-    }
-}
-
-/// The evaluations as a table.
-pub fn history_table(report: &Report) -> String {
-    let mut table =
-        String::from("evaluation,kind,value,center_value,predicted_decrease,aggregate_norm,aggregate_error,seconds\n");
-    for record in &report.history {
-        let value = record.value.map_or_else(String::new, |value| value.to_string());
-        table += &format!(
-            "{},{},{value},{},{},{},{},{}\n",
-            record.evaluation,
-            record.kind,
-            record.center_value,
-            record.predicted_decrease,
-            record.aggregate_norm,
-            record.aggregate_error,
-            record.seconds
-        );
-    }
-    table
 }

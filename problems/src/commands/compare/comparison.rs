@@ -1,29 +1,30 @@
-//! What a comparison with and without friction reports: table, conclusion, JSON.
+//! The comparison of optimizations with and without friction: table, conclusion, JSON.
 
-use crate::commands::optimized::{Ending, Finished, ending};
-use crate::commands::solved::Solved;
+use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::optimize::summary::{Ending, ending};
+use crate::commands::solved_shape::SolvedShape;
 use serde::Serialize;
 use std::fmt;
 
-/// Relative loss of the objective below which a shape counts as good as the other.
-const NEGLIGIBLE: f64 = 0.02;
-/// Relative difference of the objective that says nothing.
-const SAME: f64 = 1e-4;
+/// Relative loss of the objective up to which leaving friction out counts as cheap.
+const MAX_NEGLIGIBLE_LOSS: f64 = 0.02;
+/// Relative difference of the objective up to which two shapes count as equally good.
+const MAX_EQUAL_DIFFERENCE: f64 = 1e-4;
 
-/// Two optimizations, with and without friction, and their shapes seen from the other side. Pairs: with, without.
-pub struct Compared<'a> {
+/// Two optimizations, and their shapes solved in both models. The pairs hold the case with friction first, then that without.
+pub struct Comparison<'a> {
     /// The optimizations, on their last mesh.
-    pub runs: [&'a Finished; 2],
+    pub runs: [&'a MeshRun; 2],
     /// Start and optimum of each, in its own model.
-    pub own: [&'a [Solved; 2]; 2],
-    /// The shape found without friction, seen with friction; the shape found with friction, seen without.
-    pub crossed: [Solved; 2],
+    pub own: [&'a [SolvedShape; 2]; 2],
+    /// The shape found without friction, solved with friction; the shape found with friction, solved without.
+    pub crossed: [SolvedShape; 2],
 }
 
-/// A shape in both models.
+/// One shape in both models.
 #[derive(Debug, Serialize)]
 pub struct Row {
-    /// Which shape.
+    /// The name of the shape.
     pub shape: &'static str,
     /// Θ with friction.
     pub objective_with_friction: f64,
@@ -35,8 +36,9 @@ pub struct Row {
     pub peak_pressure_without_friction: f64,
 }
 
+/// The keys of the JSON of `compare`.
 #[derive(Serialize)]
-struct Summary<'a> {
+struct ComparisonJson<'a> {
     friction: f64,
     shapes: [Row; 3],
     loss_without_friction_in_the_model: f64,
@@ -59,14 +61,14 @@ pub struct SurfaceDifference {
     pub variation: f64,
 }
 
-impl Compared<'_> {
+impl Comparison<'_> {
     fn friction(&self) -> f64 {
         self.runs[0].objective.solver().problem().scene.friction
     }
 
     /// The start and both optima, in both models.
     pub fn rows(&self) -> [Row; 3] {
-        let row = |shape, with: &Solved, without: &Solved| Row {
+        let row = |shape, with: &SolvedShape, without: &SolvedShape| Row {
             shape,
             objective_with_friction: with.value,
             peak_pressure_with_friction: with.peak_pressure,
@@ -95,7 +97,7 @@ impl Compared<'_> {
         SurfaceDifference { mean, shape, variation: mean_and_deviation(&with).1 }
     }
 
-    /// What follows, in sentences that the numbers decide.
+    /// The conclusion: sentences that the numbers decide.
     pub fn conclusion(&self) -> Vec<String> {
         let (loss, difference) = (self.loss(), self.surface_difference());
         let peaks = [self.own[0][1].peak_pressure, self.crossed[0].peak_pressure];
@@ -108,9 +110,9 @@ impl Compared<'_> {
         )];
         sentences.push(if !loss.is_finite() || loss <= 0.0 {
             "There is no contact pressure to compare.".into()
-        } else if (loss - 1.0).abs() <= SAME {
+        } else if (loss - 1.0).abs() <= MAX_EQUAL_DIFFERENCE {
             "In these runs, both shapes are as good as each other with friction.".into()
-        } else if loss > 1.0 + NEGLIGIBLE {
+        } else if loss > 1.0 + MAX_NEGLIGIBLE_LOSS {
             format!("In these runs, leaving friction out of the optimization costs {:.1} %: it is no approximation of the optimum with \
                  friction.", 100.0 * (loss - 1.0))
         } else if loss >= 1.0 {
@@ -141,9 +143,9 @@ impl Compared<'_> {
         sentences
     }
 
-    /// The keys of the JSON.
+    /// The JSON.
     pub fn summary(&self) -> impl Serialize {
-        Summary {
+        ComparisonJson {
             friction: self.friction(),
             shapes: self.rows(),
             loss_without_friction_in_the_model: self.loss(),
@@ -164,7 +166,7 @@ fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
     (mean, (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt())
 }
 
-impl fmt::Display for Compared<'_> {
+impl fmt::Display for Comparison<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let friction = self.friction();
         writeln!(f, "comparison:  friction {friction} against none")?;
