@@ -8,10 +8,10 @@
 use crate::stability::{Case, Outcome, Record};
 use contact::body::elasticity::hex8::{DOFS, Nodes, gauss_points};
 use contact::body::elasticity::{Formulation, Material};
+use contact::body::local_pattern::LocalPattern;
 use contact::body::mesh::{Block, Grid};
 use contact::error::{ContactError, SceneError};
 use contact::linear::cholesky::SymbolicFactor;
-use contact::tfeti::LocalPattern;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use thiserror::Error;

@@ -12,7 +12,7 @@
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::tfeti::newton::{Iterate, TornContact};
+use crate::tfeti::newton::iteration::{Iterate, TornContact};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 

@@ -1,6 +1,7 @@
 //! The torn scene: what is fixed for a run, and the factored system of one shape.
 
 use crate::body::elasticity::traction::face_weights;
+use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::body::mesh::{Block, Subdomain, Tearing};
 use crate::body::shape_load::loaded_faces;
 use crate::equilibrium::{ContactBoundary, modes::Motion, modes::motions};
@@ -9,9 +10,8 @@ use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;
 use crate::linear::symmetric::Submatrix;
 use crate::scene::{BodyScene, Scene};
-use crate::tfeti::constraints::{BodyRows, Constraints};
-use crate::tfeti::factors::{InteriorClass, SubdomainFactors};
-use crate::tfeti::local_pattern::{LocalPattern, fixing_nodes};
+use crate::tfeti::torn::constraints::{BodyRows, Constraints};
+use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors};
 use crate::tfeti::{Communication, PreconditionerKind, SubdomainRigid};
 use rayon::prelude::*;
 use std::collections::HashMap;

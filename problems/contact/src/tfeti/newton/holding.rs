@@ -10,10 +10,10 @@
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::tfeti::ReducedRows;
-use crate::tfeti::coarse::CoarseProblem;
-use crate::tfeti::linear_solve::LinearAccuracy;
-use crate::tfeti::newton::{Iterate, TornContact, TornSolution};
-use crate::tfeti::recycling::Recycled;
+use crate::tfeti::dual::coarse_space::CoarseProblem;
+use crate::tfeti::newton::iteration::{Iterate, TornContact, TornSolution};
+use crate::tfeti::newton::linear_solve::LinearAccuracy;
+use crate::tfeti::newton::recycling::Recycled;
 
 /// c·gap over load up to which a node may start closed.
 const REACH: f64 = 100.0;
@@ -26,7 +26,7 @@ impl TornContact<'_> {
     ///
     /// # Errors
     /// [`ContactError::Unheld`] when even all nodes closed leave a motion free.
-    pub(super) fn held(
+    pub(crate) fn held(
         &self,
         linearizations: Vec<Linearization>,
         priority: impl Fn() -> Vec<f64>,
@@ -65,7 +65,7 @@ impl TornContact<'_> {
     }
 
     /// Rows and coarse problem of the active set of an iterate.
-    pub(super) fn held_at(&self, iterate: &Iterate) -> Result<(ReducedRows<'_>, CoarseProblem<'_>), ContactError> {
+    pub(crate) fn held_at(&self, iterate: &Iterate) -> Result<(ReducedRows<'_>, CoarseProblem<'_>), ContactError> {
         self.held(self.linearize(iterate), || {
             let arguments = self.arguments(iterate);
             self.boundary.points.iter().map(|point| arguments[point.start]).collect()
@@ -73,7 +73,7 @@ impl TornContact<'_> {
     }
 
     /// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.
-    pub(super) fn at_rest(&self) -> TornSolution {
+    pub(crate) fn at_rest(&self) -> TornSolution {
         let zero = vec![0.0; self.operator.model.constraints.row_count()];
         let iterate = self.iterate(zero.clone(), zero, vec![0.0; self.space.resultants.len()]);
         let linearizations = self.linearize(&iterate);

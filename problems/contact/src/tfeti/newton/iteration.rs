@@ -12,9 +12,9 @@ use crate::equilibrium::law::Linearization;
 use crate::equilibrium::{ContactBoundary, Stage};
 use crate::error::ContactError;
 use crate::linear::vector::norm;
-use crate::tfeti::coarse::{CoarseProblem, CoarseSpace};
-use crate::tfeti::linear_solve::LinearAccuracy;
-use crate::tfeti::recycling::Recycled;
+use crate::tfeti::dual::coarse_space::{CoarseProblem, CoarseSpace};
+use crate::tfeti::newton::linear_solve::LinearAccuracy;
+use crate::tfeti::newton::recycling::Recycled;
 use crate::tfeti::{DualOperator, Precision, Preconditioner, ReducedRows};
 
 /// Everything the iteration works with, for one shape.

@@ -12,10 +12,10 @@ use crate::equilibrium::Stage;
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
-use crate::tfeti::coarse::CoarseProblem;
-use crate::tfeti::linear_solve::balancing_amplitudes;
-use crate::tfeti::newton::{Iterate, NewtonSettings, TornContact, stagnates};
-use crate::tfeti::recycling::Recycled;
+use crate::tfeti::dual::coarse_space::CoarseProblem;
+use crate::tfeti::newton::iteration::{Iterate, NewtonSettings, TornContact, stagnates};
+use crate::tfeti::newton::linear_solve::balancing_amplitudes;
+use crate::tfeti::newton::recycling::Recycled;
 use crate::tfeti::{Precision, ReducedRows};
 
 /// Residual reduction after which the projector is renewed although the active set has stayed.
@@ -29,7 +29,7 @@ const STAGNATION: usize = 10;
 
 impl TornContact<'_> {
     /// Brings the residual of an iterate down to the tolerance, or as far as it falls; appends to the history.
-    pub(super) fn descend(
+    pub(crate) fn descend(
         &self,
         iterate: &mut Iterate,
         directions: &mut Recycled,
@@ -65,7 +65,7 @@ impl TornContact<'_> {
     }
 
     /// Residual replacement: the image of the multipliers by a product in double precision.
-    pub(super) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
+    pub(crate) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
         let image = self.operator.apply(&iterate.multipliers);
         *iterate =
             self.iterate(std::mem::take(&mut iterate.multipliers), image, std::mem::take(&mut iterate.amplitudes));

@@ -8,9 +8,9 @@ use crate::error::ContactError;
 use crate::linear::gmres::{Combination, PATIENCE, gmres};
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::ReducedRows;
-use crate::tfeti::coarse::CoarseProblem;
-use crate::tfeti::newton::{Iterate, TornContact};
-use crate::tfeti::recycling::Recycled;
+use crate::tfeti::dual::coarse_space::CoarseProblem;
+use crate::tfeti::newton::iteration::{Iterate, TornContact};
+use crate::tfeti::newton::recycling::Recycled;
 
 /// How accurately a reduced linear system is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,7 +45,7 @@ const REFINEMENT_PAYS: f64 = 0.5;
 impl TornContact<'_> {
     /// Solves the reduced system for an active set, starting from given multipliers; its Krylov pairs join `pairs`, where
     /// somebody will use them.
-    pub(super) fn linear_solve(
+    pub(crate) fn linear_solve(
         &self,
         rows: &ReducedRows<'_>,
         coarse: &CoarseProblem<'_>,

@@ -16,8 +16,8 @@ use crate::qp::{
     Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
     SmalseSolution, WarmStart,
 };
-use crate::tfeti::linear_solve::LinearAccuracy;
-use crate::tfeti::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
+use crate::tfeti::newton::linear_solve::LinearAccuracy;
+use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
 use crate::tfeti::{Iterate, TornContact, TornSolution};
 
 /// When to stop, and how the dual QPs are solved.
