@@ -5,134 +5,224 @@
 //! dJ = −pᵀ (∂K u − ∂f) + (Q q)ᵀ ∂g
 //! ```
 //! The transpose of the Newton system (method.md section 5): GMRES with friction; without it the system is symmetric and
-//! conjugate gradients do.
+//! conjugate gradients do. Cycles follow each other until the residual, computed afresh, is small; products with search
+//! directions are in single precision until a cycle shows that it is too coarse for the system.
 
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::gmres::{PATIENCE, gmres};
 use crate::linear::pcg::pcg;
 use crate::linear::vector::{add_scaled, norm};
-use crate::tfeti::{Precision, TornContact};
+use crate::tfeti::dual::active_rows::Friction;
+use crate::tfeti::dual::active_set::ActiveSet;
+use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::dual::operator::Precision;
+use crate::tfeti::torn::vectors::{RowVector, TornVector};
 
 /// The adjoint state.
 #[derive(Debug, Clone)]
 pub struct TornAdjoint {
-    /// p over torn dofs.
-    pub displacement: Vec<f64>,
+    /// p.
+    pub(crate) displacement: TornVector,
     /// Q q over all rows: the adjoint of the gap.
-    pub multipliers: Vec<f64>,
-    /// Relative residual of the adjoint system.
-    pub residual: f64,
+    pub(crate) multipliers: RowVector,
 }
 
-/// Cycles of GMRES: each recomputes the residual, so that what rounding took from one the next gives back.
+/// Cycles allowed: each recomputes the residual, so that the next one regains what rounding has taken.
 const MAX_CYCLES: usize = 12;
 /// Residual reduction asked of a cycle with single precision products.
 const CYCLE_REDUCTION: f64 = 3e-5;
-/// Reduction by a cycle above which products are made in double precision.
-const SLOW: f64 = 0.1;
+/// Residual reduction by a cycle that is too little for products in single precision.
+const SLOW_REDUCTION: f64 = 0.1;
+/// Residual reduction by a cycle that is too little for another one in double precision.
+const STALLED_REDUCTION: f64 = 0.5;
 /// Krylov iterations allowed per cycle.
 const MAX_KRYLOV: usize = 600;
+/// Share of the right side below which its projection is known to few digits: relative residuals refer to no less.
+const SMALLEST_PROJECTED_SHARE: f64 = 1e-5;
+/// Relative residual accepted when rounding stops all progress.
+const TIGHTEST_ACCEPTABLE: f64 = 1e-8;
+
+/// The system (Tᵀ F Q + Δ) q = −Tᵀ j, projected by Pᵀ.
+struct AdjointSystem<'a> {
+    contact: &'a TornContact<'a>,
+    active: ActiveSet<'a>,
+    right: Vec<f64>,
+}
+
+/// Unknowns q with their residual, before and after the projection.
+struct AdjointIterate {
+    unknowns: Vec<f64>,
+    rest: Vec<f64>,
+    projected: Vec<f64>,
+    residual: f64,
+}
+
+/// What follows a cycle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum NextCycle {
+    /// Another cycle in the same precision, or the end if the residual is small enough.
+    Continue,
+    /// Another cycle with products in double precision.
+    Double,
+    /// The same, from the beginning: the cycle has made things worse.
+    DoubleFromZero,
+    /// Rounding has stopped all progress.
+    Stop,
+}
 
 impl TornContact<'_> {
-    /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ over all (scaled) rows.
+    /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ.
     ///
     /// # Errors
-    /// [`ContactError::NotConverged`] when GMRES does not reach the tolerance.
+    /// [`ContactError::NotConverged`] when the tolerance is not reached, [`ContactError::Unheld`].
     pub fn adjoint(
         &self,
         linearizations: &[Linearization],
-        direction: &[f64],
+        direction: &RowVector,
         tolerance: f64,
     ) -> Result<TornAdjoint, ContactError> {
-        let rows = self.reduced(linearizations.to_vec());
-        let coarse = self.coarse(&rows, true)?;
-        let right: Vec<f64> = rows.restrict(direction, true).into_iter().map(|entry| -entry).collect();
-        let mut projected = right.clone();
-        coarse.project_adjoint(&mut projected);
+        let active = self.active_set(linearizations.to_vec(), Friction::Coulomb)?;
+        let right = active.rows.trial_transposed(direction).into_iter().map(|entry| -entry).collect();
+        let system = AdjointSystem { contact: self, active, right };
+        let mut iterate = system.at_zero();
         // Where equilibrium alone determines the forces, all of the right side is rigid and only rounding is left of it.
-        let start = norm(&projected).max(ROUNDING * norm(&right));
+        let size = iterate.residual.max(SMALLEST_PROJECTED_SHARE * norm(&system.right));
+        let goal = tolerance * size;
         let mut precision = self.precision;
-        let apply = |z: &[f64], precision: Precision| {
-            let product = self.operator.apply_direction(&rows.expand(z, false), precision);
-            let mut product = rows.restrict(&product, true);
-            rows.add_compliance(z, &mut product, 1.0);
-            product
-        };
-        let mut unknowns = vec![0.0; rows.dimension];
-        let mut rest = right.clone();
-        let mut residual = norm(&projected);
         for _cycle in 0..MAX_CYCLES {
-            if residual <= tolerance * start {
+            if iterate.residual <= goal {
                 break;
             }
-            let reduction = match precision {
-                Precision::Double => 0.0,
-                Precision::Mixed => CYCLE_REDUCTION,
-            };
-            let target = (0.5 * tolerance * start).max(reduction * residual);
-            let patience = if precision == self.precision { PATIENCE } else { MAX_KRYLOV };
-            let precondition = |v: &[f64]| self.precondition(&rows, v, |z| coarse.project_adjoint(z));
-            let product = |z: &[f64]| {
-                let product = apply(z, precision);
-                let mut reduced = product.clone();
-                coarse.project_adjoint(&mut reduced);
-                (reduced, product)
-            };
-            if self.boundary.has_friction() {
-                let krylov = gmres(&projected, target, MAX_KRYLOV, patience, precondition, product);
-                for ((coefficient, z), product) in
-                    krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
-                {
-                    add_scaled(&mut unknowns, *coefficient, z);
-                    add_scaled(&mut rest, -coefficient, product);
+            let previous = iterate.residual;
+            system.adjoint_cycle(&mut iterate, goal, precision);
+            match next_cycle(precision, previous, iterate.residual, goal) {
+                NextCycle::Continue => {}
+                NextCycle::Double => precision = Precision::Double,
+                NextCycle::DoubleFromZero => {
+                    precision = Precision::Double;
+                    iterate = system.at_zero();
                 }
-            } else {
-                let krylov = pcg(&projected, target, MAX_KRYLOV, precondition, product);
-                add_scaled(&mut unknowns, 1.0, &krylov.solution);
-                add_scaled(&mut rest, -1.0, &krylov.image);
-            }
-            // Residual replacement by one product in double precision.
-            rest.clone_from(&right);
-            add_scaled(&mut rest, -1.0, &apply(&unknowns, Precision::Double));
-            projected.copy_from_slice(&rest);
-            coarse.project_adjoint(&mut projected);
-            let previous = residual;
-            residual = norm(&projected);
-            if residual.is_nan() || residual > SLOW * previous && residual > tolerance * start {
-                // Single precision has little to say about a system as ill conditioned as this.
-                if precision == Precision::Double && (residual.is_nan() || residual > 0.5 * previous) {
-                    break;
-                }
-                precision = Precision::Double;
-                if residual.is_nan() || residual > previous {
-                    unknowns.fill(0.0);
-                    rest.clone_from(&right);
-                    projected.copy_from_slice(&rest);
-                    coarse.project_adjoint(&mut projected);
-                    residual = norm(&projected);
-                }
+                NextCycle::Stop => break,
             }
         }
-        if residual.is_nan() || residual > ACCEPTABLE.max(tolerance) * start {
+        if iterate.residual.is_nan() || iterate.residual > TIGHTEST_ACCEPTABLE.max(tolerance) * size {
             return Err(ContactError::NotConverged {
                 solver: "adjoint GMRES on TFETI",
-                residual: residual / start,
+                residual: iterate.residual / size,
                 tolerance,
                 iterations: MAX_KRYLOV,
-                history: vec![residual / start],
+                history: vec![iterate.residual / size],
             });
         }
-        let amplitudes = coarse.adjoint_amplitudes(&rest);
-        let multipliers = rows.expand(&unknowns, false);
-        let displacement = self.operator.displacement(&multipliers, &amplitudes, false);
-        let residual = if start > 0.0 { residual / start } else { 0.0 };
-        Ok(TornAdjoint { displacement, multipliers, residual })
+        Ok(system.recover(&iterate))
     }
 }
 
-/// Share of the right side below which its projection is known to few digits: relative residuals refer to no less.
-const ROUNDING: f64 = 1e-5;
+impl AdjointSystem<'_> {
+    /// (Tᵀ F Q + Δ) z.
+    fn apply(&self, z: &[f64], precision: Precision) -> Vec<f64> {
+        let rows = &self.active.rows;
+        let mut product = rows.trial_transposed(&self.contact.operator.apply_direction(&rows.test(z), precision));
+        rows.add_compliance(z, &mut product, 1.0);
+        product
+    }
 
-/// Relative residual accepted when rounding stops all progress.
-const ACCEPTABLE: f64 = 1e-8;
+    /// q = 0.
+    fn at_zero(&self) -> AdjointIterate {
+        self.with_residual(vec![0.0; self.right.len()], self.right.clone())
+    }
+
+    fn with_residual(&self, unknowns: Vec<f64>, rest: Vec<f64>) -> AdjointIterate {
+        let mut projected = rest.clone();
+        self.active.project_adjoint(&mut projected);
+        AdjointIterate { residual: norm(&projected), unknowns, rest, projected }
+    }
+
+    /// One run of a Krylov method with products in a given precision, towards a residual of `goal`; then the residual by one
+    /// product in double precision.
+    fn adjoint_cycle(&self, iterate: &mut AdjointIterate, goal: f64, precision: Precision) {
+        let reduction = match precision {
+            Precision::Double => 0.0,
+            Precision::Mixed => CYCLE_REDUCTION,
+        };
+        let target = (0.5 * goal).max(reduction * iterate.residual);
+        // Once single precision has failed, the system is so ill conditioned that its residual may rest for long.
+        let patience = if precision == self.contact.precision { PATIENCE } else { MAX_KRYLOV };
+        let project = |v: &mut [f64]| self.active.project_adjoint(v);
+        let precondition = |v: &[f64]| self.contact.precondition(&self.active.rows, v, project);
+        let product = |z: &[f64]| {
+            let mut projected = self.apply(z, precision);
+            project(&mut projected);
+            projected
+        };
+        if self.contact.boundary.has_friction() {
+            let krylov = gmres(&iterate.projected, target, MAX_KRYLOV, patience, precondition, |z| (product(z), ()));
+            for (coefficient, z) in krylov.coefficients.iter().zip(&krylov.directions) {
+                add_scaled(&mut iterate.unknowns, *coefficient, z);
+            }
+        } else {
+            let krylov = pcg(&iterate.projected, target, MAX_KRYLOV, precondition, product);
+            add_scaled(&mut iterate.unknowns, 1.0, &krylov.solution);
+        }
+        let mut rest = self.right.clone();
+        add_scaled(&mut rest, -1.0, &self.apply(&iterate.unknowns, Precision::Double));
+        *iterate = self.with_residual(std::mem::take(&mut iterate.unknowns), rest);
+    }
+
+    /// The adjoint state of solved unknowns: amplitudes b, then Q q and p.
+    fn recover(&self, iterate: &AdjointIterate) -> TornAdjoint {
+        let amplitudes = self.active.adjoint_amplitudes(&iterate.rest);
+        let multipliers = self.active.rows.test(&iterate.unknowns);
+        let displacement = self.contact.operator.unloaded_displacement(&multipliers, &amplitudes);
+        TornAdjoint { displacement, multipliers }
+    }
+}
+
+/// Judges a cycle by the residual before and after it.
+fn next_cycle(precision: Precision, previous: f64, residual: f64, goal: f64) -> NextCycle {
+    let within = |share: f64| residual <= share * previous;
+    if residual <= goal || within(SLOW_REDUCTION) {
+        NextCycle::Continue
+    } else if precision == Precision::Double && !within(STALLED_REDUCTION) {
+        NextCycle::Stop
+    } else if within(1.0) {
+        NextCycle::Double
+    } else {
+        NextCycle::DoubleFromZero
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOAL: f64 = 1e-10;
+
+    #[test]
+    fn a_cycle_that_pays_or_reaches_the_goal_is_followed_by_the_same() {
+        for precision in [Precision::Mixed, Precision::Double] {
+            assert_eq!(next_cycle(precision, 1.0, 0.05, GOAL), NextCycle::Continue);
+            assert_eq!(next_cycle(precision, 1.5 * GOAL, GOAL, GOAL), NextCycle::Continue);
+        }
+    }
+
+    #[test]
+    fn a_slow_cycle_in_single_precision_is_followed_by_double_precision() {
+        assert_eq!(next_cycle(Precision::Mixed, 1.0, 0.2, GOAL), NextCycle::Double);
+        assert_eq!(next_cycle(Precision::Mixed, 1.0, 1.0, GOAL), NextCycle::Double);
+    }
+
+    #[test]
+    fn a_harmful_cycle_in_single_precision_is_undone() {
+        assert_eq!(next_cycle(Precision::Mixed, 1.0, 1.1, GOAL), NextCycle::DoubleFromZero);
+        assert_eq!(next_cycle(Precision::Mixed, 1.0, f64::NAN, GOAL), NextCycle::DoubleFromZero);
+    }
+
+    #[test]
+    fn double_precision_goes_on_while_the_residual_halves() {
+        assert_eq!(next_cycle(Precision::Double, 1.0, 0.4, GOAL), NextCycle::Double);
+        assert_eq!(next_cycle(Precision::Double, 1.0, 0.6, GOAL), NextCycle::Stop);
+        assert_eq!(next_cycle(Precision::Double, 1.0, f64::NAN, GOAL), NextCycle::Stop);
+    }
+}

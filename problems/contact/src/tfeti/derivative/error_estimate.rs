@@ -7,29 +7,29 @@
 //! From K u + Bᵀλ = f, (I − D) dλ − c D B du = dr and its transpose. Every iterate has G λ = e, so that nothing else is left
 //! over. [`crate::equilibrium::ValueError`] says what the terms are used for.
 
+use crate::equilibrium::law;
 use crate::linear::vector::dot;
-use crate::tfeti::{Iterate, TornAdjoint, TornContact};
+use crate::tfeti::derivative::adjoint::TornAdjoint;
+use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::dual::iterate::Iterate;
+use crate::tfeti::torn::vectors::RowVector;
 
 impl TornContact<'_> {
-    /// Terms of the error of J, one per equality row and one per contact node; `direction` is j over all (scaled) rows.
-    pub fn weighted_residuals(&self, iterate: &Iterate, adjoint: &TornAdjoint, direction: &[f64]) -> Vec<f64> {
-        let equality = self.operator.model.constraints.equality_count;
+    /// Terms of the error of J, one per row of B_E and one per contact node; `direction` is j.
+    pub fn weighted_residuals(&self, iterate: &Iterate, adjoint: &TornAdjoint, direction: &RowVector) -> Vec<f64> {
         let image = self.operator.gather(&adjoint.displacement);
         let residual = self.law_residual(iterate);
-        let mut terms: Vec<f64> =
-            adjoint.multipliers[..equality].iter().zip(&iterate.jumps).map(|(eta, jump)| eta * jump).collect();
+        let (glued, eta) = adjoint.multipliers.split();
+        let mut terms: Vec<f64> = glued.iter().zip(iterate.jumps.iter()).map(|(eta, jump)| eta * jump).collect();
+        let (j, image, forces) = (direction.contact(), image.contact(), iterate.multipliers.contact());
         for point in &self.boundary.points {
-            let contact = point.start..point.start + point.row_count();
-            let rows = equality + point.start..equality + point.start + point.row_count();
-            let forces = &iterate.multipliers[rows.clone()];
-            let mut inside = vec![0.0; forces.len()];
-            crate::equilibrium::law::project(forces, self.boundary.friction, &mut inside);
-            let moved: Vec<f64> = inside.iter().zip(forces).map(|(inside, force)| inside - force).collect();
-            let weights: Vec<f64> = rows
-                .clone()
-                .map(|row| direction[row] - image[row] - adjoint.multipliers[row] / self.stiffness)
-                .collect();
-            terms.push(dot(&weights, &residual[contact]) + dot(&direction[rows], &moved));
+            let rows = point.start..point.start + point.row_count();
+            let outside = &forces[rows.clone()];
+            let mut inside = vec![0.0; outside.len()];
+            law::project(outside, self.boundary.friction, &mut inside);
+            let moved: Vec<f64> = inside.iter().zip(outside).map(|(inside, force)| inside - force).collect();
+            let weights: Vec<f64> = rows.clone().map(|row| j[row] - image[row] - eta[row] / self.stiffness).collect();
+            terms.push(dot(&weights, &residual[rows.clone()]) + dot(&j[rows], &moved));
         }
         terms
     }

@@ -5,12 +5,14 @@
 //! ```
 
 use crate::error::ContactError;
-use crate::linear::gmres::{Combination, PATIENCE, gmres};
+use crate::linear::gmres::{PATIENCE, gmres};
 use crate::linear::vector::{add_scaled, norm};
-use crate::tfeti::ReducedRows;
-use crate::tfeti::dual::coarse_space::CoarseProblem;
-use crate::tfeti::newton::iteration::{Iterate, TornContact};
-use crate::tfeti::newton::recycling::Recycled;
+use crate::tfeti::dual::active_rows::ActiveRows;
+use crate::tfeti::dual::active_set::ActiveSet;
+use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::dual::iterate::Iterate;
+use crate::tfeti::newton::recycling::{Direction, Recycled};
+use crate::tfeti::torn::vectors::RowVector;
 
 /// How accurately a reduced linear system is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,82 +41,74 @@ impl LinearAccuracy {
     }
 }
 
-/// Reduction that another cycle of iterative refinement must have brought.
-const REFINEMENT_PAYS: f64 = 0.5;
+/// Share of the residual that a cycle of iterative refinement may leave for another one to follow.
+const MAX_REFINED_SHARE: f64 = 0.5;
 
 impl TornContact<'_> {
-    /// Solves the reduced system for an active set, starting from given multipliers; its Krylov pairs join `pairs`, where
-    /// somebody will use them.
+    /// Solves the reduced system of an active set, starting from given multipliers. The directions of its Krylov space join
+    /// `recycled`, where later iterates will use them.
     pub(crate) fn linear_solve(
         &self,
-        rows: &ReducedRows<'_>,
-        coarse: &CoarseProblem<'_>,
-        start: &[f64],
+        active: &ActiveSet<'_>,
+        start: &RowVector,
         accuracy: LinearAccuracy,
-        mut pairs: Option<&mut Recycled>,
+        mut recycled: Option<&mut Recycled>,
     ) -> Result<Iterate, ContactError> {
-        let mut unknowns = rows.initial(start);
+        let rows = &active.rows;
+        let mut unknowns = rows.unknowns_of(start);
         let (mut first, mut last) = (None, f64::INFINITY);
-        let mut image = Vec::new();
+        let mut image = self.zeros();
         for _cycle in 0..accuracy.cycles {
-            coarse.enforce(&mut unknowns, &self.space.resultants);
-            image = self.operator.apply(&rows.expand(&unknowns, true));
+            active.enforce(&mut unknowns, self.space.resultants());
+            image = self.operator.apply(&rows.trial(&unknowns));
             let mut projected = self.reduced_residual(rows, &unknowns, &image);
-            coarse.project(&mut projected);
+            active.project(&mut projected);
             let size = norm(&projected);
             let target = accuracy.target.max(accuracy.reduction * *first.get_or_insert(size));
-            if size <= target || size > REFINEMENT_PAYS * last {
+            if size <= target || size > MAX_REFINED_SHARE * last {
                 break;
             }
             last = size;
-            let krylov: Combination<Vec<f64>> = gmres(
+            let krylov = gmres(
                 &projected,
                 target,
                 accuracy.max_krylov,
                 accuracy.patience,
-                |v| self.precondition(rows, v, |z| coarse.project(z)),
+                |v| self.precondition(rows, v, |z| active.project(z)),
                 |z| {
-                    let product = self.operator.apply(&rows.expand(z, true));
-                    let mut reduced = rows.restrict(&product, false);
+                    let product = self.operator.apply(&rows.trial(z));
+                    let mut reduced = rows.test_transposed(&product);
                     rows.add_compliance(z, &mut reduced, 1.0);
-                    coarse.project(&mut reduced);
+                    active.project(&mut reduced);
                     (reduced, product)
                 },
             );
-            for ((coefficient, direction), product) in
-                krylov.coefficients.iter().zip(&krylov.directions).zip(&krylov.payloads)
-            {
+            let directions = krylov.directions.iter().zip(krylov.payloads);
+            for (coefficient, (direction, product)) in krylov.coefficients.iter().zip(directions) {
                 add_scaled(&mut unknowns, *coefficient, direction);
-                add_scaled(&mut image, *coefficient, product);
-            }
-            if let Some(pairs) = pairs.as_deref_mut() {
-                for (direction, product) in krylov.directions.iter().zip(krylov.payloads) {
-                    let amplitudes = balancing_amplitudes(rows, coarse, direction, &product);
-                    pairs.push(self, rows.expand(direction, true), product, amplitudes);
+                add_scaled(&mut image, *coefficient, &product);
+                if let Some(recycled) = recycled.as_deref_mut() {
+                    let amplitudes = balancing_amplitudes(active, direction, &product);
+                    let multipliers = rows.trial(direction);
+                    recycled.push(self, Direction::Full { multipliers, image: product, amplitudes });
                 }
             }
         }
-        let amplitudes = coarse.amplitudes(&self.reduced_residual(rows, &unknowns, &image));
-        Ok(self.iterate(rows.expand(&unknowns, true), image, amplitudes))
+        let amplitudes = active.amplitudes(&self.reduced_residual(rows, &unknowns, &image));
+        Ok(self.iterate(rows.trial(&unknowns), image, amplitudes))
     }
 
     /// Qᵀ(d − F T y) − Δ y.
-    fn reduced_residual(&self, rows: &ReducedRows<'_>, unknowns: &[f64], image: &[f64]) -> Vec<f64> {
-        let rest: Vec<f64> = self.constant.iter().zip(image).map(|(d, image)| d - image).collect();
-        let mut residual = rows.restrict(&rest, false);
+    fn reduced_residual(&self, rows: &ActiveRows<'_>, unknowns: &[f64], image: &RowVector) -> Vec<f64> {
+        let mut residual = rows.test_transposed(&self.rest(image));
         rows.add_compliance(unknowns, &mut residual, -1.0);
         residual
     }
 }
 
 /// Amplitudes that remove the rigid part of what a direction y with product F T y does to the reduced residual.
-pub fn balancing_amplitudes(
-    rows: &ReducedRows<'_>,
-    coarse: &CoarseProblem<'_>,
-    direction: &[f64],
-    product: &[f64],
-) -> Vec<f64> {
-    let mut change: Vec<f64> = rows.restrict(product, false).into_iter().map(|entry| -entry).collect();
-    rows.add_compliance(direction, &mut change, -1.0);
-    coarse.amplitudes(&change)
+pub fn balancing_amplitudes(active: &ActiveSet<'_>, direction: &[f64], product: &RowVector) -> Vec<f64> {
+    let mut change: Vec<f64> = active.rows.test_transposed(product).into_iter().map(|entry| -entry).collect();
+    active.rows.add_compliance(direction, &mut change, -1.0);
+    active.amplitudes(&change)
 }

@@ -6,7 +6,8 @@
 //! ```
 
 use crate::error::ContactError;
-use crate::tfeti::newton::iteration::{NewtonSettings, TornContact};
+use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::newton::settings::NewtonSettings;
 
 /// Times its rounding floor that a residual is seen to reach.
 const FLOOR_REACHED: f64 = 10.0;
