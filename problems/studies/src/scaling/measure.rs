@@ -5,6 +5,7 @@ use crate::scaling::{Case, Row, Sample, SceneName, Solve, Start, Variant, bandwi
 use contact::equilibrium::ContactProblem;
 use contact::error::ContactError;
 use problems::commands::Failure;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Tolerance of the timed states and of all subgradients.
@@ -23,7 +24,7 @@ const ONCE: f64 = 5.0;
 /// # Errors
 /// [`Failure`] when the timed cold state cannot be found; other failures are listed in the row.
 pub fn row(scene: SceneName, case: Case, variant: Variant, change: &[f64]) -> Result<Row, Failure> {
-    let problem = ContactProblem::new(scene.scene(case)?)?;
+    let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
     let controls = vec![problem.scene.start_height; change.len()];
     let nearby: Vec<f64> = controls.iter().zip(change).map(|(control, change)| control + change).collect();
     let clock = Instant::now();
