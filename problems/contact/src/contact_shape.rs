@@ -12,11 +12,9 @@ use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
 use crate::memory;
 use crate::scene::Scene;
-use crate::tfeti::{
-    AugmentedLagrangianCounts, AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornSolver,
-    TornState,
-};
+use crate::tfeti::{AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornSolver, TornState};
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Which contact solver.
@@ -36,7 +34,7 @@ pub enum SolverKind {
 /// The control-to-state map of a scene.
 #[derive(Debug)]
 pub struct ContactShape {
-    problem: ContactProblem,
+    problem: Arc<ContactProblem>,
     solver: Solver,
     kind: SolverKind,
     recycling: Recycling,
@@ -106,11 +104,11 @@ impl ContactShape {
     ) -> Result<Self, SceneError> {
         scene.validate()?;
         memory::check(&scene, kind, preconditioner)?;
-        let problem = ContactProblem::new(scene)?;
+        let problem = Arc::new(ContactProblem::new(scene)?);
         let size = |error: ContactError| SceneError::out_of_range("mesh", error, "a size that can be factored");
         let solver = match kind {
             SolverKind::Newton | SolverKind::AugmentedLagrangian => {
-                Solver::Torn(Box::new(TornSolver::new(&problem, preconditioner).map_err(size)?))
+                Solver::Torn(Box::new(TornSolver::new(Arc::clone(&problem), preconditioner).map_err(size)?))
             }
             SolverKind::Direct => Solver::Direct(Box::new(DirectSolver::new(&problem).map_err(size)?)),
         };
@@ -142,7 +140,7 @@ impl ContactShape {
     /// another kind of solver.
     pub fn diagnose(&self, state: &ContactState) -> Result<Diagnosis, OracleError> {
         match (&self.solver, &state.solution) {
-            (Solver::Torn(solver), Solution::Torn(torn)) => solver.diagnose(&self.problem, torn).map_err(oracle),
+            (Solver::Torn(solver), Solution::Torn(torn)) => solver.diagnose(torn).map_err(oracle),
             (Solver::Direct(solver), Solution::Direct(direct)) => {
                 solver.diagnose(&self.problem, direct).map_err(oracle)
             }
@@ -233,19 +231,15 @@ impl StateSolver for ContactShape {
                 };
                 let (state, forces, work) = if self.kind == SolverKind::AugmentedLagrangian {
                     let settings = AugmentedLagrangianSettings::to(tolerance);
-                    let mut counts = AugmentedLagrangianCounts::default();
-                    let solved = solver.solve_by(&self.problem, controls, |contact| {
-                        let (solution, work) = contact.solve_by_successive_approximations(start, &settings)?;
-                        counts = work;
-                        Ok(solution)
-                    });
+                    let (state, forces, work, counts) = solver
+                        .solve_by(controls, |contact| contact.solve_by_successive_approximations(start, &settings))
+                        .map_err(oracle)?;
                     contraction = Some(counts.contraction).filter(|factor| *factor > 0.0);
-                    solved.map(|(state, forces, work)| (state, forces, counts.added_to(work)))
+                    (state, forces, counts.added_to(work))
                 } else {
                     let settings = NewtonSettings { recycling: self.recycling, ..NewtonSettings::to(tolerance) };
-                    solver.solve_by(&self.problem, controls, |contact| contact.solve(start, &settings))
-                }
-                .map_err(oracle)?;
+                    solver.solve_with(controls, start, &settings).map_err(oracle)?
+                };
                 let load = state.load();
                 (Solution::Torn(Box::new(state)), forces, work, load)
             }
@@ -318,7 +312,7 @@ impl ContactShape {
         match (&self.solver, &state.solution) {
             (Solver::Torn(solver), Solution::Torn(torn)) => {
                 let tolerance = (ADJOINT_SHARE * state.forces.residuals.newton).clamp(TIGHTEST_ADJOINT, 1e-3);
-                let result = solver.sensitivities(&self.problem, torn, &packed, tolerance).map_err(oracle)?;
+                let result = solver.sensitivities(torn, &packed, tolerance).map_err(oracle)?;
                 state.adjoint_applications.fetch_add(result.applications, Ordering::Relaxed);
                 Ok((result.heights, result.value_error))
             }
@@ -335,7 +329,7 @@ impl ContactShape {
     /// [`OracleError::Failed`] for a state of another kind of solver or of another mesh.
     pub fn fields(&self, state: &ContactState) -> Result<Fields, OracleError> {
         let bodies = match (&self.solver, &state.solution) {
-            (Solver::Torn(solver), Solution::Torn(torn)) => solver.bodies(&self.problem, torn),
+            (Solver::Torn(solver), Solution::Torn(torn)) => solver.bodies(torn),
             (Solver::Direct(solver), Solution::Direct(direct)) => solver.bodies(&self.problem, direct),
             _ => return Err(other_solver()),
         };

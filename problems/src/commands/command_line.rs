@@ -55,7 +55,7 @@ pub fn run_any() -> ExitCode {
 }
 
 /// Computes what the arguments ask for, on the scene that `open` reads unless a run is resumed. The text belongs on stdout.
-fn execute(
+pub fn execute(
     open: impl FnOnce() -> Result<(SceneFile, Option<PathBuf>), Failure>,
     arguments: &Arguments,
 ) -> Result<String, Failure> {

@@ -21,7 +21,8 @@ mod session;
 mod solved_shape;
 mod verify;
 
-pub use command_line::{run, run_any};
+pub use arguments::Arguments;
+pub use command_line::{execute, run, run_any};
 pub use contact_objective::{ContactObjective, objective};
 pub use controls::parse as parse_controls;
 pub use failure::{Failure, finish};

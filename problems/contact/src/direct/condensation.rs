@@ -6,13 +6,13 @@
 //! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly.
 
 use crate::body::elasticity::traction::face_weights;
+use crate::body::local_pattern::LocalPattern;
 use crate::body::mesh::{Block, Grid, Subdomain};
 use crate::body::shape_load::loaded_faces;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::dense::multiply;
 use crate::scene::BodyScene;
-use crate::tfeti::LocalPattern;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
 use std::sync::Arc;

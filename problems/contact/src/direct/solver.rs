@@ -6,7 +6,9 @@ use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::newton::{CondensedContact, CondensedSolution};
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
-use crate::equilibrium::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Stage, ValueError, Work, modes};
+use crate::equilibrium::{
+    Configuration, ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Stage, ValueError, Work, modes,
+};
 use crate::error::ContactError;
 use crate::scene::BodyScene;
 use std::sync::{Arc, OnceLock};
@@ -70,19 +72,15 @@ impl DirectSolver {
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(DirectState, ContactForces, Work), ContactError> {
-        Stage::Equilibrium.enter();
-        let mut blocks = problem.blocks(controls)?;
-        let rigid = problem.rigid_scene(&blocks);
-        let grounded: Vec<Vec<f64>> =
-            rigid.analyse(&problem.boundary)?.iter().map(|motion| contact_motion(&rigid, motion)).collect();
+        let configuration = Configuration::new(problem, controls)?;
         Stage::Factorization.enter();
-        let lower = self.lower.condense(&blocks[0], &problem.scene.lower)?;
+        let lower = self.lower.condense(&configuration.blocks[0], &problem.scene.lower)?;
         let mut factorizations = 1;
-        let upper = self.upper_body(problem, &blocks, &mut factorizations)?;
-        let gaps = problem.gaps(&blocks[0]);
+        let upper = self.upper_body(problem, &configuration.blocks, &mut factorizations)?;
         let stiffness = contact_stiffness(&lower, upper.as_deref());
-        let penetration: f64 = gaps.iter().map(|gap| (-gap).max(0.0)).sum();
-        let load = rigid.total_load() + stiffness * penetration;
+        let load = configuration.load(stiffness);
+        let Configuration { mut blocks, rigid, grounded, gaps } = configuration;
+        let grounded = grounded.iter().map(|motion| contact_motion(&rigid, motion)).collect();
         let system = CondensedSystem { block: blocks.swap_remove(0), lower, upper, grounded, gaps, stiffness, load };
         Stage::Contact.enter();
         let contact = self.contact(problem, &system);

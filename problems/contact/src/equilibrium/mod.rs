@@ -6,6 +6,7 @@ pub mod modes;
 
 mod boundary;
 pub mod certificate;
+mod configuration;
 mod problem;
 mod solved_body;
 mod stage;
@@ -14,6 +15,7 @@ mod value_error;
 
 pub use boundary::{ContactBoundary, ContactPoint};
 pub use certificate::{Kink, Residuals, StatusCounts};
+pub use configuration::Configuration;
 pub use diagnosis::Diagnosis;
 pub use problem::ContactProblem;
 pub use solved_body::SolvedBody;

@@ -11,11 +11,11 @@
 use contact::body::elasticity::hex8::{self, DOFS, GaussPoint, Nodes};
 use contact::body::elasticity::stress::{COMPONENTS, von_mises};
 use contact::body::elasticity::{Formulation, Material};
+use contact::body::local_pattern::LocalPattern;
 use contact::body::mesh::{Block, Grid};
 use contact::equilibrium::SolvedBody;
 use contact::error::{ContactError, SceneError};
 use contact::fields::BodyFields;
-use contact::tfeti::LocalPattern;
 use serde::Serialize;
 use std::time::Instant;
 

@@ -9,7 +9,7 @@ use crate::scaling::repeat::failure;
 use crate::scaling::threads::{TIMED_THREADS, pool};
 use contact::equilibrium::ContactProblem;
 use contact::linear::cholesky::SymbolicFactor;
-use contact::tfeti::{DualOperator, Preconditioner, TornModel, TornSystem};
+use contact::tfeti::{DualOperator, Preconditioner, RowVector, TornModel, TornSystem};
 use problems::commands::Failure;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -61,8 +61,9 @@ pub fn measure(
     let system = model.factorize(&blocks).map_err(failure)?;
     let factor_bytes = factor_bytes(model, &system)?;
     let operator = DualOperator::new(model, &system);
-    let preconditioner = Preconditioner::new(&operator, variant.preconditioner().unwrap_or_default(), 1.0);
-    let input: Vec<f64> = (0..model.constraints.row_count()).map(|row| ((row % 17) as f64 - 8.0) / 8.0).collect();
+    let preconditioner = Preconditioner::new(model, &system, variant.preconditioner().unwrap_or_default(), 1.0);
+    let mut input = model.constraints.zeros();
+    input.iter_mut().enumerate().for_each(|(row, entry)| *entry = ((row % 17) as f64 - 8.0) / 8.0);
     TIMED_THREADS
         .into_iter()
         .map(|threads| {
@@ -94,7 +95,7 @@ fn factor_bytes(model: &TornModel, system: &TornSystem) -> Result<f64, Failure> 
 }
 
 /// Median seconds of a call.
-fn seconds_per_call(call: impl Fn() -> Vec<f64>) -> f64 {
+fn seconds_per_call(call: impl Fn() -> RowVector) -> f64 {
     black_box(call());
     let whole = Instant::now();
     let mut seconds = Vec::new();

@@ -5,9 +5,8 @@ use crate::scaling::solve::{Adjoint, Solve, Start};
 use contact::direct::{DirectSolver, DirectState};
 use contact::equilibrium::{ContactForces, ContactProblem, Work};
 use contact::error::ContactError;
-use contact::tfeti::{
-    AugmentedLagrangianCounts, AugmentedLagrangianSettings, NewtonSettings, Recycling, TornSolver, TornState,
-};
+use contact::tfeti::{AugmentedLagrangianSettings, NewtonSettings, Recycling, TornSolver, TornState};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A solver of one scene.
@@ -50,9 +49,9 @@ impl Engine {
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
-    pub fn new(problem: &ContactProblem, variant: Variant) -> Result<Self, ContactError> {
+    pub fn new(problem: &Arc<ContactProblem>, variant: Variant) -> Result<Self, ContactError> {
         Ok(match variant.preconditioner() {
-            Some(kind) => Self::Torn(Box::new(TornSolver::new(problem, kind)?), Method::of(variant)),
+            Some(kind) => Self::Torn(Box::new(TornSolver::new(Arc::clone(problem), kind)?), Method::of(variant)),
             None => Self::Direct(Box::new(DirectSolver::new(problem)?)),
         })
     }
@@ -90,7 +89,7 @@ impl Engine {
         let clock = Instant::now();
         let (state, forces, work, stages) = match self {
             Self::Torn(solver, method) => {
-                let (state, forces, work) = method.solve(solver, problem, controls, start, tolerance)?;
+                let (state, forces, work) = method.solve(solver, controls, start, tolerance)?;
                 let stages = state.seconds();
                 (State::Torn(Box::new(state)), forces, work, Some(stages))
             }
@@ -129,7 +128,7 @@ impl Engine {
         let clock = Instant::now();
         match (self, &solved.state) {
             (Self::Torn(solver, _), State::Torn(state)) => {
-                let result = solver.sensitivities(problem, state, &direction, tolerance)?;
+                let result = solver.sensitivities(state, &direction, tolerance)?;
                 let adjoint = Adjoint {
                     tolerance,
                     applications: result.applications,
@@ -163,25 +162,20 @@ impl Method {
     fn solve(
         self,
         solver: &TornSolver,
-        problem: &ContactProblem,
         controls: &[f64],
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(TornState, ContactForces, Work), ContactError> {
         match self {
-            Self::Newton => solver.solve(problem, controls, start, tolerance),
+            Self::Newton => solver.solve(controls, start, tolerance),
             Self::Gmres => {
                 let settings = NewtonSettings { recycling: Recycling::Off, ..NewtonSettings::to(tolerance) };
-                solver.solve_by(problem, controls, |contact| contact.solve(start, &settings))
+                solver.solve_with(controls, start, &settings)
             }
             Self::AugmentedLagrangian => {
                 let settings = AugmentedLagrangianSettings::to(tolerance);
-                let mut counts = AugmentedLagrangianCounts::default();
-                let (state, forces, work) = solver.solve_by(problem, controls, |contact| {
-                    let (solution, spent) = contact.solve_by_successive_approximations(start, &settings)?;
-                    counts = spent;
-                    Ok(solution)
-                })?;
+                let (state, forces, work, counts) = solver
+                    .solve_by(controls, |contact| contact.solve_by_successive_approximations(start, &settings))?;
                 Ok((state, forces, counts.added_to(work)))
             }
         }

@@ -9,6 +9,7 @@ use crate::scaling::{bandwidth, memory, threads};
 use contact::equilibrium::ContactProblem;
 use contact::error::ContactError;
 use problems::commands::Failure;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Tolerances of the states that are only counted, cold.
@@ -21,7 +22,7 @@ pub const WARM: [f64; 1] = [1e-10];
 /// # Errors
 /// [`Failure`] when the timed cold state cannot be found; other failures are listed in the row.
 pub fn row(scene: SceneName, case: Case, variant: Variant, change: &[f64]) -> Result<Row, Failure> {
-    let problem = ContactProblem::new(scene.scene(case)?)?;
+    let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
     let controls = vec![problem.scene.start_height; change.len()];
     let nearby: Vec<f64> = controls.iter().zip(change).map(|(control, change)| control + change).collect();
     let clock = Instant::now();

@@ -8,6 +8,7 @@ use contact::equilibrium::ContactProblem;
 use problems::commands::Failure;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Thread scaling of one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -37,7 +38,7 @@ const COMPARED: usize = 4;
 ///
 /// # Errors
 /// [`Failure::Computation`] from the solver or the system's threads.
-pub fn measure(problem: &ContactProblem, variant: Variant, controls: &[f64]) -> Result<Threads, Failure> {
+pub fn measure(problem: &Arc<ContactProblem>, variant: Variant, controls: &[f64]) -> Result<Threads, Failure> {
     let mut results: Vec<Vec<u64>> = Vec::new();
     let mut samples = Vec::new();
     for threads in TIMED_THREADS.into_iter().chain([COMPARED]) {

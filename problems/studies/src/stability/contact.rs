@@ -5,7 +5,8 @@ use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, StatusCounts, Work};
 use contact::error::{ContactError, SceneError};
 use contact::scene::Scene;
-use contact::tfeti::{AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornSolver};
+use contact::tfeti::{AugmentedLagrangianSettings, PreconditionerKind, TornSolver};
+use std::sync::Arc;
 
 /// What a case is expected to end in.
 #[derive(Debug, Clone)]
@@ -126,12 +127,12 @@ fn refusal(solver: &'static str, error: &ContactError) -> Attempt {
 }
 
 /// Newton on TFETI.
-pub fn by_tfeti(problem: &ContactProblem, controls: &[f64]) -> Attempt {
+pub fn by_tfeti(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
     let attempt = || {
-        let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet)?;
-        let (state, forces, work) = solver.solve(problem, controls, None, TOLERANCE)?;
+        let solver = TornSolver::new(Arc::clone(problem), PreconditionerKind::Dirichlet)?;
+        let (state, forces, work) = solver.solve(controls, None, TOLERANCE)?;
         let heights = solver
-            .sensitivities(problem, &state, &packed_dual(problem), ADJOINT_TOLERANCE)
+            .sensitivities(&state, &packed_dual(problem), ADJOINT_TOLERANCE)
             .map(|sensitivities| sensitivities.heights)
             .map_err(|error| error.to_string());
         Ok((path("tfeti", work, &forces), Some(Found { forces, heights, diagnosis: None })))
@@ -155,16 +156,12 @@ pub fn by_condensation(problem: &ContactProblem, controls: &[f64]) -> Attempt {
 }
 
 /// Successive approximations on TFETI.
-pub fn by_successive_approximations(problem: &ContactProblem, controls: &[f64]) -> Attempt {
+pub fn by_successive_approximations(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
     let attempt = || {
-        let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet)?;
+        let solver = TornSolver::new(Arc::clone(problem), PreconditionerKind::Dirichlet)?;
         let settings = AugmentedLagrangianSettings::to(PAPER_TOLERANCE);
-        let mut counts = AugmentedLagrangianCounts::default();
-        let (_, forces, work) = solver.solve_by(problem, controls, |contact| {
-            let (solution, spent) = contact.solve_by_successive_approximations(None, &settings)?;
-            counts = spent;
-            Ok(solution)
-        })?;
+        let (_, forces, work, counts) =
+            solver.solve_by(controls, |contact| contact.solve_by_successive_approximations(None, &settings))?;
         let mut path = path("successive approximations", work, &forces);
         path.reason = Some(format!("observed contraction {:.3}", counts.contraction));
         Ok((path, Some(Found { forces, heights: Ok(Vec::new()), diagnosis: None })))

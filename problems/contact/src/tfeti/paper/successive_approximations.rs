@@ -8,22 +8,22 @@
 //! Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ that it brings about.
 
 use crate::equilibrium::certificate::projection_residual;
-use crate::equilibrium::law::{Linearization, tangential_norm};
+use crate::equilibrium::law::tangential_norm;
 use crate::equilibrium::{Stage, Work};
 use crate::error::ContactError;
-use crate::linear::vector::{add_scaled, norm};
+use crate::linear::vector::norm;
 use crate::qp::{
     Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
     SmalseSolution, WarmStart,
 };
-use crate::tfeti::linear_solve::LinearAccuracy;
-use crate::tfeti::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
-use crate::tfeti::{Iterate, TornContact, TornSolution};
+use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::dual::iterate::{Iterate, TornSolution};
+use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
 
 /// When to stop, and how the dual QPs are solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AugmentedLagrangianSettings {
-    /// Relative residual aimed at, measured as [`TornContact::residual`] does.
+    /// Relative residual aimed at, measured as Newton's.
     pub tolerance: f64,
     /// Accuracy of a Tresca problem relative to the change of the slip bound that it brings about. Default 0.2 (0.1 takes
     /// some five per cent more products, 0.3 some five per cent fewer).
@@ -39,7 +39,7 @@ pub struct AugmentedLagrangianSettings {
 impl AugmentedLagrangianSettings {
     /// Settings for a relative residual.
     pub fn to(tolerance: f64) -> Self {
-        let tolerance = tolerance.max(SMALLEST_TOLERANCE);
+        let tolerance = tolerance.max(TIGHTEST_TOLERANCE);
         Self {
             tolerance,
             adaptivity: 0.2,
@@ -83,18 +83,18 @@ impl AugmentedLagrangianCounts {
     }
 }
 
-/// Smallest tolerance that rounding allows to ask for.
-const SMALLEST_TOLERANCE: f64 = 1e-12;
-/// Mean factor over many steps beyond which the iteration is said not to contract.
-const LOST: f64 = 0.9;
-/// Consecutive steps without contraction that end the iteration.
-const PATIENCE: usize = 4;
+/// Tightest relative residual that rounding allows to ask for.
+const TIGHTEST_TOLERANCE: f64 = 1e-12;
+/// Mean contraction factor above which a run that has not converged is said not to contract.
+const MAX_CONTRACTION: f64 = 0.9;
+/// Consecutive steps without contraction that end the iteration; the contraction factor is a mean over as many.
+const MAX_GROWING_STEPS: usize = 4;
 /// Relative residual that is accepted when rounding stops all progress.
-const ROUNDING: f64 = 1e-9;
+const TIGHTEST_ACCEPTABLE: f64 = 1e-9;
 /// Share of the tolerance aimed at: the final amplitudes are found by least squares and may leave a little more.
 const TARGET_SHARE: f64 = 0.5;
-/// Relative change of the slip bound below which rounding blurs the contraction.
-const BLURRED: f64 = 1e-8;
+/// Relative change of the slip bound below which rounding decides, and ratios of changes mean nothing.
+const SMALLEST_CHANGE: f64 = 1e-8;
 /// Factor on the tolerance aimed at when the balanced multipliers miss it.
 const TIGHTENING: f64 = 0.2;
 /// Share of the tolerance that the inner solver may leave.
@@ -109,7 +109,7 @@ struct FixedPoint {
 }
 
 impl TornContact<'_> {
-    /// Solves by successive approximations of the slip bound, from given multipliers of a similar problem or from the bonded
+    /// Solves by successive approximations of the slip bound, from given multipliers (over all rows) of a similar problem or from the bonded
     /// problem.
     ///
     /// # Errors
@@ -120,31 +120,27 @@ impl TornContact<'_> {
         start: Option<&[f64]>,
         settings: &AugmentedLagrangianSettings,
     ) -> Result<(TornSolution, AugmentedLagrangianCounts), ContactError> {
-        let acceptable = settings.tolerance.max(ROUNDING);
+        let acceptable = settings.tolerance.max(TIGHTEST_ACCEPTABLE);
         let coarse = OrthonormalCoarse::new(self.space)?;
-        let dual = ProjectedDual::new(self.operator, &coarse);
+        let dual = ProjectedDual::new(&self.operator, &coarse);
         let linear = dual.homogenised(&self.constant);
-        let first = match start {
-            Some(multipliers) => self.restart(multipliers)?,
-            None => self.bonded(LinearAccuracy::START, None)?,
-        };
-        let mut state = self.first(&first, &coarse);
+        let mut state = self.first(&self.start(start, None)?, &coarse);
         let mut history = Vec::new();
         let mut aimed = *settings;
         let (iterate, residual) = loop {
             self.approximate(&coarse, &dual, &linear, &aimed, &mut state, &mut history)?;
-            let iterate = self.recover(&state.warm.x, &state.bounds)?;
+            let iterate = self.balanced(&self.operator.model.constraints.row_vector(&state.warm.x)?, &state.bounds)?;
             let residual = self.residual(&iterate);
-            let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= SMALLEST_TOLERANCE;
+            let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= TIGHTEST_TOLERANCE;
             if residual.is_nan() || residual <= acceptable || spent {
                 break (iterate, residual);
             }
             // Balancing the multipliers has cost more than the share kept for it.
-            aimed.tolerance = (TIGHTENING * aimed.tolerance).max(SMALLEST_TOLERANCE);
+            aimed.tolerance = (TIGHTENING * aimed.tolerance).max(TIGHTEST_TOLERANCE);
         };
         if residual.is_nan() || residual > acceptable {
             let factor = overall_contraction(&state.changes);
-            if factor > LOST {
+            if factor > MAX_CONTRACTION {
                 return Err(ContactError::NoContraction { factor, history: state.changes });
             }
             return Err(ContactError::NotConverged {
@@ -155,8 +151,7 @@ impl TornContact<'_> {
                 history,
             });
         }
-        let linearizations = self.linearize(&iterate);
-        Ok((TornSolution { iterate, linearizations, residual, steps: state.counts.fixed_point_steps }, state.counts))
+        Ok((self.solution(iterate, residual, state.counts.fixed_point_steps), state.counts))
     }
 
     /// Tresca problems until their residual is below a share of the tolerance aimed at, or the steps are spent.
@@ -174,7 +169,7 @@ impl TornContact<'_> {
             let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
             history.push(residual);
             Stage::Contact.reached(history.len(), residual);
-            let exhausted = !solution.converged && residual <= settings.tolerance.max(ROUNDING);
+            let exhausted = !solution.converged && residual <= settings.tolerance.max(TIGHTEST_ACCEPTABLE);
             let target = TARGET_SHARE * settings.tolerance;
             self.count(&mut state.counts, &solution);
             self.advance(state, solution)?;
@@ -188,16 +183,9 @@ impl TornContact<'_> {
     /// The first slip bounds and multipliers: those of an iterate. Where the QP's gradient is −w, Cᵀμ is its rigid part.
     fn first(&self, iterate: &Iterate, coarse: &OrthonormalCoarse<'_>) -> FixedPoint {
         let multipliers = coarse.apply(&iterate.jumps).into_iter().map(|entry| -entry).collect();
-        let warm = WarmStart { x: iterate.multipliers.clone(), multipliers, ..WarmStart::default() };
-        let bounds = self.slip_bounds(&iterate.multipliers);
+        let warm = WarmStart { x: iterate.multipliers.to_vec(), multipliers, ..WarmStart::default() };
+        let bounds = self.slip_bounds(iterate.multipliers.contact());
         FixedPoint { bounds, warm, changes: Vec::new(), counts: AugmentedLagrangianCounts::default() }
-    }
-
-    /// Ψ = 𝓕 max(0, λ_N) per contact node (scaled rows).
-    fn slip_bounds(&self, multipliers: &[f64]) -> Vec<f64> {
-        let equality = self.operator.model.constraints.equality_count;
-        let normal = self.boundary.points.iter().map(|point| multipliers[equality + point.start].max(0.0));
-        normal.map(|normal| self.boundary.friction * normal).collect()
     }
 
     /// λ_N ≥ 0, |λ_T| ≤ Ψ.
@@ -229,7 +217,7 @@ impl TornContact<'_> {
         let norm_h = solver.norm(&state.warm)?;
         let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
         let penalty = settings.qp.penalty * norm_h;
-        let preconditioner = ProjectedPreconditioner::new(self.preconditioner, coarse, penalty);
+        let preconditioner = ProjectedPreconditioner::new(&self.preconditioner, coarse, penalty);
         if settings.precondition {
             solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
         }
@@ -237,20 +225,24 @@ impl TornContact<'_> {
         let solution = solver.run(&warm, floor, &mut |progress| {
             let error = self.stiffness * progress.reduced_gradient + progress.infeasibility;
             let residual = self.coulomb_residual(progress.x, progress.gradient, progress.infeasibility);
-            let change = difference(&self.slip_bounds(progress.x), &state.bounds);
+            let change = difference(&self.slip_bounds(self.split(progress.x).1), &state.bounds);
             let deserved = (settings.adaptivity * change).max(2.0 * floor * self.stiffness);
             residual <= TARGET_SHARE * settings.tolerance || (self.boundary.has_friction() && error <= deserved)
         })?;
         Ok(solution)
     }
 
-    /// The residual of [`TornContact::residual`] for the jumps that the multipliers of the equalities imply.
+    /// The rows of B_E and the packed contact rows of a vector of the QP solver.
+    fn split<'v>(&self, all: &'v [f64]) -> (&'v [f64], &'v [f64]) {
+        all.split_at(self.operator.model.constraints.equality_count)
+    }
+
+    /// The relative residual, as Newton measures it, for the jumps that the multipliers of the equalities imply.
     fn coulomb_residual(&self, multipliers: &[f64], gradient: &[f64], infeasibility: f64) -> f64 {
-        let equality = self.operator.model.constraints.equality_count;
-        let glued = self.stiffness * norm(&gradient[..equality]);
-        let jumps: Vec<f64> = gradient[equality..].iter().map(|entry| -entry).collect();
-        let law = projection_residual(self.boundary, &multipliers[equality..], &jumps, self.stiffness);
-        glued.hypot(norm(&law)).hypot(infeasibility) / self.load
+        let (glued, opening) = self.split(gradient);
+        let jumps: Vec<f64> = opening.iter().map(|entry| -entry).collect();
+        let law = projection_residual(self.boundary, self.split(multipliers).1, &jumps, self.stiffness);
+        (self.stiffness * norm(glued)).hypot(norm(&law)).hypot(infeasibility) / self.load
     }
 
     fn count(&self, counts: &mut AugmentedLagrangianCounts, solution: &SmalseSolution) {
@@ -265,7 +257,7 @@ impl TornContact<'_> {
     /// Ψ ← 𝓕λ_N; sliding tractions keep to the circle. Watches the contraction.
     fn advance(&self, state: &mut FixedPoint, solution: SmalseSolution) -> Result<(), ContactError> {
         let equality = self.operator.model.constraints.equality_count;
-        let bounds = self.slip_bounds(&solution.warm.x);
+        let bounds = self.slip_bounds(self.split(&solution.warm.x).1);
         let change = difference(&bounds, &state.bounds);
         if !change.is_finite() {
             return Err(ContactError::NotFinite { what: "slip bound" });
@@ -290,41 +282,6 @@ impl TornContact<'_> {
         }
         Ok(())
     }
-
-    /// Balanced multipliers with their image, and amplitudes by least squares on the held rows.
-    fn recover(&self, multipliers: &[f64], bounds: &[f64]) -> Result<Iterate, ContactError> {
-        let equality = self.operator.model.constraints.equality_count;
-        let statuses = |held_slip: bool| -> Vec<Linearization> {
-            let points = self.boundary.points.iter().zip(bounds);
-            points
-                .map(|(point, &bound)| {
-                    let first = equality + point.start;
-                    let rows = &multipliers[first..first + point.row_count()];
-                    let traction = tangential_norm(rows);
-                    if rows[0] <= 0.0 {
-                        Linearization::Open
-                    } else if held_slip || rows.len() == 1 || traction < (1.0 - 1e-9) * bound {
-                        Linearization::Stick
-                    } else {
-                        let second = if rows.len() > 2 { rows[2] / traction } else { 0.0 };
-                        Linearization::Slip { direction: [rows[1] / traction, second], ratio: 0.0 }
-                    }
-                })
-                .collect()
-        };
-        let held = self.reduced(statuses(true));
-        let coarse = self.coarse(&held, false)?;
-        let mut unknowns = held.initial(multipliers);
-        coarse.enforce(&mut unknowns, &self.space.resultants);
-        let multipliers = held.expand(&unknowns, false);
-        let image = self.operator.apply(&multipliers);
-        let rows = self.reduced(statuses(false));
-        let coarse = self.coarse(&rows, false)?;
-        let mut rest = self.constant.clone();
-        add_scaled(&mut rest, -1.0, &image);
-        let amplitudes = coarse.amplitudes(&rows.restrict(&rest, false));
-        Ok(self.iterate(multipliers, image, amplitudes))
-    }
 }
 
 /// |a − b|₂.
@@ -334,9 +291,9 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 
 /// Geometric mean of the last ratios of changes; the first change measures the start and does not count.
 fn contraction(changes: &[f64]) -> f64 {
-    let pairs = changes.windows(2).skip(1).filter(|pair| pair[1] > BLURRED);
+    let pairs = changes.windows(2).skip(1).filter(|pair| pair[1] > SMALLEST_CHANGE);
     let ratios: Vec<f64> = pairs.map(|pair| pair[1] / pair[0]).collect();
-    let recent = &ratios[ratios.len().saturating_sub(PATIENCE)..];
+    let recent = &ratios[ratios.len().saturating_sub(MAX_GROWING_STEPS)..];
     if recent.is_empty() {
         return 0.0;
     }
@@ -347,7 +304,7 @@ fn contraction(changes: &[f64]) -> f64 {
 fn overall_contraction(changes: &[f64]) -> f64 {
     let half = &changes[changes.len() / 2..];
     match (half.first(), half.last()) {
-        (Some(&first), Some(&last)) if half.len() > PATIENCE && last > BLURRED => {
+        (Some(&first), Some(&last)) if half.len() > MAX_GROWING_STEPS && last > SMALLEST_CHANGE => {
             (last / first).powf(1.0 / (half.len() - 1) as f64)
         }
         _ => 0.0,
@@ -356,8 +313,8 @@ fn overall_contraction(changes: &[f64]) -> f64 {
 
 /// Whether the last changes do not fall although they are far above rounding.
 fn diverges(changes: &[f64]) -> bool {
-    let recent = &changes[changes.len().saturating_sub(PATIENCE + 1)..];
-    recent.len() > PATIENCE && recent.windows(2).all(|pair| pair[1] >= pair[0] && pair[1] > BLURRED)
+    let recent = &changes[changes.len().saturating_sub(MAX_GROWING_STEPS + 1)..];
+    recent.len() > MAX_GROWING_STEPS && recent.windows(2).all(|pair| pair[1] >= pair[0] && pair[1] > SMALLEST_CHANGE)
 }
 
 #[cfg(test)]

@@ -1,28 +1,17 @@
 //! Displacements of whole bodies from those of their torn pieces.
 
 use crate::body::mesh::Block;
-use crate::equilibrium::{ContactProblem, SolvedBody};
-use crate::error::ContactError;
-use crate::tfeti::{TornModel, TornSolver, TornState};
+use crate::equilibrium::SolvedBody;
+use crate::tfeti::torn::model::TornModel;
+use crate::tfeti::torn::vectors::TornVector;
 
-impl TornSolver {
-    /// All bodies of a solved shape, lower first; torn copies of a node averaged.
-    ///
-    /// # Errors
-    /// [`ContactError::ForeignState`] for a state of another mesh.
-    pub fn bodies(&self, problem: &ContactProblem, state: &TornState) -> Result<Vec<SolvedBody>, ContactError> {
-        let model = self.model();
-        let (expected, found) = (model.dof_count, state.displacement().len());
-        if expected != found || state.blocks().iter().any(|block| block.grid != problem.grid) {
-            return Err(ContactError::ForeignState { what: "torn dofs", expected, found });
-        }
-        let bodies = state.blocks().iter().enumerate();
-        Ok(bodies.map(|(body, block)| glue(model, body, block, state.displacement())).collect())
-    }
+/// All bodies of a shape, lower first, from the displacements over the torn dofs of this process (zero elsewhere); the copies
+/// of a node are averaged.
+pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> Vec<SolvedBody> {
+    blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, torn)).collect()
 }
 
-/// One body from the displacements over the torn dofs of this process (zero elsewhere).
-fn glue(model: &TornModel, body: usize, block: &Block, torn: &[f64]) -> SolvedBody {
+fn whole_body(model: &TornModel, body: usize, block: &Block, torn: &TornVector) -> SolvedBody {
     let grid = &block.grid;
     let owned = model.communication.owned(model.subdomains.len());
     let pieces = || model.subdomains.iter().enumerate().filter(|(_, piece)| piece.body == body);

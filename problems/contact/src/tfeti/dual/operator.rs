@@ -1,7 +1,9 @@
 //! F = B K⁺ Bᵀ and the products around it; subdomains in parallel, sums in a fixed order.
 
 use crate::linear::vector::add_scaled;
-use crate::tfeti::{SubdomainFactors, TornModel, TornSystem};
+use crate::tfeti::torn::factors::SubdomainFactors;
+use crate::tfeti::torn::model::{TornModel, TornSystem};
+use crate::tfeti::torn::vectors::{RowVector, TornVector};
 use faer::Par;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -42,7 +44,7 @@ impl<'a> DualOperator<'a> {
     }
 
     /// F λ.
-    pub fn apply(&self, multipliers: &[f64]) -> Vec<f64> {
+    pub fn apply(&self, multipliers: &RowVector) -> RowVector {
         self.applications.fetch_add(1, Ordering::Relaxed);
         let mut torn = self.scatter(multipliers);
         self.solve_subdomains(&mut torn);
@@ -50,7 +52,7 @@ impl<'a> DualOperator<'a> {
     }
 
     /// F of a search direction, in the precision asked for.
-    pub fn apply_direction(&self, direction: &[f64], precision: Precision) -> Vec<f64> {
+    pub fn apply_direction(&self, direction: &RowVector, precision: Precision) -> RowVector {
         match precision {
             Precision::Double => self.apply(direction),
             Precision::Mixed => self.apply_single(direction),
@@ -58,7 +60,7 @@ impl<'a> DualOperator<'a> {
     }
 
     /// F λ with the subdomain solves in single precision: relative error near 1e-6, half the memory traffic.
-    pub fn apply_single(&self, multipliers: &[f64]) -> Vec<f64> {
+    fn apply_single(&self, multipliers: &RowVector) -> RowVector {
         self.single_applications.fetch_add(1, Ordering::Relaxed);
         let mut torn = self.scatter(multipliers);
         self.for_each_subdomain(&mut torn, |factors, part| {
@@ -80,28 +82,28 @@ impl<'a> DualOperator<'a> {
         self.single_applications.load(Ordering::Relaxed)
     }
 
-    /// Bᵀ λ over torn dofs.
-    pub fn scatter(&self, multipliers: &[f64]) -> Vec<f64> {
-        let mut torn = vec![0.0; self.model.dof_count];
+    /// Bᵀ λ.
+    fn scatter(&self, multipliers: &RowVector) -> TornVector {
+        let mut torn = self.model.zeros();
         self.model.constraints.transposed.multiply(multipliers, &mut torn);
         torn
     }
 
     /// B u of a torn displacement, summed over all processes.
-    pub fn gather(&self, torn: &[f64]) -> Vec<f64> {
-        let mut rows = vec![0.0; self.model.constraints.row_count()];
+    pub fn gather(&self, torn: &TornVector) -> RowVector {
+        let mut rows = self.model.constraints.zeros();
         self.model.constraints.rows.multiply(torn, &mut rows);
         self.model.communication.exchange(&mut rows);
         rows
     }
 
     /// K⁺ on every subdomain, in place.
-    fn solve_subdomains(&self, torn: &mut [f64]) {
+    fn solve_subdomains(&self, torn: &mut TornVector) {
         self.for_each_subdomain(torn, |factors, part| factors.inverse.solve_in_place(part, 1, Par::Seq));
     }
 
     /// Works on the parts of a torn vector that belong to this process and clears the others.
-    fn for_each_subdomain(&self, torn: &mut [f64], work: impl Fn(&SubdomainFactors, &mut [f64]) + Sync) {
+    fn for_each_subdomain(&self, torn: &mut TornVector, work: impl Fn(&SubdomainFactors, &mut [f64]) + Sync) {
         let size = self.model.pattern.pattern.dimension();
         torn.par_chunks_mut(size).zip(&self.system.parts).for_each(|(values, part)| match &part.factors {
             Some(factors) => work(factors, values),
@@ -109,9 +111,9 @@ impl<'a> DualOperator<'a> {
         });
     }
 
-    /// K⁺ f over torn dofs.
-    pub fn loaded_displacement(&self) -> Vec<f64> {
-        let mut torn = vec![0.0; self.model.dof_count];
+    /// K⁺ f.
+    pub fn loaded_displacement(&self) -> TornVector {
+        let mut torn = self.model.zeros();
         self.for_each_subdomain(&mut torn, |factors, part| {
             if !factors.loaded_displacement.is_empty() {
                 part.copy_from_slice(&factors.loaded_displacement);
@@ -120,16 +122,31 @@ impl<'a> DualOperator<'a> {
         torn
     }
 
-    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere; with or without the load; method.md (4.2).
-    pub fn displacement(&self, multipliers: &[f64], amplitudes: &[f64], loaded: bool) -> Vec<f64> {
+    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere; method.md (4.2).
+    pub fn displacement(&self, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
+        self.displacement_under(multipliers, amplitudes, |factors| &factors.loaded_displacement)
+    }
+
+    /// −K⁺Bᵀλ + R a: as [`Self::displacement`], without the load.
+    pub fn unloaded_displacement(&self, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
+        self.displacement_under(multipliers, amplitudes, |_| &[])
+    }
+
+    /// The displacement under loads whose part K⁺f is given per subdomain, empty for no load.
+    fn displacement_under(
+        &self,
+        multipliers: &RowVector,
+        amplitudes: &[f64],
+        loaded: impl Fn(&SubdomainFactors) -> &[f64] + Sync,
+    ) -> TornVector {
         let mut torn = self.scatter(multipliers);
         self.solve_subdomains(&mut torn);
         let size = self.model.pattern.pattern.dimension();
         torn.par_chunks_mut(size).zip(&self.system.parts).enumerate().for_each(|(index, (values, part))| {
             let Some(factors) = &part.factors else { return };
             values.iter_mut().for_each(|entry| *entry = -*entry);
-            if loaded && !factors.loaded_displacement.is_empty() {
-                add_scaled(values, 1.0, &factors.loaded_displacement);
+            if !loaded(factors).is_empty() {
+                add_scaled(values, 1.0, loaded(factors));
             }
             for (mode, amplitude) in part.rigid.modes.iter().zip(&amplitudes[6 * index..]) {
                 add_scaled(values, *amplitude, mode);

@@ -12,24 +12,28 @@ use crate::equilibrium::Stage;
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
-use crate::tfeti::coarse::CoarseProblem;
-use crate::tfeti::linear_solve::balancing_amplitudes;
-use crate::tfeti::newton::{Iterate, NewtonSettings, TornContact, stagnates};
-use crate::tfeti::recycling::Recycled;
-use crate::tfeti::{Precision, ReducedRows};
+use crate::tfeti::dual::active_rows::Friction;
+use crate::tfeti::dual::active_set::ActiveSet;
+use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::dual::iterate::Iterate;
+use crate::tfeti::dual::operator::Precision;
+use crate::tfeti::newton::linear_solve::balancing_amplitudes;
+use crate::tfeti::newton::recycling::{Direction, Recycled};
+use crate::tfeti::newton::settings::NewtonSettings;
+use crate::tfeti::newton::stagnation::stagnates;
 
 /// Residual reduction after which the projector is renewed although the active set has stayed.
-const RENEWAL: f64 = 0.01;
+const PROJECTOR_RENEWAL: f64 = 0.01;
 
 /// Residual reduction after which single precision images are replaced.
-const REPLACEMENT: f64 = 1e-4;
+const IMAGE_REPLACEMENT: f64 = 1e-4;
 
 /// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
-const STAGNATION: usize = 10;
+const MAX_STALLED_PRODUCTS: usize = 10;
 
 impl TornContact<'_> {
     /// Brings the residual of an iterate down to the tolerance, or as far as it falls; appends to the history.
-    pub(super) fn descend(
+    pub(crate) fn descend(
         &self,
         iterate: &mut Iterate,
         directions: &mut Recycled,
@@ -40,56 +44,57 @@ impl TornContact<'_> {
         let mut residual = directions.combine(self, iterate, start);
         let mut replaced = residual;
         while residual > settings.tolerance && directions.len() < 2 * settings.max_krylov {
-            let (rows, coarse) = self.held_at(iterate)?;
+            let active = self.held_at(iterate)?;
             let held = self.linearize(iterate);
-            let renewal = RENEWAL * residual;
+            let renewal = PROJECTOR_RENEWAL * residual;
             loop {
-                self.extend(iterate, &rows, &coarse, directions);
+                self.extend(iterate, &active, directions);
                 residual = directions.combine(self, iterate, residual);
-                if self.precision == Precision::Mixed && residual <= settings.tolerance.max(REPLACEMENT * replaced) {
+                if self.precision == Precision::Mixed
+                    && residual <= settings.tolerance.max(IMAGE_REPLACEMENT * replaced)
+                {
                     residual = self.replace_image(iterate);
                     replaced = residual;
                 }
                 history.push(residual);
                 Stage::Contact.reached(history.len() - 1, residual);
-                let done = residual <= settings.tolerance || stagnates(history, STAGNATION);
+                let done = residual <= settings.tolerance || stagnates(history, MAX_STALLED_PRODUCTS);
                 if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
                     break;
                 }
             }
-            if stagnates(history, STAGNATION) {
+            if stagnates(history, MAX_STALLED_PRODUCTS) {
                 break;
             }
         }
         Ok(residual)
     }
 
-    /// Residual replacement: the image of the multipliers by a product in double precision.
-    pub(super) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
+    /// Replaces the image of the multipliers by a product in double precision; returns the residual.
+    pub(crate) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
         let image = self.operator.apply(&iterate.multipliers);
-        *iterate =
-            self.iterate(std::mem::take(&mut iterate.multipliers), image, std::mem::take(&mut iterate.amplitudes));
+        *iterate = self.iterate(iterate.multipliers.clone(), image, std::mem::take(&mut iterate.amplitudes));
         self.residual(iterate)
     }
 
     /// One more direction, and the rigid motion that balances the iterate.
-    fn extend(&self, iterate: &Iterate, rows: &ReducedRows<'_>, coarse: &CoarseProblem<'_>, directions: &mut Recycled) {
-        let current = self.reduced(self.linearize(iterate));
-        let unknowns = current.initial(&iterate.multipliers);
-        let demanded = current.expand(&unknowns, true);
-        let mut direction: Vec<f64> = demanded.iter().zip(&iterate.multipliers).map(|(new, old)| new - old).collect();
-        let mut residual = rows.restrict(&iterate.jumps, false);
-        rows.add_compliance(&rows.initial(&iterate.multipliers), &mut residual, -1.0);
-        let rigid = coarse.amplitudes(&residual);
-        coarse.add_rigid(&rigid, &mut residual);
-        directions.push(self, Vec::new(), Vec::new(), rigid);
-        let mut step = self.precondition(rows, &residual, |z| coarse.project(z));
+    fn extend(&self, iterate: &Iterate, active: &ActiveSet<'_>, directions: &mut Recycled) {
+        let rows = &active.rows;
+        let current = self.rows(self.linearize(iterate), Friction::Coulomb);
+        let mut direction = current.trial(&current.unknowns_of(&iterate.multipliers));
+        add_scaled(&mut direction, -1.0, &iterate.multipliers);
+        let mut residual = rows.test_transposed(&iterate.jumps);
+        rows.add_compliance(&rows.unknowns_of(&iterate.multipliers), &mut residual, -1.0);
+        let rigid = active.amplitudes(&residual);
+        active.add_rigid(&rigid, &mut residual);
+        directions.push(self, Direction::Rigid { amplitudes: rigid });
+        let mut step = self.precondition(rows, &residual, |z| active.project(z));
         let defect: Vec<f64> = self.space.resultant(&direction).iter().map(|value| -value).collect();
-        coarse.enforce(&mut step, &defect);
-        add_scaled(&mut direction, 1.0, &rows.expand(&step, true));
+        active.enforce(&mut step, &defect);
+        add_scaled(&mut direction, 1.0, &rows.trial(&step));
         let image = self.operator.apply_direction(&direction, self.precision);
-        let amplitudes = balancing_amplitudes(rows, coarse, &rows.initial(&direction), &image);
-        directions.push(self, direction, image, amplitudes);
+        let amplitudes = balancing_amplitudes(active, &rows.unknowns_of(&direction), &image);
+        directions.push(self, Direction::Full { multipliers: direction, image, amplitudes });
     }
 }
 

@@ -12,34 +12,61 @@
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::tfeti::newton::{Iterate, TornContact};
+use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::dual::iterate::Iterate;
+use crate::tfeti::torn::vectors::RowVector;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 
-/// Residual reduction that makes another round worth its dense algebra.
-const WORTHWHILE: f64 = 0.5;
+/// Share of the residual that a round may leave for another one to be worth its dense algebra.
+const MAX_SHARE_LEFT: f64 = 0.5;
 /// Rounds in a row.
-const ROUNDS: usize = 4;
-/// Relative ridge of the normal equations: combinations below it carry no digits.
-const RIDGE: f64 = 1e-14;
+const MAX_ROUNDS: usize = 4;
+/// Smallest and largest relative ridge of the normal equations: combinations below it carry no digits.
+const RIDGES: [f64; 2] = [1e-14, 1e-6];
 
-/// One direction and what it does to the iterate.
+/// A direction that iterates may move along.
 #[derive(Debug)]
-struct Direction {
-    /// v; empty for a change of rigid amplitudes alone.
-    multipliers: Vec<f64>,
-    /// F v; empty likewise.
-    image: Vec<f64>,
+pub enum Direction {
+    /// A change b of the rigid amplitudes alone.
+    Rigid {
+        /// b.
+        amplitudes: Vec<f64>,
+    },
+    /// Multipliers v with G v = 0, with a change b of the rigid amplitudes.
+    Full {
+        /// v.
+        multipliers: RowVector,
+        /// F v.
+        image: RowVector,
+        /// b.
+        amplitudes: Vec<f64>,
+    },
+}
+
+impl Direction {
     /// b.
-    amplitudes: Vec<f64>,
-    /// dw over all rows.
-    jumps: Vec<f64>,
+    fn amplitudes(&self) -> &[f64] {
+        match self {
+            Self::Rigid { amplitudes } | Self::Full { amplitudes, .. } => amplitudes,
+        }
+    }
+
+    /// The packed contact rows of v; none for a rigid change.
+    fn forces(&self) -> Option<&[f64]> {
+        match self {
+            Self::Rigid { .. } => None,
+            Self::Full { multipliers, .. } => Some(multipliers.contact()),
+        }
+    }
 }
 
 /// All directions of a solve.
 #[derive(Debug, Default)]
 pub struct Recycled {
     directions: Vec<Direction>,
+    /// dw over all rows, per direction.
+    jumps: Vec<RowVector>,
     /// (dw_k)_E · (dw_l)_E for l ≤ k.
     products: Vec<Vec<f64>>,
 }
@@ -50,31 +77,30 @@ impl Recycled {
         self.directions.len()
     }
 
-    /// Adds a direction v with its product F v and its change of the rigid amplitudes.
-    pub fn push(&mut self, contact: &TornContact<'_>, multipliers: Vec<f64>, image: Vec<f64>, amplitudes: Vec<f64>) {
-        let mut jumps = contact.space.jumps(&amplitudes);
-        if !image.is_empty() {
-            add_scaled(&mut jumps, -1.0, &image);
+    /// Adds a direction.
+    pub fn push(&mut self, contact: &TornContact<'_>, direction: Direction) {
+        let mut jumps = contact.space.jumps(direction.amplitudes());
+        if let Direction::Full { image, .. } = &direction {
+            add_scaled(&mut jumps, -1.0, image);
         }
-        let equality = contact.operator.model.constraints.equality_count;
-        self.directions.push(Direction { multipliers, image, amplitudes, jumps });
-        let last = &self.directions[self.directions.len() - 1].jumps;
-        let product = |other: &Direction| dot(&other.jumps[..equality], &last[..equality]);
-        self.products.push(self.directions.iter().map(product).collect());
+        self.directions.push(direction);
+        self.jumps.push(jumps);
+        let last = self.jumps[self.jumps.len() - 1].split().0;
+        self.products.push(self.jumps.iter().map(|other| dot(other.split().0, last)).collect());
     }
 
     /// Combines the directions as long as the residual falls well; returns the residual.
     pub fn combine(&self, contact: &TornContact<'_>, iterate: &mut Iterate, residual: f64) -> f64 {
-        let mut position = Position::of(self, contact, iterate);
+        let mut position = Position::of(self, iterate);
         let mut best = residual;
-        for _round in 0..ROUNDS {
+        for _round in 0..MAX_ROUNDS {
             let Some(weights) = self.least_squares(contact, &position) else { break };
             let trial = position.moved(self, &weights);
             let value = trial.residual(self, contact);
             if value.is_nan() || value >= best {
                 break;
             }
-            let worthwhile = value < WORTHWHILE * best;
+            let worthwhile = value < MAX_SHARE_LEFT * best;
             position = trial;
             best = value;
             if !worthwhile {
@@ -90,13 +116,13 @@ impl Recycled {
 
     /// Adds the weighted directions to an iterate.
     fn apply(&self, weights: &[f64], iterate: &mut Iterate) {
-        for (&weight, direction) in weights.iter().zip(&self.directions) {
-            if !direction.image.is_empty() {
-                add_scaled(&mut iterate.multipliers, weight, &direction.multipliers);
-                add_scaled(&mut iterate.image, weight, &direction.image);
+        for ((&weight, direction), jumps) in weights.iter().zip(&self.directions).zip(&self.jumps) {
+            if let Direction::Full { multipliers, image, .. } = direction {
+                add_scaled(&mut iterate.multipliers, weight, multipliers);
+                add_scaled(&mut iterate.image, weight, image);
             }
-            add_scaled(&mut iterate.amplitudes, weight, &direction.amplitudes);
-            add_scaled(&mut iterate.jumps, weight, &direction.jumps);
+            add_scaled(&mut iterate.amplitudes, weight, direction.amplitudes());
+            add_scaled(&mut iterate.jumps, weight, jumps);
         }
     }
 
@@ -141,13 +167,13 @@ impl Recycled {
                 Linearization::at(&x, boundary.friction).derivative(x.len(), boundary.friction)
             })
             .collect();
-        let change = |direction: &Direction| {
-            let (forces, jumps) = direction.contact_rows(boundary.row_count);
+        let change = |(direction, jumps): (&Direction, &RowVector)| {
+            let (forces, jumps) = (direction.forces(), jumps.contact());
+            let force = |row: usize| forces.map_or(0.0, |forces| forces[row]);
             let mut change = vec![0.0; boundary.row_count];
             for (point, block) in boundary.points.iter().zip(&blocks) {
                 let count = point.row_count();
                 for i in 0..count {
-                    let force = |row: usize| forces.get(row).copied().unwrap_or(0.0);
                     let mut sum = force(point.start + i);
                     for (j, entry) in block[i].iter().enumerate().take(count) {
                         let row = point.start + j;
@@ -158,15 +184,7 @@ impl Recycled {
             }
             change
         };
-        self.directions.iter().map(change).collect()
-    }
-}
-
-impl Direction {
-    /// Contact rows of v (empty for a rigid change) and dw.
-    fn contact_rows(&self, count: usize) -> (&[f64], &[f64]) {
-        let tail = |values: &'_ [f64]| values.len().saturating_sub(count);
-        (&self.multipliers[tail(&self.multipliers)..], &self.jumps[tail(&self.jumps)..])
+        self.directions.iter().zip(&self.jumps).map(change).collect()
     }
 }
 
@@ -184,28 +202,25 @@ struct Position {
 }
 
 impl Position {
-    fn of(recycled: &Recycled, contact: &TornContact<'_>, iterate: &Iterate) -> Self {
-        let equality = contact.operator.model.constraints.equality_count;
-        let glued = &iterate.jumps[..equality];
-        let slope = |direction: &Direction| dot(&direction.jumps[..equality], glued);
+    fn of(recycled: &Recycled, iterate: &Iterate) -> Self {
+        let (glued, jumps) = iterate.jumps.split();
         Self {
-            weights: vec![0.0; recycled.directions.len()],
-            forces: iterate.multipliers[equality..].to_vec(),
-            jumps: iterate.jumps[equality..].to_vec(),
+            weights: vec![0.0; recycled.len()],
+            forces: iterate.multipliers.contact().to_vec(),
+            jumps: jumps.to_vec(),
             start_square: dot(glued, glued),
-            start_slopes: recycled.directions.iter().map(slope).collect(),
+            start_slopes: recycled.jumps.iter().map(|jumps| dot(jumps.split().0, glued)).collect(),
         }
     }
 
     fn moved(&self, recycled: &Recycled, change: &[f64]) -> Self {
         let mut to = self.clone();
-        for ((direction, &change), weight) in recycled.directions.iter().zip(change).zip(&mut to.weights) {
-            *weight += change;
-            let (forces, jumps) = direction.contact_rows(self.jumps.len());
-            if !forces.is_empty() {
+        for (k, &change) in change.iter().enumerate() {
+            to.weights[k] += change;
+            if let Some(forces) = recycled.directions[k].forces() {
                 add_scaled(&mut to.forces, change, forces);
             }
-            add_scaled(&mut to.jumps, change, jumps);
+            add_scaled(&mut to.jumps, change, recycled.jumps[k].contact());
         }
         to
     }
@@ -232,9 +247,9 @@ fn solve_scaled(normal: &Mat<f64>, right: &[f64]) -> Option<Vec<f64>> {
     let count = right.len();
     let scale: Vec<f64> =
         (0..count).map(|k| if normal[(k, k)] > 0.0 { 1.0 / normal[(k, k)].sqrt() } else { 0.0 }).collect();
-    let mut ridge = RIDGE;
+    let [mut ridge, largest] = RIDGES;
     // Nearly dependent directions are normal late in a solve: a larger ridge leaves them out.
-    while ridge < 1e-6 {
+    while ridge < largest {
         let matrix = Mat::from_fn(count, count, |k, l| {
             scale[k] * scale[l] * normal[(k, l)] + if k == l { ridge.max(f64::from(scale[k] == 0.0)) } else { 0.0 }
         });

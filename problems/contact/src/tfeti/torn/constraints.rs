@@ -9,8 +9,10 @@
 
 use crate::body::mesh::{Grid, Tearing};
 use crate::equilibrium::ContactBoundary;
+use crate::error::ContactError;
 use crate::linear::csr::Csr;
 use crate::scene::{BodyScene, Scene};
+use crate::tfeti::torn::vectors::RowVector;
 
 /// B, B_D and their transposes over torn dofs; geometry does not enter.
 #[derive(Debug)]
@@ -90,6 +92,36 @@ impl Constraints {
     /// Number of rows.
     pub fn row_count(&self) -> usize {
         self.rows.row_count()
+    }
+
+    /// The zero vector over all rows.
+    pub fn zeros(&self) -> RowVector {
+        RowVector::new(vec![0.0; self.row_count()], self.equality_count)
+    }
+
+    /// Given values, one per row.
+    ///
+    /// # Errors
+    /// [`ContactError::ForeignState`] when their number is not that of the rows.
+    pub fn row_vector(&self, values: &[f64]) -> Result<RowVector, ContactError> {
+        let (expected, found) = (self.row_count(), values.len());
+        if expected != found {
+            return Err(ContactError::ForeignState { what: "multipliers", expected, found });
+        }
+        Ok(RowVector::new(values.to_vec(), self.equality_count))
+    }
+
+    /// The vector whose contact rows are given and whose other rows are zero.
+    pub fn from_contact(&self, contact: &[f64]) -> RowVector {
+        let mut rows = self.zeros();
+        rows.contact_mut().copy_from_slice(contact);
+        rows
+    }
+
+    /// ν of the node of every packed contact row.
+    pub fn contact_scales<'a>(&'a self, boundary: &'a ContactBoundary) -> impl Iterator<Item = f64> + 'a {
+        let nodes = boundary.points.iter().zip(&self.normalisation);
+        nodes.flat_map(|(point, &nu)| std::iter::repeat_n(nu, point.row_count()))
     }
 }
 

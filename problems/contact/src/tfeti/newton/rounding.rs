@@ -6,14 +6,15 @@
 //! ```
 
 use crate::error::ContactError;
-use crate::tfeti::newton::{NewtonSettings, TornContact};
+use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::newton::settings::NewtonSettings;
 
 /// Times its rounding floor that a residual is seen to reach.
 const FLOOR_REACHED: f64 = 10.0;
 
 impl TornContact<'_> {
     /// The error of a run that ended at a residual above what is acceptable.
-    pub(super) fn not_converged(&self, residual: f64, settings: &NewtonSettings, history: Vec<f64>) -> ContactError {
+    pub(crate) fn not_converged(&self, residual: f64, settings: &NewtonSettings, history: Vec<f64>) -> ContactError {
         let largest = self.gaps.iter().fold(0.0, |largest: f64, gap| largest.max(gap.abs()));
         let gaps = f64::EPSILON * self.stiffness * largest / self.load;
         let parts = self.operator.system.parts.iter().filter_map(|part| part.factors.as_ref());

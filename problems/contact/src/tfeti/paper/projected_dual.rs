@@ -7,7 +7,10 @@
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
 use crate::qp::{LinearEqualities, SymmetricOperator};
-use crate::tfeti::{CoarseSpace, DualOperator, Preconditioner};
+use crate::tfeti::dual::coarse_space::CoarseSpace;
+use crate::tfeti::dual::operator::DualOperator;
+use crate::tfeti::dual::preconditioner::Preconditioner;
+use crate::tfeti::torn::vectors::RowVector;
 use faer::linalg::solvers::Llt;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, MatMut, Par, Side};
@@ -31,7 +34,7 @@ impl<'a> OrthonormalCoarse<'a> {
             reason: format!("{error:?}: the rows leave a rigid motion free"),
         })?;
         let mut coarse = Self { space, lower: factor.L().to_owned(), right_side: Vec::new() };
-        coarse.right_side = coarse.lower_solve(space.resultants.clone());
+        coarse.right_side = coarse.lower_solve(space.resultants().to_vec());
         Ok(coarse)
     }
 
@@ -42,11 +45,30 @@ impl<'a> OrthonormalCoarse<'a> {
         v
     }
 
-    /// v ← P v.
-    pub fn project(&self, v: &mut [f64]) {
-        let removed = self.apply_transposed(&self.apply(v));
-        add_scaled(v, -1.0, &removed);
+    /// Cᵀ y.
+    fn jumps(&self, y: &[f64]) -> RowVector {
+        let mut amplitudes = y.to_vec();
+        let size = amplitudes.len();
+        let right = MatMut::from_column_major_slice_mut(&mut amplitudes, size, 1);
+        solve_upper_triangular_in_place(self.lower.transpose(), right, Par::Seq);
+        self.space.jumps(&amplitudes)
     }
+
+    /// Q v.
+    fn rigid_part(&self, v: &[f64]) -> RowVector {
+        self.jumps(&self.apply(v))
+    }
+
+    /// P v.
+    fn projected(&self, v: &[f64]) -> RowVector {
+        difference(v, self.rigid_part(v))
+    }
+}
+
+/// v − removed.
+fn difference(v: &[f64], mut removed: RowVector) -> RowVector {
+    removed.iter_mut().zip(v).for_each(|(removed, v)| *removed = v - *removed);
+    removed
 }
 
 impl LinearEqualities for OrthonormalCoarse<'_> {
@@ -55,11 +77,7 @@ impl LinearEqualities for OrthonormalCoarse<'_> {
     }
 
     fn apply_transposed(&self, y: &[f64]) -> Vec<f64> {
-        let mut amplitudes = y.to_vec();
-        let size = amplitudes.len();
-        let right = MatMut::from_column_major_slice_mut(&mut amplitudes, size, 1);
-        solve_upper_triangular_in_place(self.lower.transpose(), right, Par::Seq);
-        self.space.jumps(&amplitudes)
+        self.jumps(y).into_values()
     }
 
     fn right_side(&self) -> &[f64] {
@@ -81,11 +99,10 @@ impl<'a> ProjectedDual<'a> {
     }
 
     /// P (d − F λ₀) with λ₀ = Gᵀ(GGᵀ)⁻¹e.
-    pub fn homogenised(&self, constant: &[f64]) -> Vec<f64> {
-        let image = self.operator.apply(&self.coarse.apply_transposed(self.coarse.right_side()));
-        let mut linear: Vec<f64> = constant.iter().zip(&image).map(|(d, image)| d - image).collect();
-        self.coarse.project(&mut linear);
-        linear
+    pub fn homogenised(&self, constant: &RowVector) -> RowVector {
+        let mut rest = constant.clone();
+        add_scaled(&mut rest, -1.0, &self.operator.apply(&self.coarse.jumps(self.coarse.right_side())));
+        self.coarse.projected(&rest)
     }
 }
 
@@ -95,10 +112,8 @@ impl SymmetricOperator for ProjectedDual<'_> {
     }
 
     fn apply(&self, x: &[f64], result: &mut [f64]) {
-        let mut projected = x.to_vec();
-        self.coarse.project(&mut projected);
-        result.copy_from_slice(&self.operator.apply(&projected));
-        self.coarse.project(result);
+        let image = self.operator.apply(&self.coarse.projected(x));
+        result.copy_from_slice(&self.coarse.projected(&image));
     }
 }
 
@@ -119,20 +134,13 @@ impl<'a> ProjectedPreconditioner<'a> {
 
 impl SymmetricOperator for ProjectedPreconditioner<'_> {
     fn dimension(&self) -> usize {
-        self.preconditioner_rows()
+        self.coarse.space.row_count()
     }
 
     fn apply(&self, x: &[f64], result: &mut [f64]) {
-        let rigid = self.coarse.apply_transposed(&self.coarse.apply(x));
-        let elastic: Vec<f64> = x.iter().zip(&rigid).map(|(x, rigid)| x - rigid).collect();
-        result.copy_from_slice(&self.preconditioner.apply(&elastic));
-        self.coarse.project(result);
+        let rigid = self.coarse.rigid_part(x);
+        let elastic = difference(x, rigid.clone());
+        result.copy_from_slice(&self.coarse.projected(&self.preconditioner.apply(&elastic)));
         add_scaled(result, 1.0 / self.rho, &rigid);
-    }
-}
-
-impl ProjectedPreconditioner<'_> {
-    fn preconditioner_rows(&self) -> usize {
-        self.coarse.space.rows.row_count()
     }
 }

@@ -7,12 +7,12 @@
 
 use crate::body::elasticity::Material;
 use crate::body::elasticity::hex8::Nodes;
+use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::symmetric::Submatrix;
 use crate::linear::vector::{add_scaled, dot};
-use crate::tfeti::local_pattern::{LocalPattern, fixing_nodes};
-use crate::tfeti::rigid_modes::{orthonormal_modes, orthonormalise};
+use crate::tfeti::torn::rigid_modes::{orthonormal_modes, orthonormalise};
 use faer::Par;
 use std::sync::Arc;
 

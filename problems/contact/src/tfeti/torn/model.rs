@@ -1,18 +1,22 @@
 //! The torn scene: what is fixed for a run, and the factored system of one shape.
 
 use crate::body::elasticity::traction::face_weights;
+use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::body::mesh::{Block, Subdomain, Tearing};
 use crate::body::shape_load::loaded_faces;
-use crate::equilibrium::{ContactBoundary, modes::Motion, modes::motions};
+use crate::equilibrium::modes::motions;
+use crate::equilibrium::{Configuration, ContactProblem};
 use crate::error::ContactError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;
 use crate::linear::symmetric::Submatrix;
-use crate::scene::{BodyScene, Scene};
-use crate::tfeti::constraints::{BodyRows, Constraints};
-use crate::tfeti::factors::{InteriorClass, SubdomainFactors};
-use crate::tfeti::local_pattern::{LocalPattern, fixing_nodes};
-use crate::tfeti::{Communication, PreconditionerKind, SubdomainRigid};
+use crate::linear::vector::dot;
+use crate::scene::BodyScene;
+use crate::tfeti::torn::communication::Communication;
+use crate::tfeti::torn::constraints::{BodyRows, Constraints};
+use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors, SubdomainRigid};
+use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
+use crate::tfeti::torn::vectors::TornVector;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
@@ -32,7 +36,8 @@ pub struct TornSubdomain {
 /// Everything that does not depend on the shape: tearing, rows, patterns, and the factors of bodies that keep their shape.
 #[derive(Debug)]
 pub struct TornModel {
-    bodies: Vec<BodyScene>,
+    /// The problem that was torn.
+    pub problem: Arc<ContactProblem>,
     /// All subdomains, lower body first.
     pub subdomains: Vec<TornSubdomain>,
     /// Rows of B.
@@ -66,35 +71,26 @@ pub struct TornSystem {
 }
 
 impl TornModel {
-    /// Tears the bodies of a scene and builds its rows.
+    /// Tears the bodies of a problem and builds its rows.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn new(
-        scene: &Scene,
-        boundary: &ContactBoundary,
+        problem: Arc<ContactProblem>,
         preconditioner: PreconditionerKind,
         communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
-        let grid = scene.grid();
-        let bodies: Vec<BodyScene> =
-            std::iter::once(&scene.lower).chain(scene.upper.as_ref().map(|upper| &upper.body)).cloned().collect();
-        let tearing = Tearing::new(&grid, scene.subdomains);
+        let tearing = Tearing::new(&problem.grid, problem.scene.subdomains);
         let size = tearing.subdomains[0].dof_count();
         let per_body = tearing.subdomains.len();
-        let offsets: Vec<usize> = (0..per_body * bodies.len()).map(|index| index * size).collect();
+        let offsets: Vec<usize> = (0..per_body * problem.bodies().count()).map(|index| index * size).collect();
         let dof_count = offsets.len() * size;
-        let rows: Vec<BodyRows<'_>> = bodies
-            .iter()
-            .enumerate()
-            .map(|(body, scene)| BodyRows {
-                grid: &grid,
-                tearing: &tearing,
-                scene,
-                offsets: &offsets[body * per_body..(body + 1) * per_body],
-            })
+        let rows: Vec<BodyRows<'_>> = problem
+            .bodies()
+            .zip(offsets.chunks_exact(per_body))
+            .map(|(scene, offsets)| BodyRows { grid: &problem.grid, tearing: &tearing, scene, offsets })
             .collect();
-        let constraints = Constraints::new(scene, &rows, boundary, dof_count);
+        let constraints = Constraints::new(&problem.scene, &rows, &problem.boundary, dof_count);
         let cells = tearing.subdomains[0].cells;
         let fixing = fixing_nodes(cells);
         let pattern = LocalPattern::new(cells, &fixing);
@@ -112,7 +108,7 @@ impl TornModel {
             subdomains.push(TornSubdomain { body: index / per_body, place, first_dof, interior });
         }
         Ok(Self {
-            bodies,
+            problem,
             subdomains,
             constraints,
             pattern,
@@ -132,11 +128,11 @@ impl TornModel {
         let count = |parts: &[TornPart]| {
             parts.iter().flat_map(|part| &part.factors).map(|factors| factors.factorizations()).sum::<usize>()
         };
-        let mut parts = self.factorize_body(0, &blocks[0])?;
+        let mut parts = self.factorize_body(0, &self.problem.scene.lower, &blocks[0])?;
         let mut factorizations = count(&parts);
-        if blocks.len() == 2 {
+        if let (Some(upper), Some(block)) = (&self.problem.scene.upper, blocks.get(1)) {
             if self.fixed.get().is_none() {
-                let upper = self.factorize_body(1, &blocks[1])?;
+                let upper = self.factorize_body(1, &upper.body, block)?;
                 factorizations += count(&upper);
                 // Another thread may have been first; its factors are the same.
                 let _ = self.fixed.set(upper);
@@ -146,7 +142,7 @@ impl TornModel {
         Ok(TornSystem { parts, factorizations })
     }
 
-    fn factorize_body(&self, body: usize, block: &Block) -> Result<Vec<TornPart>, ContactError> {
+    fn factorize_body(&self, body: usize, scene: &BodyScene, block: &Block) -> Result<Vec<TornPart>, ContactError> {
         let owned = self.communication.owned(self.subdomains.len());
         self.subdomains
             .par_iter()
@@ -156,7 +152,7 @@ impl TornModel {
                 let place = &subdomain.place;
                 let coordinates: Vec<[f64; 3]> =
                     (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect();
-                let load = self.loads(body, place, block);
+                let load = loads(scene, place, block);
                 let rigid = Arc::new(SubdomainRigid::new(&coordinates, &load));
                 if !owned.contains(&index) {
                     return Ok(TornPart { rigid, factors: None });
@@ -164,7 +160,7 @@ impl TornModel {
                 let factors = SubdomainFactors::new(
                     &self.pattern,
                     &self.symbolic,
-                    &self.bodies[body].material,
+                    &scene.material,
                     &rigid.modes,
                     |local| block.brick(std::array::from_fn(|axis| local[axis] + place.first_cell[axis])),
                     &load,
@@ -175,54 +171,78 @@ impl TornModel {
             .collect()
     }
 
-    /// Consistent nodal loads of a subdomain.
-    fn loads(&self, body: usize, place: &Subdomain, block: &Block) -> Vec<f64> {
-        let mut load = vec![0.0; place.dof_count()];
-        for scene_load in &self.bodies[body].loads {
-            for face in loaded_faces(&block.grid, scene_load.face, Some(place)) {
-                let weights = face_weights(&face.map(|node| block.coordinates(node)));
-                for (node, weight) in face.into_iter().zip(weights) {
-                    let local: [usize; 3] = std::array::from_fn(|a| node[a] - place.first_cell[a]);
-                    let first = 3 * place.local_node(local);
-                    for (component, traction) in scene_load.traction.iter().enumerate() {
-                        load[first + component] += weight * traction;
-                    }
-                }
-            }
-        }
-        load
-    }
-
     /// Interior dofs of a subdomain: those without rows.
     pub fn interior(&self, subdomain: usize) -> Option<&Submatrix> {
         self.subdomains[subdomain].interior.as_ref().map(|class| &class.submatrix)
     }
 
-    /// Coarse amplitudes of a rigid motion of the scene: Rᵀ of its displacement on every subdomain.
-    pub fn amplitudes(
-        &self,
-        system: &TornSystem,
-        blocks: &[Block],
-        motion: &Motion,
-        centre: [f64; 3],
-        length: f64,
-    ) -> Vec<f64> {
-        let mut amplitudes = Vec::with_capacity(6 * self.subdomains.len());
-        for (subdomain, part) in self.subdomains.iter().zip(&system.parts) {
-            let coefficients = &motion[6 * subdomain.body..6 * subdomain.body + 6];
-            let place = &subdomain.place;
-            let mut displacement = Vec::with_capacity(place.dof_count());
-            for node in 0..place.node_count() {
-                let point = blocks[subdomain.body].coordinates(place.block_position(node));
-                let basis = motions(point, centre, length);
-                for component in 0..3 {
-                    displacement.push(basis.iter().zip(coefficients).map(|(b, c)| b[component] * c).sum::<f64>());
+    /// The zero vector over torn dofs.
+    pub fn zeros(&self) -> TornVector {
+        TornVector(vec![0.0; self.dof_count])
+    }
+
+    /// Coarse amplitudes of the motions that nothing holds: Rᵀ of their displacement on every subdomain.
+    pub fn grounded_amplitudes(&self, system: &TornSystem, configuration: &Configuration) -> Vec<Vec<f64>> {
+        let Configuration { blocks, rigid, grounded, .. } = configuration;
+        let amplitudes = |motion: &Vec<f64>| {
+            let mut amplitudes = Vec::with_capacity(6 * self.subdomains.len());
+            for (subdomain, part) in self.subdomains.iter().zip(&system.parts) {
+                let coefficients = &motion[6 * subdomain.body..6 * subdomain.body + 6];
+                let place = &subdomain.place;
+                let mut displacement = Vec::with_capacity(place.dof_count());
+                for node in 0..place.node_count() {
+                    let point = blocks[subdomain.body].coordinates(place.block_position(node));
+                    let basis = motions(point, rigid.centre, rigid.length);
+                    for component in 0..3 {
+                        displacement.push(basis.iter().zip(coefficients).map(|(b, c)| b[component] * c).sum::<f64>());
+                    }
+                }
+                amplitudes.extend(part.rigid.modes.iter().map(|mode| dot(mode, &displacement)));
+            }
+            amplitudes
+        };
+        grounded.iter().map(amplitudes).collect()
+    }
+
+    /// Mean over the contact nodes of the stiffness diagonals of the bodies in series, N/mm.
+    pub fn contact_stiffness(&self, system: &TornSystem) -> f64 {
+        let size = self.pattern.pattern.dimension();
+        let starts = self.pattern.pattern.starts();
+        let points = &self.problem.boundary.points;
+        let mut diagonals = vec![0.0; 2 * points.len()];
+        for (point, diagonal) in points.iter().zip(diagonals.chunks_exact_mut(2)) {
+            for (dof, _) in self.constraints.rows.row(self.constraints.equality_count + point.start) {
+                let subdomain = dof / size;
+                if let Some(factors) = &system.parts[subdomain].factors {
+                    diagonal[self.subdomains[subdomain].body] += factors.stiffness[starts[dof % size]];
                 }
             }
-            amplitudes.extend(part.rigid.modes.iter().map(|mode| crate::linear::vector::dot(mode, &displacement)));
         }
-        amplitudes
+        self.communication.sum(&mut diagonals);
+        let series = |diagonal: &[f64]| match self.problem.scene.upper {
+            Some(_) => 1.0 / (1.0 / diagonal[0] + 1.0 / diagonal[1]),
+            None => diagonal[0],
+        };
+        diagonals.chunks_exact(2).map(series).sum::<f64>() / points.len() as f64
     }
+}
+
+/// Consistent nodal loads of a subdomain.
+fn loads(body: &BodyScene, place: &Subdomain, block: &Block) -> Vec<f64> {
+    let mut load = vec![0.0; place.dof_count()];
+    for scene_load in &body.loads {
+        for face in loaded_faces(&block.grid, scene_load.face, Some(place)) {
+            let weights = face_weights(&face.map(|node| block.coordinates(node)));
+            for (node, weight) in face.into_iter().zip(weights) {
+                let local: [usize; 3] = std::array::from_fn(|a| node[a] - place.first_cell[a]);
+                let first = 3 * place.local_node(local);
+                for (component, traction) in scene_load.traction.iter().enumerate() {
+                    load[first + component] += weight * traction;
+                }
+            }
+        }
+    }
+    load
 }
 
 /// The interior class of one subdomain, shared among subdomains with the same interior dofs.

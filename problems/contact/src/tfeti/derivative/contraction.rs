@@ -11,14 +11,18 @@ use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::pcg::pcg;
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::tfeti::TornContact;
+use crate::tfeti::dual::active_rows::Friction;
+use crate::tfeti::dual::active_set::ActiveSet;
+use crate::tfeti::dual::contact::TornContact;
 
 /// Arnoldi steps.
-const STEPS: usize = 12;
+const MAX_STEPS: usize = 12;
 /// Relative length of a new basis vector that counts as zero: the space is invariant.
 const INVARIANT: f64 = 1e-4;
 /// Relative reduction of the linear solves: the estimate is meant to two digits.
 const REDUCTION: f64 = 1e-5;
+/// Times its target that the residual of a linear solve may be.
+const MAX_MISS: f64 = 1e3;
 /// Krylov iterations allowed per solve.
 const MAX_KRYLOV: usize = 600;
 
@@ -42,11 +46,15 @@ impl TornContact<'_> {
         let start = (0..sliding.len()).map(|node| 1.0 + 0.5 * (1.7 * node as f64).sin()).collect::<Vec<f64>>();
         let length = norm(&start);
         let mut basis = vec![start.into_iter().map(|entry| entry / length).collect::<Vec<f64>>()];
-        let steps = STEPS.min(sliding.len());
+        let steps = MAX_STEPS.min(sliding.len());
         let mut hessenberg = vec![0.0; steps * steps];
         let mut taken = 0;
+        if steps == 0 {
+            return Ok(Diagnosis { contraction: 0.0, condition: None });
+        }
+        let active = self.active_set(linearizations.to_vec(), Friction::Tresca)?;
         while taken < steps {
-            let mut image = self.bound_change(linearizations, &sliding, &basis[taken])?;
+            let mut image = self.bound_change(&active, &sliding, &basis[taken])?;
             let size = norm(&image);
             for _pass in 0..2 {
                 for (row, vector) in basis.iter().enumerate() {
@@ -74,43 +82,40 @@ impl TornContact<'_> {
     /// Φ′ dΨ over the sliding nodes (scaled rows; all rows of a node share their scale).
     fn bound_change(
         &self,
-        linearizations: &[Linearization],
+        active: &ActiveSet<'_>,
         sliding: &[(usize, usize, [f64; 2])],
         bounds: &[f64],
     ) -> Result<Vec<f64>, ContactError> {
-        let equality = self.operator.model.constraints.equality_count;
-        let rows = self.reduced(linearizations.to_vec());
-        let coarse = self.coarse(&rows, false)?;
-        let mut driven = vec![0.0; self.operator.model.constraints.row_count()];
+        let rows = &active.rows;
+        let mut driven = self.zeros();
         for ((start, count, direction), bound) in sliding.iter().zip(bounds) {
             for tangent in 0..*count {
-                driven[equality + start + 1 + tangent] = bound * direction[tangent];
+                driven.contact_mut()[start + 1 + tangent] = bound * direction[tangent];
             }
         }
         let resultant: Vec<f64> = self.space.resultant(&driven).into_iter().map(|entry| -entry).collect();
-        let mut unknowns = vec![0.0; rows.dimension];
-        coarse.enforce(&mut unknowns, &resultant);
-        let mut multipliers = rows.expand(&unknowns, false);
+        let mut unknowns = vec![0.0; rows.dimension()];
+        active.enforce(&mut unknowns, &resultant);
+        let mut multipliers = rows.trial(&unknowns);
         add_scaled(&mut multipliers, 1.0, &driven);
         let image = self.operator.apply(&multipliers);
-        let mut residual: Vec<f64> = rows.restrict(&image, false).into_iter().map(|entry| -entry).collect();
+        let mut residual: Vec<f64> = rows.test_transposed(&image).into_iter().map(|entry| -entry).collect();
         rows.add_compliance(&unknowns, &mut residual, -1.0);
-        coarse.project(&mut residual);
+        active.project(&mut residual);
         let target = REDUCTION * norm(&residual);
         let krylov = pcg(
             &residual,
             target,
             MAX_KRYLOV,
-            |v| self.precondition(&rows, v, |z| coarse.project(z)),
+            |v| self.precondition(rows, v, |z| active.project(z)),
             |z| {
-                let mut product = rows.restrict(&self.operator.apply(&rows.expand(z, false)), false);
+                let mut product = rows.test_transposed(&self.operator.apply(&rows.trial(z)));
                 rows.add_compliance(z, &mut product, 1.0);
-                let mut projected = product.clone();
-                coarse.project(&mut projected);
-                (projected, product)
+                active.project(&mut product);
+                product
             },
         );
-        if krylov.residual.is_nan() || krylov.residual > 1e3 * target {
+        if krylov.residual.is_nan() || krylov.residual > MAX_MISS * target {
             return Err(ContactError::NotConverged {
                 solver: "Tresca problem of the contraction factor",
                 residual: krylov.residual * REDUCTION / target,
@@ -120,7 +125,7 @@ impl TornContact<'_> {
             });
         }
         add_scaled(&mut unknowns, 1.0, &krylov.solution);
-        let multipliers = rows.expand(&unknowns, false);
-        Ok(sliding.iter().map(|(start, ..)| self.boundary.friction * multipliers[equality + start]).collect())
+        let multipliers = rows.trial(&unknowns);
+        Ok(sliding.iter().map(|(start, ..)| self.boundary.friction * multipliers.contact()[*start]).collect())
     }
 }

@@ -1,0 +1,14 @@
+//! Which preconditioner: known to the torn bodies, since it decides what is factored.
+
+/// Preconditioner of the dual operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[non_exhaustive]
+pub enum PreconditionerKind {
+    /// Schur complements of the subdomains: fewest products with F.
+    #[default]
+    Dirichlet,
+    /// Stiffness of the subdomain boundaries: no interior factorisation.
+    Lumped,
+    /// The identity, scaled.
+    None,
+}
