@@ -1,5 +1,6 @@
 //! What can be wrong with a scene, and why a contact problem has no answer.
 
+use crate::linear::FactorizationError;
 use thiserror::Error;
 
 /// What is said of a value that is not allowed.
@@ -204,6 +205,12 @@ pub enum ContactError {
     /// The dual quadratic program was not solved.
     #[error("dual problem: {0}")]
     DualProblem(#[from] crate::qp::QpError),
+}
+
+impl From<FactorizationError> for ContactError {
+    fn from(error: FactorizationError) -> Self {
+        Self::Factorization { what: error.what.into(), reason: error.reason }
+    }
 }
 
 impl ContactError {

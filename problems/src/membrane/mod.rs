@@ -19,7 +19,8 @@ pub use cost::{MembraneCost, MembraneWishes};
 pub use grid::MembraneGrid;
 pub use problem::{MembraneControl, MembraneData, MembraneState};
 
-use contact::error::{ContactError, SceneError};
+use contact::error::SceneError;
+use contact::linear::FactorizationError;
 use nonsmooth::{Polyhedron, ReducedObjective, Vector};
 use thiserror::Error;
 
@@ -35,7 +36,7 @@ pub enum MembraneError {
     Data(#[from] SceneError),
     /// Its matrix could not be analysed.
     #[error(transparent)]
-    Solver(#[from] ContactError),
+    Matrix(#[from] FactorizationError),
 }
 
 /// Patches of loads per edge of the example.

@@ -64,7 +64,7 @@ impl CondensationPattern {
         let mut values = self.pattern.assemble(&scene.material, |brick| block.brick(brick));
         let mut full_load = body_load(block, scene, &self.pattern.shape);
         let shift = self.impose(&mut values, &mut full_load);
-        let factor = self.symbolic.factorize(&values, Par::Seq)?;
+        let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();
         let lower = factor.trailing_block(size)?;
         let mut schur = Mat::<f64>::zeros(size, size);
@@ -80,7 +80,7 @@ impl CondensationPattern {
             Par::Seq,
         );
         let mut solution = full_load.clone();
-        factor.solve_in_place(&mut solution, 1, Par::Seq);
+        factor.solve_in_place(&mut solution);
         let load = multiply(&schur, &contact_part(&self.contact, &solution));
         for dof in 0..size {
             schur[(dof, dof)] -= shift;
@@ -121,7 +121,7 @@ impl CondensedBody {
                 u[first + component] += forces[dof] + self.shift * contact_displacement[dof];
             }
         }
-        self.factor.solve_in_place(&mut u, 1, Par::Seq);
+        self.factor.solve_in_place(&mut u);
         u
     }
 }

@@ -6,7 +6,6 @@
 //! ```
 
 use crate::tfeti::{DualOperator, SubdomainFactors};
-use faer::Par;
 use rayon::prelude::*;
 
 /// Which preconditioner.
@@ -68,7 +67,7 @@ impl<'a> Preconditioner<'a> {
         pattern.multiply(&factors.stiffness, &boundary, part);
         let (Some(interior), Some(factor)) = (self.operator.model.interior(index), &factors.interior) else { return };
         let mut inner: Vec<f64> = interior.kept.iter().map(|&dof| part[dof]).collect();
-        factor.solve_in_place(&mut inner, 1, Par::Seq);
+        factor.solve_in_place(&mut inner);
         let (mut extended, mut image) = (vec![0.0; part.len()], vec![0.0; part.len()]);
         for (&dof, value) in interior.kept.iter().zip(&inner) {
             extended[dof] = *value;

@@ -89,7 +89,7 @@ pub fn measure(
 fn factor_bytes(model: &TornModel, system: &TornSystem) -> Result<f64, Failure> {
     let Some(factors) = system.parts.first().and_then(|part| part.factors.as_ref()) else { return Ok(0.0) };
     let symbolic = SymbolicFactor::new(Arc::clone(&model.pattern.pattern), factors.inverse.order().to_vec());
-    let values = symbolic.map_err(failure)?.value_count();
+    let values = symbolic.map_err(|error| failure(error.into()))?.value_count();
     Ok((values * size_of::<f64>() * system.parts.len()) as f64)
 }
 

@@ -6,10 +6,11 @@
 //! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, bricks of mean dilatation keep it.
 
 use crate::stability::{Case, Outcome, Record};
-use contact::body::elasticity::hex8::{DOFS, Nodes, gauss_points};
+use contact::body::elasticity::brick::{DOFS, Nodes, gauss_points};
 use contact::body::elasticity::{Formulation, Material};
 use contact::body::mesh::{Block, Grid};
-use contact::error::{ContactError, SceneError};
+use contact::error::SceneError;
+use contact::linear::FactorizationError;
 use contact::linear::cholesky::SymbolicFactor;
 use contact::tfeti::LocalPattern;
 use std::f64::consts::PI;
@@ -31,7 +32,7 @@ pub enum LockingError {
     Material(#[from] SceneError),
     /// The linear system.
     #[error(transparent)]
-    System(#[from] ContactError),
+    System(#[from] FactorizationError),
 }
 
 /// The field, and −Δ of it.
