@@ -184,6 +184,9 @@ pub enum ContactError {
         /// How many the state has.
         found: usize,
     },
+    /// A state was handed to another kind of solver than the one that found it.
+    #[error("the state was found by another kind of contact solver")]
+    OtherSolver,
     /// A result is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -224,6 +227,7 @@ impl ContactError {
             Self::NotConverged { .. } => "NotConverged",
             Self::BeyondPrecision { .. } => "BeyondPrecision",
             Self::ForeignState { .. } => "ForeignState",
+            Self::OtherSolver => "OtherSolver",
             Self::NotFinite { .. } => "NotFinite",
             Self::NoContraction { .. } => "NoContraction",
             Self::DualProblem(_) => "DualProblem",

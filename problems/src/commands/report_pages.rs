@@ -158,8 +158,8 @@ fn controls(objective: &ContactObjective, heights: &[f64]) -> Section {
 
 /// Where the time of one state went; empty for a solver that does not keep it.
 fn seconds(shape: &Solved) -> Section {
-    let Some(torn) = shape.state.torn() else { return Section::default() };
-    let StageSeconds { equilibrium, factorization, coarse_space, newton, recovery, .. } = torn.seconds();
+    let Some(stages) = shape.state.stages else { return Section::default() };
+    let StageSeconds { equilibrium, factorization, coarse_space, newton, recovery } = stages;
     let stages = [
         ("equilibrium", equilibrium),
         ("factorization", factorization),

@@ -10,7 +10,7 @@ use crate::body::mesh::{Block, Grid, Subdomain};
 use crate::body::shape_load::loaded_faces;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
-use crate::linear::dense::multiply;
+use crate::linear::dense::{DenseLu, multiply};
 use crate::scene::BodyScene;
 use crate::tfeti::LocalPattern;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
@@ -31,9 +31,9 @@ pub struct CondensationPattern {
 #[derive(Debug)]
 pub struct CondensedBody {
     /// S over contact dofs 3·node + component, N/mm.
-    pub schur: Mat<f64>,
+    pub(crate) schur: Mat<f64>,
     /// f_c, N.
-    pub load: Vec<f64>,
+    pub(crate) load: Vec<f64>,
     factor: NumericFactor,
     full_load: Vec<f64>,
     contact: Vec<usize>,
@@ -112,6 +112,13 @@ impl CondensationPattern {
 }
 
 impl CondensedBody {
+    /// S⁻¹f: displacements (mm) of the contact nodes under forces f (N) on them alone, for a body that supports hold.
+    pub fn deflection(&self, forces: &[f64]) -> Vec<f64> {
+        let mut displacement = forces.to_vec();
+        DenseLu::new(&self.schur).solve_in_place(&mut displacement);
+        displacement
+    }
+
     /// Extends contact displacements to the whole body; `forces` act on the contact dofs, `loaded` adds the loads.
     pub fn extend(&self, contact_displacement: &[f64], forces: &[f64], loaded: bool) -> Vec<f64> {
         let mut u = if loaded { self.full_load.clone() } else { vec![0.0; self.full_load.len()] };

@@ -5,7 +5,7 @@ use crate::body::shape_sensitivity::column_sensitivities;
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::{self, Linearization};
 use crate::equilibrium::{
-    ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Stage, StageSeconds, ValueError, Work,
+    ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Sensitivities, Stage, StageSeconds, ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::{dot, norm};
@@ -36,21 +36,6 @@ pub struct TornState {
     stiffness: f64,
     load: f64,
     seconds: StageSeconds,
-}
-
-/// Result of the adjoint: sensitivities of the column heights, and what they cost.
-#[derive(Debug, Clone)]
-pub struct Sensitivities {
-    /// ∂J/∂F per column, mm⁻¹ times the unit of J.
-    pub heights: Vec<f64>,
-    /// Products with F.
-    pub applications: usize,
-    /// Seconds of the adjoint system.
-    pub adjoint_seconds: f64,
-    /// Seconds of the element sums.
-    pub shape_seconds: f64,
-    /// What the state's residual does to J.
-    pub value_error: ValueError,
 }
 
 /// Laps of wall-clock time.
@@ -308,15 +293,7 @@ impl TornSolver {
     ) -> Result<Sensitivities, ContactError> {
         let mut clock = Clock::start();
         if state.load == 0.0 {
-            // Bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
-            let heights = vec![0.0; problem.grid.column_count()];
-            return Ok(Sensitivities {
-                heights,
-                value_error: ValueError::default(),
-                applications: 0,
-                adjoint_seconds: 0.0,
-                shape_seconds: clock.lap(),
-            });
+            return Ok(Sensitivities::at_rest(problem.grid.column_count()));
         }
         Stage::Adjoint.enter();
         let operator = DualOperator::new(&self.model, &state.system);

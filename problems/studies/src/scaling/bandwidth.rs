@@ -4,12 +4,11 @@
 //! find the values of the one before it in a cache, so that the share can exceed what memory alone delivers; vectors, rows
 //! and indices are not counted.
 
-use crate::scaling::Variant;
 use crate::scaling::measure::failure;
 use crate::scaling::threads::{TIMED_THREADS, pool};
 use contact::equilibrium::ContactProblem;
 use contact::linear::cholesky::SymbolicFactor;
-use contact::tfeti::{DualOperator, Preconditioner, TornModel, TornSystem};
+use contact::tfeti::{DualOperator, Preconditioner, PreconditionerKind, TornModel, TornSolver, TornSystem};
 use problems::commands::Failure;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -53,15 +52,16 @@ const LONG_ENOUGH: f64 = 0.3;
 /// [`Failure`] from the factorisation.
 pub fn measure(
     problem: &ContactProblem,
-    model: &TornModel,
-    variant: Variant,
+    preconditioner: PreconditionerKind,
     controls: &[f64],
 ) -> Result<Vec<Bandwidth>, Failure> {
+    let solver = TornSolver::new(problem, preconditioner).map_err(failure)?;
+    let model = solver.model();
     let blocks = problem.blocks(controls).map_err(failure)?;
     let system = model.factorize(&blocks).map_err(failure)?;
     let factor_bytes = factor_bytes(model, &system)?;
     let operator = DualOperator::new(model, &system);
-    let preconditioner = Preconditioner::new(&operator, variant.preconditioner().unwrap_or_default(), 1.0);
+    let preconditioner = Preconditioner::new(&operator, preconditioner, 1.0);
     let input: Vec<f64> = (0..model.constraints.row_count()).map(|row| ((row % 17) as f64 - 8.0) / 8.0).collect();
     TIMED_THREADS
         .into_iter()

@@ -40,7 +40,7 @@ pub struct Adjoint {
     pub tolerance: f64,
     /// Products with the dual operator; 0 for direct condensation.
     pub applications: usize,
-    /// Wall-clock seconds of the adjoint system (direct: with the element sums).
+    /// Wall-clock seconds of the adjoint system.
     pub seconds: f64,
     /// Wall-clock seconds of the element sums.
     pub shape_seconds: f64,

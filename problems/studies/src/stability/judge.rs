@@ -5,6 +5,7 @@ use crate::stability::contact::{
 };
 use crate::stability::{Outcome, Path, Record};
 use contact::equilibrium::{ContactForces, ContactProblem};
+use std::sync::Arc;
 
 /// Largest certificate of a solved state: relative residuals.
 const CERTIFICATE: f64 = 1e-9;
@@ -24,7 +25,7 @@ pub fn record(group: &'static str, name: String, case: &ContactCase) -> Record {
         .scene
         .as_ref()
         .map_err(ToString::to_string)
-        .and_then(|scene| ContactProblem::new(scene.clone()).map_err(|error| error.to_string()))
+        .and_then(|scene| ContactProblem::new(scene.clone()).map(Arc::new).map_err(|error| error.to_string()))
     {
         Ok(problem) => problem,
         Err(reason) => return refused_scene(record, case, reason),

@@ -1,7 +1,7 @@
 //! Stiff and extreme cases: the study behind `docs/stability.md`.
 //!
 //! ```text
-//! cli ─ cases ─┬─ contact: scene → TornSolver, DirectSolver, (successive approximations) → certificates → Record
+//! cli ─ cases ─┬─ contact: scene → TotalFeti, DirectSolver, (successive approximations) → certificates → Record
 //!              ├─ units, locking: scenes and fields compared with each other → Record
 //!              └─ optimizer: bundle method on hostile oracles → Record
 //! records ─ table (Markdown) or JSON

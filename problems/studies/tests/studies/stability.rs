@@ -2,13 +2,19 @@
 
 use contact::body::elasticity::{Formulation, Material};
 use contact::direct::DirectSolver;
-use contact::equilibrium::{ContactForces, ContactProblem};
+use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
 use contact::scene::{CounterSurface, Scene, hertz, signorini};
-use contact::tfeti::{AugmentedLagrangianSettings, PreconditionerKind, TornSolver};
+use contact::tfeti::{AugmentedLagrangianSettings, DualMethod, PreconditionerKind, Recycling, TornSolver, TotalFeti};
 use proptest::prelude::*;
+use std::sync::Arc;
 use studies::stability::{Outcome, Report, all, field_error};
+
+fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
+    let method = DualMethod::Newton(Recycling::default());
+    TotalFeti::new(Arc::clone(problem), PreconditionerKind::Dirichlet, method).unwrap()
+}
 
 #[test]
 fn the_fast_subset_is_as_expected() {
@@ -42,9 +48,8 @@ fn patch_test_with_mean_dilatation() {
         scene.lower.material = Material::new(1.1e5, ratio).unwrap().with_formulation(Formulation::MeanDilatation);
         // Free to widen: supports hold only what friction would not.
         scene.lower.supports[0].components = [true, false, false];
-        let problem = ContactProblem::new(scene).unwrap();
-        let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
-        let (_, forces, _) = solver.solve(&problem, &[100.0; 36], None, 0.0).unwrap();
+        let problem = Arc::new(ContactProblem::new(scene).unwrap());
+        let forces = newton(&problem).solve(&[100.0; 36], None, 0.0).unwrap().forces;
         for (force, point) in forces.normal.iter().zip(&problem.boundary.points) {
             let error = (force / point.area / 3000.0 - 1.0).abs();
             assert!(error < 1e-12, "ν = {ratio}: {error:.1e}");
@@ -55,14 +60,14 @@ fn patch_test_with_mean_dilatation() {
 #[test]
 fn contraction_of_both_paths_agrees() {
     for (scene, friction) in [(signorini().unwrap(), 0.9), (hertz().unwrap(), 0.3)] {
-        let problem = ContactProblem::new(Scene { mesh: [4; 3], friction, ..scene }).unwrap();
+        let problem = Arc::new(ContactProblem::new(Scene { mesh: [4; 3], friction, ..scene }).unwrap());
         let controls = vec![0.99 * problem.scene.start_height; 36];
-        let torn = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
-        let direct = DirectSolver::new(&problem).unwrap();
-        let (state, ..) = torn.solve(&problem, &controls, None, 1e-11).unwrap();
-        let estimate = torn.diagnose(&problem, &state).unwrap().contraction;
-        let (state, ..) = direct.solve(&problem, &controls, None, 1e-11).unwrap();
-        let exact = direct.diagnose(&problem, &state).unwrap();
+        let torn = newton(&problem);
+        let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();
+        let state = torn.solve(&controls, None, 1e-11).unwrap();
+        let estimate = torn.diagnose(&state.solution).unwrap().contraction;
+        let state = direct.solve(&controls, None, 1e-11).unwrap();
+        let exact = direct.diagnose(&state.solution).unwrap();
         assert!((estimate - exact.contraction).abs() < 1e-3 * (1.0 + exact.contraction), "{estimate} {exact}");
         assert!(exact.condition.unwrap() >= 1.0);
     }
@@ -144,12 +149,12 @@ proptest! {
         let scene = random_scene(seed, cells, torn, friction, two);
         let controls: Vec<f64> =
             (0..36).map(|index| scene.start_height * (1.0 + 0.01 * number(seed, 100 + index) - 0.01)).collect();
-        let problem = ContactProblem::new(scene).unwrap();
-        let torn = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
-        let direct = DirectSolver::new(&problem).unwrap();
+        let problem = Arc::new(ContactProblem::new(scene).unwrap());
+        let torn = newton(&problem);
+        let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();
         let attempts = [
-            torn.solve(&problem, &controls, None, 1e-11).map(|(_, forces, _)| forces),
-            direct.solve(&problem, &controls, None, 1e-11).map(|(_, forces, _)| forces),
+            torn.solve(&controls, None, 1e-11).map(|state| state.forces),
+            direct.solve(&controls, None, 1e-11).map(|state| state.forces),
         ];
         for attempt in &attempts {
             match attempt {

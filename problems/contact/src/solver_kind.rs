@@ -1,0 +1,15 @@
+//! The contact solvers by name.
+
+/// Which contact solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum SolverKind {
+    /// Semismooth Newton on total FETI.
+    #[default]
+    Newton,
+    /// Semismooth Newton on directly condensed bodies.
+    Direct,
+    /// The paper's path on total FETI: successive approximations, dual QPs by SMALSE-M and MPGP.
+    AugmentedLagrangian,
+}
