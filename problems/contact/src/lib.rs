@@ -61,6 +61,8 @@ pub mod memory;
 pub mod qp;
 pub mod scalar;
 pub mod scene;
+#[cfg(feature = "schema")]
+mod schema;
 pub mod shape;
 mod solver_kind;
 pub mod tfeti;

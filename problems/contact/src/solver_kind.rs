@@ -3,6 +3,7 @@
 /// Which contact solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "SolverName", transform = crate::schema::names_only))]
 #[non_exhaustive]
 pub enum SolverKind {
     /// Semismooth Newton on total FETI.

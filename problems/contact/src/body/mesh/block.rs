@@ -16,8 +16,10 @@ pub struct Grid {
     pub size: [f64; 2],
 }
 
-/// A side of a block.
+/// A face of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "FaceName", transform = crate::schema::names_only))]
 pub enum Face {
     /// x₁ = 0.
     X1Min,
