@@ -3,9 +3,10 @@
 //! Signorini at the flat start on 12³ bricks in 2³ subdomains and on 24³ bricks in 4³. The last column relates each time to
 //! that of one product with F.
 
+use contact::equilibrium::ContactProblem;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::scene::{Scene, signorini};
-use contact::tfeti::{DualOperator, InProcess, PreconditionerKind, TornModel};
+use contact::tfeti::{DualOperator, PreconditionerKind, TornSolver};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
 use std::error::Error;
 use std::hint::black_box;
@@ -34,10 +35,11 @@ fn measure(mesh: usize, subdomains: usize) -> Result<(), Box<dyn Error>> {
     let shape =
         ContactShape::new(Scene { mesh: [mesh; 3], subdomains: [subdomains; 3], ..signorini()? }, SolverKind::Newton)?;
     let (problem, start, accuracy) = (shape.problem(), shape.start(), Accuracy::relative(1e-8)?);
-    let model = TornModel::new(&problem.scene, &problem.boundary, PreconditionerKind::default(), Arc::new(InProcess))?;
+    let torn = TornSolver::new(Arc::new(ContactProblem::new(problem.scene.clone())?), PreconditionerKind::default())?;
+    let model = torn.model();
     let blocks = problem.blocks(start.as_slice())?;
     let system = model.factorize(&blocks)?;
-    let operator = DualOperator::new(&model, &system);
+    let operator = DualOperator::new(model, &system);
     let rows = operator.gather(&operator.loaded_displacement());
     let state = shape.solve(&start, None, accuracy)?;
     let dual = Vector::from_element(problem.boundary.dual_dimension(), 1.0);

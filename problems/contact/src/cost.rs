@@ -1,7 +1,6 @@
 //! Costs of the contact pressure σ_i = λ_N,i / A_i; method.md (3.4).
 
-use crate::contact_shape::ContactState;
-use crate::equilibrium::ContactBoundary;
+use crate::equilibrium::{ContactBoundary, ContactState};
 use crate::error::SceneError;
 use nonsmooth::{Cost, CostGradient, Vector};
 
@@ -57,13 +56,13 @@ impl PressureCost {
     }
 
     /// σ per contact node, MPa.
-    pub fn pressures(&self, state: &ContactState) -> Vec<f64> {
+    pub fn pressures<S>(&self, state: &ContactState<S>) -> Vec<f64> {
         state.forces.normal.iter().zip(&self.areas).map(|(force, area)| force / area).collect()
     }
 }
 
-impl Cost<ContactState> for PressureCost {
-    fn value(&self, _control: &Vector, state: &ContactState) -> f64 {
+impl<S> Cost<ContactState<S>> for PressureCost {
+    fn value(&self, _control: &Vector, state: &ContactState<S>) -> f64 {
         let pressures = self.pressures(state);
         match self.measure {
             PressureMeasure::Norm { exponent } => pressures.iter().map(|p| p.max(0.0).powf(exponent)).sum(),
@@ -71,7 +70,7 @@ impl Cost<ContactState> for PressureCost {
         }
     }
 
-    fn gradient(&self, control: &Vector, state: &ContactState) -> CostGradient {
+    fn gradient(&self, control: &Vector, state: &ContactState<S>) -> CostGradient {
         let pressures = self.pressures(state);
         let mut dual = Vector::zeros(self.dual_dimension);
         match self.measure {

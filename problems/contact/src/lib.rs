@@ -48,6 +48,7 @@
 //! | [`memory`] | memory estimated before any work |
 //! | [`error`] | what can be wrong with a scene, and why a contact problem has no answer |
 
+mod any_solver;
 pub mod body;
 pub mod contact_shape;
 pub mod cost;
@@ -60,6 +61,9 @@ pub mod memory;
 pub mod qp;
 pub mod scalar;
 pub mod scene;
+#[cfg(feature = "schema")]
+mod schema;
 pub mod shape;
+mod solver_kind;
 pub mod tfeti;
 pub mod vtk;

@@ -4,9 +4,9 @@
 //! sparse factor of n dofs of a box in nested dissection:   values ≈ 268 000·(n/1536)^1.48     (measured from 7³ to 10³ nodes)
 //! ```
 
-use crate::contact_shape::SolverKind;
 use crate::error::SceneError;
 use crate::scene::Scene;
+use crate::solver_kind::SolverKind;
 use crate::tfeti::PreconditionerKind;
 
 /// Bytes of one number.

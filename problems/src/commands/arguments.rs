@@ -1,12 +1,16 @@
 //! The command and the options of the contact binaries, and the fields of the scene file that the options override.
 
 use crate::commands::failure::Failure;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
+use contact::body::elasticity::Formulation;
+use contact::contact_shape::SolverKind;
 use contact::error::SceneError;
 use contact::shape::SplineKind;
-use scene_file::{
-    FormulationName, MeasureName, PreconditionerName, SceneFile, SolverName, SplineName, default_subdomains,
-};
+use contact::tfeti::PreconditionerKind;
+use scene_file::{MeasureName, SceneFile, SplineName, default_subdomains};
+use serde::de::value::Error as NameError;
+use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::path::PathBuf;
 
 /// What to do.
@@ -58,19 +62,19 @@ pub struct Arguments {
     #[arg(long, value_name = "E")]
     pub young_modulus: Option<f64>,
     /// How bricks of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials.
-    #[arg(long, value_parser = parse_formulation, value_name = "standard|mean-dilatation")]
-    pub formulation: Option<FormulationName>,
+    #[arg(long, value_parser = named::<Formulation>, value_name = "standard|mean-dilatation")]
+    pub formulation: Option<Formulation>,
     /// Factor on all loads (negative: reversed).
     #[arg(long, value_name = "F")]
     pub load_factor: Option<f64>,
     /// Contact solver.
-    #[arg(long, value_parser = parse_solver, value_name = "newton|direct|augmented-lagrangian")]
-    pub solver: Option<SolverName>,
+    #[arg(long, value_parser = named::<SolverKind>, value_name = "newton|direct|augmented-lagrangian")]
+    pub solver: Option<SolverKind>,
     /// Preconditioner of the dual operator.
-    #[arg(long, value_parser = parse_preconditioner, value_name = "dirichlet|lumped|none")]
-    pub preconditioner: Option<PreconditionerName>,
+    #[arg(long, value_parser = named::<PreconditionerKind>, value_name = "dirichlet|lumped|none")]
+    pub preconditioner: Option<PreconditionerKind>,
     /// What is minimised.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = measures())]
     pub objective: Option<MeasureName>,
     /// Exponent p of the pressure norm.
     #[arg(long, value_name = "P")]
@@ -280,35 +284,38 @@ fn parse_counts(text: &str) -> Result<[usize; 2], String> {
     }
 }
 
-fn parse_solver(text: &str) -> Result<SolverName, String> {
-    match text {
-        "newton" => Ok(SolverName::Newton),
-        "direct" => Ok(SolverName::Direct),
-        "augmented-lagrangian" => Ok(SolverName::AugmentedLagrangian),
-        _ => Err("allowed: newton, direct, augmented-lagrangian".into()),
-    }
+/// A choice by its name in scene files; the error lists all names.
+fn named<T: DeserializeOwned>(text: &str) -> Result<T, NameError> {
+    T::deserialize(text.into_deserializer())
 }
 
-fn parse_formulation(text: &str) -> Result<FormulationName, String> {
-    match text {
-        "standard" => Ok(FormulationName::Standard),
-        "mean-dilatation" => Ok(FormulationName::MeanDilatation),
-        _ => Err("allowed: standard, mean-dilatation".into()),
-    }
-}
-
-fn parse_preconditioner(text: &str) -> Result<PreconditionerName, String> {
-    match text {
-        "dirichlet" => Ok(PreconditionerName::Dirichlet),
-        "lumped" => Ok(PreconditionerName::Lumped),
-        "none" => Ok(PreconditionerName::None),
-        _ => Err("allowed: dirichlet, lumped, none".into()),
-    }
+fn measures() -> impl TypedValueParser<Value = MeasureName> {
+    let value = |name, meaning| PossibleValue::new(name).help(meaning);
+    PossibleValuesParser::new([value("pressure-norm", "Σσ^p"), value("peak-pressure", "max σ")])
+        .try_map(|name| named(&name))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_name_that_the_help_lists_is_one() {
+        let command = <Arguments as clap::CommandFactory>::command();
+        for option in ["solver", "preconditioner", "formulation", "objective"] {
+            let argument = command.get_arguments().find(|argument| argument.get_id() == option).expect(option);
+            let listed: Vec<String> = match argument.get_possible_values() {
+                values if !values.is_empty() => values.iter().map(|value| value.get_name().to_owned()).collect(),
+                _ => argument.get_value_names().expect(option)[0].split('|').map(str::to_owned).collect(),
+            };
+            assert!(listed.len() > 1, "{option}");
+            for name in listed {
+                Arguments::try_parse_from(["contact", &format!("--{option}"), &name]).expect(&name);
+            }
+        }
+        let refusal = Arguments::try_parse_from(["contact", "--solver", "newtn"]).expect_err("no solver").to_string();
+        assert!(refusal.contains("`newton`, `direct`, `augmented-lagrangian`"), "{refusal}");
+    }
 
     #[test]
     fn surfaces_and_counts_are_parsed_or_refused() {

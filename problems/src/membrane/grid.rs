@@ -4,7 +4,8 @@
 //! (A u)_i = 4u_i − Σ u_neighbours ≈ h² (−Δu)(x_i)
 //! ```
 
-use contact::error::{ContactError, SceneError};
+use contact::error::SceneError;
+use contact::linear::FactorizationError;
 use contact::linear::cholesky::SymbolicFactor;
 use contact::linear::ordering::nested_dissection;
 use contact::linear::symmetric::LowerPattern;
@@ -95,7 +96,7 @@ impl MembraneGrid {
     }
 
     /// Pattern and elimination order of A.
-    pub(super) fn analyse(&self) -> Result<(Arc<LowerPattern>, Arc<SymbolicFactor>), ContactError> {
+    pub(super) fn analyse(&self) -> Result<(Arc<LowerPattern>, Arc<SymbolicFactor>), FactorizationError> {
         let pattern = Arc::new(LowerPattern::from_columns(
             (0..self.node_count()).map(|index| self.neighbours(index).collect()).collect(),
         ));

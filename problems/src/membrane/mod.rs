@@ -19,7 +19,8 @@ pub use cost::{MembraneCost, MembraneWishes};
 pub use grid::MembraneGrid;
 pub use problem::{MembraneControl, MembraneData, MembraneState};
 
-use contact::error::{ContactError, SceneError};
+use contact::error::SceneError;
+use contact::linear::FactorizationError;
 use nonsmooth::{Polyhedron, ReducedObjective, Vector};
 use thiserror::Error;
 
@@ -35,7 +36,7 @@ pub enum MembraneError {
     Data(#[from] SceneError),
     /// The matrix could not be analysed or factored.
     #[error(transparent)]
-    Solver(#[from] ContactError),
+    Matrix(#[from] FactorizationError),
 }
 
 /// Number of load patches per edge in the example.

@@ -1,9 +1,10 @@
 //! What all subdomains of one size share: sparsity, scatter of element matrices, elimination order, fixing nodes.
 
 use crate::body::elasticity::Material;
-use crate::body::elasticity::hex8::{self, DOFS, Nodes};
+use crate::body::elasticity::brick::{DOFS, Nodes};
+use crate::body::elasticity::hex8;
 use crate::body::mesh::Subdomain;
-use crate::error::ContactError;
+use crate::linear::FactorizationError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;
 use crate::linear::symmetric::LowerPattern;
@@ -107,8 +108,8 @@ impl LocalPattern {
     /// Symbolic factor for [`Self::elimination_order`].
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when the analysis fails.
-    pub fn symbolic(&self, last: &[usize]) -> Result<Arc<SymbolicFactor>, ContactError> {
+    /// [`FactorizationError`] when the analysis fails.
+    pub fn symbolic(&self, last: &[usize]) -> Result<Arc<SymbolicFactor>, FactorizationError> {
         Ok(Arc::new(SymbolicFactor::new(Arc::clone(&self.pattern), self.elimination_order(last))?))
     }
 }

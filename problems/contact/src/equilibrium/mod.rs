@@ -5,8 +5,9 @@ pub mod law;
 pub mod modes;
 
 mod boundary;
-pub mod certificate;
+pub(crate) mod certificate;
 mod configuration;
+mod contact_solver;
 mod problem;
 mod solved_body;
 mod stage;
@@ -14,13 +15,14 @@ mod state;
 mod value_error;
 
 pub use boundary::{ContactBoundary, ContactPoint};
-pub use certificate::{Kink, Residuals, StatusCounts};
+pub use certificate::{Kink, Residuals, StatusCounts, WEAKLY_ACTIVE};
 pub use configuration::Configuration;
+pub use contact_solver::{ContactSolver, Sensitivities};
 pub use diagnosis::Diagnosis;
 pub use problem::ContactProblem;
 pub use solved_body::SolvedBody;
 pub use stage::{Stage, TARGET as STAGE_TARGET};
-pub use state::{ContactForces, StageSeconds, Work};
+pub use state::{AnyState, ContactForces, ContactState, ContactWarmStart, SolverState, StageSeconds, Work};
 pub use value_error::ValueError;
 
 /// What a contact node does; method.md (3.2), (3.3).

@@ -12,6 +12,7 @@
 //! ```
 //! method.md (4.1), (4.2). Each folder uses only those above it.
 
+mod contact_solver;
 mod derivative;
 mod dual;
 mod newton;
@@ -19,13 +20,14 @@ mod paper;
 mod solver;
 mod torn;
 
+pub use contact_solver::{DualMethod, TotalFeti};
 pub use dual::contact::TornContact;
 pub use dual::iterate::{Iterate, TornSolution};
 pub use dual::operator::{DualOperator, Precision};
 pub use dual::preconditioner::Preconditioner;
 pub use newton::settings::{NewtonSettings, Recycling};
 pub use paper::successive_approximations::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
-pub use solver::{Sensitivities, TornSolver, TornState};
+pub use solver::{TornSolver, TornState};
 pub use torn::communication::{Communication, InProcess};
 pub use torn::constraints::Constraints;
 pub use torn::factors::{SubdomainFactors, SubdomainRigid};

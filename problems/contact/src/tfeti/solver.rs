@@ -4,8 +4,8 @@ use crate::body::mesh::Block;
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::{self, Linearization};
 use crate::equilibrium::{
-    Configuration, ContactForces, ContactProblem, Diagnosis, Kink, Residuals, SolvedBody, Stage, StageSeconds,
-    ValueError, Work,
+    Configuration, ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Sensitivities, SolvedBody, Stage,
+    StageSeconds, ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::{add_scaled, dot, norm};
@@ -44,21 +44,6 @@ pub struct TornState {
     stiffness: f64,
     load: f64,
     seconds: StageSeconds,
-}
-
-/// Result of the adjoint: sensitivities of the column heights, and what they cost.
-#[derive(Debug, Clone)]
-pub struct Sensitivities {
-    /// ∂J/∂F per column, mm⁻¹ times the unit of J.
-    pub heights: Vec<f64>,
-    /// Products with F.
-    pub applications: usize,
-    /// Seconds of the adjoint system.
-    pub adjoint_seconds: f64,
-    /// Seconds of the element sums.
-    pub shape_seconds: f64,
-    /// What the state's residual does to J.
-    pub value_error: ValueError,
 }
 
 /// Laps of wall-clock time.
@@ -243,14 +228,7 @@ impl TornSolver {
     ) -> Result<Sensitivities, ContactError> {
         let mut clock = Clock::start();
         let Some(contact) = self.contact_of(state)? else {
-            // Bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
-            return Ok(Sensitivities {
-                heights: vec![0.0; self.problem().grid.column_count()],
-                value_error: ValueError::default(),
-                applications: 0,
-                adjoint_seconds: 0.0,
-                shape_seconds: clock.lap(),
-            });
+            return Ok(Sensitivities::at_rest(self.problem().grid.column_count()));
         };
         Stage::Adjoint.enter();
         let constraints = &self.model.constraints;

@@ -80,7 +80,7 @@ fn single_precision_of_search_directions_changes_neither_state_nor_subgradient()
     for scene in [signorini().unwrap(), hertz().unwrap()] {
         for friction in [0.0, 0.3] {
             let scene = Scene { mesh: [6; 3], subdomains: [2; 3], friction, ..scene.clone() };
-            let (label, control) = (format!("{} friction {friction}", scene.name), wavy(&scene));
+            let (label, control) = (format!("{} friction {friction}", scene.name), bent(&scene));
             let problem = Arc::new(ContactProblem::new(scene).unwrap());
             let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
             let solve = |precision| {

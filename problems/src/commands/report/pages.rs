@@ -138,8 +138,8 @@ fn controls(objective: &ContactObjective, heights: &[f64]) -> Section {
 
 /// Seconds of the parts of one state; empty for a solver that does not keep them.
 fn seconds(shape: &SolvedShape) -> Section {
-    let Some(torn) = shape.state.torn() else { return Section::default() };
-    let StageSeconds { equilibrium, factorization, coarse_space, newton, recovery, .. } = torn.seconds();
+    let Some(stages) = shape.state.stages else { return Section::default() };
+    let StageSeconds { equilibrium, factorization, coarse_space, newton, recovery } = stages;
     let stages = [
         ("equilibrium", equilibrium),
         ("factorization", factorization),

@@ -5,7 +5,7 @@
 //! leaves out factorisations, one set per evaluation.
 
 use crate::accuracy::extent::{Extent, case};
-use crate::accuracy::objective::{Method, Objective, norm};
+use crate::accuracy::objective::{Objective, norm, objective_of};
 use crate::scaling::SceneName;
 use contact::contact_shape::ContactWarmStart;
 use contact::cost::PressureMeasure;
@@ -129,7 +129,7 @@ pub fn study(scene: SceneName, extent: Extent) -> Result<OptimizationStudy, Fail
     let levels = extent.levels();
     let fine = levels[levels.len() - 1];
     let evaluations = extent.evaluations();
-    let objective = Method::DESCENT.objective(scene, fine, norm())?;
+    let objective = objective_of(scene, fine, norm())?;
     let start = objective.solver().start();
     // The first solve pays for what is kept from solve to solve.
     let before = value(&objective, &start)?;
@@ -143,7 +143,7 @@ pub fn study(scene: SceneName, extent: Extent) -> Result<OptimizationStudy, Fail
     let clock = Instant::now();
     let (mut controls, mut passed) = (start.clone(), Milestone::START);
     for &level in &levels[..levels.len() - 1] {
-        let objective = Method::DESCENT.objective(scene, level, norm())?;
+        let objective = objective_of(scene, level, norm())?;
         let run = minimize(&objective, controls, AccuracyPolicy::ON_DEMAND, evaluations)?;
         let products = run.history.last().map_or(0.0, |milestone| milestone.work);
         passed.evaluations += run.history.len();
@@ -233,7 +233,7 @@ fn course(strategy: &'static str, objective: &Objective, run: &Run, passed: Mile
 
 /// Norms of several exponents and the peak pressure itself, each with the same number of evaluations.
 fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRow>, Failure> {
-    let judge = Method::DESCENT.objective(scene, mesh, norm())?;
+    let judge = objective_of(scene, mesh, norm())?;
     let row = |measure: String, evaluations: usize, seconds: f64, controls: &Vector| -> Result<PeakRow, Failure> {
         let (peak, norm) = (peak(&judge, controls)?, value(&judge, controls)?);
         Ok(PeakRow { measure, evaluations, seconds, peak, norm })
@@ -241,7 +241,7 @@ fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRo
     let norms = [4.0, 8.0, 16.0].map(|exponent| (format!("Σσ^{exponent}"), PressureMeasure::Norm { exponent }));
     let mut rows = vec![row("nothing (start)".into(), 0, 0.0, &judge.solver().start())?];
     for (measure, kind) in norms.into_iter().chain([("max σ".to_owned(), PressureMeasure::Peak)]) {
-        let objective = Method::DESCENT.objective(scene, mesh, kind)?;
+        let objective = objective_of(scene, mesh, kind)?;
         let run = minimize(&objective, objective.solver().start(), AccuracyPolicy::Tightest, evaluations)?;
         rows.push(row(measure, run.history.len(), run.seconds, &run.controls)?);
     }

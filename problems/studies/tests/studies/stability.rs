@@ -2,16 +2,21 @@
 
 use contact::body::elasticity::{Formulation, Material};
 use contact::direct::DirectSolver;
-use contact::equilibrium::{ContactForces, ContactProblem};
+use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
 use contact::scene::{CounterSurface, Scene, hertz, signorini};
-use contact::tfeti::{AugmentedLagrangianSettings, PreconditionerKind, TornSolver};
+use contact::tfeti::{AugmentedLagrangianSettings, DualMethod, PreconditionerKind, Recycling, TornSolver, TotalFeti};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
 use std::sync::Arc;
 use studies::stability::{Counts, Outcome, Report, all, field_error};
+
+fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
+    let method = DualMethod::Newton(Recycling::default());
+    TotalFeti::new(Arc::clone(problem), PreconditionerKind::Dirichlet, method).unwrap()
+}
 
 /// Numbers of cases that are solved, refused, limited and broken, of the groups with these names; all must be as expected.
 fn outcomes(groups: &[&str]) -> [usize; 4] {
@@ -49,8 +54,7 @@ fn patch_test_with_mean_dilatation() {
         // Free to widen: supports hold only what friction would not.
         scene.lower.supports[0].components = [true, false, false];
         let problem = Arc::new(ContactProblem::new(scene).unwrap());
-        let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
-        let (_, forces, _) = solver.solve(&[100.0; 36], None, 0.0).unwrap();
+        let forces = newton(&problem).solve(&[100.0; 36], None, 0.0).unwrap().forces;
         for (force, point) in forces.normal.iter().zip(&problem.boundary.points) {
             let error = (force / point.area / 3000.0 - 1.0).abs();
             assert!(error < 1e-12, "ν = {ratio}: {error:.1e}");
@@ -63,12 +67,12 @@ fn contraction_of_both_paths_agrees() {
     for (scene, friction) in [(signorini().unwrap(), 0.9), (hertz().unwrap(), 0.3)] {
         let problem = Arc::new(ContactProblem::new(Scene { mesh: [4; 3], friction, ..scene }).unwrap());
         let controls = vec![0.99 * problem.scene.start_height; 36];
-        let torn = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
-        let direct = DirectSolver::new(&problem).unwrap();
-        let (state, ..) = torn.solve(&controls, None, 1e-11).unwrap();
-        let estimate = torn.diagnose(&state).unwrap().contraction;
-        let (state, ..) = direct.solve(&problem, &controls, None, 1e-11).unwrap();
-        let exact = direct.diagnose(&problem, &state).unwrap();
+        let torn = newton(&problem);
+        let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();
+        let state = torn.solve(&controls, None, 1e-11).unwrap();
+        let estimate = torn.diagnose(&state.solution).unwrap().contraction;
+        let state = direct.solve(&controls, None, 1e-11).unwrap();
+        let exact = direct.diagnose(&state.solution).unwrap();
         assert!((estimate - exact.contraction).abs() < 1e-3 * (1.0 + exact.contraction), "{estimate} {exact}");
         assert!(exact.condition.unwrap() >= 1.0);
     }
@@ -150,11 +154,11 @@ fn random_scenes_are_certified_or_refused_with_a_cause() {
         let controls: Vec<f64> =
             (0..36).map(|index| scene.start_height * (1.0 + 0.01 * number(seed, 100 + index) - 0.01)).collect();
         let problem = Arc::new(ContactProblem::new(scene).unwrap());
-        let torn = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
-        let direct = DirectSolver::new(&problem).unwrap();
+        let torn = newton(&problem);
+        let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();
         let attempts = [
-            torn.solve(&controls, None, 1e-11).map(|(_, forces, _)| forces),
-            direct.solve(&problem, &controls, None, 1e-11).map(|(_, forces, _)| forces),
+            torn.solve(&controls, None, 1e-11).map(|state| state.forces),
+            direct.solve(&controls, None, 1e-11).map(|state| state.forces),
         ];
         for attempt in &attempts {
             match attempt {

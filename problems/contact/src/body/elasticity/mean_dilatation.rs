@@ -7,7 +7,7 @@
 //! One constraint per brick instead of eight: near-incompressible bricks keep their bending modes. The deviatoric part is
 //! integrated fully, so no spurious mode appears.
 
-use crate::body::elasticity::hex8::{DOFS, GaussPoint, displacement_gradient};
+use crate::body::elasticity::brick::{DOFS, GaussPoint, displacement_gradient};
 use crate::scalar::Scalar;
 
 /// D(u)/V: the mean over the brick of its relative change of volume.

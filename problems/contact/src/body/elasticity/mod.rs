@@ -1,5 +1,6 @@
 //! Trilinear isotropic elasticity on bricks.
 
+pub mod brick;
 pub mod hex8;
 pub mod stress;
 pub mod traction;

@@ -4,7 +4,6 @@ use crate::linear::vector::add_scaled;
 use crate::tfeti::torn::factors::SubdomainFactors;
 use crate::tfeti::torn::model::{TornModel, TornSystem};
 use crate::tfeti::torn::vectors::{RowVector, TornVector};
-use faer::Par;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -68,7 +67,7 @@ impl<'a> DualOperator<'a> {
             let size = part.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
             if size > 0.0 {
                 let mut single: Vec<f32> = part.iter().map(|&entry| (entry / size) as f32).collect();
-                factors.inverse.solve_in_place_single(&mut single, Par::Seq);
+                factors.inverse.solve_in_place_single(&mut single);
                 for (entry, single) in part.iter_mut().zip(single) {
                     *entry = size * f64::from(single);
                 }
@@ -99,7 +98,7 @@ impl<'a> DualOperator<'a> {
 
     /// K⁺ on every subdomain, in place.
     fn solve_subdomains(&self, torn: &mut TornVector) {
-        self.for_each_subdomain(torn, |factors, part| factors.inverse.solve_in_place(part, 1, Par::Seq));
+        self.for_each_subdomain(torn, |factors, part| factors.inverse.solve_in_place(part));
     }
 
     /// Works on the parts of a torn vector that belong to this process and clears the others.

@@ -9,7 +9,6 @@ use crate::tfeti::torn::factors::SubdomainFactors;
 use crate::tfeti::torn::model::{TornModel, TornSystem};
 use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
 use crate::tfeti::torn::vectors::RowVector;
-use faer::Par;
 use rayon::prelude::*;
 
 /// A preconditioner of one factored system.
@@ -61,7 +60,7 @@ impl<'a> Preconditioner<'a> {
         pattern.multiply(&factors.stiffness, &boundary, part);
         let (Some(interior), Some(factor)) = (self.model.interior(index), &factors.interior) else { return };
         let mut inner: Vec<f64> = interior.kept.iter().map(|&dof| part[dof]).collect();
-        factor.solve_in_place(&mut inner, 1, Par::Seq);
+        factor.solve_in_place(&mut inner);
         let (mut extended, mut image) = (vec![0.0; part.len()], vec![0.0; part.len()]);
         for (&dof, value) in interior.kept.iter().zip(&inner) {
             extended[dof] = *value;

@@ -11,12 +11,12 @@
 
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
+use crate::linear::dense::DenseCholesky;
 use crate::linear::vector::{add_scaled, dot, norm};
 use crate::tfeti::dual::contact::TornContact;
 use crate::tfeti::dual::iterate::Iterate;
 use crate::tfeti::torn::vectors::RowVector;
 use faer::Mat;
-use faer::linalg::solvers::Solve;
 
 /// Share of the residual that a round may leave for another one to be worth its dense algebra.
 const MAX_SHARE_LEFT: f64 = 0.5;
@@ -253,9 +253,11 @@ fn solve_scaled(normal: &Mat<f64>, right: &[f64]) -> Option<Vec<f64>> {
         let matrix = Mat::from_fn(count, count, |k, l| {
             scale[k] * scale[l] * normal[(k, l)] + if k == l { ridge.max(f64::from(scale[k] == 0.0)) } else { 0.0 }
         });
-        if let Ok(factor) = matrix.llt(faer::Side::Lower) {
-            let solution = factor.solve(&Mat::from_fn(count, 1, |k, _| scale[k] * right[k]));
-            return Some((0..count).map(|k| scale[k] * solution[(k, 0)]).collect());
+        if let Ok(factor) = DenseCholesky::new(matrix) {
+            let mut solution: Vec<f64> = (0..count).map(|k| scale[k] * right[k]).collect();
+            factor.solve_lower_in_place(&mut solution);
+            factor.solve_upper_in_place(&mut solution);
+            return Some((0..count).map(|k| scale[k] * solution[k]).collect());
         }
         ridge *= 10.0;
     }

@@ -5,21 +5,19 @@
 //! ```
 
 use crate::error::ContactError;
+use crate::linear::dense::DenseCholesky;
 use crate::linear::vector::add_scaled;
 use crate::qp::{LinearEqualities, SymmetricOperator};
 use crate::tfeti::dual::coarse_space::CoarseSpace;
 use crate::tfeti::dual::operator::DualOperator;
 use crate::tfeti::dual::preconditioner::Preconditioner;
 use crate::tfeti::torn::vectors::RowVector;
-use faer::linalg::solvers::Llt;
-use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
-use faer::{Mat, MatMut, Par, Side};
 
 /// Rows C and right side L⁻¹e of the equilibrium of all subdomains.
 #[derive(Debug)]
 pub struct OrthonormalCoarse<'a> {
     space: &'a CoarseSpace,
-    lower: Mat<f64>,
+    factor: DenseCholesky,
     right_side: Vec<f64>,
 }
 
@@ -29,28 +27,24 @@ impl<'a> OrthonormalCoarse<'a> {
     /// # Errors
     /// [`ContactError::Factorization`] when the rows leave a rigid motion free.
     pub fn new(space: &'a CoarseSpace) -> Result<Self, ContactError> {
-        let factor = Llt::new(space.gram().as_ref(), Side::Lower).map_err(|error| ContactError::Factorization {
+        let factor = DenseCholesky::new(space.gram()).map_err(|error| ContactError::Factorization {
             what: "coarse matrix of all rows".into(),
-            reason: format!("{error:?}: the rows leave a rigid motion free"),
+            reason: format!("{}: the rows leave a rigid motion free", error.reason),
         })?;
-        let mut coarse = Self { space, lower: factor.L().to_owned(), right_side: Vec::new() };
+        let mut coarse = Self { space, factor, right_side: Vec::new() };
         coarse.right_side = coarse.lower_solve(space.resultants().to_vec());
         Ok(coarse)
     }
 
     fn lower_solve(&self, mut v: Vec<f64>) -> Vec<f64> {
-        let size = v.len();
-        let right = MatMut::from_column_major_slice_mut(&mut v, size, 1);
-        solve_lower_triangular_in_place(self.lower.as_ref(), right, Par::Seq);
+        self.factor.solve_lower_in_place(&mut v);
         v
     }
 
     /// Cᵀ y.
     fn jumps(&self, y: &[f64]) -> RowVector {
         let mut amplitudes = y.to_vec();
-        let size = amplitudes.len();
-        let right = MatMut::from_column_major_slice_mut(&mut amplitudes, size, 1);
-        solve_upper_triangular_in_place(self.lower.transpose(), right, Par::Seq);
+        self.factor.solve_upper_in_place(&mut amplitudes);
         self.space.jumps(&amplitudes)
     }
 

@@ -6,14 +6,13 @@
 //! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 
 use crate::body::elasticity::Material;
-use crate::body::elasticity::hex8::Nodes;
+use crate::body::elasticity::brick::Nodes;
 use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::symmetric::Submatrix;
 use crate::linear::vector::{add_scaled, dot};
 use crate::tfeti::torn::rigid_modes::{orthonormal_modes, orthonormalise};
-use faer::Par;
 use std::sync::Arc;
 
 /// Interior dofs of a class of subdomains and the analysis of their matrix.
@@ -80,16 +79,16 @@ impl SubdomainFactors {
     ) -> Result<Self, ContactError> {
         let stiffness = pattern.assemble(material, brick);
         let regularised = regularise(pattern, &stiffness, modes);
-        let inverse = symbolic.factorize(&regularised, Par::Seq)?;
+        let inverse = symbolic.factorize(&regularised)?;
         let forward_error = check_generalised_inverse(pattern, &stiffness, &inverse, modes)?;
         let interior = match interior.and_then(|class| class.symbolic.as_ref().map(|symbolic| (class, symbolic))) {
-            Some((class, symbolic)) => Some(symbolic.factorize(&class.submatrix.gather(&stiffness), Par::Seq)?),
+            Some((class, symbolic)) => Some(symbolic.factorize(&class.submatrix.gather(&stiffness))?),
             None => None,
         };
         let mut loaded_displacement = Vec::new();
         if load.iter().any(|&force| force != 0.0) {
             loaded_displacement = load.to_vec();
-            inverse.solve_in_place(&mut loaded_displacement, 1, Par::Seq);
+            inverse.solve_in_place(&mut loaded_displacement);
         }
         Ok(Self { stiffness, inverse, loaded_displacement, interior, forward_error })
     }
@@ -133,7 +132,7 @@ fn check_generalised_inverse(
     let (mut image, mut again) = (vec![0.0; dimension], vec![0.0; dimension]);
     pattern.pattern.multiply(stiffness, &probe, &mut image);
     let mut solution = image.clone();
-    inverse.solve_in_place(&mut solution, 1, Par::Seq);
+    inverse.solve_in_place(&mut solution);
     pattern.pattern.multiply(stiffness, &solution, &mut again);
     for (again, image) in again.iter_mut().zip(&image) {
         *again -= image;
