@@ -1,50 +1,35 @@
 //! Numbers in JSON without loss: the shortest text that reads back as the same bits, and words for what JSON lacks.
 
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use std::num::ParseFloatError;
 
 /// A number as it stands in the file.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 pub(super) enum Written {
     Finite(f64),
-    Other(Word),
-}
-
-#[derive(Serialize, Deserialize)]
-pub(super) enum Word {
-    #[serde(rename = "inf")]
-    Infinity,
-    #[serde(rename = "-inf")]
-    MinusInfinity,
-    #[serde(rename = "nan")]
-    NotANumber,
+    /// `inf`, `-inf` or `NaN`.
+    Word(String),
 }
 
 /// A number, or several, with their written form.
 pub(super) trait Exact: Sized {
     type Written: Serialize + for<'de> Deserialize<'de>;
     fn write(&self) -> Self::Written;
-    fn read(written: Self::Written) -> Self;
+    fn read(written: Self::Written) -> Result<Self, ParseFloatError>;
 }
 
 impl Exact for f64 {
     type Written = Written;
 
     fn write(&self) -> Written {
-        match *self {
-            x if x.is_finite() => Written::Finite(x),
-            x if x.is_nan() => Written::Other(Word::NotANumber),
-            x if x > 0.0 => Written::Other(Word::Infinity),
-            _ => Written::Other(Word::MinusInfinity),
-        }
+        if self.is_finite() { Written::Finite(*self) } else { Written::Word(self.to_string()) }
     }
 
-    fn read(written: Written) -> Self {
+    fn read(written: Written) -> Result<Self, ParseFloatError> {
         match written {
-            Written::Finite(x) => x,
-            Written::Other(Word::Infinity) => Self::INFINITY,
-            Written::Other(Word::MinusInfinity) => Self::NEG_INFINITY,
-            Written::Other(Word::NotANumber) => Self::NAN,
+            Written::Finite(x) => Ok(x),
+            Written::Word(word) => word.parse(),
         }
     }
 }
@@ -56,7 +41,7 @@ impl Exact for Vec<f64> {
         self.iter().map(Exact::write).collect()
     }
 
-    fn read(written: Vec<Written>) -> Self {
+    fn read(written: Vec<Written>) -> Result<Self, ParseFloatError> {
         written.into_iter().map(f64::read).collect()
     }
 }
@@ -68,8 +53,8 @@ impl Exact for Option<f64> {
         self.as_ref().map(Exact::write)
     }
 
-    fn read(written: Option<Written>) -> Self {
-        written.map(f64::read)
+    fn read(written: Option<Written>) -> Result<Self, ParseFloatError> {
+        written.map(f64::read).transpose()
     }
 }
 
@@ -80,5 +65,5 @@ pub(super) fn serialize<T: Exact, S: Serializer>(value: &T, serializer: S) -> Re
 
 /// For `#[serde(with = "exact")]`.
 pub(super) fn deserialize<'de, T: Exact, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
-    T::Written::deserialize(deserializer).map(T::read)
+    T::read(T::Written::deserialize(deserializer)?).map_err(de::Error::custom)
 }
