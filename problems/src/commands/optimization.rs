@@ -6,8 +6,8 @@ use crate::commands::stages::{Stage, stages};
 use crate::commands::{Arguments, ContactObjective, Failure, Source, controls, objective};
 use contact::error::SceneError;
 use nonsmooth::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, NonsmoothObjective, Observer,
-    Reparametrized, Report, Termination, Vector,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, Observer, Report, Termination,
+    VariableScaling, Vector,
 };
 use scene_file::{AccuracyName, Case};
 use std::ops::ControlFlow;
@@ -185,21 +185,19 @@ fn run_stage(
         first_step: Some(first_step),
         bundle_size: optimizer.bundle_size,
         accuracy,
+        scaling: VariableScaling::Linear(mean_height_coordinates(start, first_step)),
         ..BundleTrustConfig::default()
     };
     let label = stage.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
-    let matrix = mean_height_coordinates(start, first_step);
-    let set = objective.solver().problem().admissible.polyhedron();
-    let set = Reparametrized::new(objective, matrix.clone())?.transformed_set(set)?;
     let journaled = folder.map(|folder| folder.journaled(objective, stage.name.as_deref())).transpose()?;
     let replayed = journaled.as_ref().map_or(0, Journaled::held);
     let progress = Progress::new(&label, config.max_evaluations, time_limit, replayed, status.clone());
-    let method = BundleTrust::new(config)?.constraints(set).observer(progress);
+    let set = objective.solver().problem().admissible.polyhedron().clone();
+    let mut method = BundleTrust::new(config)?.constraints(set).observer(progress);
     let report = match &journaled {
-        None => minimize(method, &Reparametrized::new(objective, matrix)?, start)?,
+        None => method.minimize(objective, start.clone())?,
         Some(journaled) => {
-            let method = method.observer(warner(journaled));
-            let mut report = minimize(method, &Reparametrized::new(journaled, matrix)?, start)?;
+            let mut report = method.observer(warner(journaled)).minimize(journaled, start.clone())?;
             journaled.complete(&mut report);
             report
         }
@@ -218,17 +216,6 @@ fn warner<O>(journaled: &Journaled<O>) -> impl Observer {
         said = warnings.len();
         ControlFlow::Continue(())
     }
-}
-
-/// Runs the optimizer; the solution is in the original coordinates.
-fn minimize<O: NonsmoothObjective>(
-    mut method: BundleTrust<'_>,
-    scaled: &Reparametrized<O>,
-    start: &Vector,
-) -> Result<Report, Failure> {
-    let mut report = method.minimize(scaled, scaled.transformed(start))?;
-    report.solution = scaled.original(&report.solution);
-    Ok(report)
 }
 
 /// Half of the mean distance between the starting surface and its counterpart: the length on which contact changes, mm. A

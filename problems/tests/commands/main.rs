@@ -8,6 +8,7 @@ mod documented_commands;
 mod pages;
 
 mod binaries;
+mod certificates;
 mod compare;
 mod contact3d;
 mod fuzz;
