@@ -173,7 +173,6 @@
 //! | [`report`] | [`Report`], [`Termination`], [`Certificate`], history, observers, stopping rules |
 //! | [`verify`] | Taylor tests of any objective |
 //! | [`journal`] | [`Journaled`]: an objective whose evaluations survive the run |
-//! | [`reparametrized`] | an objective under a linear change of variables |
 //! | [`qp`] | the subproblem as a convex QP of its own, with certificate; projection onto a polyhedron |
 //! | [`error`], [`linalg`] | error types; the vector and matrix types |
 
@@ -189,7 +188,6 @@ pub mod objective;
 pub mod problem;
 pub mod qp;
 pub mod reduced;
-pub mod reparametrized;
 pub mod report;
 pub mod verify;
 
@@ -209,7 +207,6 @@ pub use linalg::{Matrix, Vector};
 pub use objective::{Answer, Evaluation, FnObjective, NonsmoothObjective, Request};
 pub use problem::{Coderivative, Cost, CostGradient, StateSolver};
 pub use reduced::ReducedObjective;
-pub use reparametrized::Reparametrized;
 pub use report::{
     Certificate, CertificateCheck, Counts, IterationRecord, Observer, Origin, Report, StepKind, StopRule, TablePrinter,
     Termination, TrialCounts,

@@ -1,9 +1,10 @@
 //! Settings of the bundle-trust method: meaning, default, admissible range, effect.
 
+use super::coordinates::Coordinates;
 use super::proposers::curved::config::CurvedModelConfig;
 use super::proposers::exploration::config::ExplorationConfig;
 use crate::checks::check_setting;
-use crate::{InputError, Vector};
+use crate::{InputError, Matrix, Vector};
 use serde::{Deserialize, Serialize};
 
 /// What is known about the convexity of Θ on the admissible set.
@@ -18,7 +19,7 @@ pub enum Convexity {
     Convex,
 }
 
-/// In which units the distance of two points is measured, ‖d‖² = Σ (dᵢ/Dᵢ)².
+/// In which units the distance of two points is measured, ‖d‖² = Σ (dᵢ/Dᵢ)² or |M⁻¹ d|².
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -30,6 +31,10 @@ pub enum VariableScaling {
     Unit,
     /// Given typical sizes Dᵢ > 0 of the variables.
     Typical(Vector),
+    /// ‖d‖ = |M⁻¹ d| for a regular n × n matrix M. The run takes the course that it would take in the coordinates β of
+    /// x = M β: a direction in which Θ hardly changes is made short if M stretches it, and the first subproblems already
+    /// reach along it. Points, cuts, bounds, history and certificate stay in x.
+    Linear(Matrix),
 }
 
 /// Which accuracy the engine asks of the oracle.
@@ -191,6 +196,9 @@ impl BundleTrustConfig {
         if let VariableScaling::Typical(sizes) = &self.scaling {
             let valid = sizes.iter().all(|size| *size > 0.0 && size.is_finite());
             check_setting("scaling.typical", sizes.as_slice(), "> 0, finite", valid)?;
+        }
+        if let VariableScaling::Linear(matrix) = &self.scaling {
+            Coordinates::try_from(matrix.clone())?;
         }
         self.curved_model.iter().try_for_each(CurvedModelConfig::validate)?;
         self.exploration.iter().try_for_each(ExplorationConfig::validate)

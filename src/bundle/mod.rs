@@ -14,6 +14,7 @@
 mod acceptance;
 mod builder;
 mod config;
+mod coordinates;
 pub(crate) mod cut;
 mod finish;
 pub(crate) mod norm;

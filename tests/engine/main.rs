@@ -10,7 +10,7 @@ mod evaluation_counts;
 mod feasibility;
 mod generic_use;
 mod inexact_oracle;
+mod linear_scaling;
 mod proposers;
-mod reparametrized;
 mod restart;
 mod terminations;

@@ -5,8 +5,8 @@ use crate::commands::failure::Failure;
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
 use crate::commands::optimize::stages::MeshStage;
 use nonsmooth::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, NonsmoothObjective, Observer,
-    Reparametrized, Report, Vector,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, Observer, Report,
+    VariableScaling, Vector,
 };
 use scene_file::AccuracyName;
 use std::ops::ControlFlow;
@@ -63,21 +63,19 @@ pub fn run_on_mesh(
         first_step: Some(first_step),
         bundle_size: optimizer.bundle_size,
         accuracy,
+        scaling: VariableScaling::Linear(mean_height_coordinates(&initial_controls, first_step)),
         ..BundleTrustConfig::default()
     };
     let label = stage.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
-    let matrix = mean_height_coordinates(&initial_controls, first_step);
-    let set = objective.solver().problem().admissible.polyhedron();
-    let set = Reparametrized::new(&objective, matrix.clone())?.transformed_set(set)?;
     let journaled = folder.map(|folder| folder.journaled(&objective, stage.name.as_deref())).transpose()?;
     let replayed = journaled.as_ref().map_or(0, Journaled::held);
     let progress = Progress::new(&label, config.max_evaluations, time_limit, replayed, status.clone());
-    let method = BundleTrust::new(config)?.constraints(set).observer(progress);
+    let set = objective.solver().problem().admissible.polyhedron().clone();
+    let mut method = BundleTrust::new(config)?.constraints(set).observer(progress);
     let report = match &journaled {
-        None => minimize(method, &Reparametrized::new(&objective, matrix)?, &initial_controls)?,
+        None => method.minimize(&objective, initial_controls.clone())?,
         Some(journaled) => {
-            let method = method.observer(warner(journaled));
-            let mut report = minimize(method, &Reparametrized::new(journaled, matrix)?, &initial_controls)?;
+            let mut report = method.observer(warner(journaled)).minimize(journaled, initial_controls.clone())?;
             journaled.complete(&mut report);
             report
         }
@@ -97,17 +95,6 @@ fn warner<O>(journaled: &Journaled<O>) -> impl Observer {
         said = warnings.len();
         ControlFlow::Continue(())
     }
-}
-
-/// Runs the optimizer; the solution is in the original coordinates.
-fn minimize<O: NonsmoothObjective>(
-    mut method: BundleTrust<'_>,
-    scaled: &Reparametrized<O>,
-    initial_controls: &Vector,
-) -> Result<Report, Failure> {
-    let mut report = method.minimize(scaled, scaled.transformed(initial_controls))?;
-    report.solution = scaled.original(&report.solution);
-    Ok(report)
 }
 
 /// Half of the mean distance between the starting surface and its counterpart: the length on which contact changes, mm. A

@@ -10,8 +10,8 @@ use crate::scaling::SceneName;
 use contact::contact_shape::ContactWarmStart;
 use contact::cost::PressureMeasure;
 use nonsmooth::{
-    Accuracy, AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Cost, NonsmoothObjective, OracleError,
-    Reparametrized, Request, StateSolver, Vector,
+    Accuracy, AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Cost, NonsmoothObjective, OracleError, Request,
+    StateSolver, VariableScaling, Vector,
 };
 use problems::commands::{Failure, first_step, mean_height_coordinates};
 use serde::Serialize;
@@ -192,25 +192,23 @@ fn minimize(
 ) -> Result<Run, Failure> {
     let clock = Instant::now();
     let first_step = first_step(objective, &start);
-    let config =
-        BundleTrustConfig { max_evaluations, accuracy, first_step: Some(first_step), ..BundleTrustConfig::default() };
+    let config = BundleTrustConfig {
+        max_evaluations,
+        accuracy,
+        first_step: Some(first_step),
+        scaling: VariableScaling::Linear(mean_height_coordinates(&start, first_step)),
+        ..BundleTrustConfig::default()
+    };
     let metered = Metered { objective, products: RefCell::default() };
-    let scaled = Reparametrized::new(&metered, mean_height_coordinates(&start, first_step))?;
-    let set = objective.solver().problem().admissible.polyhedron();
-    let report = BundleTrust::new(config)?
-        .constraints(scaled.transformed_set(set)?)
-        .minimize(&scaled, scaled.transformed(&start))?;
+    let set = objective.solver().problem().admissible.polyhedron().clone();
+    let report = BundleTrust::new(config)?.constraints(set).minimize(&metered, start)?;
     let products = metered.products.borrow();
     let mut best = f64::INFINITY;
     let milestones = report.history.iter().zip(products.iter()).enumerate().map(|(index, (record, &products))| {
         best = best.min(record.center_value);
         Milestone { evaluations: index + 1, work: products as f64, seconds: record.seconds, best }
     });
-    Ok(Run {
-        controls: scaled.original(&report.solution),
-        history: milestones.collect(),
-        seconds: clock.elapsed().as_secs_f64(),
-    })
+    Ok(Run { controls: report.solution, history: milestones.collect(), seconds: clock.elapsed().as_secs_f64() })
 }
 
 fn course(strategy: &'static str, objective: &Objective, run: &Run, passed: Milestone) -> Result<Course, Failure> {

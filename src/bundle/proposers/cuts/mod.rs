@@ -15,7 +15,7 @@ use super::subproblem;
 use crate::Vector;
 use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::state::State;
-use crate::qp::{Metric, QpSolution};
+use crate::qp::QpSolution;
 use crate::report::Origin;
 use model::Model;
 
@@ -26,8 +26,8 @@ pub(crate) struct PlainCuts;
 impl Proposer for PlainCuts {
     fn propose(&mut self, at: &mut Position<'_>, _proposed: &[Proposal]) -> Result<Option<Proposal>, SubproblemError> {
         let (state, model) = (at.state, at.model);
-        let diagonal = state.norm.weights() * state.weight;
-        let solution = subproblem::solve(at.solver, at.set, state, Metric::Diagonal(&diagonal), model.cuts())?;
+        let quadratic = state.norm.weighted(state.weight);
+        let solution = subproblem::solve(at.solver, at.set, state, quadratic.metric(), model.cuts())?;
         let proposal = interpret(solution, state, model);
         // Every solution has −v ≥ u‖d‖²; one that promises less is not a solution.
         let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
