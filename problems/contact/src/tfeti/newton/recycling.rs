@@ -12,9 +12,8 @@
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::iterate::Iterate;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::dual::{Iterate, TornContact};
+use crate::tfeti::torn::RowVector;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 

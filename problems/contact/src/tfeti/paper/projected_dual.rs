@@ -7,10 +7,8 @@
 use crate::error::ContactError;
 use crate::linear::vector::add_scaled;
 use crate::qp::{LinearEqualities, SymmetricOperator};
-use crate::tfeti::dual::coarse_space::CoarseSpace;
-use crate::tfeti::dual::operator::DualOperator;
-use crate::tfeti::dual::preconditioner::Preconditioner;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::dual::{CoarseSpace, DualOperator, Preconditioner};
+use crate::tfeti::torn::RowVector;
 use faer::linalg::solvers::Llt;
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, MatMut, Par, Side};
