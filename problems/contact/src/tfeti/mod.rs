@@ -21,16 +21,11 @@ mod solver;
 mod torn;
 
 pub use contact_solver::{DualMethod, TotalFeti};
-pub use dual::contact::TornContact;
-pub use dual::iterate::{Iterate, TornSolution};
-pub use dual::operator::{DualOperator, Precision};
-pub use dual::preconditioner::Preconditioner;
-pub use newton::settings::{NewtonSettings, Recycling};
-pub use paper::successive_approximations::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
+pub use dual::{DualOperator, Iterate, Precision, Preconditioner, TornContact, TornSolution};
+pub use newton::{NewtonSettings, Recycling};
+pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
 pub use solver::{TornSolver, TornState};
-pub use torn::communication::{Communication, InProcess};
-pub use torn::constraints::Constraints;
-pub use torn::factors::{SubdomainFactors, SubdomainRigid};
-pub use torn::model::{TornModel, TornSystem};
-pub use torn::preconditioner_kind::PreconditionerKind;
-pub use torn::vectors::{RowVector, TornVector};
+pub use torn::{
+    Communication, Constraints, InProcess, PreconditionerKind, RowVector, SubdomainFactors, SubdomainRigid, TornModel,
+    TornSystem, TornVector,
+};

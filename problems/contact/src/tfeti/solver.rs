@@ -9,18 +9,12 @@ use crate::equilibrium::{
 };
 use crate::error::ContactError;
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::tfeti::derivative::shape_derivative::height_sensitivities;
-use crate::tfeti::dual::coarse_space::CoarseSpace;
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::iterate::TornSolution;
-use crate::tfeti::dual::operator::{DualOperator, Precision};
-use crate::tfeti::dual::preconditioner::Preconditioner;
-use crate::tfeti::newton::settings::NewtonSettings;
-use crate::tfeti::torn::communication::{Communication, InProcess};
-use crate::tfeti::torn::model::{TornModel, TornSystem};
-use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
-use crate::tfeti::torn::recovery::whole_bodies;
-use crate::tfeti::torn::vectors::TornVector;
+use crate::tfeti::derivative::height_sensitivities;
+use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
+use crate::tfeti::newton::NewtonSettings;
+use crate::tfeti::torn::{
+    Communication, InProcess, PreconditionerKind, TornModel, TornSystem, TornVector, whole_bodies,
+};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -160,11 +154,13 @@ impl TornSolver {
         let (solution, returned) = if load > 0.0 { method(&contact)? } else { (contact.at_rest(), T::default()) };
         seconds.newton = clock.lap();
         Stage::Recovery.enter();
-        let displacement = contact.operator.displacement(&solution.iterate.multipliers, &solution.iterate.amplitudes);
+        let (operator, iterate) = (&contact.operator, &solution.iterate);
+        let loaded = operator.loaded_displacement();
+        let displacement = operator.displacement(loaded, &iterate.multipliers, &iterate.amplitudes);
         let forces = forces(&contact, &solution);
         let work = Work {
             newton_steps: solution.steps,
-            dual_operator_applications: contact.operator.applications(),
+            dual_operator_applications: operator.applications(),
             factorizations: system.factorizations,
             ..Work::default()
         };
@@ -198,7 +194,7 @@ impl TornSolver {
     }
 
     fn check(&self, state: &TornState) -> Result<(), ContactError> {
-        let (expected, found) = (self.model.dof_count, state.displacement.len());
+        let (expected, found) = (self.model.dof_count, state.displacement.0.len());
         if expected != found || state.blocks.iter().any(|block| block.grid != self.problem().grid) {
             return Err(ContactError::ForeignState { what: "torn dofs", expected, found });
         }
@@ -264,7 +260,7 @@ impl TornSolver {
         let mut energy = 0.0;
         for (subdomain, part) in self.model.subdomains.iter().zip(&state.system.parts) {
             let Some(factors) = &part.factors else { continue };
-            let u = &state.displacement[subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count()];
+            let u = &state.displacement.0[subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count()];
             pattern.multiply(&factors.stiffness, u, &mut image);
             energy += 0.5 * dot(u, &image);
         }
@@ -315,19 +311,9 @@ impl TornState {
         &self.solution.iterate.multipliers
     }
 
-    /// The bodies' undeformed geometry, lower first.
-    pub fn blocks(&self) -> &[Block] {
-        &self.blocks
-    }
-
     /// Displacements over the torn dofs of this process (zero elsewhere), mm.
     pub fn displacement(&self) -> &[f64] {
-        &self.displacement
-    }
-
-    /// Derivatives selected at the contact nodes.
-    pub fn linearizations(&self) -> &[Linearization] {
-        &self.solution.linearizations
+        &self.displacement.0
     }
 
     /// Force that residuals are relative to, N.

@@ -13,11 +13,8 @@ use crate::error::ContactError;
 use crate::linear::gmres::{PATIENCE, gmres};
 use crate::linear::pcg::pcg;
 use crate::linear::vector::{add_scaled, norm};
-use crate::tfeti::dual::active_rows::Friction;
-use crate::tfeti::dual::active_set::ActiveSet;
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::operator::Precision;
-use crate::tfeti::torn::vectors::{RowVector, TornVector};
+use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
+use crate::tfeti::torn::{RowVector, TornVector};
 
 /// The adjoint state.
 #[derive(Debug, Clone)]
@@ -172,9 +169,10 @@ impl AdjointSystem<'_> {
 
     /// The adjoint state of solved unknowns: amplitudes b, then Q q and p.
     fn recover(&self, iterate: &AdjointIterate) -> TornAdjoint {
+        let operator = &self.contact.operator;
         let amplitudes = self.active.adjoint_amplitudes(&iterate.rest);
         let multipliers = self.active.rows.test(&iterate.unknowns);
-        let displacement = self.contact.operator.unloaded_displacement(&multipliers, &amplitudes);
+        let displacement = operator.displacement(operator.model.zeros(), &multipliers, &amplitudes);
         TornAdjoint { displacement, multipliers }
     }
 }

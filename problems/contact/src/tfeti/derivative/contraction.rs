@@ -11,9 +11,7 @@ use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::pcg::pcg;
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::tfeti::dual::active_rows::Friction;
-use crate::tfeti::dual::active_set::ActiveSet;
-use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::dual::{ActiveSet, Friction, TornContact};
 
 /// Arnoldi steps.
 const MAX_STEPS: usize = 12;

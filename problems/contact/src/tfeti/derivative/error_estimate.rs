@@ -10,9 +10,8 @@
 use crate::equilibrium::law;
 use crate::linear::vector::dot;
 use crate::tfeti::derivative::adjoint::TornAdjoint;
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::iterate::Iterate;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::dual::{Iterate, TornContact};
+use crate::tfeti::torn::RowVector;
 
 impl TornContact<'_> {
     /// Terms of the error of J, one per row of B_E and one per contact node; `direction` is j.

@@ -6,7 +6,9 @@
 //! derivatives of the state ─ contraction: spectral radius of Φ′
 //! ```
 
-pub mod adjoint;
-pub mod contraction;
-pub mod error_estimate;
-pub mod shape_derivative;
+mod adjoint;
+mod contraction;
+mod error_estimate;
+mod shape_derivative;
+
+pub use shape_derivative::height_sensitivities;

@@ -7,8 +7,7 @@
 use crate::body::mesh::Block;
 use crate::body::shape_sensitivity::column_sensitivities;
 use crate::tfeti::derivative::adjoint::TornAdjoint;
-use crate::tfeti::torn::model::{TornModel, TornSystem};
-use crate::tfeti::torn::vectors::TornVector;
+use crate::tfeti::torn::{TornModel, TornSystem, TornVector};
 use rayon::prelude::*;
 
 /// ∂J/∂F per column of nodes; `lower` is the lower body, `displacement` is u.
@@ -25,7 +24,7 @@ pub fn height_sensitivities(
         .filter(|(subdomain, part)| subdomain.body == 0 && part.factors.is_some())
         .map(|(subdomain, _)| {
             let dofs = subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count();
-            let (u, p) = (&displacement[dofs.clone()], &adjoint.displacement[dofs]);
+            let (u, p) = (&displacement.0[dofs.clone()], &adjoint.displacement.0[dofs]);
             column_sensitivities(lower, &subdomain.place, &scene.material, &scene.loads, u, p)
         })
         .collect();

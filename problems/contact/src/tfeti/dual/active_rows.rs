@@ -10,7 +10,7 @@
 
 use crate::equilibrium::ContactBoundary;
 use crate::equilibrium::law::Linearization;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::torn::RowVector;
 
 /// What bounds the traction of a slip node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

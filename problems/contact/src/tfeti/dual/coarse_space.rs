@@ -5,8 +5,7 @@
 //! ```
 
 use crate::linear::csr::Csr;
-use crate::tfeti::torn::model::{TornModel, TornSystem};
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::torn::{RowVector, TornModel, TornSystem};
 use faer::Mat;
 use rayon::prelude::*;
 

@@ -16,7 +16,7 @@ use crate::tfeti::dual::coarse_space::CoarseSpace;
 use crate::tfeti::dual::iterate::{Iterate, TornSolution};
 use crate::tfeti::dual::operator::{DualOperator, Precision};
 use crate::tfeti::dual::preconditioner::Preconditioner;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::torn::RowVector;
 
 /// Everything that a method works with, for one shape.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! What an iteration for the multipliers moves, and what it ends with.
 
 use crate::equilibrium::law::Linearization;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::torn::RowVector;
 
 /// Multipliers with their image under F, and what follows from them.
 #[derive(Debug, Clone)]

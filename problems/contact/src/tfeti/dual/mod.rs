@@ -7,10 +7,18 @@
 //! derivatives ─ active rows: T, Q ─ active set: (T, Q) with its projector P
 //! ```
 
-pub mod active_rows;
-pub mod active_set;
-pub mod coarse_space;
-pub mod contact;
-pub mod iterate;
-pub mod operator;
-pub mod preconditioner;
+mod active_rows;
+mod active_set;
+mod coarse_space;
+mod contact;
+mod iterate;
+mod operator;
+mod preconditioner;
+
+pub use active_rows::{ActiveRows, Friction};
+pub use active_set::ActiveSet;
+pub use coarse_space::CoarseSpace;
+pub use contact::TornContact;
+pub use iterate::{Iterate, TornSolution};
+pub use operator::{DualOperator, Precision};
+pub use preconditioner::Preconditioner;

@@ -1,9 +1,7 @@
 //! F = B K⁺ Bᵀ and the products around it; subdomains in parallel, sums in a fixed order.
 
 use crate::linear::vector::add_scaled;
-use crate::tfeti::torn::factors::SubdomainFactors;
-use crate::tfeti::torn::model::{TornModel, TornSystem};
-use crate::tfeti::torn::vectors::{RowVector, TornVector};
+use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, TornVector};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -28,18 +26,17 @@ pub struct DualOperator<'a> {
     /// The factored subdomains.
     pub system: &'a TornSystem,
     applications: AtomicUsize,
-    single_applications: AtomicUsize,
 }
 
 impl<'a> DualOperator<'a> {
     /// The operator of a factored system.
     pub fn new(model: &'a TornModel, system: &'a TornSystem) -> Self {
-        Self { model, system, applications: AtomicUsize::new(0), single_applications: AtomicUsize::new(0) }
+        Self { model, system, applications: AtomicUsize::new(0) }
     }
 
     /// Products F·x so far, in either precision.
     pub fn applications(&self) -> usize {
-        self.applications.load(Ordering::Relaxed) + self.single_applications()
+        self.applications.load(Ordering::Relaxed)
     }
 
     /// F λ.
@@ -60,7 +57,7 @@ impl<'a> DualOperator<'a> {
 
     /// F λ with the subdomain solves in single precision: relative error near 1e-6, half the memory traffic.
     fn apply_single(&self, multipliers: &RowVector) -> RowVector {
-        self.single_applications.fetch_add(1, Ordering::Relaxed);
+        self.applications.fetch_add(1, Ordering::Relaxed);
         let mut torn = self.scatter(multipliers);
         self.for_each_subdomain(&mut torn, |factors, part| {
             // Brought to size one, so that no unit system leaves the range of single precision.
@@ -76,22 +73,17 @@ impl<'a> DualOperator<'a> {
         self.gather(&torn)
     }
 
-    /// Products with F in single precision so far.
-    pub fn single_applications(&self) -> usize {
-        self.single_applications.load(Ordering::Relaxed)
-    }
-
     /// Bᵀ λ.
     fn scatter(&self, multipliers: &RowVector) -> TornVector {
         let mut torn = self.model.zeros();
-        self.model.constraints.transposed.multiply(multipliers, &mut torn);
+        self.model.constraints.transposed.multiply(multipliers, &mut torn.0);
         torn
     }
 
     /// B u of a torn displacement, summed over all processes.
     pub fn gather(&self, torn: &TornVector) -> RowVector {
         let mut rows = self.model.constraints.zeros();
-        self.model.constraints.rows.multiply(torn, &mut rows);
+        self.model.constraints.rows.multiply(&torn.0, &mut rows);
         self.model.communication.exchange(&mut rows);
         rows
     }
@@ -104,7 +96,7 @@ impl<'a> DualOperator<'a> {
     /// Works on the parts of a torn vector that belong to this process and clears the others.
     fn for_each_subdomain(&self, torn: &mut TornVector, work: impl Fn(&SubdomainFactors, &mut [f64]) + Sync) {
         let size = self.model.pattern.pattern.dimension();
-        torn.par_chunks_mut(size).zip(&self.system.parts).for_each(|(values, part)| match &part.factors {
+        torn.0.par_chunks_mut(size).zip(&self.system.parts).for_each(|(values, part)| match &part.factors {
             Some(factors) => work(factors, values),
             None => values.fill(0.0),
         });
@@ -121,36 +113,18 @@ impl<'a> DualOperator<'a> {
         torn
     }
 
-    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere; method.md (4.2).
-    pub fn displacement(&self, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
-        self.displacement_under(multipliers, amplitudes, |factors| &factors.loaded_displacement)
-    }
-
-    /// −K⁺Bᵀλ + R a: as [`Self::displacement`], without the load.
-    pub fn unloaded_displacement(&self, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
-        self.displacement_under(multipliers, amplitudes, |_| &[])
-    }
-
-    /// The displacement under loads whose part K⁺f is given per subdomain, empty for no load.
-    fn displacement_under(
-        &self,
-        multipliers: &RowVector,
-        amplitudes: &[f64],
-        loaded: impl Fn(&SubdomainFactors) -> &[f64] + Sync,
-    ) -> TornVector {
+    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere, from `loaded` = K⁺ f; method.md (4.2).
+    pub fn displacement(&self, mut loaded: TornVector, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
         let mut torn = self.scatter(multipliers);
         self.solve_subdomains(&mut torn);
+        add_scaled(&mut loaded.0, -1.0, &torn.0);
         let size = self.model.pattern.pattern.dimension();
-        torn.par_chunks_mut(size).zip(&self.system.parts).enumerate().for_each(|(index, (values, part))| {
-            let Some(factors) = &part.factors else { return };
-            values.iter_mut().for_each(|entry| *entry = -*entry);
-            if !loaded(factors).is_empty() {
-                add_scaled(values, 1.0, loaded(factors));
-            }
-            for (mode, amplitude) in part.rigid.modes.iter().zip(&amplitudes[6 * index..]) {
+        let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).zip(amplitudes.par_chunks(6));
+        parts.filter(|((_, part), _)| part.factors.is_some()).for_each(|((values, part), amplitudes)| {
+            for (mode, amplitude) in part.rigid.modes.iter().zip(amplitudes) {
                 add_scaled(values, *amplitude, mode);
             }
         });
-        torn
+        loaded
     }
 }

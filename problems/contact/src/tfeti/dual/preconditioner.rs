@@ -5,10 +5,7 @@
 //! lumped:     B_D K_BB B_Dᵀ
 //! ```
 
-use crate::tfeti::torn::factors::SubdomainFactors;
-use crate::tfeti::torn::model::{TornModel, TornSystem};
-use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::torn::{PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornSystem};
 use rayon::prelude::*;
 
 /// A preconditioner of one factored system.
@@ -35,19 +32,17 @@ impl<'a> Preconditioner<'a> {
         }
         let model = self.model;
         let mut torn = model.zeros();
-        model.constraints.weighted_transposed.multiply(residual, &mut torn);
+        model.constraints.weighted_transposed.multiply(residual, &mut torn.0);
         let size = model.pattern.pattern.dimension();
-        torn.par_chunks_mut(size).zip(&self.system.parts).enumerate().for_each(|(index, (values, part))| {
-            match &part.factors {
-                Some(factors) if values.iter().any(|entry| *entry != 0.0) => {
-                    self.apply_subdomain(index, factors, values)
-                }
-                Some(_) => {}
-                None => values.fill(0.0),
-            }
+        torn.0.par_chunks_mut(size).zip(&self.system.parts).enumerate().for_each(|(index, (values, part))| match &part
+            .factors
+        {
+            Some(factors) if values.iter().any(|entry| *entry != 0.0) => self.apply_subdomain(index, factors, values),
+            Some(_) => {}
+            None => values.fill(0.0),
         });
         let mut result = model.constraints.zeros();
-        model.constraints.weighted.multiply(&torn, &mut result);
+        model.constraints.weighted.multiply(&torn.0, &mut result);
         model.communication.exchange(&mut result);
         result
     }

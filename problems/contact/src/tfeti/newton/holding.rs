@@ -8,10 +8,7 @@
 
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
-use crate::tfeti::dual::active_rows::Friction;
-use crate::tfeti::dual::active_set::ActiveSet;
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::iterate::Iterate;
+use crate::tfeti::dual::{ActiveSet, Friction, Iterate, TornContact};
 
 /// Nodes closed first when an active set leaves a motion free.
 const FIRST_CLOSED: usize = 3;

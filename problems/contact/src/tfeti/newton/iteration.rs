@@ -6,9 +6,7 @@
 
 use crate::equilibrium::Stage;
 use crate::error::ContactError;
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::iterate::{Iterate, TornSolution};
-use crate::tfeti::dual::operator::Precision;
+use crate::tfeti::dual::{Iterate, Precision, TornContact, TornSolution};
 use crate::tfeti::newton::linear_solve::LinearAccuracy;
 use crate::tfeti::newton::recycling::Recycled;
 use crate::tfeti::newton::settings::NewtonSettings;
@@ -24,15 +22,6 @@ const MAX_PRODUCTS: usize = 20_000;
 const MAX_HALVINGS: usize = 6;
 /// Decrease asked of a step of length one.
 const SUFFICIENT_DECREASE: f64 = 1e-4;
-
-/// How accurately the linear systems of Newton steps are solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Steps {
-    /// As accurately as the outer residual deserves.
-    Inexact,
-    /// As accurately as rounding allows.
-    Exact,
-}
 
 impl TornContact<'_> {
     /// Solves from given multipliers (over all rows) of a similar problem, or from the bonded problem. Where inexact steps do not converge, a
@@ -51,14 +40,15 @@ impl TornContact<'_> {
             residual = self.descend(&mut iterate, &mut recycled, residual, settings, &mut history)?;
         }
         if residual > settings.tolerance || self.precision == Precision::Double {
-            iterate = self.newton_steps(iterate, residual, Steps::Inexact, settings, &mut history)?;
+            let deserved = |target| LinearAccuracy::to(target, settings.max_krylov);
+            iterate = self.newton_steps(iterate, residual, deserved, settings, &mut history)?;
             residual = self.replace_image(&mut iterate);
         }
         if residual.is_nan() || residual > settings.acceptable {
             let exact = self.bonded(LinearAccuracy::EXACT, None)?;
             let start = self.residual(&exact);
             history.push(start);
-            iterate = self.newton_steps(exact, start, Steps::Exact, settings, &mut history)?;
+            iterate = self.newton_steps(exact, start, |_| LinearAccuracy::EXACT, settings, &mut history)?;
             residual = self.replace_image(&mut iterate);
         }
         if residual.is_nan() || residual > settings.acceptable {
@@ -67,12 +57,13 @@ impl TornContact<'_> {
         Ok(self.solution(iterate, residual, history.len() - 1))
     }
 
-    /// Newton steps until the residual is small, rounding stops them, or they lead nowhere.
+    /// Newton steps until the residual is small, rounding stops them, or they lead nowhere. `accuracy`: of the linear solves,
+    /// for the residual (mm) that the outer residual deserves.
     fn newton_steps(
         &self,
         mut iterate: Iterate,
         mut residual: f64,
-        steps: Steps,
+        accuracy: impl Fn(f64) -> LinearAccuracy,
         settings: &NewtonSettings,
         history: &mut Vec<f64>,
     ) -> Result<Iterate, ContactError> {
@@ -87,12 +78,8 @@ impl TornContact<'_> {
                 break;
             }
             let target = forcing.max(0.3 * settings.tolerance / residual) * residual * self.load / self.stiffness;
-            let accuracy = match steps {
-                Steps::Inexact => LinearAccuracy::to(target, settings.max_krylov),
-                Steps::Exact => LinearAccuracy::EXACT,
-            };
             let active = self.held_at(&iterate)?;
-            let candidate = self.linear_solve(&active, &iterate.multipliers, accuracy, None)?;
+            let candidate = self.linear_solve(&active, &iterate.multipliers, accuracy(target), None)?;
             let (next, length) = self.search(iterate, candidate, residual);
             iterate = next;
             let previous = residual;

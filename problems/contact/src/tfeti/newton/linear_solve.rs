@@ -7,12 +7,9 @@
 use crate::error::ContactError;
 use crate::linear::gmres::{PATIENCE, gmres};
 use crate::linear::vector::{add_scaled, norm};
-use crate::tfeti::dual::active_rows::ActiveRows;
-use crate::tfeti::dual::active_set::ActiveSet;
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::iterate::Iterate;
+use crate::tfeti::dual::{ActiveRows, ActiveSet, Iterate, TornContact};
 use crate::tfeti::newton::recycling::{Direction, Recycled};
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::torn::RowVector;
 
 /// How accurately a reduced linear system is solved.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,12 +6,14 @@
 //! iterate ─ derivatives ─ holding: an active set that holds every rigid motion
 //! ```
 
-pub mod descent;
-pub mod holding;
-pub mod iteration;
-pub mod linear_solve;
-pub mod recycling;
-pub mod rounding;
-pub mod settings;
-pub mod stagnation;
-pub mod start;
+mod descent;
+mod holding;
+mod iteration;
+mod linear_solve;
+mod recycling;
+mod rounding;
+mod settings;
+mod stagnation;
+mod start;
+
+pub use settings::{NewtonSettings, Recycling};

@@ -13,9 +13,8 @@ use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
 use crate::linear::dense::DenseCholesky;
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::iterate::Iterate;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::dual::{Iterate, TornContact};
+use crate::tfeti::torn::RowVector;
 use faer::Mat;
 
 /// Share of the residual that a round may leave for another one to be worth its dense algebra.

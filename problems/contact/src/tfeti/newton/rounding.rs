@@ -6,7 +6,7 @@
 //! ```
 
 use crate::error::ContactError;
-use crate::tfeti::dual::contact::TornContact;
+use crate::tfeti::dual::TornContact;
 use crate::tfeti::newton::settings::NewtonSettings;
 
 /// Times its rounding floor that a residual is seen to reach.

@@ -1,6 +1,6 @@
 //! Settings of Newton's method on the dual problem.
 
-use crate::tfeti::dual::coarse_space::CoarseSpace;
+use crate::tfeti::dual::CoarseSpace;
 
 /// When to stop, and whether directions are recycled.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,12 +7,10 @@
 
 use crate::equilibrium::law::{Linearization, tangential_norm};
 use crate::error::ContactError;
-use crate::tfeti::dual::active_rows::Friction;
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::iterate::Iterate;
+use crate::tfeti::dual::{Friction, Iterate, TornContact};
 use crate::tfeti::newton::linear_solve::LinearAccuracy;
 use crate::tfeti::newton::recycling::Recycled;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::torn::RowVector;
 
 /// c·gap over load up to which a node may start closed.
 const REACH: f64 = 100.0;

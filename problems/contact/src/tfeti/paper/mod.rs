@@ -4,5 +4,7 @@
 //! slip bounds Ψ ─▶ Tresca problem: dual QP of the projected dual ─ SMALSE-M, MPGP (crate::qp) ─▶ λ ─▶ Ψ = 𝓕 λ_N
 //! ```
 
-pub mod projected_dual;
-pub mod successive_approximations;
+mod projected_dual;
+mod successive_approximations;
+
+pub use successive_approximations::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};

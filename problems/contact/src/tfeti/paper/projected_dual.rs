@@ -8,10 +8,8 @@ use crate::error::ContactError;
 use crate::linear::dense::DenseCholesky;
 use crate::linear::vector::add_scaled;
 use crate::qp::{LinearEqualities, SymmetricOperator};
-use crate::tfeti::dual::coarse_space::CoarseSpace;
-use crate::tfeti::dual::operator::DualOperator;
-use crate::tfeti::dual::preconditioner::Preconditioner;
-use crate::tfeti::torn::vectors::RowVector;
+use crate::tfeti::dual::{CoarseSpace, DualOperator, Preconditioner};
+use crate::tfeti::torn::RowVector;
 
 /// Rows C and right side L⁻¹e of the equilibrium of all subdomains.
 #[derive(Debug)]

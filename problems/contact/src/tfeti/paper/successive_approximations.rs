@@ -16,8 +16,7 @@ use crate::qp::{
     Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
     SmalseSolution, WarmStart,
 };
-use crate::tfeti::dual::contact::TornContact;
-use crate::tfeti::dual::iterate::{Iterate, TornSolution};
+use crate::tfeti::dual::{Iterate, TornContact, TornSolution};
 use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
 
 /// When to stop, and how the dual QPs are solved.

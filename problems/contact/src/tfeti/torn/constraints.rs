@@ -111,13 +111,6 @@ impl Constraints {
         Ok(RowVector::new(values.to_vec(), self.equality_count))
     }
 
-    /// The vector whose contact rows are given and whose other rows are zero.
-    pub fn from_contact(&self, contact: &[f64]) -> RowVector {
-        let mut rows = self.zeros();
-        rows.contact_mut().copy_from_slice(contact);
-        rows
-    }
-
     /// ν of the node of every packed contact row.
     pub fn contact_scales<'a>(&'a self, boundary: &'a ContactBoundary) -> impl Iterator<Item = f64> + 'a {
         let nodes = boundary.points.iter().zip(&self.normalisation);

@@ -5,11 +5,19 @@
 //! torn displacement ─ recovery ──▶ whole bodies
 //! ```
 
-pub mod communication;
-pub mod constraints;
-pub mod factors;
-pub mod model;
-pub mod preconditioner_kind;
-pub mod recovery;
-pub mod rigid_modes;
-pub mod vectors;
+mod communication;
+mod constraints;
+mod factors;
+mod model;
+mod preconditioner_kind;
+mod recovery;
+mod rigid_modes;
+mod vectors;
+
+pub use communication::{Communication, InProcess};
+pub use constraints::Constraints;
+pub use factors::{SubdomainFactors, SubdomainRigid};
+pub use model::{TornModel, TornSystem};
+pub use preconditioner_kind::PreconditionerKind;
+pub use recovery::whole_bodies;
+pub use vectors::{RowVector, TornVector};

@@ -11,7 +11,7 @@ pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> V
     blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, torn)).collect()
 }
 
-fn whole_body(model: &TornModel, body: usize, block: &Block, torn: &TornVector) -> SolvedBody {
+fn whole_body(model: &TornModel, body: usize, block: &Block, TornVector(torn): &TornVector) -> SolvedBody {
     let grid = &block.grid;
     let owned = model.communication.owned(model.subdomains.len());
     let pieces = || model.subdomains.iter().enumerate().filter(|(_, piece)| piece.body == body);

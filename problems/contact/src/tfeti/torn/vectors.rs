@@ -11,7 +11,7 @@ pub struct RowVector {
 
 /// A vector over torn dofs, subdomain by subdomain.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TornVector(pub(crate) Vec<f64>);
+pub struct TornVector(pub Vec<f64>);
 
 impl RowVector {
     pub(crate) fn new(values: Vec<f64>, equality_count: usize) -> Self {
@@ -49,19 +49,5 @@ impl Deref for RowVector {
 impl DerefMut for RowVector {
     fn deref_mut(&mut self) -> &mut [f64] {
         &mut self.values
-    }
-}
-
-impl Deref for TornVector {
-    type Target = [f64];
-
-    fn deref(&self) -> &[f64] {
-        &self.0
-    }
-}
-
-impl DerefMut for TornVector {
-    fn deref_mut(&mut self) -> &mut [f64] {
-        &mut self.0
     }
 }
