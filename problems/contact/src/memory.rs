@@ -28,7 +28,7 @@ fn factor_values(dofs: f64) -> f64 {
 }
 
 /// Estimated bytes for a scene.
-pub fn estimate(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind) -> f64 {
+fn estimate(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind) -> f64 {
     let bodies = if scene.upper.is_some() { 2.0 } else { 1.0 };
     let nodes = |cells: [f64; 3]| cells.iter().map(|cells| cells + 1.0).product::<f64>();
     let mesh = scene.mesh.map(|cells| cells as f64);

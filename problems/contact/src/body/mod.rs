@@ -3,5 +3,5 @@
 pub mod elasticity;
 pub mod local_pattern;
 pub mod mesh;
-pub mod shape_load;
-pub mod shape_sensitivity;
+pub(crate) mod shape_load;
+pub(crate) mod shape_sensitivity;

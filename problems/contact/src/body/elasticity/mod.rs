@@ -3,7 +3,7 @@
 pub mod brick;
 pub mod hex8;
 pub mod stress;
-pub mod traction;
+pub(crate) mod traction;
 
 mod material;
 mod mean_dilatation;
