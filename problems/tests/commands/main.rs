@@ -13,6 +13,7 @@ mod contact3d;
 mod fuzz;
 mod long_runs;
 mod pages_run;
+mod pictures;
 mod pins;
 mod reports;
 mod stages;
