@@ -21,6 +21,7 @@ mod contact3d;
 mod fuzz;
 mod long_runs;
 mod pages_run;
+mod pictures;
 mod pins;
 mod recheck;
 mod reports;
