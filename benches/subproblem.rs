@@ -3,10 +3,10 @@
 //! A proximal bundle loop on a synthetic maximum of convex quadratics is run once and its QPs are recorded: one new cut per
 //! solve, the center moves now and then, the weight changes by factors. Then both solvers go through the record.
 
-#[path = "../tests/common/qps.rs"]
+#[path = "../tests/qp/qps.rs"]
 #[allow(dead_code)]
 mod qps;
-#[path = "../tests/common/reference.rs"]
+#[path = "../tests/qp/reference.rs"]
 mod reference;
 
 use std::time::{Duration, Instant};

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::bundle::config::VariableScaling;
-use crate::{InputError, Polyhedron, Vector};
+use crate::{InputError, Matrix, Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 
 /// A diagonal norm; `weights` are the wᵢ.
@@ -48,6 +48,13 @@ impl ScaledNorm {
     /// The weights wᵢ.
     pub fn weights(&self) -> &Vector {
         &self.weights
+    }
+
+    /// Adds `factor` · W to a matrix.
+    pub(crate) fn add_to(&self, matrix: &mut Matrix, factor: f64) {
+        for (i, weight) in self.weights.iter().enumerate() {
+            matrix[(i, i)] += factor * weight;
+        }
     }
 
     /// ‖d‖².

@@ -10,6 +10,7 @@ use nonsmooth::{
     Vector,
 };
 use std::cell::Cell;
+use testset::kit::jitters;
 use testset::{Family, Problem};
 
 /// Decades of the tightest answer.
@@ -44,13 +45,7 @@ impl Decades<'_> {
 
 /// A unit vector that jumps from point to point, always the same at the same point.
 fn direction(y: &Vector) -> Vector {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let entry = |y: &f64| {
-        hash = (hash ^ y.to_bits()).wrapping_mul(0x0100_0000_01b3);
-        hash ^= hash >> 29;
-        (hash >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    };
-    Vector::from_iterator(y.len(), y.iter().map(entry)).normalize()
+    Vector::from_iterator(y.len(), jitters(y.as_slice(), 0)).normalize()
 }
 
 impl NonsmoothObjective for Decades<'_> {

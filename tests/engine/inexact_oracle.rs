@@ -5,16 +5,7 @@ use nonsmooth::{
     OracleError, Request, StepKind, Termination, Vector,
 };
 use std::cell::Cell;
-
-/// A deterministic number in (−1, 1) that jumps from point to point.
-fn jitter(x: &Vector) -> f64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    for entry in x.iter() {
-        hash = (hash ^ entry.to_bits()).wrapping_mul(0x0100_0000_01b3);
-        hash ^= hash >> 29;
-    }
-    (hash >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-}
+use testset::kit::jitter;
 
 fn exact(x: &Vector) -> (f64, Vector) {
     let evaluation = cb3().evaluate(&Request::tight(x)).unwrap().into_evaluation();
@@ -24,7 +15,7 @@ fn exact(x: &Vector) -> (f64, Vector) {
 fn noisy(level: f64) -> FnObjective<impl Fn(&Vector) -> (f64, Vector)> {
     FnObjective::new(2, move |x: &Vector| {
         let (value, subgradient) = exact(x);
-        (value + level * jitter(x), subgradient)
+        (value + level * jitter(x.as_slice(), 0), subgradient)
     })
 }
 
@@ -61,7 +52,7 @@ impl NonsmoothObjective for OnDemand {
         let accuracy = request.accuracy.tolerance().max(self.floor);
         self.cost.set(self.cost.get() - accuracy.log10());
         let error_bound = accuracy * value;
-        let value = value + error_bound * jitter(request.point);
+        let value = value + error_bound * jitter(request.point.as_slice(), 0);
         Ok(Answer::Accurate(Evaluation { value, subgradient, error_bound, warm_start: () }))
     }
 }

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
-#[path = "../common/mod.rs"]
 mod common;
 
 mod accuracy_cost;
@@ -11,6 +10,7 @@ mod evaluation_counts;
 mod feasibility;
 mod generic_use;
 mod inexact_oracle;
+mod proposers;
 mod reparametrized;
 mod restart;
 mod terminations;

@@ -4,7 +4,4 @@
 
 mod documented_examples;
 mod examples;
-mod harness_example;
-#[path = "../common/pages.rs"]
-mod pages;
 mod readme_example;

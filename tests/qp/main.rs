@@ -3,7 +3,5 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 mod qp_properties;
-#[path = "../common/qps.rs"]
 mod qps;
-#[path = "../common/reference.rs"]
 mod reference;

@@ -1,10 +1,13 @@
-//! Properties of the QP solver on random problems; see `tests/common/qps.rs` for their kinds.
+//! Properties of the QP solver on random problems; see `qps.rs` for their kinds.
 
-use crate::qps::{BundleSequence, Numbers, OwnedMetric, OwnedQp, Shape, random_qp};
+use crate::qps::{self, BundleSequence, OwnedMetric, OwnedQp, Shape, random_qp};
 use crate::reference::Reference;
 use nonsmooth::qp::{EpigraphQpSolver, QpError, QpMethod, QpSolution, kkt_residual, project};
 use nonsmooth::{Matrix, Polyhedron, Vector};
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+use std::cell::Cell;
+use testset::kit::Random;
 
 /// Bound asked of every answer; found on these problems: at most 1e-14.
 const KKT: f64 = 1e-12;
@@ -75,18 +78,6 @@ proptest! {
     }
 
     #[test]
-    fn the_interior_point_method_finds_the_same_value(seed: u64, shape in shapes()) {
-        let qp = random_qp(seed, shape);
-        let solution = solve(&qp);
-        let Some(reference) = Reference::new(&qp.view()).solve(1e-11) else { return Ok(()) };
-        let other = Vector::from_column_slice(&reference[..shape.dimension]);
-        let (own, theirs) = (objective(&qp, &solution.step), objective(&qp, &other));
-        // The reference may leave the rows by 1e-11 of its own scale, at the price of their multipliers.
-        let size = 1.0 + own.abs() + theirs.abs() + metric_norm(&qp, &other).powi(2);
-        prop_assert!((own - theirs).abs() <= 1e-7 * size, "{:e} and {:e}", own, theirs);
-    }
-
-    #[test]
     fn warm_sequences_equal_cold_solves(seed in 0u64..1000, dimension in 1usize..20, rows in 0usize..20) {
         let record = BundleSequence { dimension, pieces: 12, cuts: 15, rows, solves: 40 }.record(seed);
         let mut warm = EpigraphQpSolver::new();
@@ -126,11 +117,11 @@ proptest! {
 
     #[test]
     fn clusters_of_cuts_are_solved(seed: u64, digits in 3.0..16.0f64, steep: bool) {
-        let (spread, mut numbers) = (10f64.powf(-digits), Numbers(seed));
-        let centers: Vec<Vector> = (0..5).map(|_| numbers.vector(3)).collect();
+        let (spread, mut random) = (10f64.powf(-digits), Random(seed));
+        let centers: Vec<Vector> = (0..5).map(|_| qps::vector(&mut random, 3)).collect();
         let size = |j: usize| if steep && j.is_multiple_of(3) { 1e5 } else { 1.0 };
-        let slopes = (0..80).map(|j| (&centers[j % 5] + numbers.vector(3) * spread) * size(j)).collect();
-        let offsets = (0..80).map(|_| 0.1 + spread * numbers.signed()).collect();
+        let slopes = (0..80).map(|j| (&centers[j % 5] + qps::vector(&mut random, 3) * spread) * size(j)).collect();
+        let offsets = (0..80).map(|_| 0.1 + spread * random.signed()).collect();
         prop_assert!(solve(&OwnedQp::free(1.0, slopes, offsets)).kkt_residual <= KKT);
     }
 
@@ -138,16 +129,42 @@ proptest! {
     fn a_projection_is_admissible_and_satisfies_the_obtuse_angle(seed: u64, shape in shapes()) {
         let qp = random_qp(seed, shape);
         let set = polyhedron(&qp);
-        let mut numbers = Numbers(seed);
-        let x = numbers.vector(shape.dimension) * 3.0;
+        let mut random = Random(seed);
+        let x = qps::vector(&mut random, shape.dimension) * 3.0;
         let nearest = project(&set, &x).expect("a nonempty set");
         // Absolute: a row whose terms all vanish at the nearest point has no relative scale.
         let excess = largest_excess(&qp, &nearest);
         prop_assert!(excess <= 1e-12 * (1.0 + x.amax()), "{:e}", excess);
-        let inside = project(&set, &(numbers.vector(shape.dimension))).expect("a nonempty set");
+        let inside = project(&set, &(qps::vector(&mut random, shape.dimension))).expect("a nonempty set");
         let angle = (&x - &nearest).dot(&(&inside - &nearest));
         prop_assert!(angle <= 1e-12 * (&x - &nearest).norm() * (1.0 + (&inside - &nearest).norm()), "{:e}", angle);
     }
+}
+
+/// Largest share of the problems that the reference may leave without an answer; found: PLACEHOLDER.
+const UNANSWERED: f64 = 0.1;
+
+#[test]
+fn the_interior_point_method_finds_the_same_value() {
+    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
+    let (cases, unanswered) = (config.cases, Cell::new(0_u32));
+    let result = TestRunner::new(config).run(&(any::<u64>(), shapes()), |(seed, shape)| {
+        let qp = random_qp(seed, shape);
+        let solution = solve(&qp);
+        let Some(reference) = Reference::new(&qp.view()).solve(1e-11) else {
+            unanswered.set(unanswered.get() + 1);
+            return Ok(());
+        };
+        let other = Vector::from_column_slice(&reference[..shape.dimension]);
+        let (own, theirs) = (objective(&qp, &solution.step), objective(&qp, &other));
+        // The reference may leave the rows by 1e-11 of its own scale, at the price of their multipliers.
+        let size = 1.0 + own.abs() + theirs.abs() + metric_norm(&qp, &other).powi(2);
+        prop_assert!((own - theirs).abs() <= 1e-7 * size, "{:e} and {:e}", own, theirs);
+        Ok(())
+    });
+    result.unwrap();
+    println!("the reference left {} of {cases} problems without an answer", unanswered.get());
+    assert!(f64::from(unanswered.get()) <= UNANSWERED * f64::from(cases), "{} of {cases}", unanswered.get());
 }
 
 /// max_j (g_jᵀ d − e_j) + ½ dᵀ H d.
@@ -316,9 +333,9 @@ fn a_thousand_variables_on_their_bounds_are_solved_from_cold() {
     for metric in
         [OwnedMetric::ScaledIdentity(1e-3), OwnedMetric::Diagonal(Vector::from_fn(1000, |i, _| 1.0 + i as f64))]
     {
-        let mut numbers = Numbers(5);
-        let slopes: Vec<Vector> = (0..100).map(|_| numbers.vector(1000)).collect();
-        let offsets = (0..100).map(|_| numbers.unit()).collect();
+        let mut random = Random(5);
+        let slopes: Vec<Vector> = (0..100).map(|_| qps::vector(&mut random, 1000)).collect();
+        let offsets = (0..100).map(|_| random.unit()).collect();
         let mut qp = OwnedQp::free(1.0, slopes, offsets);
         qp.metric = metric;
         (qp.lower, qp.upper) = (Vector::from_element(1000, -0.1), Vector::from_element(1000, 0.1));

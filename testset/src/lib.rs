@@ -16,6 +16,7 @@ mod approximation;
 mod dual;
 mod functions;
 mod geometry;
+pub mod kit;
 mod minimax;
 mod penalty;
 mod scalable;

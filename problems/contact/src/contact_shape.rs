@@ -68,7 +68,7 @@ enum Solution {
 }
 
 /// What restarts a solve nearby.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub enum ContactWarmStart {
     /// Multipliers of the torn problem.
     Multipliers(Vec<f64>),

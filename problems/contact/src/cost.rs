@@ -43,7 +43,7 @@ impl PressureCost {
     /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that carries
     /// this force is below it.
     ///
-    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1} (Hölder), max σ ≥ Λ/ΣA, with Λ = Σλ_N ≥ 0 in N.
+    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1}, max σ ≥ Λ/ΣA, with Λ = Σλ_N ≥ 0 in N; method.md (9.1), (9.2).
     pub fn lower_bound(&self, total_force: f64) -> f64 {
         match self.measure {
             PressureMeasure::Norm { exponent: p } => {
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn the_lower_bound_of_the_paper_s_example() {
-        // method.md section 7: (3e7)⁴/(Σ A^{4/3})³ = 1.294e16 on 12 × 12 bricks of a 100 mm square.
+        // method.md (9.1): (3e7)⁴/(Σ A^{4/3})³ = 1.294e16 on 12 × 12 bricks of a 100 mm square.
         let grid = crate::body::mesh::Grid { cells: [12, 12, 12], size: [100.0, 100.0] };
         let areas = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
         let cost = PressureCost { measure: PressureMeasure::Norm { exponent: 4.0 }, areas, dual_dimension: 169 };

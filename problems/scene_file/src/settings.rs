@@ -139,7 +139,7 @@ pub struct OutputSection {
     /// Folder for the files of a run, relative to where the program is started, made if it does not exist. Default none: nothing is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<String>,
-    /// Whether pictures are drawn into the folder, as SVG and PNG.
+    /// Whether pictures are drawn into the folder, as SVG and, by a program built with the feature `png`, as PNG.
     pub pictures: bool,
     /// Whether displacements, stresses and the contact boundary are written for ParaView.
     pub vtk: bool,

@@ -8,6 +8,7 @@ use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, SceneFile, field_table, schema};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use testset::kit;
 
 const SCENES: [&str; 6] = ["signorini", "hertz", "signorini_frictionless", "flat_punch", "tangential", "thin_layer"];
 
@@ -137,15 +138,15 @@ fn contradictions_between_fields_are_refused() {
 
 #[test]
 fn starts_of_all_forms_and_grids_from_files() {
-    let scratch = std::env::temp_dir().join(format!("nonsmooth-grid-{}", std::process::id()));
-    std::fs::create_dir_all(&scratch).unwrap();
+    let folder = kit::scratch();
+    let scratch = folder.path();
     std::fs::write(scratch.join("start.csv"), "# heights\n8.0, 9.0\n9.0, 10.0\n").unwrap();
     for (form, first, last) in [
         ("{ form = \"grid\", file = \"start.csv\" }", 8.0, 10.0),
         ("{ form = \"waves\", base = 9.0, first = 0.5, second = 0.25, period = 10.0 }", 9.25, 9.25),
     ] {
         let scene = text("hertz").replacen("{ form = \"plane\", height = 10.0 }", form, 1);
-        let case = Case::new(&SceneFile::parse(&scene, "x").unwrap(), &scratch).unwrap();
+        let case = Case::new(&SceneFile::parse(&scene, "x").unwrap(), scratch).unwrap();
         let start = case.start.unwrap();
         assert_eq!(start.len(), 36);
         assert!((start[0] - first).abs() < 1e-12 && (start[35] - last).abs() < 1e-12, "{start:?}");
@@ -154,10 +155,9 @@ fn starts_of_all_forms_and_grids_from_files() {
         std::fs::write(scratch.join("start.csv"), bad).unwrap();
         let form = "{ form = \"grid\", file = \"start.csv\" }";
         let scene = text("hertz").replacen("{ form = \"plane\", height = 10.0 }", form, 1);
-        let message = Case::new(&SceneFile::parse(&scene, "x").unwrap(), &scratch).unwrap_err().to_string();
+        let message = Case::new(&SceneFile::parse(&scene, "x").unwrap(), scratch).unwrap_err().to_string();
         assert!(message.contains(word) && message.contains("start.csv"), "{message}");
     }
-    std::fs::remove_dir_all(&scratch).unwrap();
 }
 
 /// The schema is the documentation: every field says what it means, every number its unit and its range.

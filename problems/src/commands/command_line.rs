@@ -14,8 +14,8 @@ use scene_file::{SceneFile, schema};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
-use tracing_subscriber::EnvFilter;
 use tracing_subscriber::filter::{LevelFilter, Targets};
+use tracing_subscriber::fmt::layer as log;
 use tracing_subscriber::layer::{Layer, SubscriberExt};
 use tracing_subscriber::util::SubscriberInitExt;
 
@@ -92,7 +92,7 @@ fn execute(
 /// line if stderr is a terminal.
 fn listen() -> Result<StatusLine, Failure> {
     // A program that has its own subscriber keeps it.
-    let Ok(filter) = std::env::var(EnvFilter::DEFAULT_ENV) else {
+    let Ok(filter) = std::env::var("RUST_LOG") else {
         let status = StatusLine::of_stderr();
         if status.is_visible() {
             let line = status.clone();
@@ -102,8 +102,9 @@ fn listen() -> Result<StatusLine, Failure> {
         }
         return Ok(status);
     };
-    let filter =
-        EnvFilter::try_new(&filter).map_err(|error| Failure::Input(format!("RUST_LOG = {filter}: {error}")))?;
-    let _ = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).try_init();
+    let allowed = "allowed are error, warn, info, debug, trace, off, each alone or for a part as in contact=debug, joined by commas";
+    let targets: Targets =
+        filter.parse().map_err(|error| Failure::Input(format!("RUST_LOG = {filter}: {error}; {allowed}")))?;
+    let _ = tracing_subscriber::registry().with(log().with_writer(std::io::stderr).with_filter(targets)).try_init();
     Ok(StatusLine::hidden())
 }

@@ -2,7 +2,7 @@
 
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
-use nonsmooth::{InputError, OptimizeError, OracleError};
+use nonsmooth::{InputError, JournalError, OptimizeError, OracleError};
 use std::io::{self, Write};
 use std::process::ExitCode;
 use thiserror::Error;
@@ -98,6 +98,12 @@ pub fn finish(result: Result<String, Failure>) -> ExitCode {
 
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<JournalError> for Failure {
+    fn from(error: JournalError) -> Self {
         Self::Input(error.to_string())
     }
 }

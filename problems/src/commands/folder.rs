@@ -8,7 +8,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Pixels of a PNG per point of the SVG.
+#[cfg(feature = "png")]
 const PNG_SCALE: f64 = 2.0;
+/// Said once by a program without the feature `png`.
+#[cfg(not(feature = "png"))]
+const HOW_TO_GET_PNG: &str = "pictures are written as SVG; built with --features png, the program writes PNG as well";
+
+/// Endings of the files of a picture, as the report names them.
+pub const PICTURE_ENDINGS: &str = if cfg!(feature = "png") { ".svg, .png" } else { ".svg" };
 
 /// An output folder that was found writable before the work began.
 #[derive(Debug)]
@@ -83,13 +90,21 @@ impl Folder {
         std::fs::write(&path, bytes).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
     }
 
-    /// Writes a figure as SVG and as PNG.
+    /// Writes a figure as SVG and, with the feature `png`, as PNG; without, stderr says once how to get PNG.
     ///
     /// # Errors
     /// As [`write`](Self::write); [`Failure::Computation`] if it cannot be drawn.
     pub fn draw(&self, figure: &Figure) -> Result<(), Failure> {
         self.write(&format!("{}.svg", figure.name), &figure.svg)?;
-        self.write_bytes(&format!("{}.png", figure.name), &figure.png(PNG_SCALE).map_err(Failure::computation)?)
+        #[cfg(feature = "png")]
+        self.write_bytes(&format!("{}.png", figure.name), &figure.png(PNG_SCALE).map_err(Failure::computation)?)?;
+        #[cfg(not(feature = "png"))]
+        {
+            static SAID: std::sync::Once = std::sync::Once::new();
+            // A closed stderr is no reason to fail.
+            SAID.call_once(|| drop(writeln!(std::io::stderr(), "{HOW_TO_GET_PNG}")));
+        }
+        Ok(())
     }
 
     /// Writes one file atomically: at any time it holds the old text or the new one, never a part.

@@ -1,6 +1,6 @@
 //! Mutated scene, control, grid and journal files: every one is accepted or refused with an error, none panics or hangs.
 //!
-//! `FUZZ_INPUTS=100000 cargo test --release -p problems --test fuzz -- --nocapture` runs 100 000 inputs; without the variable
+//! `FUZZ_INPUTS=100000 cargo test --release -p problems --test commands fuzz -- --nocapture` runs 100 000 inputs; without the variable
 //! a few thousand. Inputs are a function of their number alone. Nothing is solved: reading, conversion, validation, the
 //! memory estimate, and for small scenes the discrete problem with its admissible set.
 
@@ -8,18 +8,20 @@ use contact::cost::PressureCost;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::memory;
-use problems::commands::{long_run, parse_controls};
+use nonsmooth::Journal;
+use problems::commands::parse_controls;
 use scene_file::{Case, SceneFile};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use testset::kit::{self, Random};
 
 /// Inputs of an ordinary test run.
 const FEW: u64 = 3000;
 /// A scene with more contact nodes or controls than this is not made discrete.
 const SMALL: usize = 400;
 /// Longest time for one input.
-const PATIENCE: Duration = Duration::from_secs(5);
+const LONGEST: Duration = Duration::from_secs(5);
 
 /// Numbers and words that parsers and checks get wrong.
 const TOKENS: [&str; 40] = [
@@ -64,23 +66,6 @@ const TOKENS: [&str; 40] = [
     "[output]",
     "../../x",
 ];
-
-/// SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.next() % count.max(1) as u64) as usize
-    }
-}
 
 /// Splits into words, numbers, quoted names and single other characters.
 fn tokens(text: &str) -> Vec<String> {
@@ -198,8 +183,31 @@ struct Corpus {
     folder: PathBuf,
 }
 
+/// A journal with an answer, a failure and an answer that has all kinds of numbers.
+fn journal() -> String {
+    let entry = |number: usize, target: &str, answer: &str| {
+        format!(
+            "{{\"evaluation\":{number},\"point\":[100.0,99.5],\"accuracy\":1e-12,\"target\":{target},\"restarted_from\":null,\
+             \"seconds\":0.5,\"answer\":{answer}}}\n"
+        )
+    };
+    let evaluated = |value: &str| {
+        format!(
+            "{{\"evaluated\":{{\"value\":{value},\"subgradient\":[1.5,-2e-3],\"error_bound\":0.0,\"no_descent\":false,\
+             \"restart_data\":true}}}}"
+        )
+    };
+    let text = "{\"journal\":2,\"identity\":\"a scene\",\"dimension\":2}\n".to_owned()
+        + &entry(1, "null", &evaluated("4e17"))
+        + &entry(2, "3e17", "{\"failed\":\"an element is inverted\"}")
+        + &entry(3, "3e17", &evaluated("\"-inf\""));
+    assert_eq!(Journal::parse(text.as_bytes(), Path::new("journal")).unwrap().unwrap().entries.len(), 3);
+    text
+}
+
 impl Corpus {
-    fn new() -> Self {
+    /// The inputs; files go to the folder `scratch`.
+    fn new(scratch: &Path) -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
         let names = ["signorini", "hertz", "signorini_frictionless", "flat_punch", "tangential", "thin_layer"];
         let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
@@ -207,22 +215,9 @@ impl Corpus {
         let printed = scenes.iter().map(|text| SceneFile::parse(text, "x").unwrap().print().unwrap());
         scenes.extend(printed.collect::<Vec<_>>());
         let heights: Vec<String> = (0..36).map(|i| format!("{}", 100.0 + 0.125 * f64::from(i))).collect();
-        let scratch = std::env::temp_dir().join(format!("nonsmooth-fuzz-{}", std::process::id()));
-        std::fs::create_dir_all(&scratch).unwrap();
         std::fs::copy(folder.join("flat_punch.csv"), scratch.join("flat_punch.csv")).unwrap();
         let controls = format!("[{}]", heights.join(", "));
-        let answer =
-            "{\"answer\":{\"value\":4e17,\"subgradient\":[1.5,-2e-3],\"error_bound\":0.0,\"no_descent\":false}}";
-        let entry = |number: usize, outcome: &str| {
-            let point = "[100.0,99.5]";
-            format!(
-                "{{\"evaluation\":{number},\"point\":{point},\"accuracy\":1e-12,\"seconds\":0.5,\"outcome\":{outcome}}}\n"
-            )
-        };
-        let failure = "{\"failure\":\"an element is inverted\"}";
-        let journal = format!("{{\"journal\":1}}\n{}{}{}", entry(1, answer), entry(2, failure), entry(3, answer));
-        assert_eq!(long_run::parse_journal(journal.as_bytes()).unwrap().0.len(), 3);
-        Self { scenes, controls, grid: read("flat_punch.csv"), journal, folder: scratch }
+        Self { scenes, controls, grid: read("flat_punch.csv"), journal: journal(), folder: scratch.to_path_buf() }
     }
 
     /// Input `number` and whether it was accepted.
@@ -243,7 +238,7 @@ impl Corpus {
             }
             3 => {
                 let text = mutate(&self.journal, &mut random);
-                let result = catch_unwind(|| long_run::parse_journal(text.as_bytes()).is_ok());
+                let result = catch_unwind(|| Journal::parse(text.as_bytes(), Path::new("journal")).is_ok());
                 (text, result)
             }
             _ => {
@@ -258,7 +253,8 @@ impl Corpus {
 #[test]
 fn mutated_files_are_accepted_or_refused() {
     let inputs = std::env::var("FUZZ_INPUTS").map_or(FEW, |count| count.parse().expect("FUZZ_INPUTS: a number"));
-    let corpus = Corpus::new();
+    let scratch = kit::scratch();
+    let corpus = Corpus::new(scratch.path());
     for text in &corpus.scenes {
         assert!(scene(text, &corpus.folder).is_ok(), "an input is wrong before it is mutated");
     }
@@ -268,7 +264,7 @@ fn mutated_files_are_accepted_or_refused() {
         let (text, result) = corpus.try_input(number);
         let time = clock.elapsed();
         slowest = slowest.max(time);
-        assert!(time < PATIENCE, "input {number} took {time:?}:\n{text}");
+        assert!(time < LONGEST, "input {number} took {time:?}:\n{text}");
         match result {
             Ok(valid) => accepted += u64::from(valid),
             Err(_) => panic!("input {number} panicked:\n{text}"),
@@ -277,5 +273,4 @@ fn mutated_files_are_accepted_or_refused() {
     println!("{inputs} inputs: {accepted} accepted, {} refused, slowest {slowest:?}", inputs - accepted);
     // Mutations that leave nothing valid, or break nothing, would test little.
     assert!(accepted > inputs / 50 && accepted < inputs / 2, "{accepted} of {inputs} accepted");
-    std::fs::remove_dir_all(&corpus.folder).unwrap();
 }

@@ -1,59 +1,30 @@
 //! Long runs: killed, interrupted and limited runs continue to the same bits; folders that fail do not take a run along.
 
 #![cfg(unix)]
-use nonsmooth::Snapshot;
+use nonsmooth::Journal;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::path::Path;
+use std::process::{Child, Command, Output};
 use std::time::{Duration, Instant};
+use testset::kit::{self, text};
 
-/// A folder that is removed with the test.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("nonsmooth-long-{}-{name}", std::process::id()));
-        let _absent = std::fs::remove_dir_all(&path);
-        Self(path)
-    }
-
-    fn path(&self) -> &str {
-        self.0.to_str().unwrap()
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+const SIGNORINI: &str = env!("CARGO_BIN_EXE_signorini3d");
 
 fn command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_signorini3d"));
-    command.args(arguments).env_remove("RUST_LOG").stdout(Stdio::piped()).stderr(Stdio::piped());
-    command
-}
-
-fn run(arguments: &[&str]) -> Output {
-    command(arguments).output().unwrap()
-}
-
-fn json(output: &Output) -> Value {
-    let errors = String::from_utf8_lossy(&output.stderr);
-    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {errors}"))
+    kit::command(SIGNORINI, arguments)
 }
 
 fn succeeded(arguments: &[&str]) -> Value {
-    let output = run(arguments);
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    json(&output)
+    kit::json(SIGNORINI, arguments)
 }
 
 fn refused(arguments: &[&str], words: &[&str]) {
-    let output = run(arguments);
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
-    assert!(words.iter().all(|word| message.contains(word)), "{arguments:?}: {message}");
+    kit::refused(SIGNORINI, arguments, words);
+}
+
+/// What a run printed, whatever its exit status.
+fn printed(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {}", kit::errors(output)))
 }
 
 /// All that a run found, as text: numbers are printed so that different bits give different text.
@@ -94,20 +65,21 @@ const RUN: [&str; 5] = ["--mesh", "6", "--max-evaluations", "20", "--json"];
 fn killed_runs_resume_to_the_same_bits_and_lose_one_evaluation_at_most() {
     let whole = succeeded(&RUN);
     for places in [[1, 2], [4, 11], [9, 14]] {
-        let folder = Scratch::new(&format!("killed-{}", places[0]));
-        let first = [&RUN[..], &["--out", folder.path()]].concat();
-        let resume = ["--resume", folder.path(), "--json"];
+        let scratch = kit::scratch();
+        let folder = scratch.path().join("run");
+        let first = [&RUN[..], &["--out", text(&folder)]].concat();
+        let resume = ["--resume", text(&folder), "--json"];
         let mut kept = 0;
         for (arguments, evaluations) in [(&first[..], places[0]), (&resume[..], places[1])] {
             let mut child = command(arguments).env("RUST_LOG", "problems=debug").spawn().unwrap();
-            wait_for(&mut child, &folder.0, evaluations);
+            wait_for(&mut child, &folder, evaluations);
             child.kill().unwrap();
             let output = child.wait_with_output().unwrap();
-            let begun = String::from_utf8_lossy(&output.stderr).matches("evaluation begins").count();
-            let lines = journaled(&folder.0);
+            let begun = kit::errors(&output).matches("evaluation begins").count();
+            let lines = journaled(&folder);
             assert!(lines >= evaluations && kept + begun <= lines + 1, "{kept} + {begun} begun, {lines} kept");
             kept = lines;
-            assert!(!folder.0.join("report.json").exists());
+            assert!(!folder.join("report.json").exists());
         }
         let resumed = succeeded(&resume);
         assert_eq!(found(&resumed), found(&whole));
@@ -121,9 +93,10 @@ fn killed_runs_resume_to_the_same_bits_and_lose_one_evaluation_at_most() {
 fn both_kinds_of_restart_data_resume() {
     let scene = ["--mesh", "4", "--solver", "direct", "--json"];
     let whole = succeeded(&[&scene[..], &["--max-evaluations", "12"]].concat());
-    let folder = Scratch::new("direct");
-    succeeded(&[&scene[..], &["--max-evaluations", "5", "--out", folder.path()]].concat());
-    let resumed = succeeded(&["--resume", folder.path(), "--max-evaluations", "12", "--json"]);
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    succeeded(&[&scene[..], &["--max-evaluations", "5", "--out", text(&folder)]].concat());
+    let resumed = succeeded(&["--resume", text(&folder), "--max-evaluations", "12", "--json"]);
     assert_eq!(found(&resumed), found(&whole));
 }
 
@@ -131,34 +104,36 @@ fn both_kinds_of_restart_data_resume() {
 fn an_interrupted_run_reports_says_how_to_resume_and_resumes() {
     let limit = ["--mesh", "6", "--max-evaluations", "40", "--json"];
     let whole = succeeded(&limit);
-    let folder = Scratch::new("interrupted");
-    let mut child = command(&[&limit[..], &["--out", folder.path()]].concat()).spawn().unwrap();
-    wait_for(&mut child, &folder.0, 3);
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let mut child = command(&[&limit[..], &["--out", text(&folder)]].concat()).spawn().unwrap();
+    wait_for(&mut child, &folder, 3);
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
     let output = child.wait_with_output().unwrap();
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let message = kit::errors(&output);
     assert_eq!(output.status.code(), Some(130), "{message}");
-    assert!(message.contains(&format!("--resume {}", folder.path())), "{message}");
-    let report = json(&output);
+    assert!(message.contains(&format!("--resume {}", text(&folder))), "{message}");
+    let report = printed(&output);
     assert_eq!(report["termination"]["reason"], "stopped_by_observer");
-    assert_eq!(std::fs::read(folder.0.join("report.json")).unwrap(), output.stdout);
-    let snapshot = Snapshot::read(&folder.0.join("snapshot.json")).unwrap();
-    assert_eq!(snapshot.evaluations() as u64, report["evaluations"].as_u64().unwrap());
-    assert_eq!(snapshot.value(), report["objective"].as_f64().unwrap());
-    assert_eq!(found(&succeeded(&["--resume", folder.path(), "--json"])), found(&whole));
+    assert_eq!(std::fs::read(folder.join("report.json")).unwrap(), output.stdout);
+    let journal = Journal::read(&folder).unwrap().unwrap();
+    assert_eq!(journal.entries.len() as u64, report["evaluations"].as_u64().unwrap());
+    assert_eq!(journal.dimension, report["controls"].as_array().unwrap().len());
+    assert_eq!(found(&succeeded(&["--resume", text(&folder), "--json"])), found(&whole));
 }
 
 #[test]
 fn limits_end_a_run_with_a_report_and_can_be_raised() {
-    let folder = Scratch::new("limits");
-    let timed = succeeded(&["--mesh", "6", "--time-limit", "0.05", "--json", "--out", folder.path()]);
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let timed = succeeded(&["--mesh", "6", "--time-limit", "0.05", "--json", "--out", text(&folder)]);
     assert_eq!(timed["termination"]["reason"], "time_limit");
-    let text = std::fs::read_to_string(folder.0.join("report.txt")).unwrap();
-    assert!(text.contains(&format!("to continue: --resume {}", folder.path())), "{text}");
+    let page = std::fs::read_to_string(folder.join("report.txt")).unwrap();
+    assert!(page.contains(&format!("to continue: --resume {}", text(&folder))), "{page}");
     let done = timed["evaluations"].as_u64().unwrap();
     let limit = (done + 3).to_string();
-    let resumed = succeeded(&["--resume", folder.path(), "--max-evaluations", &limit, "--time-limit", "60", "--json"]);
+    let resumed = succeeded(&["--resume", text(&folder), "--max-evaluations", &limit, "--time-limit", "60", "--json"]);
     assert_eq!(resumed["termination"]["reason"], "evaluation_limit");
     assert_eq!(resumed["resumed_evaluations"], done);
     assert_eq!(found(&resumed), found(&succeeded(&["--mesh", "6", "--max-evaluations", &limit, "--json"])));
@@ -166,33 +141,32 @@ fn limits_end_a_run_with_a_report_and_can_be_raised() {
 
 #[test]
 fn folders_that_cannot_be_written_are_noticed_at_the_start() {
-    let scratch = Scratch::new("unwritable");
-    std::fs::create_dir_all(&scratch.0).unwrap();
-    std::fs::write(scratch.0.join("file"), "").unwrap();
-    let below_a_file = scratch.0.join("file/below");
-    refused(&["--mesh", "4", "--out", below_a_file.to_str().unwrap()], &["file/below", "cannot write"]);
+    let scratch = kit::scratch();
+    std::fs::write(scratch.path().join("file"), "").unwrap();
+    let below_a_file = scratch.path().join("file/below");
+    refused(&["--mesh", "4", "--out", text(&below_a_file)], &["file/below", "cannot write"]);
     // A limit on the size of files stands for a full disk: the system refuses the bytes in the same way.
     let script = "trap '' XFSZ; ulimit -f 64; exec \"$0\" --mesh 4 --out \"$1\"";
-    let full = scratch.0.join("full");
-    let arguments = ["-c", script, env!("CARGO_BIN_EXE_signorini3d"), full.to_str().unwrap()];
-    let output = Command::new("sh").args(arguments).output().unwrap();
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let full = scratch.path().join("full");
+    let arguments = ["-c", script, SIGNORINI, text(&full)];
+    let output = kit::run("sh", &arguments);
+    let message = kit::errors(&output);
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.contains("cannot write") && message.contains("bytes there"), "{message}");
 }
 
 #[test]
 fn a_folder_that_vanishes_does_not_take_the_run_along() {
-    let scratch = Scratch::new("vanishing");
-    let folder = Scratch(scratch.0.join("run"));
-    let mut child = command(&[&RUN[..], &["--out", folder.path()]].concat()).spawn().unwrap();
-    wait_for(&mut child, &folder.0, 2);
-    std::fs::rename(&folder.0, scratch.0.join("elsewhere")).unwrap();
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let mut child = command(&[&RUN[..], &["--out", text(&folder)]].concat()).spawn().unwrap();
+    wait_for(&mut child, &folder, 2);
+    std::fs::rename(&folder, scratch.path().join("elsewhere")).unwrap();
     let output = child.wait_with_output().unwrap();
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let message = kit::errors(&output);
     assert_eq!(output.status.code(), Some(1), "{message}");
-    assert!(message.contains(folder.path()) && message.contains("complete"), "{message}");
-    let report = json(&output);
+    assert!(message.contains(text(&folder)) && message.contains("complete"), "{message}");
+    let report = printed(&output);
     assert_eq!(found(&report), found(&succeeded(&RUN)));
     let about_the_journal = report["warnings"].to_string().matches("not in the journal").count();
     assert_eq!(about_the_journal, 1, "{}", report["warnings"]);
@@ -200,42 +174,51 @@ fn a_folder_that_vanishes_does_not_take_the_run_along() {
 
 #[test]
 fn what_is_no_run_is_not_resumed_and_no_run_is_lost() {
-    let folder = Scratch::new("refused");
-    refused(&["--resume", folder.path()], &["holds no run"]);
-    refused(&["--resume", folder.path(), "--mesh", "6"], &["--resume", "--max-evaluations"]);
-    refused(&["evaluate", "--resume", folder.path()], &["--resume", "optimize"]);
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    refused(&["--resume", text(&folder)], &["holds no run"]);
+    refused(&["--resume", text(&folder), "--mesh", "6"], &["--resume", "--max-evaluations"]);
+    refused(&["evaluate", "--resume", text(&folder)], &["--resume", "optimize"]);
     refused(&["--time-limit", "-1"], &["--time-limit", "-1"]);
-    let first = ["--mesh", "4", "--max-evaluations", "3", "--json", "--out", folder.path()];
+    let first = ["--mesh", "4", "--max-evaluations", "3", "--json", "--out", text(&folder)];
     succeeded(&first);
-    std::fs::remove_file(folder.0.join("report.json")).unwrap();
+    std::fs::remove_file(folder.join("report.json")).unwrap();
     refused(&first, &["has not ended", "--resume"]);
-    let journal = folder.0.join("journal.jsonl");
-    let text = std::fs::read_to_string(&journal).unwrap();
-    std::fs::write(&journal, text.replacen("\"evaluation\":2", "\"evaluation\":7", 1)).unwrap();
-    refused(&["--resume", folder.path()], &["journal.jsonl", "line 3"]);
-    std::fs::write(&journal, text).unwrap();
-    succeeded(&["--resume", folder.path(), "--json"]);
+    let journal = folder.join("journal.jsonl");
+    let lines = std::fs::read_to_string(&journal).unwrap();
+    std::fs::write(&journal, lines.replacen("\"evaluation\":2", "\"evaluation\":7", 1)).unwrap();
+    refused(&["--resume", text(&folder)], &["journal.jsonl", "line 3"]);
+    std::fs::write(&journal, lines).unwrap();
+    // The journal of another scene would answer for it.
+    let scene = folder.join("scene.toml");
+    let stated = std::fs::read_to_string(&scene).unwrap();
+    let friction = stated.lines().find(|line| line.starts_with("friction = ")).unwrap();
+    std::fs::write(&scene, stated.replacen(friction, "friction = 0.125", 1)).unwrap();
+    refused(&["--resume", text(&folder)], &["journal.jsonl", "another objective", "0.125"]);
+    std::fs::write(&scene, stated).unwrap();
+    succeeded(&["--resume", text(&folder), "--json"]);
     succeeded(&first);
 }
 
 /// Neither lost restart data nor a journal that does not fit end a run; both are said.
 #[test]
 fn what_the_folder_lacks_is_computed_again_with_a_warning() {
-    let folder = Scratch::new("lacking");
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
     let whole = succeeded(&["--mesh", "4", "--max-evaluations", "8", "--json"]);
-    succeeded(&["--mesh", "4", "--max-evaluations", "5", "--json", "--out", folder.path()]);
-    for entry in std::fs::read_dir(&folder.0).unwrap() {
+    succeeded(&["--mesh", "4", "--max-evaluations", "5", "--json", "--out", text(&folder)]);
+    for entry in std::fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "bin") {
+        if path.file_name().unwrap().to_str().unwrap().starts_with("warm_start_") {
             std::fs::remove_file(path).unwrap();
         }
     }
-    let resume = ["--resume", folder.path(), "--max-evaluations", "8", "--json"];
+    let resume = ["--resume", text(&folder), "--max-evaluations", "8", "--json"];
     let resumed = succeeded(&resume);
     assert!(resumed["warnings"].to_string().contains("restart data"), "{}", resumed["warnings"]);
     let objectives = [&whole, &resumed].map(|report| report["objective"].as_f64().unwrap());
     assert!((objectives[0] - objectives[1]).abs() <= 1e-7 * objectives[0], "{objectives:?}");
-    let journal = folder.0.join("journal.jsonl");
+    let journal = folder.join("journal.jsonl");
     let lines: Vec<String> = std::fs::read_to_string(&journal).unwrap().lines().map(str::to_owned).collect();
     let elsewhere = lines[4].replacen("\"point\":[", "\"point\":[1", 1);
     std::fs::write(&journal, [lines[..4].join("\n"), elsewhere, lines[5..].join("\n"), String::new()].join("\n"))
@@ -243,16 +226,16 @@ fn what_the_folder_lacks_is_computed_again_with_a_warning() {
     let resumed = succeeded(&resume);
     assert!(resumed["warnings"].to_string().contains("evaluation 4 of the journal"), "{}", resumed["warnings"]);
     assert_eq!(resumed["evaluations"], 8);
-    assert_eq!(journaled(&folder.0), 8);
+    assert_eq!(journaled(&folder), 8);
 }
 
 #[test]
 fn nothing_is_said_unless_asked_for() {
     let arguments = ["--mesh", "4", "--max-evaluations", "3", "--json"];
-    assert_eq!(String::from_utf8_lossy(&run(&arguments).stderr), "");
+    assert_eq!(kit::errors(&kit::run(SIGNORINI, &arguments)), "");
     let logged = |level: &str| {
         let output = command(&arguments).env("RUST_LOG", level).output().unwrap();
-        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+        (output.status.code(), kit::errors(&output))
     };
     let (code, text) = logged("problems=info");
     assert!(
@@ -274,12 +257,13 @@ fn coarse_to_fine_reports_its_stages_and_resumes() {
     assert_eq!(stages[1]["objective"], whole["objective"]);
     let alone = succeeded(&["--mesh", "6", "--max-evaluations", "1", "--json"]);
     assert!(stages[1]["objective_start"].as_f64().unwrap() < 0.5 * alone["objective_start"].as_f64().unwrap());
-    let folder = Scratch::new("continuation");
-    let mut child = command(&[&arguments[..], &["--out", folder.path()]].concat()).spawn().unwrap();
-    wait_for(&mut child, &folder.0.join("stage_6"), 3);
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let mut child = command(&[&arguments[..], &["--out", text(&folder)]].concat()).spawn().unwrap();
+    wait_for(&mut child, &folder.join("stage_6"), 3);
     child.kill().unwrap();
     let _killed = child.wait().unwrap();
-    let resumed = succeeded(&["--resume", folder.path(), "--json"]);
+    let resumed = succeeded(&["--resume", text(&folder), "--json"]);
     assert_eq!(found(&resumed), found(&whole));
     refused(&["--continuation", "6,4"], &["continuation", "growing"]);
     refused(&["--continuation", "4,6", "--mesh", "6"], &["--mesh", "--continuation"]);

@@ -2,10 +2,17 @@
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
-#[path = "../../../tests/common/documented_commands.rs"]
-mod documented_commands;
-#[path = "../../../tests/common/pages.rs"]
-mod pages;
+/// The binary of this package with this name.
+fn binary(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "contact3d" => env!("CARGO_BIN_EXE_contact3d"),
+        "hertz3d" => env!("CARGO_BIN_EXE_hertz3d"),
+        "membrane2d" => env!("CARGO_BIN_EXE_membrane2d"),
+        "signorini3d" => env!("CARGO_BIN_EXE_signorini3d"),
+        "toy2d" => env!("CARGO_BIN_EXE_toy2d"),
+        _ => return None,
+    })
+}
 
 mod binaries;
 mod compare;

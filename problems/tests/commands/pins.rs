@@ -4,8 +4,9 @@
 //! processor: where it lacks those of the processor that wrote the file (AVX-512), numbers are compared to 1e-8 and of a history
 //! only the first 15, which rounding cannot yet have led apart.
 
+use crate::binary;
 use serde_json::Value;
-use std::process::Command;
+use testset::kit::{self, numbers};
 
 /// How far a number may be off where the kernels round differently.
 const OTHER_PROCESSOR: f64 = 1e-8;
@@ -23,24 +24,13 @@ fn rounds_alike() -> bool {
     false
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|entry| entry.as_f64().unwrap()).collect()
-}
-
 fn computed(pin: &Value) -> Vec<f64> {
     let text = |key: &str| pin[key].as_str().unwrap();
-    let binary = match text("binary") {
-        "hertz3d" => env!("CARGO_BIN_EXE_hertz3d"),
-        _ => env!("CARGO_BIN_EXE_signorini3d"),
-    };
-    let mut command = Command::new(binary);
-    command.args([text("command"), "--mesh", text("mesh"), "--solver", text("solver"), "--json"]);
+    let mut arguments = vec![text("command"), "--mesh", text("mesh"), "--solver", text("solver"), "--json"];
     if text("command") == "optimize" {
-        command.args(["--max-evaluations", "60"]);
+        arguments.extend(["--max-evaluations", "60"]);
     }
-    let output = command.output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let report = kit::json(binary(text("binary")).unwrap(), &arguments);
     if text("command") == "optimize" {
         return numbers(&report["history"]);
     }

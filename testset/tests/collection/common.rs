@@ -1,26 +1,13 @@
-//! A seeded stream of numbers and a descent method for functions with kinks.
+//! Points near a start, and a descent method for functions with kinks.
 
 use testset::Problem;
+use testset::kit::Random;
 
-/// Splitmix64.
-pub struct Random(pub u64);
-
-impl Random {
-    /// Uniform in [−1, 1).
-    pub fn symmetric(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    /// A point around the start, moved by at most `spread` (|xᵢ| + 1/10) in each variable and clipped to the bounds.
-    pub fn around_start(&mut self, problem: &Problem, spread: f64) -> Vec<f64> {
-        let sides = problem.lower.iter().zip(&problem.upper);
-        let moved = problem.start.iter().map(|x| x + spread * (x.abs() + 0.1) * self.symmetric());
-        moved.zip(sides).map(|(x, (&l, &u))| x.clamp(l, u)).collect()
-    }
+/// A point around the start, moved by at most `spread` (|xᵢ| + 1/10) in each variable and clipped to the bounds.
+pub fn around_start(problem: &Problem, spread: f64, random: &mut Random) -> Vec<f64> {
+    let sides = problem.lower.iter().zip(&problem.upper);
+    let moved = problem.start.iter().map(|x| x + spread * (x.abs() + 0.1) * random.signed());
+    moved.zip(sides).map(|(x, (&l, &u))| x.clamp(l, u)).collect()
 }
 
 /// A function with a gradient.

@@ -1,6 +1,7 @@
 //! The optimal values: at known minimisers, and against a long minimisation.
 
-use crate::common::{Random, dot, minimise};
+use crate::common::{around_start, dot, minimise};
+use testset::kit::Random;
 use testset::{Problem, all, find};
 
 fn known_minimisers() -> Vec<(&'static str, Vec<f64>)> {
@@ -106,7 +107,7 @@ fn long_minimisations_end_at_the_optimal_values() {
         let mut random = Random(seed as u64);
         let penalized = Penalized::new(p);
         let spreads = [0.0, 0.01, 0.1, 0.3, 1.0, 3.0];
-        let starts = spreads.map(|spread| random.around_start(p, spread)).into_iter();
+        let starts = spreads.map(|spread| around_start(p, spread, &mut random)).into_iter();
         let mut best = f64::INFINITY;
         for start in starts.chain(approximate_minimiser(&p.name)) {
             let z: Vec<f64> = start.iter().zip(&penalized.scale).map(|(x, s)| x / s).collect();

@@ -1,6 +1,7 @@
 //! Subgradients against differences, and against the inequality of convex functions.
 
-use crate::common::{Random, dot};
+use crate::common::{around_start, dot};
+use testset::kit::Random;
 use testset::{Problem, all, find};
 
 /// Step of the differences in the variable x.
@@ -43,7 +44,7 @@ fn subgradients_are_the_differences_at_smooth_points() {
         let mut random = Random(seed as u64);
         let (mut checked, mut worst) = (0, 0.0_f64);
         for _ in 0..400 {
-            let x = random.around_start(problem, 0.3);
+            let x = around_start(problem, 0.3, &mut random);
             if checked == 12 || !is_smooth(problem, &x) {
                 continue;
             }
@@ -85,7 +86,7 @@ fn convex_problems_lie_above_their_linearizations() {
     for (seed, problem) in all().iter().filter(|p| p.convex).enumerate() {
         let mut random = Random(1000 + seed as u64);
         let mut point = |spread: f64| {
-            let x = random.around_start(problem, spread);
+            let x = around_start(problem, spread, &mut random);
             x.iter().zip(&problem.convex_lower).map(|(x, l)| x.max(*l)).collect::<Vec<f64>>()
         };
         for k in 0..400 {

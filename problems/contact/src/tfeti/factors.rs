@@ -3,7 +3,7 @@
 //! ```text
 //! K⁺ = (K + ρ N Nᵀ)⁻¹,  N = orthonormal basis of R restricted to three fixing nodes:   K K⁺ K = K
 //! ```
-//! (Brzobohatý, Dostál, Kozubek, Kovář, Markopoulos 2011.)
+//! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 
 use crate::body::elasticity::Material;
 use crate::body::elasticity::hex8::Nodes;

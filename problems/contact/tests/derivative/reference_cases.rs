@@ -1,11 +1,12 @@
-//! Reference cases of an independent implementation (direct condensation and Newton in another language): Θ within 1e-7, the
-//! subgradient within 1e-5, for both contact solvers.
+//! Reference cases of an independent implementation (direct condensation and Newton in another language): Θ within 1e-10, the
+//! subgradient within 1e-9, for both contact solvers.
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::{Accuracy, ReducedObjective, StateSolver, Vector};
 use serde_json::Value;
+use testset::kit::numbers;
 
 struct Outcome {
     objective: f64,
@@ -33,10 +34,6 @@ fn evaluate(mut scene: Scene, case: &Value, kind: SolverKind, subdomains: usize)
     }
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|entry| entry.as_f64().unwrap()).collect()
-}
-
 fn relative(found: f64, expected: f64) -> f64 {
     (found - expected).abs() / expected.abs()
 }
@@ -45,22 +42,22 @@ fn check(scene: &Scene, case: &Value, kind: SolverKind) {
     let outcome = evaluate(scene.clone(), case, kind, 2);
     let label = format!("{} mesh {} friction {} {kind:?}", scene.name, case["mesh"], case["friction"]);
     let objective = relative(outcome.objective, case["objective"].as_f64().unwrap());
-    assert!(objective < 1e-7, "{label}: objective off by {objective:.1e}");
+    assert!(objective < 1e-10, "{label}: objective off by {objective:.1e}");
     let total = relative(outcome.total, case["total_normal_force"].as_f64().unwrap());
     assert!(total < 1e-8, "{label}: total force off by {total:.1e}");
     let status = ["open", "stick", "slip"].map(|name| case["status"][name].as_u64().unwrap());
     assert_eq!(outcome.counts, status, "{label}");
-    let slope_error = if case["subgradient"].is_array() {
+    let (slope_error, allowed) = if case["subgradient"].is_array() {
         let expected = Vector::from_vec(numbers(&case["subgradient"]));
-        (&outcome.subgradient - &expected).norm() / expected.norm()
+        ((&outcome.subgradient - &expected).norm() / expected.norm(), 1e-9)
     } else {
         let direction = Vector::from_vec(numbers(&case["direction"]));
         let product = outcome.subgradient.dot(&direction);
         // The reference's own difference quotient carries six digits or so.
-        relative(product, case["directional_derivative"].as_f64().unwrap())
+        (relative(product, case["directional_derivative"].as_f64().unwrap()), 1e-6)
     };
     println!("{label}: objective {objective:.1e}, subgradient {slope_error:.1e}");
-    assert!(slope_error < 1e-5, "{label}: subgradient off by {slope_error:.1e}");
+    assert!(slope_error < allowed, "{label}: subgradient off by {slope_error:.1e}");
 }
 
 fn cases(text: &str) -> Vec<Value> {

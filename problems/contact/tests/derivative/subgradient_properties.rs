@@ -20,21 +20,26 @@ fn objective(mut scene: Scene, friction: f64, load: f64, measure: PressureMeasur
     ReducedObjective::new(shape, cost)
 }
 
-/// Relative difference of ⟨ξ, d⟩ and the central quotient, best of several steps; none if every step crosses a kink.
-fn derivative_error(objective: &Objective, control: &Vector, direction: &Vector) -> Option<f64> {
+/// Largest relative difference of the subgradient's product and a difference quotient that counts as agreement.
+const AGREEMENT: f64 = 1e-6;
+
+/// Whether ⟨ξ, d⟩ agrees with the central quotient of one of four steps. A long step may lie across a kink, a short one drown
+/// in rounding; a wrong subgradient agrees with none.
+fn agrees(objective: &Objective, control: &Vector, direction: &Vector) -> Result<(), TestCaseError> {
     let evaluate = |control: &Vector| objective.evaluate(&Request::tight(control)).unwrap().into_evaluation();
-    let product = evaluate(control).subgradient.dot(direction);
-    let size = evaluate(control).subgradient.norm() * direction.norm();
-    let mut best: Option<f64> = None;
-    for exponent in 3..7 {
+    let subgradient = evaluate(control).subgradient;
+    let (product, size) = (subgradient.dot(direction), subgradient.norm() * direction.norm());
+    let mut errors = Vec::new();
+    for exponent in [4, 5, 6, 3] {
         let step = control.norm() / 6.0 * 10.0_f64.powi(-exponent);
         let (ahead, behind) = (evaluate(&(control + direction * step)), evaluate(&(control - direction * step)));
-        // Across a kink the slopes at both ends differ by more than curvature can explain at the smallest steps.
         let quotient = (ahead.value - behind.value) / (2.0 * step);
-        let error = (quotient - product).abs() / size;
-        best = Some(best.map_or(error, |best: f64| best.min(error)));
+        errors.push((quotient - product).abs() / size);
+        if errors[errors.len() - 1] < AGREEMENT {
+            return Ok(());
+        }
     }
-    best
+    Err(TestCaseError::fail(format!("relative differences of four steps {errors:?}")))
 }
 
 fn numbers(seed: u64, count: usize) -> Vector {
@@ -50,8 +55,7 @@ proptest! {
     ) {
         let objective = objective(signorini().unwrap(), friction, load, PressureMeasure::Norm { exponent });
         let control = numbers(seed, 36).map(|entry| 98.0 + entry);
-        let error = derivative_error(&objective, &control, &numbers(seed + 1, 36)).unwrap();
-        prop_assert!(error < 1e-6, "{error:.1e}");
+        agrees(&objective, &control, &numbers(seed + 1, 36))?;
     }
 
     #[test]
@@ -60,8 +64,7 @@ proptest! {
     ) {
         let objective = objective(hertz().unwrap(), friction, load, PressureMeasure::Norm { exponent: 4.0 });
         let control = numbers(seed, 36).map(|entry| 9.7 + 0.1 * entry);
-        let error = derivative_error(&objective, &control, &numbers(seed + 1, 36)).unwrap();
-        prop_assert!(error < 1e-6, "{error:.1e}");
+        agrees(&objective, &control, &numbers(seed + 1, 36))?;
     }
 }
 
@@ -69,6 +72,5 @@ proptest! {
 fn peak_pressure_has_the_subgradient_of_its_node() {
     let objective = objective(signorini().unwrap(), 0.3, 1.0, PressureMeasure::Peak);
     let control = numbers(5, 36).map(|entry| 98.0 + entry);
-    let error = derivative_error(&objective, &control, &numbers(6, 36)).unwrap();
-    assert!(error < 1e-6, "{error:.1e}");
+    agrees(&objective, &control, &numbers(6, 36)).unwrap();
 }

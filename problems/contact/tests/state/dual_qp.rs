@@ -9,6 +9,8 @@ use contact::qp::{
     Smalse, SmalseSettings, SmalseSolution, SymmetricOperator, WarmStart, largest_eigenvalue,
 };
 use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+use std::cell::Cell;
 
 /// A program with everything owned.
 #[derive(Debug, Clone)]
@@ -204,20 +206,6 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn random_programs_satisfy_kkt_and_agree_with_the_conic_solver(instance in instances()) {
-        prop_assume!(instance.is_well_posed());
-        let solution = instance.solve(SmalseSettings::default(), 1e-10).expect("solvable");
-        // The size of the solution that the data suggest may be some hundred times its true size.
-        prop_assert!(instance.residual(&solution) < 1e-7, "{}", instance.residual(&solution));
-        let Some(reference) = instance.reference() else { return Ok(()) };
-        let (found, best) = (instance.objective(&solution.warm.x), instance.objective(&reference));
-        // Curvature ≥ 0.05: an error ε of the objective is an error of at most √(40 ε) of x.
-        prop_assert!((found - best).abs() <= 1e-7 * (1.0 + best.abs()), "{found} {best}");
-        let error = solution.warm.x.iter().zip(&reference).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-        prop_assert!(error < 1e-3, "{error}");
-    }
-
-    #[test]
     fn a_preconditioner_changes_the_path_but_not_the_solution(instance in instances()) {
         let instance = Instance { equalities: Vec::new(), ..instance };
         let (hessian, set) = (instance.hessian(), instance.set());
@@ -229,6 +217,36 @@ proptest! {
         let solution = solver.solve(&start, 1e-10).expect("solvable");
         prop_assert!(instance.residual(&solution) < 1e-8);
     }
+}
+
+/// Programs that are compared with the conic solver.
+const COMPARED: u32 = 200;
+/// Largest share of them that the conic solver may leave without an answer; found: PLACEHOLDER.
+const UNANSWERED: f64 = 0.1;
+
+#[test]
+fn random_programs_satisfy_kkt_and_agree_with_the_conic_solver() {
+    let unanswered = Cell::new(0_u32);
+    let config = ProptestConfig { cases: COMPARED, failure_persistence: None, ..ProptestConfig::default() };
+    let result = TestRunner::new(config).run(&instances(), |instance| {
+        prop_assume!(instance.is_well_posed());
+        let solution = instance.solve(SmalseSettings::default(), 1e-10).expect("solvable");
+        // The size of the solution that the data suggest may be some hundred times its true size.
+        prop_assert!(instance.residual(&solution) < 1e-7, "{}", instance.residual(&solution));
+        let Some(reference) = instance.reference() else {
+            unanswered.set(unanswered.get() + 1);
+            return Ok(());
+        };
+        let (found, best) = (instance.objective(&solution.warm.x), instance.objective(&reference));
+        // Curvature ≥ 0.05: an error ε of the objective is an error of at most √(40 ε) of x.
+        prop_assert!((found - best).abs() <= 1e-7 * (1.0 + best.abs()), "{found} {best}");
+        let error = solution.warm.x.iter().zip(&reference).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        prop_assert!(error < 1e-3, "{error}");
+        Ok(())
+    });
+    result.unwrap();
+    println!("the conic solver left {} of {COMPARED} programs without an answer", unanswered.get());
+    assert!(f64::from(unanswered.get()) <= UNANSWERED * f64::from(COMPARED), "{} of {COMPARED}", unanswered.get());
 }
 
 struct Diagonal(Vec<f64>);

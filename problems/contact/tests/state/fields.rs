@@ -9,10 +9,10 @@ use contact::equilibrium::ContactStatus;
 use contact::fields::{BodyFields, Fields};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
+use testset::kit::{relative_difference, wavy};
 
-fn wavy(scene: &Scene) -> Vector {
-    let height = scene.start_height;
-    Vector::from_fn(36, |index, _| height * (1.0 - 0.004 * (1.0 + (1.3 * index as f64).sin())))
+fn bent(scene: &Scene) -> Vector {
+    Vector::from_vec(wavy(scene.start_height, 36))
 }
 
 fn solve(mut scene: Scene, kind: SolverKind, control: Option<Vector>) -> (ContactShape, ContactState, Vector) {
@@ -41,19 +41,10 @@ fn scenes() -> Vec<Scene> {
     scenes
 }
 
-/// Largest difference over the largest entry of the first.
-fn difference<'a>(first: impl IntoIterator<Item = &'a f64>, second: impl IntoIterator<Item = &'a f64>) -> f64 {
-    let (first, second): (Vec<f64>, Vec<f64>) =
-        (first.into_iter().copied().collect(), second.into_iter().copied().collect());
-    assert_eq!(first.len(), second.len());
-    let largest = first.iter().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
-    first.iter().zip(&second).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
-}
-
 #[test]
 fn both_solvers_give_the_same_fields() {
     for scene in scenes() {
-        let control = wavy(&scene);
+        let control = bent(&scene);
         let label = format!("{} friction {}", scene.name, scene.friction);
         let (torn, direct) = [SolverKind::Newton, SolverKind::Direct]
             .map(|kind| {
@@ -64,9 +55,10 @@ fn both_solvers_give_the_same_fields() {
         let bodies = if scene.upper.is_some() { 2 } else { 1 };
         assert_eq!((torn.bodies.len(), direct.bodies.len()), (bodies, bodies));
         for (body, (first, second)) in torn.bodies.iter().zip(&direct.bodies).enumerate() {
-            let displacement = difference(first.displacement.as_flattened(), second.displacement.as_flattened());
-            let stress = difference(first.stress.as_flattened(), second.stress.as_flattened());
-            let nodal = difference(&first.nodal_von_mises, &second.nodal_von_mises);
+            let displacement =
+                relative_difference(first.displacement.as_flattened(), second.displacement.as_flattened());
+            let stress = relative_difference(first.stress.as_flattened(), second.stress.as_flattened());
+            let nodal = relative_difference(&first.nodal_von_mises, &second.nodal_von_mises);
             let size = first.displacement.as_flattened().iter().fold(0.0, |size: f64, u| size.max(u.abs()));
             let defect = first.gluing_defect / size;
             println!(
@@ -85,8 +77,8 @@ fn both_solvers_give_the_same_fields() {
             assert!(second.subdomain.iter().all(|&number| number == body));
         }
         let contact = [&torn.contact, &direct.contact];
-        assert!(difference(&contact[0].pressure, &contact[1].pressure) < 1e-10);
-        assert!(difference(&contact[0].remaining_gap, &contact[1].remaining_gap) < 1e-9);
+        assert!(relative_difference(&contact[0].pressure, &contact[1].pressure) < 1e-10);
+        assert!(relative_difference(&contact[0].remaining_gap, &contact[1].remaining_gap) < 1e-9);
         assert_eq!(contact[0].status, contact[1].status);
         assert_eq!(contact[0].traction.is_some(), scene.friction > 0.0);
         assert_eq!(contact[0].slip.is_some(), scene.friction > 0.0);
@@ -120,7 +112,7 @@ fn section_force(fields: &BodyFields, scene: &contact::scene::BodyScene, layer: 
 fn every_layer_passes_on_what_acts_beyond_it() {
     for scene in scenes() {
         for kind in [SolverKind::Newton, SolverKind::Direct] {
-            let (shape, state, _) = solve(scene.clone(), kind, Some(wavy(&scene)));
+            let (shape, state, _) = solve(scene.clone(), kind, Some(bent(&scene)));
             let fields = shape.fields(&state).unwrap();
             let contact: f64 = fields.contact.pressure.iter().zip(&fields.contact.area).map(|(p, a)| p * a).sum();
             assert!((contact / state.forces.total_normal_force() - 1.0).abs() < 1e-14);
@@ -186,7 +178,7 @@ fn mean_vertical_stress_of_a_flat_layer_is_the_load_over_the_area() {
 #[test]
 fn contact_fields_obey_the_contact_law() {
     for scene in [signorini().unwrap(), hertz().unwrap()] {
-        let (shape, state, control) = solve(scene.clone(), SolverKind::Newton, Some(wavy(&scene)));
+        let (shape, state, control) = solve(scene.clone(), SolverKind::Newton, Some(bent(&scene)));
         let Fields { bodies, contact } = shape.fields(&state).unwrap();
         let largest = contact.pressure.iter().copied().fold(0.0, f64::max);
         let (traction, slip) = (contact.traction.as_ref().unwrap(), contact.slip.as_ref().unwrap());
@@ -226,7 +218,7 @@ fn contact_fields_obey_the_contact_law() {
 fn height_sensitivities_are_what_the_subgradient_is_made_of() {
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let scene = hertz().unwrap();
-        let (shape, state, control) = solve(scene.clone(), kind, Some(wavy(&scene)));
+        let (shape, state, control) = solve(scene.clone(), kind, Some(bent(&scene)));
         let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
         let gradient = cost.gradient(&control, &state).state;
         let (heights, _) = shape.height_sensitivity(&state, &gradient).unwrap();

@@ -4,16 +4,16 @@ use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::scene::{Scene, hertz, signorini};
 use contact::tfeti::PreconditionerKind;
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
+use testset::kit::wavy;
 
-fn wavy(scene: &Scene) -> Vector {
-    let height = scene.start_height;
-    Vector::from_fn(36, |index, _| height * (1.0 - 0.004 * (1.0 + (1.3 * index as f64).sin())))
+fn bent(scene: &Scene) -> Vector {
+    Vector::from_vec(wavy(scene.start_height, 36))
 }
 
 fn solve(mut scene: Scene, kind: SolverKind, mesh: usize, subdomains: usize) -> (ContactShape, ContactState) {
     scene.mesh = [mesh; 3];
     scene.subdomains = [subdomains; 3];
-    let control = wavy(&scene);
+    let control = bent(&scene);
     let shape = ContactShape::new(scene, kind).unwrap();
     let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
     (shape, state)
@@ -57,7 +57,7 @@ fn tearing_does_not_change_the_state() {
 fn every_preconditioner_gives_the_same_state() {
     let mut scene = signorini().unwrap();
     scene.mesh = [6; 3];
-    let control = wavy(&scene);
+    let control = bent(&scene);
     let state = |kind| {
         let shape = ContactShape::with_preconditioner(scene.clone(), SolverKind::Newton, kind).unwrap();
         shape.solve(&control, None, Accuracy::TIGHTEST).unwrap()
@@ -74,7 +74,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         pool.install(|| {
             let (shape, state) = solve(hertz().unwrap(), SolverKind::Newton, 6, 2);
             let dual = Vector::from_fn(shape.problem().boundary.dual_dimension(), |i, _| (0.7 * i as f64).cos());
-            let control = wavy(&shape.problem().scene);
+            let control = bent(&shape.problem().scene);
             let slope = shape.coderivative(&control, &state, &dual).unwrap();
             (state.forces.normal.clone(), slope)
         })
@@ -93,7 +93,7 @@ fn warm_start_ends_at_the_same_state() {
         (hertz().unwrap(), SolverKind::Direct),
     ] {
         let (shape, old) = solve(scene, kind, 6, 2);
-        let control = wavy(&shape.problem().scene).map(|height| height * 0.9995);
+        let control = bent(&shape.problem().scene).map(|height| height * 0.9995);
         let cold = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
         let warm = shape.solve(&control, Some(&shape.warm_start(&old)), Accuracy::TIGHTEST).unwrap();
         assert_same(&cold, &warm, "warm start");

@@ -7,6 +7,7 @@ use contact::tfeti::{Communication, PreconditionerKind, TornSolver};
 use std::ops::Range;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
+use testset::kit::relative_difference;
 
 /// One of two ranks, connected by channels.
 #[derive(Debug)]
@@ -72,11 +73,6 @@ fn solve(scene: &Scene, communication: Option<Rank>) -> Outcome {
     }
 }
 
-fn difference(a: &[f64], b: &[f64]) -> f64 {
-    let largest = a.iter().map(|x| x.abs()).fold(0.0, f64::max);
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
-}
-
 #[test]
 fn two_processes_find_the_state_of_one() {
     for scene in [signorini().unwrap(), hertz().unwrap()] {
@@ -93,12 +89,12 @@ fn two_processes_find_the_state_of_one() {
         let [first, second] = threads.map(|thread| thread.join().unwrap());
         assert_eq!(first.normal, second.normal);
         assert_eq!(first.heights, second.heights);
-        assert!(difference(&alone.normal, &first.normal) < 1e-9);
-        assert!(difference(&alone.heights, &first.heights) < 1e-8);
+        assert!(relative_difference(&first.normal, &alone.normal) < 1e-9);
+        assert!(relative_difference(&first.heights, &alone.heights) < 1e-8);
         // Whole bodies on both, though each has solved one half of the subdomains only.
         assert_eq!(first.displacement, second.displacement);
         assert_eq!(first.gluing_defect, second.gluing_defect);
-        assert!(difference(&alone.displacement, &first.displacement) < 1e-8);
+        assert!(relative_difference(&first.displacement, &alone.displacement) < 1e-8);
         let size = alone.displacement.iter().fold(0.0, |size: f64, u| size.max(u.abs()));
         assert!(first.gluing_defect < 1e-9 * size && first.gluing_defect > 0.0);
         assert_eq!(first.factorizations + second.factorizations, alone.factorizations);

@@ -8,7 +8,6 @@ use contact::fields::{FieldState, Fields, FieldsError, vtk_files};
 use contact::scene::{Scene, hertz, signorini};
 use contact::vtk::{Array, Cell, Entry, UnstructuredGrid, Values, VtkError, collection, unstructured};
 use nonsmooth::{Accuracy, Cost, StateSolver};
-use roxmltree;
 use std::collections::HashMap;
 use vtkio::model::{Attribute, CellType, DataSet, Piece, VertexNumbers};
 

@@ -4,10 +4,9 @@ use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json};
 use crate::commands::loaded_scene::LoadedScene;
-use crate::commands::long_run::journal::{Entry, Journal};
 use contact::error::SceneError;
-use nonsmooth::Vector;
-use scene_file::{CounterSection, SceneFile, StartSection};
+use nonsmooth::{Journal, Journaled, NonsmoothObjective, Vector};
+use scene_file::{CounterSection, OptimizerSection, OutputSection, SceneFile, StartSection};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -138,8 +137,7 @@ impl RunFolder {
             eprintln!("warning: {}: the run that it held is replaced", self.folder.path().display());
         }
         for path in journals {
-            Journal::remove(&path)
-                .map_err(|error| SceneError::File { path: path.display().to_string(), reason: error.to_string() })?;
+            Journal::remove(&path)?;
         }
         for part in COMPARED {
             self.remove_old(&[SCENE, START, REPORT].map(|file| format!("{part}/{file}")))?;
@@ -189,32 +187,34 @@ impl RunFolder {
         Ok(())
     }
 
-    /// The journal of the run or of one of its stages, with the evaluations that it holds already.
+    /// An objective with the journal of the run or of one of its stages.
     ///
     /// # Errors
-    /// [`Failure::Input`] for a folder that cannot be written to or a journal that cannot be read.
-    pub fn journal(&self, stage: Option<&str>) -> Result<(PathBuf, Journal, Vec<Entry>), Failure> {
-        let path = stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage));
-        let failed = |error: std::io::Error| SceneError::File {
-            path: path.display().to_string(),
-            reason: format!("cannot write there: {error}"),
-        };
-        std::fs::create_dir_all(&path).map_err(failed)?;
-        if self.resumed && Journal::exists(&path) {
-            let (journal, entries) = Journal::open(&path)?;
-            return Ok((path, journal, entries));
-        }
-        let journal = Journal::create(&path).map_err(failed)?;
-        Ok((path, journal, vec![]))
+    /// [`Failure::Input`] for a folder that cannot be written to, and for a journal that cannot be read or that is that of
+    /// another scene.
+    pub fn journaled<O: NonsmoothObjective>(&self, objective: O, stage: Option<&str>) -> Result<Journaled<O>, Failure> {
+        Ok(Journaled::open(objective, self.place(stage), &self.identity(stage)?)?)
+    }
+
+    /// All that the objective depends on: the scene that the folder holds, and the stage.
+    fn identity(&self, stage: Option<&str>) -> Result<String, Failure> {
+        let scene = SceneFile::read(&self.path(SCENE))?;
+        let scene = SceneFile { optimizer: OptimizerSection::default(), output: OutputSection::default(), ..scene };
+        let text = serde_json::to_string(&scene).map_err(Failure::computation)?;
+        Ok(stage.map_or_else(|| text.clone(), |stage| format!("{stage}: {text}")))
     }
 
     /// Number of evaluations that the journal of the run, or of one of its stages, holds.
     ///
     /// # Errors
-    /// [`SceneError::File`] for a journal that cannot be read.
-    pub fn evaluations(&self, stage: Option<&str>) -> Result<usize, SceneError> {
-        let path = stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage));
-        if Journal::exists(&path) { Journal::count(&path) } else { Ok(0) }
+    /// [`Failure::Input`] for a journal that cannot be read.
+    pub fn evaluations(&self, stage: Option<&str>) -> Result<usize, Failure> {
+        Ok(Journal::read(self.place(stage))?.map_or(0, |journal| journal.entries.len()))
+    }
+
+    /// Where the journal of the run, or of one of its stages, lies.
+    fn place(&self, stage: Option<&str>) -> PathBuf {
+        stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage))
     }
 
     /// The folder for the files of the report.

@@ -2,13 +2,14 @@
 
 use crate::commands::contact_objective::ContactObjective;
 use crate::commands::failure::Failure;
-use crate::commands::long_run::{Entry, Journal, Journaled, Progress, StatusLine};
+use crate::commands::long_run::{Progress, RunFolder, StatusLine};
 use crate::commands::optimize::stages::MeshStage;
 use nonsmooth::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, Matrix, NonsmoothObjective, Reparametrized, Report, Vector,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, NonsmoothObjective, Observer,
+    Reparametrized, Report, Vector,
 };
 use scene_file::AccuracyName;
-use std::path::{Path, PathBuf};
+use std::ops::ControlFlow;
 
 /// An optimization on one mesh that has ended.
 pub struct MeshRun {
@@ -47,7 +48,7 @@ pub fn run_on_mesh(
     stage: &MeshStage,
     (initial_controls, first_step): (Vector, f64),
     time_limit: Option<f64>,
-    kept: Option<(PathBuf, Journal, Vec<Entry>)>,
+    folder: Option<&RunFolder>,
     status: &StatusLine,
 ) -> Result<MeshRun, Failure> {
     let optimizer = &stage.case.optimizer;
@@ -68,23 +69,34 @@ pub fn run_on_mesh(
     let matrix = mean_height_coordinates(&initial_controls, first_step);
     let set = objective.solver().problem().admissible.polyhedron();
     let set = Reparametrized::new(&objective, matrix.clone())?.transformed_set(set)?;
-    let replayed = kept.as_ref().map_or(0, |(_, _, entries)| entries.len());
+    let journaled = folder.map(|folder| folder.journaled(&objective, stage.name.as_deref())).transpose()?;
+    let replayed = journaled.as_ref().map_or(0, Journaled::held);
     let progress = Progress::new(&label, config.max_evaluations, time_limit, replayed, status.clone());
     let method = BundleTrust::new(config)?.constraints(set).observer(progress);
-    let report = match kept {
-        None => minimize(method, &Reparametrized::new(&objective, matrix)?, &initial_controls, None)?,
-        Some((folder, mut journal, entries)) => {
-            let seconds: Vec<f64> = entries.iter().map(|entry| entry.seconds).collect();
-            let journaled = Journaled::new(&objective, &mut journal, entries);
-            let scaled = Reparametrized::new(&journaled, matrix)?;
-            let mut report = minimize(method, &scaled, &initial_controls, Some(&folder.join("snapshot.json")))?;
-            report.warnings.extend(journaled.into_warnings());
-            report.warnings.dedup();
-            add_earlier_seconds(&mut report, &seconds);
+    let report = match &journaled {
+        None => minimize(method, &Reparametrized::new(&objective, matrix)?, &initial_controls)?,
+        Some(journaled) => {
+            let method = method.observer(warner(journaled));
+            let mut report = minimize(method, &Reparametrized::new(journaled, matrix)?, &initial_controls)?;
+            journaled.complete(&mut report);
             report
         }
     };
+    drop(journaled);
     Ok(MeshRun { objective, report, replayed, name: stage.name.clone(), initial_controls })
+}
+
+/// Says what the journal warns of as soon as it does.
+fn warner<O>(journaled: &Journaled<O>) -> impl Observer {
+    let mut said = 0;
+    move |_: &IterationRecord| {
+        let warnings = journaled.warnings();
+        for words in &warnings[said..] {
+            eprintln!("warning: {words}");
+        }
+        said = warnings.len();
+        ControlFlow::Continue(())
+    }
 }
 
 /// Runs the optimizer; the solution is in the original coordinates.
@@ -92,29 +104,10 @@ fn minimize<O: NonsmoothObjective>(
     mut method: BundleTrust<'_>,
     scaled: &Reparametrized<O>,
     initial_controls: &Vector,
-    snapshot: Option<&Path>,
 ) -> Result<Report, Failure> {
-    if let Some(file) = snapshot {
-        method = method.checkpoint(file);
-    }
-    let mut run = method.start(scaled, scaled.transformed(initial_controls))?;
-    while run.step().is_continue() {}
-    let written = snapshot.map(|file| run.snapshot().write(file));
-    let mut report = run.finish();
-    if let Some(Err(error)) = written {
-        report.warnings.push(format!("snapshot not written: {error}"));
-    }
+    let mut report = method.minimize(scaled, scaled.transformed(initial_controls))?;
     report.solution = scaled.original(&report.solution);
     Ok(report)
-}
-
-/// The time of a resumed run includes that of its earlier parts.
-fn add_earlier_seconds(report: &mut Report, earlier: &[f64]) {
-    let before = earlier.last().copied().unwrap_or(0.0);
-    for (index, record) in report.history.iter_mut().enumerate() {
-        record.seconds = earlier.get(index).copied().unwrap_or(before + record.seconds);
-    }
-    report.seconds += before;
 }
 
 /// Half of the mean distance between the starting surface and its counterpart: the length on which contact changes, mm. A

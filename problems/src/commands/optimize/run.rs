@@ -70,9 +70,8 @@ pub fn optimize(
     for stage in &stages {
         let objective = first.take().map_or_else(|| objective(&stage.case), Ok)?;
         let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
-        let kept = folder.as_ref().map(|folder| folder.journal(stage.name.as_deref())).transpose()?;
         let start = (controls, step);
-        let run = run_on_mesh(objective, stage, start, optimizer.time_limit.map(left), kept, &session.status)?;
+        let run = run_on_mesh(objective, stage, start, optimizer.time_limit.map(left), folder.as_ref(), &session.status)?;
         if mesh_runs.is_empty() {
             step *= LATER_FIRST_STEP;
         }
@@ -129,17 +128,20 @@ pub fn initial_controls(
 /// Refuses fewer evaluations than a run that is continued has made already, since its report would become worse.
 ///
 /// # Errors
-/// [`SceneError`] naming `--max-evaluations`.
-pub fn check_limit(folder: &RunFolder, stages: &[MeshStage]) -> Result<(), SceneError> {
+/// [`Failure::Input`] naming `--max-evaluations`; any [`Failure`] of the folder.
+pub fn check_limit(folder: &RunFolder, stages: &[MeshStage]) -> Result<(), Failure> {
     for stage in stages {
         let (held, limit) = (folder.evaluations(stage.name.as_deref())?, stage.case.optimizer.max_evaluations);
         if held > limit {
             let allowed = format!("at least the {held} evaluations that the folder holds");
-            return Err(SceneError::out_of_range("--max-evaluations", limit, allowed));
+            return Err(SceneError::out_of_range("--max-evaluations", limit, allowed).into());
         }
     }
     Ok(())
 }
+
+/// Bytes of a number in the restart data.
+const NUMBER_BYTES: u64 = 24;
 
 /// Bytes per torn node of the fields of one state (some 260 bytes per brick were written at 35³).
 const FIELD_BYTES: u64 = 300;
@@ -152,5 +154,5 @@ fn room(stages: &[MeshStage]) -> u64 {
         let torn = scene.mesh.iter().zip(&scene.subdomains).map(|(cells, count)| (cells + count) as u64);
         torn.product::<u64>() * if scene.upper.is_some() { 2 } else { 1 }
     });
-    (3 * 3 * 8 + 2 * FIELD_BYTES) * nodes.max().unwrap_or(0) + (4 << 20)
+    (3 * 3 * NUMBER_BYTES + 2 * FIELD_BYTES) * nodes.max().unwrap_or(0) + (4 << 20)
 }

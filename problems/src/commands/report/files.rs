@@ -3,7 +3,7 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::ContactObjective;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, json};
+use crate::commands::folder::{PICTURE_ENDINGS, Folder, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::{COMPARED, RunFolder};
 use crate::commands::optimize::mesh_run::MeshRun;
@@ -48,7 +48,7 @@ impl<'a> ReportFolder<'a> {
     fn draw(&mut self, figure: Result<Figure, FigureError>, what: &'static str) -> Result<(), Failure> {
         let figure = figure.map_err(Failure::computation)?;
         self.folder.within(FIGURES)?.draw(&figure)?;
-        self.files.push((format!("{FIGURES}/{}.svg, .png", figure.name), what));
+        self.files.push((format!("{FIGURES}/{}{PICTURE_ENDINGS}", figure.name), what));
         self.figures.push(figure);
         Ok(())
     }

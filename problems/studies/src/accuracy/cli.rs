@@ -1,7 +1,7 @@
 //! The command line of the study.
 
 use crate::accuracy::extent::SCENES;
-use crate::accuracy::{Extent, Part, Report, algebra, csv, discretisation, manufactured_errors, optimization};
+use crate::accuracy::{Extent, Part, Report, algebra, discretisation, manufactured_errors, optimization};
 use crate::accuracy::{pictures, subgradient, tables};
 use crate::scaling::SceneName;
 use clap::Parser;
@@ -28,12 +28,9 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     pub part: Option<Part>,
     /// Print one JSON object on stdout.
-    #[arg(long, conflicts_with = "csv")]
-    pub json: bool,
-    /// Print all numbers as comma-separated values on stdout.
     #[arg(long)]
-    pub csv: bool,
-    /// Folder for report.json, report.md, report.csv and the pictures (SVG, PNG).
+    pub json: bool,
+    /// Folder for report.json, report.md and the pictures (SVG; PNG as well with the feature `png`).
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -72,22 +69,15 @@ pub fn run() -> ExitCode {
 fn execute(arguments: &Arguments) -> Result<String, Failure> {
     let folder = arguments.out.as_deref().map(|path| Folder::with_room(path, 1 << 20)).transpose()?;
     let report = measure(arguments)?;
-    let (object, page, table) = (json(&report)?, tables::markdown(&report), csv::table(&report));
+    let (object, page) = (json(&report)?, tables::markdown(&report));
     if let Some(folder) = folder {
         folder.write("report.json", &object)?;
         folder.write("report.md", &page)?;
-        folder.write("report.csv", &table)?;
         for figure in pictures::all(&report).map_err(Failure::computation)? {
             folder.draw(&figure)?;
         }
     }
-    Ok(if arguments.json {
-        object
-    } else if arguments.csv {
-        table
-    } else {
-        page
-    })
+    Ok(if arguments.json { object } else { page })
 }
 
 fn measure(arguments: &Arguments) -> Result<Report, Failure> {

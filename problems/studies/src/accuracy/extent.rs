@@ -2,6 +2,7 @@
 
 use crate::scaling::{Case, SceneName};
 use clap::ValueEnum;
+use scene_file::default_subdomains;
 use serde::Serialize;
 
 /// Size of the study.
@@ -32,14 +33,9 @@ pub enum Part {
 /// The scenes of the study.
 pub const SCENES: [SceneName; 2] = [SceneName::Signorini, SceneName::Hertz];
 
-/// Bricks per subdomain and edge aimed at.
-const RATIO: usize = 6;
-
-/// N bricks per edge in subdomains of about six.
+/// N bricks per edge in the subdomains that a scene file has by default.
 pub fn case(mesh: usize) -> Case {
-    let divisors = (2..=mesh).filter(|count| mesh.is_multiple_of(*count));
-    let subdomains = divisors.min_by_key(|count| (mesh / count).abs_diff(RATIO)).unwrap_or(1);
-    Case { mesh, subdomains }
+    Case { mesh, subdomains: default_subdomains(mesh) }
 }
 
 impl Extent {
@@ -98,21 +94,5 @@ impl Extent {
             Self::Smoke => 6,
             Self::Quick | Self::Full => 60,
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn subdomains_divide_every_mesh_and_are_more_than_one() {
-        for extent in [Extent::Smoke, Extent::Quick, Extent::Full] {
-            for &mesh in extent.meshes() {
-                let case = case(mesh);
-                assert!(case.subdomains > 1 && mesh.is_multiple_of(case.subdomains), "{case}");
-            }
-        }
-        assert_eq!([12, 16, 24, 35].map(|mesh| case(mesh).subdomains), [2, 2, 4, 5]);
     }
 }

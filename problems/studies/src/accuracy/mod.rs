@@ -5,14 +5,13 @@
 //!      ├─ algebra                                   error against tolerance, seconds; the solver's estimate beside it
 //!      ├─ subgradient ─ kink                        Taylor tables, one-sided slopes at constructed kinks
 //!      └─ optimization                              Θ(best) − Θ* against evaluations, seconds
-//! Report ─ tables (Markdown), csv, pictures (SVG, PNG) or JSON
+//! Report ─ tables (Markdown), pictures (SVG, PNG) or JSON
 //! ```
 //! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
 //! stdout and nothing else there.
 
 mod algebra;
 mod cli;
-mod csv;
 mod discretisation;
 mod extent;
 mod kink;

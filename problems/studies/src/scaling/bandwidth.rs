@@ -4,8 +4,8 @@
 //! find the values of the one before it in a cache, so that the share can exceed what memory alone delivers; vectors, rows
 //! and indices are not counted.
 
-use crate::scaling::Variant;
-use crate::scaling::measure::failure;
+use crate::scaling::cases::Variant;
+use crate::scaling::repeat::failure;
 use crate::scaling::threads::{TIMED_THREADS, pool};
 use contact::equilibrium::ContactProblem;
 use contact::linear::cholesky::SymbolicFactor;

@@ -1,7 +1,8 @@
 //! One process per case and variant: each has a peak memory of its own.
 
-use crate::scaling::cases::word;
-use crate::scaling::{Case, Report, Row, SceneName, Variant};
+use crate::scaling::cases::{Case, SceneName, Variant, word};
+use crate::scaling::report::Report;
+use crate::scaling::row::Row;
 use problems::commands::Failure;
 use std::process::{Command, Stdio};
 

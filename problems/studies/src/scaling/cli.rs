@@ -1,6 +1,8 @@
 //! The command line of the study, and what its warm states differ by.
 
-use crate::scaling::{Case, Extent, Report, SceneName, Variant, children, measure, table};
+use crate::scaling::cases::{Case, Extent, SceneName, Variant};
+use crate::scaling::report::Report;
+use crate::scaling::{children, measure, table};
 use clap::Parser;
 use nonsmooth::verify::seeded_direction;
 use problems::commands::Failure;

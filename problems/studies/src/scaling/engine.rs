@@ -1,6 +1,7 @@
 //! The contact solvers behind one face, with tolerances as relative residuals. A new solver is added here.
 
-use crate::scaling::{Adjoint, Solve, Start, Variant};
+use crate::scaling::cases::Variant;
+use crate::scaling::solve::{Adjoint, Solve, Start};
 use contact::direct::{DirectSolver, DirectState};
 use contact::equilibrium::{ContactForces, ContactProblem, Work};
 use contact::error::ContactError;

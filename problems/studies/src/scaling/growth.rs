@@ -1,7 +1,8 @@
 //! How counts and times grow with the number of subdomains at fixed H/h.
 
-use crate::scaling::cases::RATIO;
-use crate::scaling::{Row, SceneName, Start, Variant};
+use crate::scaling::cases::{RATIO, SceneName, Variant};
+use crate::scaling::row::Row;
+use crate::scaling::solve::Start;
 use serde::{Deserialize, Serialize};
 
 /// Growth of one solver at H/h = 7.

@@ -1,22 +1,20 @@
 //! Measures one case with one solver.
 
+use crate::scaling::cases::{Case, SceneName, Variant};
 use crate::scaling::engine::{Engine, Solved};
-use crate::scaling::{Case, Row, Sample, SceneName, Solve, Start, Variant, bandwidth, memory, threads};
+use crate::scaling::repeat::{TIMED, failure, median};
+use crate::scaling::row::Row;
+use crate::scaling::solve::{Sample, Solve, Start};
+use crate::scaling::{bandwidth, memory, threads};
 use contact::equilibrium::ContactProblem;
 use contact::error::ContactError;
 use problems::commands::Failure;
 use std::time::Instant;
 
-/// Tolerance of the timed states and of all subgradients.
-pub const TIMED: f64 = 1e-8;
 /// Tolerances of the states that are only counted, cold.
 pub const COLD: [f64; 2] = [1e-6, 1e-10];
 /// The same for warm states.
 pub const WARM: [f64; 1] = [1e-10];
-/// Repetitions of what takes less than [`ONCE`].
-const REPETITIONS: usize = 3;
-/// Seconds from which one repetition is enough.
-const ONCE: f64 = 5.0;
 
 /// Measures a case; `change` is what distinguishes the controls of the warm states from those of the cold ones, mm.
 ///
@@ -81,7 +79,7 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, change: &[f64]) -> Re
 }
 
 /// A state to [`TIMED`] and its subgradient.
-pub fn sample(
+fn sample(
     engine: &Engine,
     problem: &ContactProblem,
     controls: &[f64],
@@ -112,22 +110,4 @@ fn counted(
         }
     }
     solves
-}
-
-/// The repetition of median time; one alone when it takes long.
-pub fn median(mut run: impl FnMut() -> Result<Sample, ContactError>) -> Result<Sample, ContactError> {
-    let mut samples = vec![run()?];
-    while samples.len() < REPETITIONS && samples[0].seconds() < ONCE {
-        samples.push(run()?);
-    }
-    samples.sort_by(|a, b| a.seconds().total_cmp(&b.seconds()));
-    Ok(samples.swap_remove(samples.len() / 2))
-}
-
-/// A solver's reason as a failed command.
-pub fn failure(error: ContactError) -> Failure {
-    match error {
-        ContactError::InvertedElement { .. } | ContactError::NoEquilibrium { .. } => Failure::Input(error.to_string()),
-        _ => Failure::Computation(error.to_string()),
-    }
 }

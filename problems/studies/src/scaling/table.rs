@@ -1,8 +1,11 @@
 //! The report as Markdown tables.
 
-use crate::scaling::cases::word;
-use crate::scaling::measure::{COLD, TIMED};
-use crate::scaling::{Report, Row, Start, Variant};
+use crate::scaling::cases::{Variant, word};
+use crate::scaling::measure::COLD;
+use crate::scaling::repeat::TIMED;
+use crate::scaling::report::Report;
+use crate::scaling::row::Row;
+use crate::scaling::solve::Start;
 use contact::equilibrium::StageSeconds;
 use std::fmt::Write;
 

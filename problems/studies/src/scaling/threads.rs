@@ -1,8 +1,9 @@
 //! The same state and subgradient with one, two and four threads: times, and whether the numbers agree in every bit.
 
+use crate::scaling::cases::Variant;
 use crate::scaling::engine::Engine;
-use crate::scaling::measure::{TIMED, failure, median};
-use crate::scaling::{Sample, Variant};
+use crate::scaling::repeat::{TIMED, failure, median};
+use crate::scaling::solve::Sample;
 use contact::equilibrium::ContactProblem;
 use problems::commands::Failure;
 use rayon::{ThreadPool, ThreadPoolBuilder};

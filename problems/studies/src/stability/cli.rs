@@ -1,6 +1,7 @@
 //! The command line of the study.
 
-use crate::stability::{Outcome, Record, Report, case, table};
+use crate::stability::record::{Outcome, Record, Report};
+use crate::stability::{matrix, table};
 use clap::Parser;
 use problems::commands::Failure;
 use std::process::ExitCode;
@@ -58,7 +59,7 @@ fn execute(arguments: &Arguments) -> Result<String, (String, Failure)> {
 fn select(arguments: &Arguments) -> Result<Vec<Record>, Failure> {
     let wanted = |text: &str| arguments.only.as_deref().is_none_or(|only| text.contains(only));
     let mut records = Vec::new();
-    for case in case::all() {
+    for case in matrix::all() {
         if (wanted(case.group) || wanted(&case.name)) && (case.quick || !arguments.quick) {
             let record = case.run();
             eprintln!("{}", table::progress(&record));

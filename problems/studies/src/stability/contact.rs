@@ -1,6 +1,6 @@
 //! A contact case: a scene, its controls, what is expected, and the paths that solve it.
 
-use crate::stability::{Case, Path, judge};
+use crate::stability::record::Path;
 use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, StatusCounts, Work};
 use contact::error::{ContactError, SceneError};
@@ -80,13 +80,6 @@ impl ContactCase {
     pub fn with_paper(mut self) -> Self {
         self.paper = true;
         self
-    }
-
-    /// As a line of the matrix.
-    pub fn case(self, group: &'static str, name: impl Into<String>) -> Case {
-        let name = name.into();
-        let label = name.clone();
-        Case::new(group, name, move || judge::record(group, label.clone(), &self))
     }
 }
 

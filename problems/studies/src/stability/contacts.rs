@@ -1,10 +1,11 @@
 //! No contact, one node, all nodes; stick and slip everywhere; onset of sliding; gaps of every size.
 
-use crate::stability::Case;
+use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{HELD, block, footed, pair, stacked};
 use contact::body::mesh::Face;
 use contact::equilibrium::{ContactForces, ContactProblem};
+use contact::error::SceneError;
 use contact::scene::{CounterSurface, Load, Scene, Support};
 
 const GROUP: &str = "contact";
@@ -34,7 +35,39 @@ pub fn uniform(pressure: f64, shear: f64) -> impl Fn(&ContactProblem, &ContactFo
 }
 
 pub fn cases() -> Vec<Case> {
-    let mut cases = vec![
+    let mut cases = uniform_status();
+    cases.extend(onset_of_sliding());
+    cases.extend(penetrations_and_distances());
+    cases
+}
+
+/// A quarter of a ball of some radius, pressed by some pressure on its top.
+fn ball(radius: f64, pressure: f64) -> Result<Scene, SceneError> {
+    let mut scene = pair()?;
+    scene.counter_surface = CounterSurface::Sphere { apex: 10.0, radius };
+    scene.friction = 0.3;
+    if let Some(upper) = &mut scene.upper {
+        upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -pressure] }];
+    }
+    Ok(scene)
+}
+
+/// The lower block is drawn along x₁ below a plate that presses on it: every node slides.
+fn dragged(friction: f64) -> Result<Scene, SceneError> {
+    let mut scene = stacked(friction, 1.0, 0.0)?;
+    scene.lower.supports = vec![Support { face: Face::Bottom, components: HELD }];
+    if let Some(upper) = &mut scene.upper {
+        upper.body.supports = vec![Support { face: Face::X1Max, components: [true, true, false] }];
+        upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
+    }
+    let faces = [Face::X1Min, Face::X2Min, Face::X2Max];
+    scene.lower.loads = faces.map(|face| Load { face, traction: [0.02, 0.0, 0.0] }).to_vec();
+    Ok(scene)
+}
+
+/// No contact, one node, all nodes; all nodes of one status.
+fn uniform_status() -> Vec<Case> {
+    vec![
         ContactCase::new(footed(1.0)).check(counts([25, 0, 0])).case(GROUP, "no contact at all (held base)"),
         ContactCase::new(footed(1e12)).check(counts([25, 0, 0])).case(GROUP, "gap of 1e12 mm (held base)"),
         ContactCase::new(footed(1e-12)).case(GROUP, "gap of 1e-12 mm"),
@@ -42,66 +75,42 @@ pub fn cases() -> Vec<Case> {
         ContactCase::new(stacked(0.3, 1.0, 0.0))
             .check(uniform(1.0, 0.0))
             .case(GROUP, "contact at all nodes, all stick"),
-    ];
-    let ball = |radius: f64, load: f64| {
-        pair().map(|mut scene| {
-            scene.counter_surface = CounterSurface::Sphere { apex: 10.0, radius };
-            scene.friction = 0.3;
-            if let Some(upper) = &mut scene.upper {
-                upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -load] }];
-            }
-            scene
-        })
+        ContactCase::new(ball(20.0, 1.0)).check(counts([24, 1, 0])).case(GROUP, "contact at one node"),
+        ContactCase::new(dragged(1e-3)).check(counts([0, 0, 25])).case(GROUP, "all slip"),
+    ]
+}
+
+/// Tangential loads just below and above what friction can carry.
+fn onset_of_sliding() -> Vec<Case> {
+    let loaded = |share: f64| {
+        let case = ContactCase::new(stacked(0.3, 1.0, 0.3 * share));
+        let case = if share < 1.0 { case.check(uniform(1.0, 0.3 * share)) } else { case.refused("NoEquilibrium") };
+        case.case(GROUP, format!("onset of sliding: tangential load {share} of the limit"))
     };
-    cases.push(ContactCase::new(ball(20.0, 1.0)).check(counts([24, 1, 0])).case(GROUP, "contact at one node"));
-    // The lower block is drawn along x₁ below a plate that presses on it: every node slides.
-    let dragged = |friction: f64| {
-        stacked(friction, 1.0, 0.0).map(|mut scene| {
-            scene.lower.supports = vec![Support { face: Face::Bottom, components: HELD }];
-            if let Some(upper) = &mut scene.upper {
-                upper.body.supports = vec![Support { face: Face::X1Max, components: [true, true, false] }];
-                upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
-            }
-            scene.lower.loads = vec![
-                Load { face: Face::X1Min, traction: [0.02, 0.0, 0.0] },
-                Load { face: Face::X2Min, traction: [0.02, 0.0, 0.0] },
-                Load { face: Face::X2Max, traction: [0.02, 0.0, 0.0] },
-            ];
-            scene
-        })
-    };
-    cases.push(ContactCase::new(dragged(1e-3)).check(counts([0, 0, 25])).case(GROUP, "all slip"));
-    for share in [0.9, 0.999, 0.999_999] {
-        let shear = 0.3 * share;
-        let case = ContactCase::new(stacked(0.3, 1.0, shear)).check(uniform(1.0, shear));
-        cases.push(case.case(GROUP, format!("onset of sliding: tangential load {share} of the limit")));
-    }
-    for share in [1.001, 1.1] {
-        let case = ContactCase::new(stacked(0.3, 1.0, 0.3 * share)).refused("NoEquilibrium");
-        cases.push(case.case(GROUP, format!("onset of sliding: tangential load {share} of the limit")));
-    }
-    for (label, depth) in [("1 µm", 1e-3), ("1 mm", 1.0), ("half of the height", 5.0)] {
+    [0.9, 0.999, 0.999_999, 1.001, 1.1].map(loaded).into()
+}
+
+/// Gaps from half of the height inside the obstacle to 1e12 mm away from it.
+fn penetrations_and_distances() -> Vec<Case> {
+    let plane = |(label, depth): (&str, f64)| {
         let scene = stacked(0.3, 1.0, 0.0)
             .map(|scene| Scene { counter_surface: CounterSurface::Plane { height: 10.0 - depth }, ..scene });
-        cases
-            .push(ContactCase::new(scene).check(uniform(1.0, 0.0)).case(GROUP, format!("initial penetration {label}")));
-    }
-    let scene = block().map(|scene| Scene {
-        counter_surface: CounterSurface::Waves { base: 95.0, first: 1.0, second: 2.0, period: 100.0 },
-        ..scene
-    });
-    cases.push(ContactCase::new(scene).case(GROUP, "initial penetration of a wavy obstacle"));
+        ContactCase::new(scene).check(uniform(1.0, 0.0)).case(GROUP, format!("initial penetration {label}"))
+    };
+    let wavy = |base: f64| {
+        let counter_surface = CounterSurface::Waves { base, first: 1.0, second: 2.0, period: 100.0 };
+        ContactCase::new(block().map(|scene| Scene { counter_surface, ..scene }))
+    };
+    let mut cases: Vec<Case> = [("1 µm", 1e-3), ("1 mm", 1.0), ("half of the height", 5.0)].map(plane).into();
+    cases.push(wavy(95.0).case(GROUP, "initial penetration of a wavy obstacle"));
     for distance in [1e3, 1e6, 1e12] {
-        let scene = block().map(|scene| Scene {
-            counter_surface: CounterSurface::Waves { base: 100.0 + distance, first: 1.0, second: 2.0, period: 100.0 },
-            ..scene
+        let name = format!("obstacle {distance:e} mm away, held by contact only");
+        let case = wavy(100.0 + distance);
+        cases.push(if distance > 1e9 {
+            case.refused("BeyondPrecision").case(GROUP, name).slow()
+        } else {
+            case.case(GROUP, name)
         });
-        let mut case = ContactCase::new(scene);
-        if distance > 1e9 {
-            case = case.refused("BeyondPrecision");
-        }
-        let case = case.case(GROUP, format!("obstacle {distance:e} mm away, held by contact only"));
-        cases.push(if distance > 1e9 { case.slow() } else { case });
     }
     cases
 }

@@ -1,6 +1,6 @@
 //! Friction from nothing to far beyond one; where contraction, and with it the proof of uniqueness, is lost.
 
-use crate::stability::Case;
+use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{block, footed, pair, wavy};
 use contact::body::mesh::Face;

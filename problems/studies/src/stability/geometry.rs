@@ -1,6 +1,6 @@
 //! Flat and tall bricks, slivers, shapes that nearly fold and one that does.
 
-use crate::stability::Case;
+use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::contacts::uniform;
 use crate::stability::scenes::{block, stacked};

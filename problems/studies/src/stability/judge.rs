@@ -1,9 +1,10 @@
 //! From what the paths did to the outcome of a case.
 
+use crate::stability::case::Case;
 use crate::stability::contact::{
     Attempt, ContactCase, Expected, Found, by_condensation, by_successive_approximations, by_tfeti,
 };
-use crate::stability::{Outcome, Path, Record};
+use crate::stability::record::{Outcome, Path, Record};
 use contact::equilibrium::{ContactForces, ContactProblem};
 
 /// Largest certificate of a solved state: relative residuals.
@@ -17,15 +18,21 @@ const SUBGRADIENT_AGREEMENT: f64 = 1e-4;
 /// Share of a brick's stiffness that is zero for a sensitivity.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// Runs a contact case.
-pub fn record(group: &'static str, name: String, case: &ContactCase) -> Record {
+impl ContactCase {
+    /// The case as a line of the matrix.
+    pub fn case(self, group: &'static str, name: impl Into<String>) -> Case {
+        let name = name.into();
+        let label = name.clone();
+        Case::new(group, name, move || record(group, label.clone(), &self))
+    }
+}
+
+/// Runs a contact case by all its paths and judges what they did.
+fn record(group: &'static str, name: String, case: &ContactCase) -> Record {
     let mut record = Record::plain(group, name, Outcome::Broken, String::new());
-    let problem = match case
-        .scene
-        .as_ref()
-        .map_err(ToString::to_string)
-        .and_then(|scene| ContactProblem::new(scene.clone()).map_err(|error| error.to_string()))
-    {
+    let scene = case.scene.as_ref().map_err(ToString::to_string);
+    let problem = scene.and_then(|scene| ContactProblem::new(scene.clone()).map_err(|error| error.to_string()));
+    let problem = match problem {
         Ok(problem) => problem,
         Err(reason) => return refused_scene(record, case, reason),
     };
@@ -38,46 +45,54 @@ pub fn record(group: &'static str, name: String, case: &ContactCase) -> Record {
         record.contraction = Some(diagnosis.contraction);
         record.condition = diagnosis.condition;
     }
-    let paper: Option<Attempt> = case.paper.then(|| by_successive_approximations(&problem, controls));
-    (record.outcome, record.remark) = match &case.expected {
-        Expected::Solved => match solved(&problem, case, &mut record, torn.as_ref(), direct.as_ref()) {
-            Ok(remark) => (Outcome::Solved, remark),
-            Err(remark) => (Outcome::Broken, remark),
-        },
-        Expected::Refused(kind) => refused(kind, &record.paths),
-        Expected::Limit(_, _) if torn.is_some() && direct.is_some() => {
-            // At the edge of double precision a case may be solved after all: then it is.
-            match solved(&problem, case, &mut record, torn.as_ref(), direct.as_ref()) {
-                Ok(remark) => (Outcome::Solved, remark),
-                Err(remark) => (Outcome::Broken, remark),
-            }
-        }
-        Expected::Limit(kinds, cause) => {
-            let found = torn.as_ref().or(direct.as_ref());
-            limit(kinds, cause, &record, found.map(|found| checked(&problem, case, found)))
-        }
-    };
+    (record.outcome, record.remark) = verdict(&problem, case, &mut record, [torn.as_ref(), direct.as_ref()]);
     if record.contraction.is_some_and(|factor| factor >= 1.0) {
         let warning = "Φ does not contract: uniqueness is not proved, other equilibria may exist";
         record.remark = join(&record.remark, warning);
     }
-    if let Some((path, found)) = paper {
-        let text = match (&found, &torn) {
-            (Some(found), Some(torn)) => {
-                let difference = force_difference(&found.forces, &torn.forces);
-                // An accurate pressure costs accuracy of the residual; where Φ does not contract, another equilibrium is one.
-                let contracts = record.contraction.is_none_or(|factor| factor < 1.0);
-                if contracts && difference > 100.0 * AGREEMENT {
-                    record.outcome = Outcome::Broken;
-                }
-                format!("{}, forces differ by {difference:.1e}", path.reason.clone().unwrap_or_default())
-            }
-            _ => format!("{}: {}", path.refusal.clone().unwrap_or_default(), path.reason.clone().unwrap_or_default()),
-        };
-        record.remark = join(&record.remark, &format!("successive approximations: {text}"));
-        record.paths.push(path);
+    if case.paper {
+        compare_with_paper(&mut record, by_successive_approximations(&problem, controls), torn.as_ref());
     }
     record
+}
+
+/// The outcome of the two Newton paths, and the remark.
+fn verdict(
+    problem: &ContactProblem,
+    case: &ContactCase,
+    record: &mut Record,
+    [torn, direct]: [Option<&Found>; 2],
+) -> (Outcome, String) {
+    match &case.expected {
+        Expected::Refused(kind) => refused(kind, &record.paths),
+        Expected::Limit(kinds, cause) if torn.is_none() || direct.is_none() => {
+            limit(kinds, cause, record, torn.or(direct).map(|found| checked(problem, case, found)))
+        }
+        // At the edge of double precision a known limit may be solved after all: then it is.
+        Expected::Solved | Expected::Limit(..) => match solved(problem, case, record, torn, direct) {
+            Ok(remark) => (Outcome::Solved, remark),
+            Err(remark) => (Outcome::Broken, remark),
+        },
+    }
+}
+
+/// Adds what the successive approximations did, and compares their forces with those of TFETI.
+fn compare_with_paper(record: &mut Record, (path, found): Attempt, torn: Option<&Found>) {
+    let reason = path.reason.clone().unwrap_or_default();
+    let text = match (&found, torn) {
+        (Some(found), Some(torn)) => {
+            let difference = force_difference(&found.forces, &torn.forces);
+            // An accurate pressure costs accuracy of the residual; where Φ does not contract, another equilibrium is one.
+            let contracts = record.contraction.is_none_or(|factor| factor < 1.0);
+            if contracts && difference > 100.0 * AGREEMENT {
+                record.outcome = Outcome::Broken;
+            }
+            format!("{reason}, forces differ by {difference:.1e}")
+        }
+        _ => format!("{}: {reason}", path.refusal.clone().unwrap_or_default()),
+    };
+    record.remark = join(&record.remark, &format!("successive approximations: {text}"));
+    record.paths.push(path);
 }
 
 fn join(first: &str, second: &str) -> String {

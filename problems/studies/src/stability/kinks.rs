@@ -1,6 +1,6 @@
 //! Nodes exactly on a kink: the state is unique, the derivative is a selection, and the report says so.
 
-use crate::stability::Case;
+use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{footed, stacked, with_loads};
 use contact::equilibrium::certificate::WEAKLY_ACTIVE;

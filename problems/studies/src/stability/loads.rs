@@ -1,15 +1,23 @@
 //! Loads from nothing to 1e12 times the usual, reversed, and bodies that only contact holds.
 
-use crate::stability::Case;
+use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{block, footed, pair, stacked, with_loads};
 use contact::body::mesh::Face;
+use contact::error::SceneError;
 use contact::scene::{CounterSurface, Load, Scene, Support};
 
 const LOADS: &str = "load";
 const SUPPORTS: &str = "supports";
 
 pub fn cases() -> Vec<Case> {
+    let mut cases = sizes();
+    cases.extend(held_by_contact());
+    cases
+}
+
+/// Loads of all sizes, and reversed ones.
+fn sizes() -> Vec<Case> {
     let mut cases = Vec::new();
     for factor in [0.0, 1e-12, 1e-8, 1e-4, 1e4, 1e8, 1e12] {
         for (name, scene) in [
@@ -27,48 +35,46 @@ pub fn cases() -> Vec<Case> {
         cases.push(case.case(LOADS, format!("load reversed, {name}")));
     }
     cases.push(ContactCase::new(with_loads(footed(0.0), -1.0)).case(LOADS, "load reversed, held base"));
-    let without = |friction: f64, traction: [f64; 3]| {
-        block().map(|mut scene| {
-            scene.lower.supports.clear();
-            scene.lower.loads = vec![Load { face: Face::Bottom, traction }];
-            Scene { friction, ..scene }
-        })
-    };
     cases
-        .push(ContactCase::new(without(0.3, [0.0, 0.0, 3000.0])).case(SUPPORTS, "no support but contact and friction"));
-    cases.push(
-        ContactCase::new(without(0.3, [500.0, 0.0, 3000.0]))
-            .case(SUPPORTS, "no support, pushed sideways within friction"),
-    );
-    cases.push(
-        ContactCase::new(without(0.05, [2000.0, 0.0, 3000.0]))
-            .refused("NoEquilibrium")
-            .case(SUPPORTS, "no support, pushed sideways beyond friction"),
-    );
-    cases.push(
-        ContactCase::new(without(0.0, [0.0, 0.0, 3000.0])).case(SUPPORTS, "no support, no friction, wavy obstacle"),
-    );
-    let flat = without(0.0, [0.0, 0.0, 3000.0])
+}
+
+/// The block without supports, under a traction on its base.
+fn unsupported(friction: f64, traction: [f64; 3]) -> Result<Scene, SceneError> {
+    let mut scene = block()?;
+    scene.lower.supports.clear();
+    scene.lower.loads = vec![Load { face: Face::Bottom, traction }];
+    Ok(Scene { friction, ..scene })
+}
+
+/// Bodies whose rigid motions only contact and friction hold, or fail to hold.
+fn held_by_contact() -> Vec<Case> {
+    let pressed = [0.0, 0.0, 3000.0];
+    let flat = unsupported(0.0, pressed)
         .map(|scene| Scene { counter_surface: CounterSurface::Plane { height: 101.0 }, ..scene });
-    cases.push(ContactCase::new(flat).case(SUPPORTS, "no support, no friction, plane: free motions grounded"));
     // Held along x₁ and x₂ at the base only: rotations about x₁ and x₂, and x₃, are held by contact.
     let rotation = block().map(|mut scene| {
         scene.lower.supports = vec![Support { face: Face::Bottom, components: [true, true, false] }];
         scene.lower.loads = vec![
-            Load { face: Face::Bottom, traction: [0.0, 0.0, 3000.0] },
+            Load { face: Face::Bottom, traction: pressed },
             Load { face: Face::X1Max, traction: [0.0, 0.0, 500.0] },
         ];
         scene
     });
-    cases.push(ContactCase::new(rotation).case(SUPPORTS, "rotation held by contact only"));
     let moment = stacked(0.3, 1.0, 0.0).map(|mut scene| {
         if let Some(upper) = &mut scene.upper {
             upper.body.loads.push(Load { face: Face::X1Max, traction: [0.0, 0.0, 2.0] });
         }
         scene
     });
-    cases.push(
-        ContactCase::new(moment).refused("NoEquilibrium").case(SUPPORTS, "moment beyond the edge of the contact"),
-    );
-    cases
+    let solved = |scene, name: &str| ContactCase::new(scene).case(SUPPORTS, name);
+    let refused = |scene, name: &str| ContactCase::new(scene).refused("NoEquilibrium").case(SUPPORTS, name);
+    vec![
+        solved(unsupported(0.3, pressed), "no support but contact and friction"),
+        solved(unsupported(0.3, [500.0, 0.0, 3000.0]), "no support, pushed sideways within friction"),
+        refused(unsupported(0.05, [2000.0, 0.0, 3000.0]), "no support, pushed sideways beyond friction"),
+        solved(unsupported(0.0, pressed), "no support, no friction, wavy obstacle"),
+        solved(flat, "no support, no friction, plane: free motions grounded"),
+        solved(rotation, "rotation held by contact only"),
+        refused(moment, "moment beyond the edge of the contact"),
+    ]
 }

@@ -5,7 +5,8 @@
 //! ```
 //! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, bricks of mean dilatation keep it.
 
-use crate::stability::{Case, Outcome, Record};
+use crate::stability::case::Case;
+use crate::stability::record::{Outcome, Record};
 use contact::body::elasticity::hex8::{DOFS, Nodes, gauss_points};
 use contact::body::elasticity::{Formulation, Material};
 use contact::body::mesh::{Block, Grid};

@@ -1,6 +1,6 @@
 //! Poisson's ratio towards ½ and below zero; bodies of very different stiffness.
 
-use crate::stability::Case;
+use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{block, pair, wavy, with_materials};
 use contact::body::elasticity::Formulation;

@@ -1,10 +1,10 @@
 //! Stiff and extreme cases: the study behind `docs/stability.md`.
 //!
 //! ```text
-//! cli ─ cases ─┬─ contact: scene → TornSolver, DirectSolver, (successive approximations) → certificates → Record
-//!              ├─ units, locking: scenes and fields compared with each other → Record
-//!              └─ optimizer: bundle method on hostile oracles → Record
-//! records ─ table (Markdown) or JSON
+//! cli ─ matrix of cases ─┬─ judge ─ contact: scene → TornSolver, DirectSolver, (successive approximations) → Record
+//!                        ├─ units, locking: scenes and fields compared with each other → Record
+//!                        └─ optimizer: bundle method on hostile oracles → Record
+//! Records ─ table (Markdown) or JSON
 //! ```
 //! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a named
 //! kind, or a limit with its cause. Anything else is *broken* and makes the exit status 1.
@@ -22,6 +22,7 @@ mod kinks;
 mod loads;
 mod locking;
 mod materials;
+mod matrix;
 mod optimizer;
 mod oracle;
 mod record;
@@ -30,7 +31,8 @@ mod table;
 mod tearing;
 mod units;
 
-pub use case::{Case, all};
+pub use case::Case;
 pub use cli::{Arguments, run};
 pub use locking::{LockingError, field_error};
+pub use matrix::all;
 pub use record::{Counts, Outcome, Path, Record, Report};

@@ -1,7 +1,8 @@
 //! The bundle method on hostile oracles and awkward admissible sets.
 
+use crate::stability::case::Case;
 use crate::stability::oracle::{Exact, Hostile, centre, crescent, largest_square, nearly_parallel, polyhedral};
-use crate::stability::{Case, Outcome, Record};
+use crate::stability::record::{Outcome, Record};
 use nonsmooth::{BundleTrust, BundleTrustConfig, InputError, Matrix, Polyhedron, VariableScaling, Vector};
 
 const GROUP: &str = "optimizer";

@@ -2,6 +2,7 @@
 
 use nonsmooth::{Answer, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use testset::kit::jitter;
 
 /// An exact objective: value and one subgradient.
 pub type Exact = fn(&Vector) -> (f64, Vector);
@@ -79,16 +80,6 @@ impl Hostile {
     }
 }
 
-/// A number in (−1, 1) that jumps from point to point.
-fn jitter(x: &Vector, salt: u64) -> f64 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64 ^ salt.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    for entry in x.iter() {
-        hash = (hash ^ entry.to_bits()).wrapping_mul(0x0100_0000_01b3);
-        hash ^= hash >> 29;
-    }
-    (hash >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-}
-
 impl NonsmoothObjective for Hostile {
     type WarmStart = ();
 
@@ -103,9 +94,9 @@ impl NonsmoothObjective for Hostile {
         }
         let z = request.point;
         let (exact, slope) = (self.exact)(&z.component_mul(&self.scales));
-        let value = exact * (1.0 + self.noise * jitter(z, 0));
+        let value = exact * (1.0 + self.noise * jitter(z.as_slice(), 0));
         let size = slope.norm();
-        let noisy = Vector::from_fn(z.len(), |i, _| slope[i] + self.noise * size * jitter(z, 1 + i as u64));
+        let noisy = Vector::from_fn(z.len(), |i, _| slope[i] + self.noise * size * jitter(z.as_slice(), 1 + i as u64));
         let subgradient = noisy.component_mul(&self.scales);
         Ok(Answer::Accurate(Evaluation { value, subgradient, error_bound: 0.0, warm_start: () }))
     }

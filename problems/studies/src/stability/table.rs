@@ -1,6 +1,6 @@
 //! Records as a page.
 
-use crate::stability::{Outcome, Path, Record, Report};
+use crate::stability::record::{Outcome, Path, Record, Report};
 use std::fmt::Write;
 
 /// One line per finished case.

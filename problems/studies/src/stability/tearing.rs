@@ -1,6 +1,6 @@
 //! Shapes and numbers of subdomains; supports whose rows would be redundant if tearing did not know better.
 
-use crate::stability::Case;
+use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{HELD, block, pair, wavy};
 use contact::body::mesh::Face;

@@ -4,10 +4,11 @@
 //! lengths × s, moduli and tractions / s²:   forces stay, displacements × s, pressures / s²
 //! ```
 
+use crate::stability::case::Case;
 use crate::stability::contact::{Attempt, by_condensation, by_tfeti};
 use crate::stability::judge::{difference_over, force_difference, relative_difference};
+use crate::stability::record::{Outcome, Record};
 use crate::stability::scenes::{block, footed, pair, stacked, wavy, with_loads};
-use crate::stability::{Case, Outcome, Record};
 use contact::body::elasticity::Material;
 use contact::equilibrium::{ContactForces, ContactProblem};
 use contact::error::SceneError;

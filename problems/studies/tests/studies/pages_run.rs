@@ -1,11 +1,12 @@
 //! The commands of the pages that start a study.
 
-use crate::documented_commands::run_all;
 use std::path::Path;
+use testset::kit::run_commands;
 
 fn binary(name: &str) -> Option<&'static str> {
     Some(match name {
         "accuracy" => env!("CARGO_BIN_EXE_accuracy"),
+        "headline" => env!("CARGO_BIN_EXE_headline"),
         "scaling" => env!("CARGO_BIN_EXE_scaling"),
         "stability" => env!("CARGO_BIN_EXE_stability"),
         _ => return None,
@@ -15,6 +16,6 @@ fn binary(name: &str) -> Option<&'static str> {
 #[test]
 fn commands_of_all_pages() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let (ran, parsed) = run_all(&root, "studies", binary);
+    let (ran, parsed) = run_commands(&root, "studies", binary);
     assert!(ran >= 1 && parsed >= 1, "{ran} commands ran, {parsed} were parsed: pages have lost their commands");
 }

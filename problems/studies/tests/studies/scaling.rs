@@ -1,7 +1,7 @@
 //! The scaling binary's contract: JSON keys, counts, exit statuses.
 
 use serde_json::Value;
-use std::process::{Command, Output};
+use testset::kit;
 
 /// Products with the dual operator of the cold states to 1e-6, 1e-8, 1e-10 (measured: 15, 19, 22).
 const COLD_BOUNDS: [u64; 3] = [19, 24, 28];
@@ -10,9 +10,7 @@ const WARM_BOUND: u64 = 17;
 /// The same for an adjoint to 1e-8 (measured: 12).
 const ADJOINT_BOUND: u64 = 16;
 
-fn run(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_scaling")).args(arguments).output().unwrap()
-}
+const SCALING: &str = env!("CARGO_BIN_EXE_scaling");
 
 /// Products with the dual operator of the cold states to 1e-6, 1e-8, 1e-10.
 fn cold_counts(row: &Value) -> Vec<u64> {
@@ -25,9 +23,7 @@ fn cold_counts(row: &Value) -> Vec<u64> {
 
 #[test]
 fn a_tiny_case_prints_its_keys_and_counts() {
-    let output = run(&["--case", "6/2", "--json"]);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let report = kit::json(SCALING, &["--case", "6/2", "--json"]);
     let rows = report["rows"].as_array().unwrap();
     let variants: Vec<&str> = rows.iter().map(|row| row["variant"].as_str().unwrap()).collect();
     assert_eq!(variants, ["dirichlet", "lumped", "none", "augmented-lagrangian", "direct"]);
@@ -68,10 +64,7 @@ fn a_tiny_case_prints_its_keys_and_counts() {
 #[test]
 fn unknown_cases_are_refused_with_what_is_allowed() {
     for bad in ["7/2", "6", "0/1", "six/2"] {
-        let output = run(&["--case", bad]);
-        let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(output.stdout.is_empty() && message.contains(bad) && message.contains("divisor"), "{message}");
+        kit::refused(SCALING, &["--case", bad], &[bad, "divisor"]);
     }
-    assert_eq!(run(&["--quick", "--full"]).status.code(), Some(2));
+    kit::refused(SCALING, &["--quick", "--full"], &["--full"]);
 }

@@ -1,4 +1,4 @@
-//! The fast subset of the stability study, and random scenes: certificates, not numbers.
+//! Groups of the stability study, contraction factors, and random scenes: certificates, not numbers.
 
 use contact::body::elasticity::{Formulation, Material};
 use contact::direct::DirectSolver;
@@ -8,20 +8,25 @@ use contact::linear::vector::norm;
 use contact::scene::{CounterSurface, Scene, hertz, signorini};
 use contact::tfeti::{AugmentedLagrangianSettings, PreconditionerKind, TornSolver};
 use proptest::prelude::*;
-use studies::stability::{Outcome, Report, all, field_error};
+use proptest::test_runner::TestRunner;
+use std::cell::Cell;
+use studies::stability::{Counts, Outcome, Report, all, field_error};
 
+/// Numbers of cases that are solved, refused, limited and broken, of the groups with these names; all must be as expected.
+fn outcomes(groups: &[&str]) -> [usize; 4] {
+    let cases = all().into_iter().filter(|case| case.quick && groups.contains(&case.group));
+    let report = Report::new(cases.map(|case| case.run()).collect());
+    for record in report.records.iter().filter(|record| record.outcome == Outcome::Broken) {
+        println!("{}: {}: {}", record.group, record.name, record.remark);
+    }
+    let Counts { solved, refused, limits, broken } = report.counts;
+    [solved, refused, limits, broken]
+}
+
+/// The whole matrix runs in the test `long`.
 #[test]
-fn the_fast_subset_is_as_expected() {
-    let records: Vec<_> = all().iter().filter(|case| case.quick).map(studies::stability::Case::run).collect();
-    let report = Report::new(records);
-    let broken: Vec<String> = report
-        .records
-        .iter()
-        .filter(|record| record.outcome == Outcome::Broken)
-        .map(|record| format!("{}: {}: {}", record.group, record.name, record.remark))
-        .collect();
-    assert!(broken.is_empty(), "{broken:#?}");
-    assert!(report.counts.solved > 90 && report.counts.refused > 10, "{:?}", report.counts);
+fn supports_kinks_units_and_hostile_oracles_are_as_expected() {
+    assert_eq!(outcomes(&["supports", "kinks", "units", "optimizer"]), [0, 0, 0, 0]);
 }
 
 #[test]
@@ -134,13 +139,17 @@ fn certified(problem: &ContactProblem, controls: &[f64], forces: &ContactForces)
     assert!((pressed.abs() - carried).abs() < 1e-7 * rigid.total_load(), "{pressed} {carried}");
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+/// Random scenes that are tried.
+const SCENES: u32 = 24;
+/// Largest share of the attempts that may be refused as beyond double precision; found: PLACEHOLDER.
+const REFUSED: f64 = 0.25;
 
-    #[test]
-    fn random_scenes_are_certified_or_refused_with_a_cause(
-        seed in 0_u64..1_000_000, cells in 2_usize..=4, torn: bool, friction in prop_oneof![Just(0.0), 1e-3..1.5], two: bool,
-    ) {
+#[test]
+fn random_scenes_are_certified_or_refused_with_a_cause() {
+    let scenes = (0_u64..1_000_000, 2_usize..=4, any::<bool>(), prop_oneof![Just(0.0), 1e-3..1.5], any::<bool>());
+    let (certified_states, refused) = (Cell::new(0_u32), Cell::new(0_u32));
+    let config = ProptestConfig { cases: SCENES, failure_persistence: None, ..ProptestConfig::default() };
+    let result = TestRunner::new(config).run(&scenes, |(seed, cells, torn, friction, two)| {
         let scene = random_scene(seed, cells, torn, friction, two);
         let controls: Vec<f64> =
             (0..36).map(|index| scene.start_height * (1.0 + 0.01 * number(seed, 100 + index) - 0.01)).collect();
@@ -153,10 +162,21 @@ proptest! {
         ];
         for attempt in &attempts {
             match attempt {
-                Ok(forces) => certified(&problem, &controls, forces),
+                Ok(forces) => {
+                    certified(&problem, &controls, forces);
+                    certified_states.set(certified_states.get() + 1);
+                }
                 // Where rounding decides, the refusal says so; nothing else is an answer.
-                Err(error) => prop_assert!(matches!(error, ContactError::BeyondPrecision { .. }), "{error}"),
+                Err(error) => {
+                    prop_assert!(matches!(error, ContactError::BeyondPrecision { .. }), "{error}");
+                    refused.set(refused.get() + 1);
+                }
             }
         }
-    }
+        Ok(())
+    });
+    result.unwrap();
+    let (certified_states, refused) = (certified_states.get(), refused.get());
+    println!("{certified_states} states certified, {refused} refused as beyond double precision");
+    assert!(f64::from(refused) <= REFUSED * f64::from(certified_states + refused), "{refused} refused");
 }

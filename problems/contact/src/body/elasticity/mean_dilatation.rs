@@ -1,4 +1,4 @@
-//! The volumetric part of a brick by its mean dilatation (B-bar; Nagtegaal, Parks, Rice 1974; Hughes 1980).
+//! The volumetric part of a brick by its mean dilatation (B-bar; \[NagtegaalParksRice1974\], \[Hughes1980\]).
 //!
 //! ```text
 //! K = K_deviatoric + (κ/V) D Dᵀ,   D_a = ∫ ∇N_a dV,   V = ∫ dV,    so that ∫ κ θ̄(u) θ̄(q) dV = κ D(u) D(q)/V

@@ -3,9 +3,9 @@
 //! ```text
 //! standard:         σ = λ tr(ε) I + 2μ ε                          at the point
 //! mean dilatation:  σ = κ θ̄ I + 2μ (ε − ⅓ tr(ε) I),  θ̄ = D(u)/V  over the brick      (mean_dilatation.rs)
-//! σ_vM = √( ½[(σ₁₁ − σ₂₂)² + (σ₂₂ − σ₃₃)² + (σ₃₃ − σ₁₁)²] + 3(σ₁₂² + σ₂₃² + σ₁₃²) )            (von Mises 1913)
+//! σ_vM = √( ½[(σ₁₁ − σ₂₂)² + (σ₂₂ − σ₃₃)² + (σ₃₃ − σ₁₁)²] + 3(σ₁₂² + σ₂₃² + σ₁₃²) )            \[Mises1913\]
 //! ```
-//! At the centre of a trilinear brick the stress converges one order faster than elsewhere (Barlow 1976), so that is where it
+//! At the centre of a trilinear brick the stress converges one order faster than elsewhere \[Barlow1976\], so that is where it
 //! is taken for pictures. Tensors are six numbers in the order 11, 22, 33, 12, 23, 13.
 
 use crate::body::elasticity::hex8::{self, DOFS, GaussPoint, Nodes};

@@ -51,9 +51,12 @@ fn peak_pressure_and_contact_radius() {
             100.0 * pressure,
             100.0 * radius
         );
-        found.push((pressure.abs(), radius.abs()));
+        found.push((pressure.abs(), radius.abs(), resolution));
     }
-    let last = found[found.len() - 1];
-    assert!(last.0 < 0.03 && last.1 < 0.03, "{found:?}");
-    assert!(last.0 < found[0].0 && last.1 < found[0].1, "{found:?}");
+    let (first, last) = (found[0], found[found.len() - 1]);
+    let rate = (first.1 / last.1).ln() / (last.2 / first.2).ln();
+    println!("rate of the error of a: {rate:.2}");
+    // Found: 0.16 %, 0.46 % and 2.4. Most of what is left of p₀'s error is the distance of a block to a half-space.
+    assert!(last.0 < 0.0018 && last.1 < 0.005, "{found:?}");
+    assert!(rate > 2.2, "{rate:.2}: {found:?}");
 }

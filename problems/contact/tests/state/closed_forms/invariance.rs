@@ -8,6 +8,7 @@ use contact::equilibrium::ContactStatus;
 use contact::scene::{Load, Scene, hertz, signorini};
 use contact::tfeti::TornState;
 use nonsmooth::{Accuracy, Evaluation, ReducedObjective, StateSolver, Vector};
+use testset::kit::relative_difference;
 
 struct Outcome {
     evaluation: Evaluation<ContactWarmStart>,
@@ -39,12 +40,6 @@ fn scaled(scene: &Scene, factor: f64) -> Scene {
     scene
 }
 
-fn relative(found: &[f64], expected: &[f64]) -> f64 {
-    let size = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
-    let difference: Vec<f64> = found.iter().zip(expected).map(|(a, b)| a - b).collect();
-    size(&difference) / size(expected).max(f64::MIN_POSITIVE)
-}
-
 fn bent(scene: &Scene) -> Vector {
     nonsmooth::verify::seeded_direction(36, 11).map(|bend| scene.start_height * (0.99 + 0.005 * bend))
 }
@@ -61,9 +56,9 @@ fn stiffness_and_loads_scaled_together_change_the_unit_of_force_only() {
                 assert_eq!(unit.status, other.status);
                 let value = (other.evaluation.value / (factor.powi(4) * unit.evaluation.value) - 1.0).abs();
                 let rescaled = &other.evaluation.subgradient / factor.powi(4);
-                let slope = relative(rescaled.as_slice(), unit.evaluation.subgradient.as_slice());
-                let opening = relative(&other.opening, &unit.opening);
-                let displacement = relative(&other.displacement, &unit.displacement);
+                let slope = relative_difference(&rescaled, &unit.evaluation.subgradient);
+                let opening = relative_difference(&other.opening, &unit.opening);
+                let displacement = relative_difference(&other.displacement, &unit.displacement);
                 println!(
                     "{} {kind:?} s = {factor:.0e}: Θ/s⁴ {value:.1e}, ξ/s⁴ {slope:.1e}, gaps {opening:.1e}, u {displacement:.1e}",
                     scene.name
@@ -96,7 +91,7 @@ fn a_mirrored_shape_has_the_mirrored_subgradient() {
             let here = evaluate(&scene, &control, kind).evaluation;
             let there = evaluate(&image, &mirrored(&control, swap), kind).evaluation;
             let value = (there.value / here.value - 1.0).abs();
-            let slope = relative(mirrored(&there.subgradient, swap).as_slice(), here.subgradient.as_slice());
+            let slope = relative_difference(&mirrored(&there.subgradient, swap), &here.subgradient);
             println!("{} {kind:?} mirrored: Θ {value:.1e}, ξ {slope:.1e}", scene.name);
             assert!(value < 1e-10 && slope < 1e-8, "{value:.1e} {slope:.1e}");
         }

@@ -1,0 +1,27 @@
+//! All rows of one run of the study: keys of the JSON output.
+
+use crate::scaling::growth::Growth;
+use crate::scaling::row::Row;
+use serde::{Deserialize, Serialize};
+
+/// Everything measured in one run.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Report {
+    /// Threads that the machine runs at once.
+    pub machine_threads: usize,
+    /// One entry per case and variant.
+    pub rows: Vec<Row>,
+    /// Growth at fixed H/h, per scene and variant.
+    pub growth: Vec<Growth>,
+    /// Cases that could not be measured, in words.
+    pub failures: Vec<String>,
+}
+
+impl Report {
+    /// A report over rows.
+    pub fn new(rows: Vec<Row>, failures: Vec<String>) -> Self {
+        let machine_threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let growth = Growth::of(&rows);
+        Self { machine_threads, rows, growth, failures }
+    }
+}

@@ -1,0 +1,7 @@
+//! Studies of minutes, in a release build: `cargo test --release --locked -p studies --features long-tests --test long`.
+
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
+
+mod accuracy;
+mod headline;
+mod stability;

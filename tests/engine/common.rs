@@ -1,0 +1,61 @@
+//! Small objectives and sets that several tests share.
+
+use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, NonsmoothObjective, Polyhedron, Report, Vector};
+
+/// A vector from its entries.
+pub fn v(entries: &[f64]) -> Vector {
+    Vector::from_column_slice(entries)
+}
+
+/// Σ |x_i − target_i|.
+pub fn distance_1(target: Vector) -> FnObjective<impl Fn(&Vector) -> (f64, Vector)> {
+    FnObjective::new(target.len(), move |x: &Vector| {
+        let d = x - &target;
+        (d.abs().sum(), d.map(|entry| if entry == 0.0 { 0.0 } else { entry.signum() }))
+    })
+}
+
+/// max over pieces x ↦ (value, gradient), the first of equals.
+pub fn maximum(pieces: Vec<(f64, Vector)>) -> (f64, Vector) {
+    pieces.into_iter().reduce(|best, piece| if piece.0 > best.0 { piece } else { best }).unwrap()
+}
+
+/// CB3, a convex minimax function with minimum 2 at (1, 1).
+pub fn cb3() -> FnObjective<impl Fn(&Vector) -> (f64, Vector)> {
+    FnObjective::new(2, |x: &Vector| {
+        let (a, b) = (x[0], x[1]);
+        let e = 2.0 * (b - a).exp();
+        maximum(vec![
+            (a.powi(4) + b * b, v(&[4.0 * a.powi(3), 2.0 * b])),
+            ((2.0 - a).powi(2) + (2.0 - b).powi(2), v(&[2.0 * a - 4.0, 2.0 * b - 4.0])),
+            (e, v(&[-e, e])),
+        ])
+    })
+}
+
+/// The nonconvex, nonsmooth Rosenbrock function |10 (x₂ − x₁²)| + |1 − x₁| with minimum 0 at (1, 1).
+pub fn crescent() -> FnObjective<impl Fn(&Vector) -> (f64, Vector)> {
+    FnObjective::new(2, |x: &Vector| {
+        let (r, s) = (10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]);
+        let (dr, ds) = (r.signum(), s.signum());
+        (r.abs() + s.abs(), v(&[-20.0 * x[0] * dr - ds, 10.0 * dr]))
+    })
+}
+
+/// Runs with the default settings.
+pub fn minimize<O: NonsmoothObjective>(objective: &O, set: Option<Polyhedron>, start: &[f64]) -> Report {
+    let mut method = BundleTrust::new(BundleTrustConfig::default()).unwrap();
+    if let Some(set) = set {
+        method = method.constraints(set);
+    }
+    method.minimize(objective, v(start)).unwrap()
+}
+
+/// {x : a·x = b} and a box.
+pub fn plane(normal: &[f64], side: f64, half_width: f64) -> Polyhedron {
+    let n = normal.len();
+    Polyhedron::boxed(Vector::from_element(n, -half_width), Vector::from_element(n, half_width))
+        .unwrap()
+        .with_rows(&Matrix::from_row_slice(1, n, normal), &v(&[side]), &v(&[side]))
+        .unwrap()
+}

@@ -1,0 +1,13 @@
+//! What the tests of all packages share: reproducible numbers, scratch folders, programs run to their end, and the commands of
+//! the pages.
+//!
+//! Nothing here knows the packages under test, so that every one of them can use it.
+
+mod documented_commands;
+mod numbers;
+pub mod pages;
+mod program;
+
+pub use documented_commands::run_commands;
+pub use numbers::{Random, jitter, jitters, numbers, relative_difference, wavy};
+pub use program::{command, errors, json, parsed, read_json, refused, run, scratch, text};
