@@ -81,20 +81,22 @@ fn an_honest_certificate_agrees_and_a_changed_one_does_not() {
 
     let active = certificate["cuts"].as_array().unwrap().iter().position(|cut| cut["multiplier"].as_f64() > Some(0.1));
     let active = active.expect("a cut with a multiplier that matters");
-    let double = |value: &mut Value| *value = json!(1.01 * value.as_f64().unwrap());
+    let change_by_a_percent = |value: &mut Value| *value = json!(1.01 * value.as_f64().unwrap());
     let forged: [Forgery<'_>; 5] = [
-        ("aggregate_norm", &|certificate| double(&mut certificate["aggregate_norm"])),
-        ("aggregate_norm", &|certificate| double(&mut certificate["cuts"][active]["subgradient"][0])),
-        ("aggregate_error", &|certificate| double(&mut certificate["cuts"][active]["value"])),
-        ("multipliers_and_point_admissible", &|certificate| double(&mut certificate["cuts"][active]["multiplier"])),
-        ("point_equals_controls", &|certificate| double(&mut certificate["point"][7])),
+        ("aggregate_norm", &|certificate| change_by_a_percent(&mut certificate["aggregate_norm"])),
+        ("aggregate_norm", &|certificate| change_by_a_percent(&mut certificate["cuts"][active]["subgradient"][0][0])),
+        ("aggregate_error", &|certificate| change_by_a_percent(&mut certificate["cuts"][active]["value"])),
+        ("multipliers_and_point_admissible", &|certificate| {
+            change_by_a_percent(&mut certificate["cuts"][active]["multiplier"])
+        }),
+        ("point_equals_controls", &|certificate| change_by_a_percent(&mut certificate["point"][0][7])),
     ];
     for (key, change) in forged {
         let found = result(&run.tampered("certificate.json", change), 1);
         let verdict = if found[key].is_object() { &found[key]["agrees"] } else { &found[key] };
         assert_eq!([verdict, &found["agrees"]], [&json!(false); 2], "{key}: {found}");
     }
-    let found = result(&run.tampered("controls.json", |controls| double(&mut controls[3])), 1);
+    let found = result(&run.tampered("controls.json", |controls| change_by_a_percent(&mut controls[3])), 1);
     assert_eq!([&found["point_equals_controls"], &found["aggregate_norm"]["agrees"]], [&json!(false), &json!(true)]);
 }
 
