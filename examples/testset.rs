@@ -1,8 +1,9 @@
 //! Runs the collection of test problems with one setting and prints evaluations beside the best peers.
 //!
-//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K]`
+//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--without PROPOSER]`
 //!
-//! `--jitter K` adds K runs per problem from starts moved by about a tenth of their size.
+//! `--jitter K` adds K runs per problem from starts moved by about a tenth of their size. `--without` switches off a proposer of
+//! trial points, `curved-model` or `exploration`; it may be given twice.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 use serde::Serialize;
@@ -58,10 +59,17 @@ fn main() {
     let scale: f64 = value("--scale").and_then(|text| text.parse().ok()).unwrap_or(1.0);
     let only = value("--only");
     let problems = testset::all().into_iter().filter(|problem| only.as_ref().is_none_or(|name| *name == problem.name));
+    let config = match config(&args) {
+        Ok(config) => config,
+        Err(message) => {
+            eprintln!("{message}");
+            std::process::exit(2);
+        }
+    };
     let jitter: u64 = value("--jitter").and_then(|text| text.parse().ok()).unwrap_or(0);
     let rows: Vec<Row> = problems
         .flat_map(|problem| (0..=jitter).map(move |seed| jittered(&problem, seed)))
-        .map(|problem| run(&problem, scale))
+        .map(|problem| run(&problem, scale, &config))
         .collect();
     let summary = summarize(&rows, scale);
     if args.iter().any(|arg| arg == "--json") {
@@ -71,6 +79,19 @@ fn main() {
         rows.iter().for_each(print_row);
         print_summary(&summary);
     }
+}
+
+/// The defaults, without the proposers that `--without` names.
+fn config(args: &[String]) -> Result<BundleTrustConfig, String> {
+    let mut config = BundleTrustConfig::default();
+    for (index, _) in args.iter().enumerate().filter(|(_, arg)| *arg == "--without") {
+        match args.get(index + 1).map(String::as_str) {
+            Some("curved-model") => config.curved_model = None,
+            Some("exploration") => config.exploration = None,
+            other => return Err(format!("--without {}: expected curved-model or exploration", other.unwrap_or(""))),
+        }
+    }
+    Ok(config)
 }
 
 /// The problem with another start; the original one for seed 0.
@@ -86,7 +107,7 @@ fn jittered(problem: &Problem, seed: u64) -> Problem {
 }
 
 /// Minimises f(x/scale) from scale·x0 and reads the counts off the sequence of evaluations.
-fn run(problem: &Problem, scale: f64) -> Row {
+fn run(problem: &Problem, scale: f64, settings: &BundleTrustConfig) -> Row {
     let log: RefCell<Vec<(f64, bool)>> = RefCell::new(vec![]);
     let theta = FnObjective::new(problem.dimension, |x: &Vector| {
         let original = x / scale;
@@ -96,9 +117,9 @@ fn run(problem: &Problem, scale: f64) -> Row {
         (value, Vector::from_vec(gradient) / scale)
     });
     let budget = if problem.dimension >= 50 { 3000 } else { 2000 };
-    let config = BundleTrustConfig { max_evaluations: budget, ..BundleTrustConfig::default() };
+    let config = BundleTrustConfig { max_evaluations: budget, ..settings.clone() };
     let report = BundleTrust::new(config)
-        .expect("the default is valid")
+        .expect("the settings are valid")
         .constraints(constraints(problem, scale))
         .minimize(&theta, Vector::from_vec(problem.start.clone()) * scale);
     row(problem, &log.borrow(), report.ok())

@@ -5,6 +5,7 @@
 //! ```
 //! Equal sides make an equality; ±∞ leaves a side open.
 
+use crate::checks::{check_finite, check_intervals, check_size};
 use crate::{InputError, Matrix, Vector};
 
 /// A polyhedron given by bounds and two-sided rows.
@@ -78,6 +79,7 @@ impl Polyhedron {
     /// # Errors
     /// [`InputError`] on sizes that differ, NaN, or a lower bound above its upper bound.
     pub fn boxed(lower: Vector, upper: Vector) -> Result<Self, InputError> {
+        check_size("upper bounds", lower.len(), upper.len())?;
         check_intervals("variable", &lower, &upper)?;
         Ok(Self { rows: Matrix::zeros(0, lower.len()), lower, upper, ..Self::unbounded(0) })
     }
@@ -87,16 +89,10 @@ impl Polyhedron {
     /// # Errors
     /// [`InputError`] on sizes that differ, entries that are not finite, or an empty interval.
     pub fn with_rows(mut self, rows: &Matrix, row_lower: &Vector, row_upper: &Vector) -> Result<Self, InputError> {
-        let expected = self.dimension();
-        if rows.ncols() != expected {
-            return Err(InputError::Dimension { what: "constraint row", expected, found: rows.ncols() });
-        }
-        if rows.nrows() != row_lower.len() {
-            return Err(InputError::Dimension { what: "row_lower", expected: rows.nrows(), found: row_lower.len() });
-        }
-        if let Some(index) = crate::linalg::first_non_finite(rows.as_slice()) {
-            return Err(InputError::NotFinite { what: "constraint rows", index, value: rows.as_slice()[index] });
-        }
+        check_size("constraint row", self.dimension(), rows.ncols())?;
+        check_size("row_lower", rows.nrows(), row_lower.len())?;
+        check_size("row_upper", rows.nrows(), row_upper.len())?;
+        check_finite("constraint rows", rows.as_slice())?;
         check_intervals("row", row_lower, row_upper)?;
         let old = self.rows.nrows();
         self.rows = self.rows.resize_vertically(old + rows.nrows(), 0.0);
@@ -136,21 +132,14 @@ impl Polyhedron {
         &self.row_upper
     }
 
-    /// Whether the set is the whole space.
-    pub fn is_unbounded(&self) -> bool {
-        self.rows.nrows() == 0
-            && self.lower.iter().all(|side| *side == f64::NEG_INFINITY)
-            && self.upper.iter().all(|side| *side == f64::INFINITY)
-    }
-
     /// Largest violation of any side at x, relative to the size of that side's bound and of its terms
     /// (max(|bound|, Σⱼ|aⱼxⱼ|), so it does not depend on units); 0 for an admissible point.
     pub fn violation(&self, x: &Vector) -> f64 {
         self.violation_near(x, x)
     }
 
-    /// [`violation`](Self::violation) with the terms measured at a second point where they are larger: next to a
-    /// reference of ordinary size, a point whose entries cancel to zero is not judged by its rounding errors.
+    /// As [`violation`](Self::violation), but each term has the larger of its sizes at x and at `reference`. A point whose
+    /// entries happen to be near zero is then not judged by its rounding errors.
     pub fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
         let mut worst: f64 = 0.0;
         for i in 0..self.dimension() {
@@ -186,23 +175,6 @@ fn side_violation(value: f64, lower: f64, upper: f64, scale: f64) -> f64 {
         if excess > 0.0 { excess / bound.abs().max(scale).max(f64::MIN_POSITIVE) } else { 0.0 }
     };
     relative(lower - value, lower).max(relative(value - upper, upper))
-}
-
-fn check_intervals(what: &'static str, lower: &Vector, upper: &Vector) -> Result<(), InputError> {
-    if lower.len() != upper.len() {
-        return Err(InputError::Dimension { what: "upper bounds", expected: lower.len(), found: upper.len() });
-    }
-    for (index, (&lower, &upper)) in lower.iter().zip(upper.iter()).enumerate() {
-        for value in [lower, upper] {
-            if value.is_nan() {
-                return Err(InputError::NotFinite { what: "bounds", index, value });
-            }
-        }
-        if lower > upper || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
-            return Err(InputError::EmptyInterval { what, index, lower, upper });
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

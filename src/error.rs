@@ -112,7 +112,4 @@ pub enum OptimizeError {
     /// The first evaluation failed; there is no point to return.
     #[error("the first evaluation failed: {0}")]
     Oracle(#[source] OracleError),
-    /// A snapshot was taken with other constraints.
-    #[error("the constraints differ from those of the snapshot; start a new run from its center instead")]
-    ChangedConstraints,
 }

@@ -8,34 +8,34 @@
 //!
 //! **Θ = J∘S.** Some controls α (a shape, loads, a material) determine a state y = S(α), the solution of an
 //! equilibrium: a contact problem, a variational inequality, an inner optimization. A cost J(α, y) rates controls and
-//! state together. Θ(α) = J(α, S(α)), the *reduced objective*, is what is minimised over the admissible set U, a box
-//! with linear rows. S is Lipschitz but has kinks, wherever a body comes into contact, a spring meets a stop, a
-//! constraint of the inner problem becomes active. Minimisers like to lie on kinks, where no gradient exists and
-//! gradient methods stop too early.
+//! state together. The *reduced objective* Θ(α) = J(α, S(α)) is minimised over the admissible set U, a box with linear
+//! rows. S is locally Lipschitz but not differentiable everywhere: it has a kink wherever a body comes into contact, a
+//! spring meets a stop, or a constraint of the inner problem becomes active. Minimisers often lie on kinks, where no
+//! gradient exists and gradient methods stop too early.
 //!
 //! **A Clarke subgradient.** A Lipschitz function is differentiable almost everywhere. Its Clarke subdifferential ∂Θ(α)
 //! is the convex hull of all limits of gradients ∇Θ(αₖ) with αₖ → α; a *subgradient* ξ is one element of it. Where Θ is
-//! continuously differentiable, ξ is the gradient. For |x| it is sign x, and at 0 any number in \[−1, 1\] will do. A
-//! minimiser inside U has 0 ∈ ∂Θ(α), although no single gradient nearby need be small.
+//! continuously differentiable, ξ is the gradient. For |x| it is sign x, and at 0 any number in \[−1, 1\]. A minimiser
+//! inside U has 0 ∈ ∂Θ(α), although no single gradient nearby need be small.
 //!
-//! **A coderivative.** What S′(α)ᵀ y\* is for a smooth S, the coderivative D\*S(α)(y\*) is for one with kinks: it holds
-//! the limits of S′(αₖ)ᵀ y\* with αₖ → α. One element costs one adjoint solve at the state that was found, whatever the
-//! number of controls; on a kink, the derivative of either side gives one. The chain rule above turns it into a
-//! subgradient of Θ.
+//! **A coderivative.** For a smooth S, the coderivative D\*S(α)(y\*) is S′(α)ᵀ y\*. For an S with kinks, it contains the
+//! limits of S′(αₖ)ᵀ y\* with αₖ → α. One element costs one adjoint solve at the state that was found, whatever the
+//! number of controls; on a kink, the derivative of either side gives an element. The chain rule above turns an element
+//! into a subgradient of Θ.
 //!
 //! **Why one per point is enough.** A bundle method keeps the value and the subgradient of every point it visits as a
 //! *cut*, a plane that touches Θ there. Points on different sides of a kink contribute different cuts; their maximum is
-//! a model with the kink in it. The next point minimises model plus a distance term over U, and is either clearly
-//! better (*serious step*) or yields the cut that was missing (*null step*). When a convex combination of cuts from
+//! a model with the kink in it. The next point minimises the model plus a distance term over U. Either it is clearly
+//! better (*serious step*), or its cut improves the model (*null step*). When a convex combination of subgradients from
 //! nearby points vanishes (up to multipliers of active constraints), the point is stationary, and the combination is
 //! the proof. Nobody has to compute all of ∂Θ.
 //!
 //! # A complete small problem
 //!
-//! A unit spring is pulled with force p and meets a stop at distance g. Its travel y solves p = y + λ, y ≤ g, λ ≥ 0,
-//! λ (g − y) = 0, so y = min(p, g). Travel is worth 2 per unit; force and room cost ½p² + ½g²; p + g ≤ 3/2. At the
-//! optimum the spring just touches its stop, p = g = 3/4, and Θ = −15/16: a kink, with an active constraint of
-//! multiplier 1/4.
+//! A spring of unit stiffness is pulled with force p and meets a stop at distance g. Its travel y solves p = y + λ,
+//! y ≤ g, λ ≥ 0, λ (g − y) = 0, so y = min(p, g). The cost is J = ½p² + ½g² − 2y, and the controls must satisfy
+//! p + g ≤ 3/2. At the optimum p = g = 3/4 the spring just touches its stop: Θ = −15/16 lies on a kink, with an active
+//! constraint of multiplier 1/4.
 //!
 //! ```
 //! use nonsmooth::verify::{Direction, STEPS, taylor_test};
@@ -127,15 +127,15 @@
 //!
 //! # What the report promises
 //!
-//! * [`Report::solution`] is admissible, and the best point evaluated; Θ was never evaluated outside U (up to rounding,
-//!   which [`Report::largest_violation`] states).
+//! * [`Report::solution`] is the best point evaluated, and admissible. Θ was never evaluated outside U, up to the
+//!   rounding that [`Report::largest_violation`] states.
 //! * [`Report::termination`] says why the run ended, with numbers. Only [`Termination::Stationary`] calls the point a
 //!   confirmed stationary point; [`Termination::advice`] says what to try after each of the others.
 //! * [`Report::certificate`] holds all cuts and multipliers of the last subproblem. [`Certificate::recheck`] computes
 //!   the aggregate subgradient z̃ and its error ẽ from them. For a convex Θ they bound what is left to gain: Θ(α) ≥
-//!   Θ(x̂) − ‖z̃‖‖α − x̂‖ − ẽ for all α ∈ U. Otherwise they describe the model near x̂: a *local* statement.
+//!   Θ(x̂) − ‖z̃‖‖α − x̂‖ − ẽ for all α ∈ U. For a nonconvex Θ they are a *local* statement about the model near x̂.
 //! * A failing evaluation (an error, NaN, a panic) shortens the step and is counted; the best point is not lost.
-//! * It does not promise a global minimum of a nonconvex Θ, nor anything if the subgradients are wrong: run
+//! * The report does not promise a global minimum of a nonconvex Θ, nor anything if the subgradients are wrong: run
 //!   [`verify::taylor_test`] first.
 //!
 //! What the theory asks of Θ: it is Lipschitz near the points visited, and the returned ξ lies in ∂Θ. Convergence
@@ -143,16 +143,23 @@
 //!
 //! # Where to go next
 //!
-//! * No state, only a function: [`FnObjective`] turns a closure into an objective.
-//! * States from an iterative solver: [`Accuracy`] is asked for per evaluation, [`Evaluation::error_bound`] is told in
-//!   return, [`AccuracyPolicy::ON_DEMAND`] asks for no more than a step needs, [`Answer::NoDescent`] ends a hopeless
-//!   evaluation early.
-//! * Long runs: [`BundleTrust::checkpoint`], [`BundleTrust::resume`], [`Observer`], [`StopRule`].
+//! * A function without a state: [`FnObjective`] turns a closure into an objective.
+//! * States from an iterative solver: every request states the [`Accuracy`] it needs, and the answer states its
+//!   [`Evaluation::error_bound`]. [`AccuracyPolicy::ON_DEMAND`] asks for no more than a step needs, and
+//!   [`Answer::NoDescent`] ends an evaluation early that cannot become a serious step.
+//! * Long runs: [`Journaled`] keeps every evaluation, so that a run that was killed continues bit by bit; [`Observer`] and
+//!   [`StopRule`] watch and end it.
 //! * The examples of the repository: `own_problem` (three traits), `closure`, `constrained_minimax`, `inexact_oracle`,
 //!   `checkpoint`, `observer`, `testset`. Its guides: `docs/plug_in_your_problem.md` (the steps above with all
 //!   details), `docs/bundle.md` (the method's rules, constants and measured evaluation counts).
-//! * The crate `problems` of the same repository: contact with friction, a membrane over an obstacle and a closed-form
-//!   toy as state problems.
+//! * State problems in the same repository: contact with friction in the crate `contact`, a membrane over an obstacle and
+//!   a closed-form toy in the crate `problems`.
+//!
+//! # Features
+//!
+//! `interior-point` (on by default) brings an interior-point method as the second path of the subproblem, and 18 packages.
+//! Without it, a subproblem that the active-set method cannot finish is tried again with shorter steps; if that does not help,
+//! the run ends with [`Termination::SubproblemFailed`]. None of the test problems needs it.
 //!
 //! # Modules
 //!
@@ -162,10 +169,10 @@
 //! | [`reduced`] | [`ReducedObjective`]: Θ = J∘S and its subgradient by the chain rule |
 //! | [`objective`] | [`NonsmoothObjective`], [`Request`] and [`Answer`]: what the method sees; closures as objectives |
 //! | [`constraints`] | [`Polyhedron`]: box and two-sided rows |
-//! | [`bundle`] | [`BundleTrust`]: configuration, runs, snapshots |
+//! | [`bundle`] | [`BundleTrust`]: configuration, runs |
 //! | [`report`] | [`Report`], [`Termination`], [`Certificate`], history, observers, stopping rules |
 //! | [`verify`] | Taylor tests of any objective |
-//! | [`counted`], [`reparametrized`] | objectives around objectives: counting; a linear change of variables |
+//! | [`journal`] | [`Journaled`]: an objective whose evaluations survive the run |
 //! | [`qp`] | the subproblem as a convex QP of its own, with certificate; projection onto a polyhedron |
 //! | [`error`], [`linalg`] | error types; the vector and matrix types |
 
@@ -174,33 +181,33 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 pub mod bundle;
 pub mod constraints;
-pub mod counted;
 pub mod error;
+pub mod journal;
 pub mod linalg;
 pub mod objective;
 pub mod problem;
 pub mod qp;
 pub mod reduced;
-pub mod reparametrized;
 pub mod report;
 pub mod verify;
 
 mod accuracy;
+mod checks;
+mod panics;
 
 pub use accuracy::Accuracy;
 pub use bundle::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run, ScaledNorm, Snapshot, SnapshotError,
-    VariableScaling,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, CurvedModelConfig, Cut, ExplorationConfig, Run,
+    ScaledNorm, VariableScaling,
 };
 pub use constraints::Polyhedron;
-pub use counted::Counted;
 pub use error::{InputError, OptimizeError, OracleError};
+pub use journal::{Journal, JournalError, Journaled};
 pub use linalg::{Matrix, Vector};
 pub use objective::{Answer, Evaluation, FnObjective, NonsmoothObjective, Request};
 pub use problem::{Coderivative, Cost, CostGradient, StateSolver};
 pub use reduced::ReducedObjective;
-pub use reparametrized::Reparametrized;
 pub use report::{
-    Certificate, CertificateCheck, Counts, IterationRecord, Observer, Report, StepKind, StopRule, TablePrinter,
-    Termination,
+    Certificate, CertificateCheck, Counts, IterationRecord, Observer, Origin, Report, StepKind, StopRule, TablePrinter,
+    Termination, TrialCounts,
 };

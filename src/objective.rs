@@ -11,17 +11,17 @@ use crate::{Accuracy, OracleError, Vector};
 pub struct Request<'a, W> {
     /// Where to evaluate; `dimension()` finite entries.
     pub point: &'a Vector,
-    /// Restart data of an earlier answer, usually that of the stability center.
+    /// Warm start of an earlier answer, usually that of the stability center.
     pub warm_start: Option<&'a W>,
-    /// Relative accuracy wanted of the value.
+    /// Relative accuracy that the value must have.
     pub accuracy: Accuracy,
-    /// The value below which the point would be a serious step. An oracle that can certify Θ(point) > target early may
-    /// stop there and answer [`Answer::NoDescent`].
+    /// The value below which the point would be a serious step. An oracle that can prove Θ(point) > target before its
+    /// value is accurate may stop and answer [`Answer::NoDescent`].
     pub descent_target: Option<f64>,
 }
 
 impl<'a, W> Request<'a, W> {
-    /// A cold request for the tightest accuracy, without a target.
+    /// A request for the tightest accuracy, without a warm start and without a target.
     pub fn tight(point: &'a Vector) -> Self {
         Self { point, warm_start: None, accuracy: Accuracy::TIGHTEST, descent_target: None }
     }
@@ -32,12 +32,12 @@ impl<'a, W> Request<'a, W> {
 pub struct Evaluation<W> {
     /// Θ(point) up to `error_bound`; in an [`Answer::NoDescent`] a certified lower bound of Θ(point).
     pub value: f64,
-    /// One element of the Clarke subdifferential (`dimension()` entries), up to the same relative error.
+    /// One element of the Clarke subdifferential, `dimension()` entries, as accurate relatively as the value.
     pub subgradient: Vector,
-    /// Bound or estimate of |value − Θ(point)| in units of Θ; 0 means exact up to rounding. Not used in an
-    /// [`Answer::NoDescent`], whose cut is certified to hold.
+    /// Bound or estimate of |value − Θ(point)| in units of Θ; 0 means exact up to rounding. The engine does not use it in
+    /// an [`Answer::NoDescent`], whose cut is certified to hold.
     pub error_bound: f64,
-    /// Restart data for evaluations nearby.
+    /// Warm start for evaluations at nearby points.
     pub warm_start: W,
 }
 
@@ -69,7 +69,7 @@ impl<W> Answer<W> {
 
 /// A locally Lipschitz function that returns its value and one Clarke subgradient at a point.
 pub trait NonsmoothObjective {
-    /// Light restart data (multipliers, active sets); `()` if there is none.
+    /// Data that restart an evaluation at a nearby point (multipliers, active sets); `()` if there are none.
     type WarmStart;
 
     /// Number of variables.

@@ -10,7 +10,8 @@ use crate::{Accuracy, OracleError, Vector};
 pub trait StateSolver {
     /// The solution at one control with all that its coderivative needs (factors, contact status). May be heavy.
     type State;
-    /// Light restart data (multipliers, active sets); `()` if there is none.
+    /// Data that restart a solve at a nearby control (multipliers, active sets); `()` if there are none. Should be light:
+    /// the engine keeps one per center.
     type WarmStart;
 
     /// Number of controls d.
@@ -27,7 +28,7 @@ pub trait StateSolver {
         accuracy: Accuracy,
     ) -> Result<Self::State, OracleError>;
 
-    /// The light part of a state that restarts a solve nearby.
+    /// The part of a state that restarts a solve at a nearby control.
     fn warm_start(&self, state: &Self::State) -> Self::WarmStart;
 
     /// Estimate of ‖y − S(α)‖ for the state returned, in the norm dual to that of `CostGradient::state`; 0 means exact.
@@ -45,9 +46,9 @@ pub trait Coderivative: StateSolver {
     /// An [`OracleError`] when the adjoint system cannot be solved.
     fn coderivative(&self, control: &Vector, state: &Self::State, direction: &Vector) -> Result<Vector, OracleError>;
 
-    /// As [`coderivative`](Self::coderivative), with an estimate of |⟨y*, y − S(α)⟩|, the error that the state returned brings
-    /// into ⟨y*, y⟩, where the adjoint yields one: it weighs the state's residuals, so that no norm of the state's error is
-    /// needed. `None` (the default) leaves the estimate to [`StateSolver::state_error`].
+    /// As [`coderivative`](Self::coderivative), with an estimate of |⟨y*, y − S(α)⟩|, the error that an inexact state y
+    /// causes in ⟨y*, y⟩. An adjoint solver gets this estimate by weighing the residuals of the state, without any norm
+    /// of the state's error. `None` (the default) leaves the estimate to [`StateSolver::state_error`].
     ///
     /// # Errors
     /// As [`coderivative`](Self::coderivative).
@@ -61,7 +62,7 @@ pub trait Coderivative: StateSolver {
     }
 }
 
-/// A continuously differentiable J(α, y) (or, at the user's choice, one with a subgradient in its place).
+/// A continuously differentiable cost J(α, y). A nonsmooth J may return one subgradient in place of the gradient.
 pub trait Cost<State: ?Sized> {
     /// J(α, y).
     fn value(&self, control: &Vector, state: &State) -> f64;

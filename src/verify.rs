@@ -42,18 +42,18 @@ pub struct TaylorTest {
     pub directional_derivative: f64,
     /// Rows in the order of the steps.
     pub rows: Vec<TaylorRow>,
-    /// Slope fitted over the rows whose remainder lies above rounding and the promised errors of Θ: 2 for a smooth Θ and a right ξ, 1 for a wrong
-    /// ξ or across a kink; none if fewer than two rows can be used.
+    /// Slope fitted over the rows whose remainder exceeds rounding and the error bounds of Θ: 2 for a smooth Θ and a right
+    /// ξ, 1 for a wrong ξ or across a kink; none if fewer than two rows can be used.
     pub fitted_slope: Option<f64>,
     /// The smallest derivative error of all rows.
     pub best_derivative_error: f64,
 }
 
-/// A Taylor test cannot be made.
+/// Why a Taylor test has no result.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum VerifyError {
-    /// Sizes or numbers that cannot be worked with.
+    /// An input of the wrong size, or a number that is not finite or outside its range.
     #[error(transparent)]
     Input(#[from] InputError),
     /// The objective failed at one of the points.
@@ -133,7 +133,8 @@ fn check_input(dimension: usize, x: &Vector, direction: &Direction, steps: &[f64
     }
 }
 
-/// A reproducible pseudo-random direction, the one behind [`Direction::Seeded`]: entries in (−1, 1) from a multiplicative congruential sequence with an output mix (\[Steele2014\], splitmix).
+/// The reproducible pseudo-random direction of [`Direction::Seeded`]: entries in (−1, 1) from the generator SplitMix64, a
+/// counter with a constant increment whose values are mixed by multiplications and shifts \[SteeleLeaFlood2014\].
 pub fn seeded_direction(dimension: usize, seed: u64) -> Vector {
     let mut state = seed;
     Vector::from_fn(dimension, |_, _| {

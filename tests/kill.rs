@@ -1,19 +1,19 @@
 //! kill −9 at any moment, resume, and the run ends bit by bit as the uninterrupted one.
 //!
-//! The test runs itself again as a child that writes a snapshot after every serious step; SIGKILL ends it at moments that
-//! differ from child to child, the next child resumes from the file. Run without the usual harness: `main` is both sides.
+//! The test runs itself again as a child that keeps a journal; SIGKILL ends it at moments that differ from child to child,
+//! the next child continues from the folder. Run without the usual harness: `main` is both sides.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Report, Snapshot, Vector};
+use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Journal, Journaled, NonsmoothObjective, Report, Vector};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 use testset::Problem;
 
-const CHILD: &str = "--run-and-write-snapshots-to";
+const CHILD: &str = "--run-with-journal-in";
 /// A nonconvex and a convex problem of the collection.
 const PROBLEMS: [&str; 2] = ["EVD52", "Wong1"];
-/// Kills that must have met a run between its first snapshot and its end.
+/// Kills that must have met a run between its first evaluation and its end.
 const KILLS: usize = 3;
 /// Time that an evaluation takes in the child.
 const EVALUATION: Duration = Duration::from_millis(4);
@@ -29,7 +29,7 @@ fn main() {
     }
 }
 
-/// Runs or resumes, and leaves the bits of the result beside the snapshots.
+/// Runs or resumes, and leaves the bits of the result beside the journal.
 fn child(name: &str, folder: &Path) {
     let report = optimize(&testset::find(name).unwrap(), Some(folder), EVALUATION);
     assert!(report.warnings.is_empty(), "{:?}", report.warnings);
@@ -37,23 +37,23 @@ fn child(name: &str, folder: &Path) {
     std::fs::rename(folder.join("result.tmp"), folder.join("result")).unwrap();
 }
 
-/// One run from the start, or from the snapshot in the folder.
+/// One run from the start, or from the journal in the folder.
 fn optimize(problem: &Problem, folder: Option<&Path>, pause: Duration) -> Report {
     let theta = FnObjective::new(problem.dimension, |x: &Vector| {
         std::thread::sleep(pause);
         let (value, gradient) = problem.evaluate(x.as_slice());
         (value, Vector::from_vec(gradient))
     });
+    let Some(folder) = folder else { return minimize(&theta, &problem.start) };
+    let theta = Journaled::open(theta, folder, &problem.name).unwrap();
+    let mut report = minimize(&theta, &problem.start);
+    theta.complete(&mut report);
+    report
+}
+
+fn minimize<O: NonsmoothObjective>(theta: &O, start: &[f64]) -> Report {
     let mut method = BundleTrust::new(BundleTrustConfig::default()).unwrap();
-    let Some(file) = folder.map(|folder| folder.join("snapshot.json")) else {
-        return method.minimize(&theta, Vector::from_vec(problem.start.clone())).unwrap();
-    };
-    method = method.checkpoint(&file);
-    if file.exists() {
-        method.continue_from(&theta, Snapshot::read(&file).unwrap()).unwrap()
-    } else {
-        method.minimize(&theta, Vector::from_vec(problem.start.clone())).unwrap()
-    }
+    method.minimize(theta, Vector::from_column_slice(start)).unwrap()
 }
 
 /// Solution, value, end and history without times, numbers as bits.
@@ -100,13 +100,12 @@ fn spawn(name: &str, folder: &PathBuf) -> Child {
     Command::new(executable).arg(CHILD).arg(name).arg(folder).stdout(Stdio::null()).spawn().unwrap()
 }
 
-/// Kills the child; the evaluations in the snapshot it leaves, none if it had not written one or had ended.
+/// Kills the child; the evaluations in the journal it leaves, none if there are none or if it had ended.
 fn kill(child: &mut Child, folder: &Path) -> Option<usize> {
     child.kill().unwrap();
     let status = child.wait().unwrap();
-    let file = folder.join("snapshot.json");
-    let unfinished = was_killed(status) && file.exists();
-    unfinished.then(|| Snapshot::read(&file).unwrap().evaluations())
+    let journal = Journal::read(folder).unwrap().filter(|_| was_killed(status));
+    journal.map(|journal| journal.entries.len()).filter(|evaluations| *evaluations > 0)
 }
 
 #[cfg(unix)]

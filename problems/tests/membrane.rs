@@ -183,9 +183,8 @@ fn the_binary_writes_its_report_and_pictures() {
     assert!(report["value"].as_f64().is_some_and(|value| value < 1e-3), "{report}");
     for name in ["displacement", "reaction"] {
         let svg = std::fs::read_to_string(folder.join(format!("{name}.svg"))).unwrap();
-        assert!(resvg::usvg::Tree::from_str(&svg, &resvg::usvg::Options::default()).is_ok(), "{name}");
+        assert!(roxmltree::Document::parse(&svg).is_ok(), "{name}");
         assert_eq!(svg.matches("class=\"largest\"").count(), 2, "{name}: start and optimum");
-        assert!(std::fs::read(folder.join(format!("{name}.png"))).unwrap().starts_with(b"\x89PNG"), "{name}");
     }
     kit::refused(binary, &["--cells", "1"], &["cells"]);
 }

@@ -1,10 +1,8 @@
-//! The entry point: configuration, admissible set, observers, and the ways to run.
+//! The entry point: configuration, admissible set, observers, stopping rules.
 
-use super::run::Run;
-use super::snapshot::Snapshot;
-use crate::report::{Observer, Report, StopRule};
-use crate::{BundleTrustConfig, InputError, NonsmoothObjective, OptimizeError, Polyhedron, Vector};
-use std::path::PathBuf;
+use super::config::BundleTrustConfig;
+use crate::report::{Observer, StopRule};
+use crate::{InputError, Polyhedron};
 
 /// The bundle-trust method with its settings.
 ///
@@ -27,7 +25,6 @@ pub struct BundleTrust<'o> {
     pub(super) constraints: Option<Polyhedron>,
     pub(super) observers: Vec<Box<dyn Observer + 'o>>,
     pub(super) stop: Option<StopRule>,
-    pub(super) checkpoint: Option<PathBuf>,
 }
 
 impl std::fmt::Debug for BundleTrust<'_> {
@@ -37,7 +34,6 @@ impl std::fmt::Debug for BundleTrust<'_> {
             .field("constraints", &self.constraints)
             .field("observers", &self.observers.len())
             .field("stop", &self.stop)
-            .field("checkpoint", &self.checkpoint)
             .finish()
     }
 }
@@ -49,7 +45,7 @@ impl<'o> BundleTrust<'o> {
     /// [`InputError::OutOfRange`] naming the first setting that is not admissible.
     pub fn new(config: BundleTrustConfig) -> Result<Self, InputError> {
         config.validate()?;
-        Ok(Self { config, constraints: None, observers: vec![], stop: None, checkpoint: None })
+        Ok(Self { config, constraints: None, observers: vec![], stop: None })
     }
 
     /// The admissible set; the whole space if never called.
@@ -76,83 +72,8 @@ impl<'o> BundleTrust<'o> {
         self
     }
 
-    /// Writes a snapshot to this file after every serious step, replacing it atomically. A failed write is a warning in
-    /// the report.
-    #[must_use]
-    pub fn checkpoint(mut self, file: impl Into<PathBuf>) -> Self {
-        self.checkpoint = Some(file.into());
-        self
-    }
-
     /// The settings.
     pub fn config(&self) -> &BundleTrustConfig {
         &self.config
-    }
-
-    /// Minimises the objective from a start that need not be admissible.
-    ///
-    /// # Errors
-    /// As [`start`](Self::start). Everything that happens later ends in a [`Report`].
-    pub fn minimize<O: NonsmoothObjective>(&mut self, objective: &O, x0: Vector) -> Result<Report, OptimizeError> {
-        let mut run = self.start(objective, x0)?;
-        while run.step().is_continue() {}
-        Ok(run.finish())
-    }
-
-    /// Projects the start on the admissible set and evaluates it.
-    ///
-    /// # Errors
-    /// [`OptimizeError::Input`] on sizes and numbers, [`OptimizeError::Infeasible`] if the set is empty,
-    /// [`OptimizeError::Oracle`] if the first evaluation fails.
-    pub fn start<'r, O: NonsmoothObjective>(
-        &'r mut self,
-        objective: &'r O,
-        x0: Vector,
-    ) -> Result<Run<'r, 'o, O>, OptimizeError> {
-        Run::start(self, objective, x0)
-    }
-
-    /// Continues the run of a snapshot without evaluating anything: with the same settings and a deterministic oracle it
-    /// ends at the same iterates, bit by bit, as the uninterrupted run. The constraints are those of the snapshot unless
-    /// this method has its own, which must then be equal; limits may be raised.
-    ///
-    /// # Errors
-    /// [`OptimizeError::Input`] if sizes or constraints differ.
-    pub fn resume<'r, O: NonsmoothObjective>(
-        &'r mut self,
-        objective: &'r O,
-        from: Snapshot,
-    ) -> Result<Run<'r, 'o, O>, OptimizeError> {
-        Run::resume(self, objective, from)
-    }
-
-    /// Resumes a snapshot and runs to the end.
-    ///
-    /// # Errors
-    /// As [`resume`](Self::resume).
-    pub fn continue_from<O: NonsmoothObjective>(
-        &mut self,
-        objective: &O,
-        from: Snapshot,
-    ) -> Result<Report, OptimizeError> {
-        let mut run = self.resume(objective, from)?;
-        while run.step().is_continue() {}
-        Ok(run.finish())
-    }
-
-    /// Starts a new run of a changed problem from the center of a snapshot, with the step length it had reached. Values
-    /// and cuts of the old problem are not used.
-    ///
-    /// # Errors
-    /// As [`start`](Self::start).
-    pub fn warm_start<'r, O: NonsmoothObjective>(
-        &'r mut self,
-        objective: &'r O,
-        from: &Snapshot,
-    ) -> Result<Run<'r, 'o, O>, OptimizeError> {
-        if let Some(length) = from.last_step_length() {
-            self.config.first_step = Some(length);
-        }
-        Run::start(self, objective, from.center().clone())
     }
 }

@@ -1,6 +1,10 @@
 //! Settings of the bundle-trust method: meaning, default, admissible range, effect.
 
-use crate::{InputError, Vector};
+use super::coordinates::Coordinates;
+use super::proposers::curved::config::CurvedModelConfig;
+use super::proposers::exploration::config::ExplorationConfig;
+use crate::checks::check_setting;
+use crate::{InputError, Matrix, Vector};
 use serde::{Deserialize, Serialize};
 
 /// What is known about the convexity of Θ on the admissible set.
@@ -15,7 +19,7 @@ pub enum Convexity {
     Convex,
 }
 
-/// In which units the distance of two points is measured, ‖d‖² = Σ (dᵢ/Dᵢ)².
+/// In which units the distance of two points is measured, ‖d‖² = Σ (dᵢ/Dᵢ)² or |M⁻¹ d|².
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -27,6 +31,10 @@ pub enum VariableScaling {
     Unit,
     /// Given typical sizes Dᵢ > 0 of the variables.
     Typical(Vector),
+    /// ‖d‖ = |M⁻¹ d| for a regular n × n matrix M. The run takes the course that it would take in the coordinates β of
+    /// x = M β: a direction in which Θ hardly changes is made short if M stretches it, and the first subproblems already
+    /// reach along it. Points, cuts, bounds, history and certificate stay in x.
+    Linear(Matrix),
 }
 
 /// Which accuracy the engine asks of the oracle.
@@ -111,6 +119,10 @@ pub struct BundleTrustConfig {
     pub restart_radius: f64,
     /// Failed evaluations in a row after which the run ends. Default 10; ≥ 1.
     pub max_failures: usize,
+    /// The curved model as a second proposer of trial points; none switches it off. Default on, with its own defaults.
+    pub curved_model: Option<CurvedModelConfig>,
+    /// Exploration as a third proposer of trial points; none switches it off. Default on, with its own defaults.
+    pub exploration: Option<ExplorationConfig>,
 }
 
 impl Default for BundleTrustConfig {
@@ -136,6 +148,8 @@ impl Default for BundleTrustConfig {
             max_restarts: 5,
             restart_radius: 0.1,
             max_failures: 10,
+            curved_model: Some(CurvedModelConfig::default()),
+            exploration: Some(ExplorationConfig::default()),
         }
     }
 }
@@ -147,51 +161,46 @@ impl BundleTrustConfig {
     /// [`InputError::OutOfRange`] naming the first field that is not admissible.
     pub fn validate(&self) -> Result<(), InputError> {
         let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
-        check("tolerance", self.tolerance, "0 < x < 1", self.tolerance > 0.0 && self.tolerance < 1.0)?;
-        check("objective_scale", self.objective_scale, "> 0", positive(self.objective_scale))?;
-        check("max_evaluations", self.max_evaluations, "≥ 1", self.max_evaluations >= 1)?;
-        check("max_iterations", self.max_iterations, "≥ 1", self.max_iterations >= 1)?;
-        check("max_seconds", self.max_seconds, "> 0", positive(self.max_seconds))?;
-        check("first_step", self.first_step, "> 0", positive(self.first_step))?;
-        check("bundle_size", self.bundle_size, "≥ 2", self.bundle_size.is_none_or(|size| size >= 2))?;
+        check_setting("tolerance", self.tolerance, "0 < x < 1", self.tolerance > 0.0 && self.tolerance < 1.0)?;
+        check_setting("objective_scale", self.objective_scale, "> 0", positive(self.objective_scale))?;
+        check_setting("max_evaluations", self.max_evaluations, "≥ 1", self.max_evaluations >= 1)?;
+        check_setting("max_iterations", self.max_iterations, "≥ 1", self.max_iterations >= 1)?;
+        check_setting("max_seconds", self.max_seconds, "> 0", positive(self.max_seconds))?;
+        check_setting("first_step", self.first_step, "> 0", positive(self.first_step))?;
+        check_setting("bundle_size", self.bundle_size, "≥ 2", self.bundle_size.is_none_or(|size| size >= 2))?;
         let serious = self.serious_fraction > 0.0 && self.serious_fraction < 0.5;
-        check("serious_fraction", self.serious_fraction, "0 < x < 0.5", serious)?;
+        check_setting("serious_fraction", self.serious_fraction, "0 < x < 0.5", serious)?;
         let good = self.good_fraction >= self.serious_fraction && self.good_fraction < 1.0;
-        check("good_fraction", self.good_fraction, "serious_fraction ≤ x < 1", good)?;
+        check_setting("good_fraction", self.good_fraction, "serious_fraction ≤ x < 1", good)?;
         for (setting, value) in [
             ("weight_decrease", self.weight_decrease),
             ("weight_increase", self.weight_increase),
             ("weight_range", self.weight_range),
         ] {
-            check(setting, value, "> 1, finite", value > 1.0 && value.is_finite())?;
+            check_setting(setting, value, "> 1, finite", value > 1.0 && value.is_finite())?;
         }
         let quantile = (0.0..=1.0).contains(&self.curvature_quantile);
-        check("curvature_quantile", self.curvature_quantile, "0 ≤ x ≤ 1", quantile)?;
+        check_setting("curvature_quantile", self.curvature_quantile, "0 ≤ x ≤ 1", quantile)?;
         let radius = self.restart_radius > 0.0 && self.restart_radius < 1.0;
-        check("restart_radius", self.restart_radius, "0 < x < 1", radius)?;
-        check("max_failures", self.max_failures, "≥ 1", self.max_failures >= 1)?;
+        check_setting("restart_radius", self.restart_radius, "0 < x < 1", radius)?;
+        check_setting("max_failures", self.max_failures, "≥ 1", self.max_failures >= 1)?;
         self.validate_policies()
     }
 
     fn validate_policies(&self) -> Result<(), InputError> {
         if let AccuracyPolicy::OnDemand { tightest, coarsest, factor } = self.accuracy {
             let ordered = tightest >= 0.0 && tightest <= coarsest && coarsest < 1.0;
-            check("accuracy.coarsest", coarsest, "0 ≤ tightest ≤ coarsest < 1", ordered)?;
-            check("accuracy.factor", factor, "0 < x < 1", factor > 0.0 && factor < 1.0)?;
+            check_setting("accuracy.coarsest", coarsest, "0 ≤ tightest ≤ coarsest < 1", ordered)?;
+            check_setting("accuracy.factor", factor, "0 < x < 1", factor > 0.0 && factor < 1.0)?;
         }
         if let VariableScaling::Typical(sizes) = &self.scaling {
             let valid = sizes.iter().all(|size| *size > 0.0 && size.is_finite());
-            check("scaling.typical", sizes.as_slice(), "> 0, finite", valid)?;
+            check_setting("scaling.typical", sizes.as_slice(), "> 0, finite", valid)?;
         }
-        Ok(())
+        if let VariableScaling::Linear(matrix) = &self.scaling {
+            Coordinates::try_from(matrix.clone())?;
+        }
+        self.curved_model.iter().try_for_each(CurvedModelConfig::validate)?;
+        self.exploration.iter().try_for_each(ExplorationConfig::validate)
     }
-}
-
-fn check(
-    setting: &'static str,
-    value: impl std::fmt::Debug,
-    allowed: &'static str,
-    valid: bool,
-) -> Result<(), InputError> {
-    if valid { Ok(()) } else { Err(InputError::OutOfRange { setting, value: format!("{value:?}"), allowed }) }
 }

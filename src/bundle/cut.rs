@@ -9,6 +9,11 @@ use super::norm::ScaledNorm;
 use crate::Vector;
 use serde::{Deserialize, Serialize};
 
+/// A multiplier above this makes a cut active: stopping test, noise and certificate speak of it. Σ λ = 1.
+pub(crate) const LEAST_ACTIVE_MULTIPLIER: f64 = 1e-9;
+/// A multiplier up to this is rounding of the subproblem: the cut is idle, and the first to leave the bundle.
+const LARGEST_IDLE_MULTIPLIER: f64 = 1e-10;
+
 /// One evaluation kept in the bundle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -33,6 +38,16 @@ pub struct Cut {
 }
 
 impl Cut {
+    /// Whether the cut carried a positive multiplier in the last subproblem.
+    pub fn is_active(&self) -> bool {
+        self.multiplier > LEAST_ACTIVE_MULTIPLIER
+    }
+
+    /// Whether the last subproblem made no use of the cut, not even in its rounding.
+    pub(crate) fn is_idle(&self) -> bool {
+        self.multiplier <= LARGEST_IDLE_MULTIPLIER
+    }
+
     /// How far the cut may lie above a convex Θ: the promised error of its value, nothing if it is certified.
     pub fn excess(&self) -> f64 {
         if self.certified { 0.0 } else { self.error_bound }
@@ -58,8 +73,7 @@ struct ConcavePair {
 }
 
 /// The cuts of a run and the pairs of them that prove nonconvexity.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(from = "Vec<Cut>", into = "Vec<Cut>")]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Bundle {
     cuts: Vec<Cut>,
     pairs: Vec<ConcavePair>,
@@ -70,12 +84,6 @@ pub(crate) struct Bundle {
 impl From<Vec<Cut>> for Bundle {
     fn from(cuts: Vec<Cut>) -> Self {
         Self { cuts, ..Self::default() }
-    }
-}
-
-impl From<Bundle> for Vec<Cut> {
-    fn from(bundle: Bundle) -> Self {
-        bundle.cuts
     }
 }
 
@@ -124,7 +132,7 @@ impl Bundle {
     pub(crate) fn set_multipliers(&mut self, multipliers: &[f64]) {
         for (cut, &multiplier) in self.cuts.iter_mut().zip(multipliers) {
             cut.multiplier = multiplier;
-            cut.idle = if multiplier > IDLE { 0 } else { cut.idle + 1 };
+            cut.idle = if cut.is_idle() { cut.idle + 1 } else { 0 };
         }
     }
 
@@ -159,6 +167,3 @@ impl Bundle {
         curvatures
     }
 }
-
-/// Multipliers up to this count as zero.
-pub(crate) const IDLE: f64 = 1e-10;

@@ -1,10 +1,13 @@
 //! Records, observers, and the report at the end.
 
+use super::proposers::proposal::Proposal;
 use super::run::Run;
-use super::subproblem::Proposal;
-use crate::report::{Certificate, IterationRecord, Report, StepKind, Termination};
+use crate::report::{Certificate, IterationRecord, Origin, Report, StepKind, Termination};
 use crate::{Accuracy, NonsmoothObjective};
 use std::ops::ControlFlow::{self, Break, Continue};
+
+/// A decrease of Θ beyond this many times its first value and first promise ends the run as unbounded below.
+const UNBOUNDED_DECREASE: f64 = 1e12;
 
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     pub(super) fn record(
@@ -15,9 +18,12 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         value: Option<f64>,
         failure: Option<String>,
     ) {
+        let origin = if kind == StepKind::Refinement { Origin::Given } else { proposal.origin };
+        self.state.counts.trials.add(origin);
         let record = IterationRecord {
             evaluation: self.state.counts.evaluations,
             kind,
+            origin,
             value,
             center_value: self.state.center_value,
             predicted_decrease: proposal.predicted_decrease,
@@ -35,14 +41,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.state.history.push(record);
     }
 
-    /// Observers, stopping rules, checkpoint, divergence.
+    /// Observers, stopping rules, divergence.
     pub(super) fn after_evaluation(&mut self) -> ControlFlow<Termination> {
         let Some(record) = self.state.history.last().cloned() else { return Continue(()) };
-        if let (StepKind::Start | StepKind::Serious, Some(file)) = (record.kind, &self.method.checkpoint)
-            && let Err(error) = self.snapshot().write(file)
-        {
-            self.state.warnings.push(format!("checkpoint not written: {error}"));
-        }
         let mut stop = false;
         for observer in &mut self.method.observers {
             stop |= observer.observe(&record).is_break();
@@ -54,14 +55,14 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             return Break(Termination::StopRule { rule });
         }
         let first_promise = self.state.first_weight * self.state.first_step * self.state.first_step;
-        let limit = 1e12 * (self.state.start_value.abs() + first_promise);
+        let limit = UNBOUNDED_DECREASE * (self.state.start_value.abs() + first_promise);
         if self.state.start_value - self.state.center_value > limit {
             return Break(Termination::UnboundedBelow);
         }
         Continue(())
     }
 
-    /// Ends the run; the reason is `StoppedByObserver` if it had not ended by itself.
+    /// Ends the run; the reason is `Unfinished` if it had not ended by itself.
     pub fn finish(mut self) -> Report {
         if self.proposal.is_none() {
             let _solved = self.try_subproblem();
@@ -73,12 +74,12 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             solution: state.center,
             value: state.center_value,
             start_value: state.start_value,
-            termination: self.termination.unwrap_or(Termination::StoppedByObserver),
+            termination: self.termination.unwrap_or(Termination::Unfinished),
             certificate,
             counts: state.counts,
             largest_violation: state.history.iter().map(|record| record.violation).fold(0.0, f64::max),
             history: state.history,
-            warnings: state.warnings,
+            warnings: vec![],
             seconds,
         }
     }

@@ -1,23 +1,52 @@
 //! The norm in which the engine measures distances of points, and its dual for subgradients.
 //!
 //! ```text
-//! ‖d‖² = Σ wᵢ dᵢ²,     ‖g‖*² = Σ gᵢ²/wᵢ,     wᵢ = 1/Dᵢ²
+//! ‖d‖² = dᵀ W d,     ‖g‖*² = gᵀ W⁻¹ g,     W = diag(1/Dᵢ²)   or   W = M⁻ᵀ M⁻¹
 //! ```
 
-use crate::bundle::config::VariableScaling;
-use crate::{InputError, Polyhedron, Vector};
+use super::config::VariableScaling;
+use super::coordinates::Coordinates;
+use crate::checks::check_size;
+use crate::qp::Metric;
+use crate::{InputError, Matrix, Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 
-/// A diagonal norm; `weights` are the wᵢ.
+/// The norm of a run: that of the scaled variables, with a diagonal or a dense W.
+///
+/// All lengths of a run are in this norm: radii, steps, the aggregate subgradient (in the dual norm), curvatures and the
+/// distances of the stopping tests.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ScaledNorm {
-    weights: Vector,
+pub struct ScaledNorm(Scale);
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Scale {
+    /// The diagonal of W.
+    Weights(Vector),
+    /// The matrix M.
+    Linear(Coordinates),
+}
+
+/// The quadratic term u W of a subproblem.
+#[derive(Debug)]
+pub(crate) enum WeightedMetric {
+    Diagonal(Vector),
+    Dense(Matrix),
+}
+
+impl WeightedMetric {
+    pub(crate) fn metric(&self) -> Metric<'_> {
+        match self {
+            Self::Diagonal(diagonal) => Metric::Diagonal(diagonal),
+            Self::Dense(matrix) => Metric::Dense(matrix),
+        }
+    }
 }
 
 impl ScaledNorm {
     /// The Euclidean norm.
     pub fn euclidean(dimension: usize) -> Self {
-        Self { weights: Vector::from_element(dimension, 1.0) }
+        Self(Scale::Weights(Vector::from_element(dimension, 1.0)))
     }
 
     /// The norm that a scaling and the box of the admissible set ask for.
@@ -25,11 +54,13 @@ impl ScaledNorm {
         match scaling {
             VariableScaling::Unit => Ok(Self::euclidean(set.dimension())),
             VariableScaling::FromBox => Ok(Self::from_box(set)),
-            VariableScaling::Typical(sizes) if sizes.len() == set.dimension() => {
-                Ok(Self { weights: sizes.map(|size| 1.0 / (size * size)) })
-            }
             VariableScaling::Typical(sizes) => {
-                Err(InputError::Dimension { what: "scaling.typical", expected: set.dimension(), found: sizes.len() })
+                check_size("scaling.typical", set.dimension(), sizes.len())?;
+                Ok(Self(Scale::Weights(sizes.map(|size| 1.0 / (size * size)))))
+            }
+            VariableScaling::Linear(matrix) => {
+                check_size("scaling.linear", set.dimension(), matrix.nrows())?;
+                Ok(Self(Scale::Linear(Coordinates::try_from(matrix.clone())?)))
             }
         }
     }
@@ -42,17 +73,43 @@ impl ScaledNorm {
         }
         let logs: Vec<f64> = widths.iter().filter(|width| **width > 0.0).map(|width| width.ln()).collect();
         let mean = (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp();
-        Self { weights: widths.map(|width| if width > 0.0 { (mean / width).powi(2) } else { 1.0 }) }
+        Self(Scale::Weights(widths.map(|width| if width > 0.0 { (mean / width).powi(2) } else { 1.0 })))
     }
 
-    /// The weights wᵢ.
-    pub fn weights(&self) -> &Vector {
-        &self.weights
+    /// The matrix W, symmetric and positive definite.
+    pub fn matrix(&self) -> Matrix {
+        match &self.0 {
+            Scale::Weights(weights) => Matrix::from_diagonal(weights),
+            Scale::Linear(Coordinates { metric, .. }) => metric.clone(),
+        }
+    }
+
+    /// u W.
+    pub(crate) fn weighted(&self, weight: f64) -> WeightedMetric {
+        match &self.0 {
+            Scale::Weights(weights) => WeightedMetric::Diagonal(weights * weight),
+            Scale::Linear(Coordinates { metric, .. }) => WeightedMetric::Dense(metric * weight),
+        }
+    }
+
+    /// Adds u W to a matrix.
+    pub(crate) fn add_to(&self, matrix: &mut Matrix, weight: f64) {
+        match self.weighted(weight) {
+            WeightedMetric::Diagonal(diagonal) => {
+                for (i, entry) in diagonal.iter().enumerate() {
+                    matrix[(i, i)] += entry;
+                }
+            }
+            WeightedMetric::Dense(metric) => *matrix += metric,
+        }
     }
 
     /// ‖d‖².
     pub fn squared(&self, d: &Vector) -> f64 {
-        self.weights.iter().zip(d.iter()).map(|(w, d)| w * d * d).sum()
+        match &self.0 {
+            Scale::Weights(weights) => weights.iter().zip(d.iter()).map(|(w, d)| w * d * d).sum(),
+            Scale::Linear(Coordinates { inverse, .. }) => (inverse * d).norm_squared(),
+        }
     }
 
     /// ‖d‖.
@@ -62,16 +119,27 @@ impl ScaledNorm {
 
     /// ‖g‖*.
     pub fn dual_length(&self, g: &Vector) -> f64 {
-        self.weights.iter().zip(g.iter()).map(|(w, g)| g * g / w).sum::<f64>().sqrt()
+        match &self.0 {
+            Scale::Weights(weights) => weights.iter().zip(g.iter()).map(|(w, g)| g * g / w).sum::<f64>().sqrt(),
+            Scale::Linear(Coordinates { matrix, .. }) => matrix.tr_mul(g).norm(),
+        }
     }
 
     /// W d, the gradient of ½‖d‖².
     pub fn lower_index(&self, d: &Vector) -> Vector {
-        self.weights.component_mul(d)
+        match &self.0 {
+            Scale::Weights(weights) => weights.component_mul(d),
+            Scale::Linear(Coordinates { inverse, .. }) => inverse.tr_mul(&(inverse * d)),
+        }
     }
 
     /// ‖x − y‖².
     pub fn squared_distance(&self, x: &Vector, y: &Vector) -> f64 {
-        self.weights.iter().zip(x.iter().zip(y.iter())).map(|(w, (x, y))| w * (x - y) * (x - y)).sum()
+        match &self.0 {
+            Scale::Weights(weights) => {
+                weights.iter().zip(x.iter().zip(y.iter())).map(|(w, (x, y))| w * (x - y) * (x - y)).sum()
+            }
+            Scale::Linear(_) => self.squared(&(x - y)),
+        }
     }
 }

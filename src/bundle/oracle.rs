@@ -1,9 +1,8 @@
 //! The one place where the user's code is called: panics, wrong sizes and numbers that are not finite become errors.
 
 use crate::linalg::first_non_finite;
+use crate::panics::evaluate_without_panic;
 use crate::{Answer, NonsmoothObjective, OracleError, Request};
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What an evaluation can end with.
 pub(crate) enum Outcome<W> {
@@ -18,11 +17,9 @@ pub(crate) fn evaluate<O: NonsmoothObjective>(
     objective: &O,
     request: &Request<'_, O::WarmStart>,
 ) -> Outcome<O::WarmStart> {
-    // The state behind `&objective` may be torn after a panic; the engine only calls it again, it never reads it.
-    match catch_unwind(AssertUnwindSafe(|| objective.evaluate(request))) {
-        Ok(Ok(answer)) => check(answer, request),
-        Ok(Err(error)) => Outcome::Failure(error),
-        Err(payload) => Outcome::Failure(OracleError::Panicked { message: panic_text(payload.as_ref()) }),
+    match evaluate_without_panic(objective, request) {
+        Ok(answer) => check(answer, request),
+        Err(error) => Outcome::Failure(error),
     }
 }
 
@@ -43,12 +40,4 @@ fn check<W>(answer: Answer<W>, request: &Request<'_, W>) -> Outcome<W> {
         Some(error) => Outcome::Failure(error),
         None => Outcome::Answer(answer),
     }
-}
-
-fn panic_text(payload: &(dyn Any + Send)) -> String {
-    payload
-        .downcast_ref::<&str>()
-        .map(|text| (*text).to_owned())
-        .or_else(|| payload.downcast_ref::<String>().cloned())
-        .unwrap_or_else(|| "a payload that is not text".to_owned())
 }

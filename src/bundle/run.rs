@@ -2,22 +2,24 @@
 
 use super::builder::BundleTrust;
 use super::config::AccuracyPolicy;
-use super::model::Model;
 use super::oracle::{Outcome, evaluate};
-use super::snapshot::Snapshot;
-use super::start::{admissible_start, first_evaluation};
+use super::proposers::cuts::model::Model;
+use super::proposers::list::Proposers;
+use super::proposers::proposal::{Proposal, SubproblemError};
+use super::proposers::proposer::Position;
 use super::state::State;
-use super::subproblem::{self, Proposal, SubproblemError};
 use crate::qp::{EpigraphQpSolver, QpCounts};
 use crate::report::{IterationRecord, StepKind, Termination};
-use crate::{
-    Accuracy, Answer, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector,
-};
+use crate::{Accuracy, Answer, NonsmoothObjective, OracleError, Polyhedron, Request, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
 
 /// A center that is evaluated again is asked for this share of the accuracy that would just do.
-const REFINEMENT: f64 = 0.03;
+const REFINEMENT_SHARE: f64 = 0.03;
+/// A trial point that differs from the center by less than this share of every variable cannot be told from it.
+const SHORTEST_MOVE: f64 = 4.0 * f64::EPSILON;
+/// Weights tried before a subproblem counts as unsolvable.
+const MAX_SUBPROBLEM_TRIALS: usize = 4;
 
 /// A run of [`BundleTrust`], driven by hand.
 ///
@@ -27,69 +29,28 @@ const REFINEMENT: f64 = 0.03;
 /// let mut method = BundleTrust::new(BundleTrustConfig::default())?;
 /// let mut run = method.start(&theta, Vector::from_element(1, 2.5))?;
 /// while run.step().is_continue() && run.value() > 1.0 {}
-/// let snapshot = run.snapshot();
-/// assert!(snapshot.value() <= 1.0);
-/// let report = method.continue_from(&theta, snapshot)?;
-/// assert!(report.value < 1e-9);
+/// assert!(run.value() <= 1.0);
+/// while run.step().is_continue() {}
+/// assert!(run.finish().value < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Run<'r, 'o, O: NonsmoothObjective> {
     pub(super) method: &'r mut BundleTrust<'o>,
-    objective: &'r O,
+    pub(super) objective: &'r O,
     pub(super) set: Polyhedron,
     pub(super) state: State,
     pub(super) warm_start: Option<O::WarmStart>,
     pub(super) solver: EpigraphQpSolver,
-    /// The last subproblem's answer, as long as center and bundle are those it was solved for.
+    pub(super) proposers: Proposers,
+    /// The model of center and bundle, as long as they stay.
+    pub(super) model: Option<Model>,
+    /// The answer of the last plain subproblem, as long as center and bundle are those it was solved for.
     pub(super) proposal: Option<Proposal>,
     pub(super) termination: Option<Termination>,
-    clock: Instant,
+    pub(super) clock: Instant,
 }
 
-impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
-    pub(super) fn start(method: &'r mut BundleTrust<'o>, objective: &'r O, x0: Vector) -> Result<Self, OptimizeError> {
-        let clock = Instant::now();
-        let dimension = objective.dimension();
-        let set = method.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
-        let start = admissible_start(&set, dimension, x0)?;
-        let (mut state, warm_start) = first_evaluation(objective, &method.config, &set, start)?;
-        if let Some(first) = state.history.first_mut() {
-            first.seconds = clock.elapsed().as_secs_f64();
-        }
-        let mut run = Self::assemble(method, objective, set, state, clock);
-        run.warm_start = Some(warm_start);
-        if let Break(termination) = run.after_evaluation() {
-            run.termination = Some(termination);
-        }
-        Ok(run)
-    }
-
-    pub(super) fn resume(
-        method: &'r mut BundleTrust<'o>,
-        objective: &'r O,
-        from: Snapshot,
-    ) -> Result<Self, OptimizeError> {
-        let (expected, found) = (objective.dimension(), from.state.center.len());
-        if expected != found {
-            return Err(InputError::Dimension { what: "snapshot", expected, found }.into());
-        }
-        if method.constraints.as_ref().is_some_and(|set| *set != from.set) {
-            return Err(OptimizeError::ChangedConstraints);
-        }
-        Ok(Self::assemble(method, objective, from.set, from.state, Instant::now()))
-    }
-
-    fn assemble(
-        method: &'r mut BundleTrust<'o>,
-        objective: &'r O,
-        set: Polyhedron,
-        state: State,
-        clock: Instant,
-    ) -> Self {
-        let solver = EpigraphQpSolver::default();
-        Self { method, objective, set, state, warm_start: None, solver, proposal: None, termination: None, clock }
-    }
-
+impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// One step: at most one evaluation (and one more of the center where its accuracy no longer suffices). `Break` when
     /// the run has ended; further calls repeat the reason.
     pub fn step(&mut self) -> ControlFlow<Termination> {
@@ -105,20 +66,20 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
 
     fn advance(&mut self) -> ControlFlow<Termination> {
         self.check_limits()?;
-        // A resumed run has no memory of earlier subproblems; neither has this one, so both go the same way bit by bit.
+        // A step depends on the state of the run alone, not on what the solver remembers of earlier subproblems.
         self.solver.forget();
-        let proposal = self.propose()?;
-        let proposal = self.compete(proposal);
+        let proposal = self.next_trial()?;
+        let proposal = self.choose_trial(proposal);
         if self.center_is_too_coarse(&proposal) {
             return self.refine_center(&proposal);
         }
         self.check_length(&proposal)?;
         let accuracy = self.wanted_accuracy(proposal.predicted_decrease);
         let target = self.state.center_value - self.method.config.serious_fraction * proposal.predicted_decrease;
-        match self.ask(&proposal.trial, accuracy, Some(target)) {
+        match self.evaluate(&proposal.trial, accuracy, Some(target)) {
             Outcome::MinusInfinity => return Break(Termination::UnboundedBelow),
             Outcome::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
-            Outcome::Answer(answer) => self.judge(proposal, accuracy, answer),
+            Outcome::Answer(answer) => self.accept_or_reject(proposal, accuracy, answer),
         }
         self.after_evaluation()
     }
@@ -140,7 +101,7 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
     /// Ends the run when the trial point cannot be told from the center.
     fn check_length(&self, proposal: &Proposal) -> ControlFlow<Termination> {
         let moved = proposal.trial.iter().zip(self.state.center.iter());
-        if moved.into_iter().any(|(y, x)| (y - x).abs() > 4.0 * f64::EPSILON * x.abs()) {
+        if moved.into_iter().any(|(y, x)| (y - x).abs() > SHORTEST_MOVE * x.abs()) {
             return Continue(());
         }
         Break(if self.state.noise > 0.0 {
@@ -150,7 +111,7 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         })
     }
 
-    fn ask(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>) -> Outcome<O::WarmStart> {
+    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>) -> Outcome<O::WarmStart> {
         self.state.counts.evaluations += 1;
         let request = Request { point, warm_start: self.warm_start.as_ref(), accuracy, descent_target: target };
         evaluate(self.objective, &request)
@@ -159,7 +120,7 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
     /// Solves the subproblem; where it fails, shorter steps are tried before the run ends.
     pub(super) fn solve_subproblem(&mut self) -> ControlFlow<Termination, Proposal> {
         let mut last = SubproblemError::Unusable;
-        for _ in 0..4 {
+        for _ in 0..MAX_SUBPROBLEM_TRIALS {
             match self.try_subproblem() {
                 Ok(proposal) => return Continue(proposal),
                 Err(error) => last = error,
@@ -170,19 +131,39 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         Break(Termination::SubproblemFailed { reason: last.to_string() })
     }
 
+    /// Solves the plain subproblem at the weight of the run.
     pub(super) fn try_subproblem(&mut self) -> Result<Proposal, SubproblemError> {
-        let model = Model::new(&mut self.state, &self.method.config);
-        let before = self.solver.counts();
-        let solved = subproblem::solve(&mut self.solver, &self.set, &self.state, &model);
-        self.count_solves(before);
-        let proposal = solved?;
+        let proposal = self.ask(|proposers, position| proposers.plain(position))?;
         self.state.bundle.set_multipliers(&proposal.cut_multipliers);
         self.proposal = Some(proposal.clone());
         Ok(proposal)
     }
 
+    /// The proposal worth an evaluation, be it that of the plain cuts or of a rival.
+    fn choose_trial(&mut self, plain: Proposal) -> Proposal {
+        self.ask(|proposers, position| proposers.choose(position, plain))
+    }
+
+    /// Asks the proposers at the present position and counts the subproblems they solve.
+    fn ask<T>(&mut self, question: impl FnOnce(&mut Proposers, &mut Position<'_>) -> T) -> T {
+        let (small, before) = (self.small(), self.solver.counts());
+        let config = &self.method.config;
+        let model = self.model.take().unwrap_or_else(|| Model::new(&mut self.state, config));
+        let (state, set, solver) = (&self.state, &self.set, &mut self.solver);
+        let answer = question(&mut self.proposers, &mut Position { state, set, solver, model: &model, small });
+        self.model = Some(model);
+        self.count_solves(before);
+        answer
+    }
+
+    /// Drops model and answer, because center or bundle change.
+    pub(super) fn forget_model(&mut self) {
+        self.model = None;
+        self.proposal = None;
+    }
+
     /// Adds the subproblems solved since `before` to the report.
-    pub(super) fn count_solves(&mut self, before: QpCounts) {
+    fn count_solves(&mut self, before: QpCounts) {
         let after = self.solver.counts();
         self.state.counts.qp_solves += after.solves - before.solves;
         self.state.counts.qp_fallbacks += after.fallbacks - before.fallbacks;
@@ -200,17 +181,17 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
     /// Whether the center's promised error hides the predicted decrease and a better value can be asked for.
     pub(super) fn center_is_too_coarse(&self, proposal: &Proposal) -> bool {
         let AccuracyPolicy::OnDemand { factor, .. } = self.method.config.accuracy else { return false };
-        let wanted = self.wanted_accuracy(REFINEMENT * proposal.predicted_decrease).tolerance();
+        let wanted = self.wanted_accuracy(REFINEMENT_SHARE * proposal.predicted_decrease).tolerance();
         self.state.center_error_bound() > factor * proposal.predicted_decrease
             && wanted < 0.5 * self.state.center_accuracy
     }
 
-    /// Evaluates the center again, ten times more accurately than the predicted decrease asks for.
+    /// Evaluates the center again, to [`REFINEMENT_SHARE`] of the accuracy that the predicted decrease asks for.
     fn refine_center(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
-        let accuracy = self.wanted_accuracy(REFINEMENT * proposal.predicted_decrease);
+        let accuracy = self.wanted_accuracy(REFINEMENT_SHARE * proposal.predicted_decrease);
         let center = self.state.center.clone();
         self.state.center_accuracy = accuracy.tolerance();
-        let (value, failure) = match self.ask(&center, accuracy, None) {
+        let (value, failure) = match self.evaluate(&center, accuracy, None) {
             Outcome::Answer(Answer::Accurate(evaluation)) => {
                 let value = evaluation.value;
                 let old = self.state.center_id;
@@ -243,9 +224,9 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
         Continue(())
     }
 
-    /// Seconds since the start, those before a resume included.
+    /// Seconds since the start.
     pub(super) fn seconds(&self) -> f64 {
-        self.state.seconds_before + self.clock.elapsed().as_secs_f64()
+        self.clock.elapsed().as_secs_f64()
     }
 
     /// The stability center, the best admissible point so far.
@@ -261,12 +242,5 @@ impl<'r, 'o, O: NonsmoothObjective> Run<'r, 'o, O> {
     /// One record per evaluation so far.
     pub fn history(&self) -> &[IterationRecord] {
         &self.state.history
-    }
-
-    /// The run as data.
-    pub fn snapshot(&self) -> Snapshot {
-        let mut state = self.state.clone();
-        state.seconds_before = self.seconds();
-        Snapshot::new(self.set.clone(), state)
     }
 }

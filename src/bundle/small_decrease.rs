@@ -4,9 +4,9 @@
 //! the center is none either (a nonconvex function): both are checked before a run ends.
 
 use super::config::AccuracyPolicy;
-use super::cut::Cut;
+use super::cut::{Cut, LEAST_ACTIVE_MULTIPLIER};
+use super::proposers::proposal::Proposal;
 use super::run::Run;
-use super::subproblem::Proposal;
 use crate::report::Termination;
 use crate::{NonsmoothObjective, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
@@ -15,27 +15,25 @@ use std::ops::ControlFlow::{self, Break, Continue};
 const CONFIRMING_RADIUS: f64 = 1e-5;
 /// Largest share of the aggregate subgradient that may stem from convexification in a confirmed end: more means that
 /// subgradients and values contradict each other, or that the cuts lie on both sides of a ridge.
-const HONEST_SHARE: f64 = 0.1;
-/// Multipliers above this are active.
-const ACTIVE: f64 = 1e-9;
+const MAX_CONVEXIFIED_SHARE: f64 = 0.1;
 /// The weight is lowered until the step has this relative length.
-const TELLING_LENGTH: f64 = 1e-2;
+const LEAST_STEP_LENGTH: f64 = 1e-2;
 
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// A trial point worth an evaluation, or the reason to end.
-    pub(super) fn propose(&mut self) -> ControlFlow<Termination, Proposal> {
+    pub(super) fn next_trial(&mut self) -> ControlFlow<Termination, Proposal> {
         loop {
             let proposal = self.solve_subproblem()?;
             if proposal.predicted_decrease > self.small() || self.center_is_too_coarse(&proposal) {
                 return Continue(proposal);
             }
             let kept = self.state.weight;
-            let proposal = self.attenuate(proposal);
+            let proposal = self.decrease_weight(proposal);
             if proposal.predicted_decrease > self.small() {
                 return Continue(proposal);
             }
             self.state.weight = kept;
-            self.conclude(&proposal)?;
+            self.stopping_test(&proposal)?;
             if !self.restart(&proposal) {
                 return Continue(proposal);
             }
@@ -57,7 +55,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let center = self.state.center_error_bound();
         let promised = match self.method.config.accuracy {
             AccuracyPolicy::Tightest => {
-                let active = self.state.bundle.cuts().iter().filter(|cut| cut.multiplier > ACTIVE);
+                let active = self.state.bundle.cuts().iter().filter(|cut| cut.is_active());
                 center + active.map(Cut::excess).fold(0.0, f64::max)
             }
             AccuracyPolicy::OnDemand { tightest, .. } => {
@@ -70,9 +68,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     }
 
     /// Lowers the weight, without evaluations, until the step is long enough to tell or the decrease is not small.
-    fn attenuate(&mut self, mut proposal: Proposal) -> Proposal {
+    fn decrease_weight(&mut self, mut proposal: Proposal) -> Proposal {
         for _ in 0..self.method.config.attenuation_steps {
-            if proposal.step_length >= TELLING_LENGTH * self.state.length_scale() {
+            if proposal.step_length >= LEAST_STEP_LENGTH * self.state.length_scale() {
                 break;
             }
             let kept = self.state.weight;
@@ -92,15 +90,15 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     }
 
     /// Ends the run if nothing is left to try.
-    fn conclude(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
+    fn stopping_test(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
         let noise = self.noise_level();
         if noise > self.tolerance() && proposal.predicted_decrease > 0.0 {
             return Break(Termination::NoiseLimit { estimate: noise });
         }
         let radius = self.active_radius(proposal) / self.state.length_scale().max(f64::MIN_POSITIVE);
         let near = radius <= CONFIRMING_RADIUS;
-        let honest = self.convexified_share(proposal) <= HONEST_SHARE;
-        if near && honest {
+        let trusted = self.convexified_share(proposal) <= MAX_CONVEXIFIED_SHARE;
+        if near && trusted {
             return Break(Termination::Stationary { radius });
         }
         let allowed = if self.state.nonconvex { self.method.config.max_restarts } else { 1 };
@@ -129,7 +127,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// Largest distance of a cut with a positive multiplier.
     pub(super) fn active_radius(&self, proposal: &Proposal) -> f64 {
         let cuts = self.state.bundle.cuts().iter().zip(&proposal.cut_multipliers);
-        let active = cuts.filter(|(_, multiplier)| **multiplier > ACTIVE);
+        let active = cuts.filter(|(_, multiplier)| **multiplier > LEAST_ACTIVE_MULTIPLIER);
         let distances = active.map(|(cut, _)| self.state.norm.squared_distance(&self.state.center, &cut.point));
         distances.fold(0.0, f64::max).sqrt()
     }
@@ -152,7 +150,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         state.set_weight(weight, config);
         state.streak = 0;
         state.variation = None;
-        self.proposal = None;
+        self.forget_model();
         true
     }
 }

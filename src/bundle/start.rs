@@ -1,31 +1,81 @@
-//! The first evaluation: admissible start, norm, first weight.
+//! The ways to run a method, and the first evaluation: admissible start, norm, first weight.
 
-use super::config::AccuracyPolicy;
-use super::curvature::CurvatureRecord;
+use super::builder::BundleTrust;
+use super::config::{AccuracyPolicy, BundleTrustConfig};
 use super::cut::{Bundle, Cut};
 use super::norm::ScaledNorm;
 use super::oracle::{Outcome, evaluate};
+use super::proposers::list::Proposers;
+use super::proposers::proposal::FEASIBILITY;
+use super::run::Run;
 use super::state::State;
-use crate::linalg::first_non_finite;
-use crate::qp::{QpError, project};
-use crate::report::{Counts, IterationRecord, StepKind};
-use crate::{
-    Accuracy, BundleTrustConfig, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron,
-    Request, Vector,
-};
+use crate::checks::{check_finite, check_size};
+use crate::qp::{EpigraphQpSolver, QpError, project};
+use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
+use crate::{Accuracy, Evaluation, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector};
+use std::ops::ControlFlow::Break;
+use std::time::Instant;
+
+/// Relative violation that a projected start may keep.
+const MAX_START_VIOLATION: f64 = 1e-9;
+
+impl<'o> BundleTrust<'o> {
+    /// Minimises the objective from a start that need not be admissible.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start). Everything that happens later ends in a [`Report`].
+    pub fn minimize<O: NonsmoothObjective>(&mut self, objective: &O, x0: Vector) -> Result<Report, OptimizeError> {
+        let mut run = self.start(objective, x0)?;
+        while run.step().is_continue() {}
+        Ok(run.finish())
+    }
+
+    /// Projects the start on the admissible set and evaluates it.
+    ///
+    /// # Errors
+    /// [`OptimizeError::Input`] on sizes and numbers, [`OptimizeError::Infeasible`] if the set is empty,
+    /// [`OptimizeError::Oracle`] if the first evaluation fails.
+    pub fn start<'r, O: NonsmoothObjective>(
+        &'r mut self,
+        objective: &'r O,
+        x0: Vector,
+    ) -> Result<Run<'r, 'o, O>, OptimizeError> {
+        let clock = Instant::now();
+        let dimension = objective.dimension();
+        let set = self.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
+        let start = admissible_start(&set, dimension, x0)?;
+        let (mut state, warm_start) = first_evaluation(objective, &self.config, &set, start)?;
+        if let Some(first) = state.history.first_mut() {
+            first.seconds = clock.elapsed().as_secs_f64();
+        }
+        let proposers = Proposers::new(&self.config, dimension, state.first_weight);
+        let mut run = Run {
+            method: self,
+            objective,
+            set,
+            state,
+            warm_start: Some(warm_start),
+            solver: EpigraphQpSolver::default(),
+            proposers,
+            model: None,
+            proposal: None,
+            termination: None,
+            clock,
+        };
+        if let Break(termination) = run.after_evaluation() {
+            run.termination = Some(termination);
+        }
+        Ok(run)
+    }
+}
 
 /// Checks sizes, and moves the start into the admissible set.
-pub(super) fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Vector, OptimizeError> {
-    for (what, found) in [("start point", x0.len()), ("constraints", set.dimension())] {
-        if found != dimension {
-            return Err(InputError::Dimension { what, expected: dimension, found }.into());
-        }
-    }
-    if let Some(index) = first_non_finite(x0.as_slice()) {
-        return Err(InputError::NotFinite { what: "start point", index, value: x0[index] }.into());
-    }
+fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Vector, OptimizeError> {
+    check_size("start point", dimension, x0.len())?;
+    check_size("constraints", dimension, set.dimension())?;
+    check_finite("start point", x0.as_slice())?;
     let before = set.violation(&x0);
-    if before <= super::subproblem::FEASIBILITY {
+    if before <= FEASIBILITY {
         return Ok(set.clamp_to_box(&x0));
     }
     let projected = project(set, &x0).map_err(|error| match error {
@@ -33,11 +83,11 @@ pub(super) fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -
         _ => OptimizeError::Infeasible { violation: before },
     })?;
     let violation = set.violation_near(&projected, &x0);
-    if violation <= 1e-9 { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
+    if violation <= MAX_START_VIOLATION { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }
 
 /// Evaluates the start and sets up the state.
-pub(super) fn first_evaluation<O: NonsmoothObjective>(
+fn first_evaluation<O: NonsmoothObjective>(
     objective: &O,
     config: &BundleTrustConfig,
     set: &Polyhedron,
@@ -87,11 +137,8 @@ pub(super) fn first_evaluation<O: NonsmoothObjective>(
         nonconvex: false,
         noise: 0.0,
         failures: 0,
-        curvature: CurvatureRecord::new(weight),
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],
-        seconds_before: 0.0,
-        warnings: vec![],
     };
     state.history.push(first_record(&state, set, slope));
     Ok((state, warm_start))
@@ -113,6 +160,7 @@ fn first_record(state: &State, set: &Polyhedron, slope: f64) -> IterationRecord 
     IterationRecord {
         evaluation: 1,
         kind: StepKind::Start,
+        origin: Origin::Given,
         value: Some(state.start_value),
         center_value: state.start_value,
         predicted_decrease: 0.0,

@@ -1,14 +1,12 @@
-//! Everything a run carries from step to step; what a snapshot stores.
+//! Everything a run carries from step to step.
 
-use super::curvature::CurvatureRecord;
-use super::cut::{Bundle, Cut, IDLE};
+use super::cut::{Bundle, Cut};
 use super::norm::ScaledNorm;
 use crate::report::{Counts, IterationRecord};
 use crate::{BundleTrustConfig, Vector};
-use serde::{Deserialize, Serialize};
 
 /// State of a run between two steps. The weight is u = 1/t of the trust parameter t.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
 pub(crate) struct State {
     pub norm: ScaledNorm,
     pub start: Vector,
@@ -35,13 +33,8 @@ pub(crate) struct State {
     pub noise: f64,
     /// Failed evaluations in a row.
     pub failures: usize,
-    /// What the curved model is worth.
-    pub curvature: CurvatureRecord,
     pub counts: Counts,
     pub history: Vec<IterationRecord>,
-    /// Seconds spent before the last resume.
-    pub seconds_before: f64,
-    pub warnings: Vec<String>,
 }
 
 impl State {
@@ -53,7 +46,7 @@ impl State {
 
     /// Rounding level of the model: what differences of the values behind its active cuts cannot resolve.
     pub(crate) fn rounding(&self) -> f64 {
-        let cuts = self.bundle.cuts().iter().filter(|cut| cut.multiplier > IDLE);
+        let cuts = self.bundle.cuts().iter().filter(|cut| !cut.is_idle());
         let sizes =
             cuts.map(|cut| cut.value.abs().max(self.norm.dual_length(&cut.subgradient) * self.norm.length(&cut.point)));
         8.0 * f64::EPSILON * sizes.fold(self.center_value.abs(), f64::max)

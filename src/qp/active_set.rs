@@ -6,7 +6,7 @@
 //!          enter  (take it in; if its normal depends on those held, exchange it against one of them)
 //! ```
 //! Every round raises the dual objective, so no working set returns; rounding is met by a cap on the pivots.
-//! Reference: [GoldfarbIdnani1983], [Kiwiel1986] (epigraph form).
+//! Reference: \[GoldfarbIdnani1983\], \[Kiwiel1986\] (epigraph form).
 
 use super::kernels::{add_scaled, norm};
 use super::pricing::Violation;

@@ -12,9 +12,9 @@ use clarabel::solver::{
 
 use crate::{Matrix, Vector};
 
+use super::answer::assemble;
 use super::kernels::norm;
 use super::problem::{EpigraphQp, QpError, QpMethod, QpSolution};
-use super::solver::assemble;
 use super::working_set::{Active, Member, Side};
 
 /// Answer of the interior-point method and the members it found active.

@@ -8,13 +8,15 @@
 //! KKT:              H d + Σ π_j g_j + Aᵀ μ + ν = 0
 //! ```
 //! [`EpigraphQpSolver`] is a warm-started dual active-set method; what it cannot finish goes to an interior-point method
-//! and comes back to it for a polish. Every answer carries its [`kkt_residual`], computed from the data alone.
+//! (feature `interior-point`, on by default) and comes back to it for a polish. Every answer carries its [`kkt_residual`], computed from the data alone.
 //! [`project`] is the Euclidean projection onto a polyhedron, a special case.
 
 mod active_set;
+mod answer;
 mod certificate;
 mod coordinates;
 mod factor;
+#[cfg(feature = "interior-point")]
 mod interior_point;
 mod kernels;
 mod pricing;

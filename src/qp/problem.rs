@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::linalg::first_non_finite;
+use crate::checks::{check_finite, check_intervals, check_size};
 use crate::{InputError, Matrix, Vector};
 
 /// The quadratic term ½ dᵀ H d.
@@ -99,7 +99,7 @@ pub struct QpCounts {
     pub solves: usize,
     /// Changes of the active set.
     pub pivots: usize,
-    /// Calls handed to the interior-point method.
+    /// Calls handed to the interior-point method; 0 without the feature `interior-point`.
     pub fallbacks: usize,
 }
 
@@ -117,7 +117,7 @@ pub enum QpError {
         /// with the others.
         violation: f64,
     },
-    /// Neither method reached the required accuracy.
+    /// No method that is built in reached the required accuracy.
     #[error("the quadratic program was not solved: relative KKT residual {kkt_residual:.3e}")]
     NotSolved {
         /// Smallest residual reached.
@@ -171,17 +171,6 @@ impl EpigraphQp<'_> {
     }
 }
 
-fn check_size(what: &'static str, expected: usize, found: usize) -> Result<(), InputError> {
-    if expected == found { Ok(()) } else { Err(InputError::Dimension { what, expected, found }) }
-}
-
-fn check_finite(what: &'static str, values: &[f64]) -> Result<(), InputError> {
-    match first_non_finite(values) {
-        Some(index) => Err(InputError::NotFinite { what, index, value: values[index] }),
-        None => Ok(()),
-    }
-}
-
 fn check_positive(value: f64) -> Result<(), InputError> {
     if value > 0.0 && value.is_finite() {
         return Ok(());
@@ -197,20 +186,6 @@ fn check_symmetric(matrix: &Matrix) -> Result<(), InputError> {
                 let value = format!("asymmetry {gap:e} at ({i}, {j})");
                 return Err(InputError::OutOfRange { setting: "metric", value, allowed: "symmetric" });
             }
-        }
-    }
-    Ok(())
-}
-
-fn check_intervals(what: &'static str, lower: &Vector, upper: &Vector) -> Result<(), InputError> {
-    for (index, (&lower, &upper)) in lower.iter().zip(upper.iter()).enumerate() {
-        for value in [lower, upper] {
-            if value.is_nan() {
-                return Err(InputError::NotFinite { what, index, value });
-            }
-        }
-        if lower > upper || lower == f64::INFINITY || upper == f64::NEG_INFINITY {
-            return Err(InputError::EmptyInterval { what, index, lower, upper });
         }
     }
     Ok(())

@@ -5,6 +5,7 @@
 //! ```
 //! In d = y − x this is the QP with the single cut 0 ≤ v and H = I.
 
+use crate::checks::{check_finite, check_size};
 use crate::{Polyhedron, Vector};
 
 use super::problem::{EpigraphQp, Metric, QpError};
@@ -23,13 +24,8 @@ use super::solver::EpigraphQpSolver;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
-    if x.len() != set.dimension() {
-        let (expected, found) = (set.dimension(), x.len());
-        return Err(crate::InputError::Dimension { what: "point", expected, found }.into());
-    }
-    if let Some(index) = crate::linalg::first_non_finite(x.as_slice()) {
-        return Err(crate::InputError::NotFinite { what: "point", index, value: x[index] }.into());
-    }
+    check_size("point", set.dimension(), x.len())?;
+    check_finite("point", x.as_slice())?;
     let clamped = set.clamp_to_box(x);
     if clamped == *x && set.violation(x) == 0.0 {
         return Ok(clamped);

@@ -1,17 +1,13 @@
 //! The solver: warm start, active-set method, certificate, interior-point fallback.
 
-use crate::Vector;
-
 use super::active_set::Outcome;
-use super::certificate::kkt_residual;
+use super::answer::{WANTED, assemble};
 use super::coordinates::{Coordinates, CoordinatesCache};
+#[cfg(feature = "interior-point")]
 use super::interior_point;
-use super::kernels::dot;
 use super::problem::{EpigraphQp, QpCounts, QpError, QpMethod, QpSolution};
 use super::working_set::{Active, Member, Side, WorkingSet};
 
-/// Residual an answer must have to be returned at once; a worse one is tried again by other means.
-const WANTED: f64 = 1e-12;
 /// Residual an answer must have to be returned at all.
 const REQUIRED: f64 = 1e-10;
 
@@ -82,7 +78,8 @@ impl EpigraphQpSolver {
     ///
     /// # Errors
     /// [`QpError::Input`] for data that cannot be worked with, [`QpError::Infeasible`] if rows and box have no common point,
-    /// [`QpError::NotSolved`] if no answer reaches a relative KKT residual of 1e-10.
+    /// [`QpError::NotSolved`] if no answer reaches a relative KKT residual of 1e-10 (without the feature `interior-point`: if the
+    /// active-set method alone does not).
     pub fn solve(&mut self, qp: &EpigraphQp<'_>) -> Result<QpSolution, QpError> {
         qp.validate()?;
         let coordinates = self.coordinates.factorise(qp.metric, qp.dimension())?;
@@ -118,7 +115,19 @@ impl EpigraphQpSolver {
         Err(QpError::NotSolved { kkt_residual: best.solution.kkt_residual })
     }
 
+    /// Without the interior-point method the best answer so far has to do.
+    #[cfg(not(feature = "interior-point"))]
+    fn fall_back(
+        &mut self,
+        _qp: &EpigraphQp<'_>,
+        _coordinates: &Coordinates,
+        best: Option<Attempt>,
+    ) -> Result<Attempt, QpError> {
+        best.ok_or(QpError::NotSolved { kkt_residual: f64::INFINITY })
+    }
+
     /// Interior-point method, then the active-set method from what it found active.
+    #[cfg(feature = "interior-point")]
     fn fall_back(
         &mut self,
         qp: &EpigraphQp<'_>,
@@ -131,7 +140,7 @@ impl EpigraphQpSolver {
                 best = known;
                 answer
             }
-            // A contradiction in the rounding of the sides is no contradiction.
+            // The sides contradict each other by rounding only: the active-set method has found a point.
             (Err(_), Some(known)) if known.outcome == Outcome::Solved => return Ok(known),
             (Err(error), _) => return Err(error),
         };
@@ -183,55 +192,11 @@ fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, warm: &[Active
     Attempt { outcome, solution, actives }
 }
 
-/// Completes a step and its multipliers to an answer with certificate; the step is moved into the box unless the certificate
-/// suffers (with a large H the rounding of a bound may weigh more than the whole step).
-pub(super) fn assemble(
-    qp: &EpigraphQp<'_>,
-    step: Vector,
-    actives: &[Active],
-    pivots: usize,
-    method: QpMethod,
-) -> QpSolution {
-    let clamped = Vector::from_fn(step.len(), |k, _| step[k].max(qp.lower[k]).min(qp.upper[k]));
-    let unchanged = clamped == step;
-    let inside = complete(qp, clamped, actives, pivots, method);
-    if unchanged || inside.kkt_residual <= WANTED {
-        return inside;
-    }
-    let outside = complete(qp, step, actives, pivots, method);
-    if outside.kkt_residual < inside.kkt_residual { outside } else { inside }
-}
-
-fn complete(qp: &EpigraphQp<'_>, step: Vector, actives: &[Active], pivots: usize, method: QpMethod) -> QpSolution {
-    let values =
-        qp.slopes.iter().zip(qp.offsets).map(|(slope, offset)| dot(slope.as_slice(), step.as_slice()) - offset);
-    let epigraph = values.fold(f64::NEG_INFINITY, f64::max);
-    let mut solution = QpSolution {
-        step,
-        epigraph,
-        cut_multipliers: vec![0.0; qp.slopes.len()],
-        row_multipliers: vec![0.0; qp.rows.nrows()],
-        bound_multipliers: vec![0.0; qp.dimension()],
-        kkt_residual: f64::INFINITY,
-        pivots,
-        method,
-    };
-    for active in actives {
-        match active.member {
-            Member::Cut(j) => solution.cut_multipliers[j] = active.multiplier.max(0.0),
-            Member::Row(i) => solution.row_multipliers[i] = active.multiplier,
-            Member::Bound(k) => solution.bound_multipliers[k] = active.multiplier,
-        }
-    }
-    solution.kkt_residual = kkt_residual(qp, &solution);
-    solution
-}
-
-#[cfg(test)]
+#[cfg(all(test, feature = "interior-point"))]
 mod tests {
     use super::super::Metric;
     use super::*;
-    use crate::Matrix;
+    use crate::{Matrix, Vector};
 
     #[test]
     fn the_fallback_is_polished_to_the_accuracy_of_the_active_set_method() {

@@ -5,7 +5,8 @@
 //! Θ(y) ≥ Θ(x̂) − ‖z̃‖*‖y − x̂‖ − ẽ   for all y ∈ U     (Θ convex; otherwise for the convexified model)
 //! ```
 
-use crate::bundle::{Cut, ScaledNorm};
+use crate::bundle::cut::Cut;
+use crate::bundle::norm::ScaledNorm;
 use crate::{Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -72,13 +73,10 @@ impl CertificateCheck {
     }
 }
 
-/// Multipliers above this are active.
-const ACTIVE: f64 = 1e-9;
-
 impl Certificate {
     /// The cuts with a positive multiplier.
     pub fn active_cuts(&self) -> impl Iterator<Item = &Cut> {
-        self.cuts.iter().filter(|cut| cut.multiplier > ACTIVE)
+        self.cuts.iter().filter(|cut| cut.is_active())
     }
 
     /// Computes aggregate norm and error again, from the cuts, the multipliers and the admissible set alone.

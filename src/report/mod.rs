@@ -8,7 +8,7 @@ mod termination;
 
 pub use certificate::{Certificate, CertificateCheck};
 pub use observer::{Observer, TablePrinter};
-pub use record::{Counts, IterationRecord, StepKind};
+pub use record::{Counts, IterationRecord, Origin, StepKind, TrialCounts};
 pub use stop::StopRule;
 pub use termination::Termination;
 
@@ -36,9 +36,9 @@ pub struct Report {
     pub history: Vec<IterationRecord>,
     /// Largest relative violation of the admissible set among all points evaluated.
     pub largest_violation: f64,
-    /// Things that went wrong without ending the run.
+    /// Things that went wrong without ending the run, for whoever completes the report; the method itself has none.
     pub warnings: Vec<String>,
-    /// Seconds used, those before a resume included.
+    /// Seconds used; with those of earlier invocations after [`Journaled::complete`](crate::Journaled::complete).
     pub seconds: f64,
 }
 
@@ -62,6 +62,12 @@ impl fmt::Display for Report {
             f,
             "work:        {} evaluations: {} serious, {} null, {} refined, {} failed; {} restarts",
             counts.evaluations, counts.serious, counts.null, counts.refined, counts.failed, counts.restarts
+        )?;
+        let trials = &counts.trials;
+        writeln!(
+            f,
+            "             trial points: {} of the cuts, {} of the curved model, {} explorations",
+            trials.cuts, trials.curved_model, trials.exploration
         )?;
         writeln!(
             f,

@@ -47,9 +47,10 @@ impl<W: Write> TablePrinter<W> {
     fn header(&mut self) -> std::io::Result<()> {
         writeln!(
             self.writer,
-            "{:>5} {:<10} {:>15} {:>15} {:>9} {:>9} {:>9} {:>9} {:>9} {:>4} {:>8}",
+            "{:>5} {:<10} {:<12} {:>15} {:>15} {:>9} {:>9} {:>9} {:>9} {:>9} {:>4} {:>8}",
             "eval",
             "step",
+            "origin",
             "trial",
             "center",
             "predicted",
@@ -66,9 +67,10 @@ impl<W: Write> TablePrinter<W> {
         let trial = record.value.map_or_else(|| "-".to_owned(), |value| format!("{value:.8e}"));
         writeln!(
             self.writer,
-            "{:>5} {:<10} {:>15} {:>15.8e} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} {:>4} {:>8.2}",
+            "{:>5} {:<10} {:<12} {:>15} {:>15.8e} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} {:>9.2e} {:>4} {:>8.2}",
             record.evaluation,
             record.kind,
+            record.origin,
             trial,
             record.center_value,
             record.predicted_decrease,

@@ -34,6 +34,32 @@ impl std::fmt::Display for StepKind {
     }
 }
 
+/// Who proposed the point of an evaluation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Origin {
+    /// Nobody: the point is the start, or the center once more.
+    Given,
+    /// The plain cuts.
+    Cuts,
+    /// The curved model.
+    CurvedModel,
+    /// An exploration.
+    Exploration,
+}
+
+impl std::fmt::Display for Origin {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(match self {
+            Self::Given => "given",
+            Self::Cuts => "cuts",
+            Self::CurvedModel => "curved model",
+            Self::Exploration => "exploration",
+        })
+    }
+}
+
 /// One evaluation of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct IterationRecord {
@@ -41,6 +67,8 @@ pub struct IterationRecord {
     pub evaluation: usize,
     /// What became of it.
     pub kind: StepKind,
+    /// Who proposed the point.
+    pub origin: Origin,
     /// Θ at the trial point; none if the oracle failed.
     pub value: Option<f64>,
     /// Θ at the center after the step.
@@ -85,10 +113,36 @@ pub struct Counts {
     pub refined: usize,
     /// Failed evaluations.
     pub failed: usize,
+    /// Evaluations by who proposed their point.
+    pub trials: TrialCounts,
     /// Local restarts of the bundle.
     pub restarts: usize,
     /// Subproblems solved.
     pub qp_solves: usize,
     /// Subproblems that needed the fallback solver.
     pub qp_fallbacks: usize,
+}
+
+/// Evaluations of trial points, failed ones included, by who proposed them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct TrialCounts {
+    /// The plain cuts.
+    pub cuts: usize,
+    /// The curved model.
+    pub curved_model: usize,
+    /// Explorations.
+    pub exploration: usize,
+}
+
+impl TrialCounts {
+    /// Counts one evaluation.
+    pub(crate) fn add(&mut self, origin: Origin) {
+        match origin {
+            Origin::Given => {}
+            Origin::Cuts => self.cuts += 1,
+            Origin::CurvedModel => self.curved_model += 1,
+            Origin::Exploration => self.exploration += 1,
+        }
+    }
 }

@@ -38,6 +38,8 @@ pub enum Termination {
     TimeLimit,
     /// An observer asked to stop.
     StoppedByObserver,
+    /// The caller took the report of a run that had not ended.
+    Unfinished,
     /// A stopping rule of the caller holds.
     StopRule {
         /// The rule, as text.
@@ -80,7 +82,9 @@ impl Termination {
             Self::NoiseLimit { .. } => "a more accurate oracle is needed to get further",
             Self::StepTooShort { .. } => "check the subgradients with `verify` at the best point",
             Self::EvaluationLimit | Self::IterationLimit | Self::TimeLimit => "raise the limit and continue",
-            Self::StoppedByObserver | Self::StopRule { .. } => "continue when wanted: nothing is lost",
+            Self::StoppedByObserver | Self::Unfinished | Self::StopRule { .. } => {
+                "continue when wanted: nothing is lost"
+            }
             Self::UnboundedBelow => "add bounds on the variables",
             Self::OracleFailing { .. } => "make the oracle robust near the best point, or restrict the admissible set",
             Self::SubproblemFailed { .. } => "check the scale of the variables and of the constraint rows",
@@ -104,6 +108,7 @@ impl fmt::Display for Termination {
             Self::EvaluationLimit => write!(f, "evaluation limit reached"),
             Self::IterationLimit => write!(f, "iteration limit reached"),
             Self::TimeLimit => write!(f, "time limit reached"),
+            Self::Unfinished => write!(f, "not ended: the caller stopped asking for steps"),
             Self::StoppedByObserver => write!(f, "stopped by an observer"),
             Self::StopRule { rule } => write!(f, "stopping rule holds: {rule}"),
             Self::UnboundedBelow => write!(f, "the objective is unbounded below"),

@@ -1,7 +1,9 @@
-//! Evaluations per problem of the collection, pinned: a change of the engine that needs more fails here.
+//! Evaluations per problem of the collection, pinned: a change of the engine that changes one fails here.
 //!
-//! Margins: each problem 15 % and 2 evaluations above the count measured when the table was written; the sum over the
-//! problems that all peers solve and the geometric mean to MPBNGC 5 % above theirs.
+//! The counts must be equal on processors with AVX-512, as the one that wrote the table has. The dense kernels choose their
+//! instructions by the processor, and a run may take another course where they round differently. On such processors the margins
+//! are: each problem 15 % and 2 evaluations above the pinned count, and 5 % for the sum over the problems that all peers solve and
+//! for the geometric mean to MPBNGC.
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Vector};
 use std::cell::Cell;
 use testset::{Family, Problem};
@@ -80,6 +82,16 @@ fn evaluations(problem: &Problem) -> Option<usize> {
     hit.get()
 }
 
+#[cfg(target_arch = "x86_64")]
+fn rounds_alike() -> bool {
+    std::arch::is_x86_feature_detected!("avx512f")
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn rounds_alike() -> bool {
+    false
+}
+
 #[test]
 fn evaluation_counts_do_not_grow() {
     let (mut worse, mut common, mut logs) = (vec![], 0, vec![]);
@@ -89,7 +101,9 @@ fn evaluation_counts_do_not_grow() {
             worse.push(format!("{name}: not solved"));
             continue;
         };
-        if count > (1.15 * measured as f64).ceil() as usize + 2 {
+        if rounds_alike() && count != measured {
+            worse.push(format!("{name}: {count} evaluations, pinned {measured}"));
+        } else if count > (1.15 * measured as f64).ceil() as usize + 2 {
             worse.push(format!("{name}: {count} evaluations, measured {measured}"));
         }
         if problem.family == Family::Unconstrained && problem.peers.values().all(Option::is_some) {

@@ -10,6 +10,7 @@ mod evaluation_counts;
 mod feasibility;
 mod generic_use;
 mod inexact_oracle;
-mod reparametrized;
+mod linear_scaling;
+mod proposers;
 mod restart;
 mod terminations;

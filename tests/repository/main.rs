@@ -1,6 +1,7 @@
-//! What the repository promises about itself: packages, licences, sizes of files.
+//! What the repository promises about itself: packages, licences, sizes of files, references.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 mod architecture;
 mod published;
+mod references;

@@ -1,7 +1,6 @@
 //! Costs of the contact pressure σ_i = λ_N,i / A_i; method.md (3.4).
 
-use crate::contact_shape::ContactState;
-use crate::equilibrium::ContactBoundary;
+use crate::equilibrium::{ContactBoundary, ContactState};
 use crate::error::SceneError;
 use nonsmooth::{Cost, CostGradient, Vector};
 
@@ -43,7 +42,7 @@ impl PressureCost {
     /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that carries
     /// this force is below it.
     ///
-    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1} (Hölder), max σ ≥ Λ/ΣA, with Λ = Σλ_N ≥ 0 in N.
+    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1}, max σ ≥ Λ/ΣA, with Λ = Σλ_N ≥ 0 in N; method.md (9.1), (9.2).
     pub fn lower_bound(&self, total_force: f64) -> f64 {
         match self.measure {
             PressureMeasure::Norm { exponent: p } => {
@@ -57,13 +56,13 @@ impl PressureCost {
     }
 
     /// σ per contact node, MPa.
-    pub fn pressures(&self, state: &ContactState) -> Vec<f64> {
+    pub fn pressures<S>(&self, state: &ContactState<S>) -> Vec<f64> {
         state.forces.normal.iter().zip(&self.areas).map(|(force, area)| force / area).collect()
     }
 }
 
-impl Cost<ContactState> for PressureCost {
-    fn value(&self, _control: &Vector, state: &ContactState) -> f64 {
+impl<S> Cost<ContactState<S>> for PressureCost {
+    fn value(&self, _control: &Vector, state: &ContactState<S>) -> f64 {
         let pressures = self.pressures(state);
         match self.measure {
             PressureMeasure::Norm { exponent } => pressures.iter().map(|p| p.max(0.0).powf(exponent)).sum(),
@@ -71,7 +70,7 @@ impl Cost<ContactState> for PressureCost {
         }
     }
 
-    fn gradient(&self, control: &Vector, state: &ContactState) -> CostGradient {
+    fn gradient(&self, control: &Vector, state: &ContactState<S>) -> CostGradient {
         let pressures = self.pressures(state);
         let mut dual = Vector::zeros(self.dual_dimension);
         match self.measure {
@@ -127,7 +126,7 @@ mod tests {
 
     #[test]
     fn the_lower_bound_of_the_paper_s_example() {
-        // method.md section 7: (3e7)⁴/(Σ A^{4/3})³ = 1.294e16 on 12 × 12 bricks of a 100 mm square.
+        // method.md (9.1): (3e7)⁴/(Σ A^{4/3})³ = 1.294e16 on 12 × 12 bricks of a 100 mm square.
         let grid = crate::body::mesh::Grid { cells: [12, 12, 12], size: [100.0, 100.0] };
         let areas = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
         let cost = PressureCost { measure: PressureMeasure::Norm { exponent: 4.0 }, areas, dual_dimension: 169 };

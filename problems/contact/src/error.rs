@@ -1,5 +1,6 @@
 //! What can be wrong with a scene, and why a contact problem has no answer.
 
+use crate::linear::FactorizationError;
 use thiserror::Error;
 
 /// What is said of a value that is not allowed.
@@ -183,6 +184,9 @@ pub enum ContactError {
         /// How many the state has.
         found: usize,
     },
+    /// A state was handed to another kind of solver than the one that found it.
+    #[error("the state was found by another kind of contact solver")]
+    OtherSolver,
     /// A result is not finite.
     #[error("{what} is not finite")]
     NotFinite {
@@ -206,6 +210,12 @@ pub enum ContactError {
     DualProblem(#[from] crate::qp::QpError),
 }
 
+impl From<FactorizationError> for ContactError {
+    fn from(error: FactorizationError) -> Self {
+        Self::Factorization { what: error.what.into(), reason: error.reason }
+    }
+}
+
 impl ContactError {
     /// The kind of the error: the name of its variant.
     pub fn kind(&self) -> &'static str {
@@ -217,6 +227,7 @@ impl ContactError {
             Self::NotConverged { .. } => "NotConverged",
             Self::BeyondPrecision { .. } => "BeyondPrecision",
             Self::ForeignState { .. } => "ForeignState",
+            Self::OtherSolver => "OtherSolver",
             Self::NotFinite { .. } => "NotFinite",
             Self::NoContraction { .. } => "NoContraction",
             Self::DualProblem(_) => "DualProblem",

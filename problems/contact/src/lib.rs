@@ -43,11 +43,12 @@
 //! | [`equilibrium`] | boundary, contact law, rigid motions, certificates, the discrete problem and its state |
 //! | [`tfeti`] | total FETI: torn bodies, dual problem, Newton, the paper's method, derivative |
 //! | [`direct`] | direct condensation: an independent path |
-//! | [`qp`], [`linear`], [`scalar`] | dual QPs over half-lines and discs; factorisations and Krylov methods; dual numbers |
+//! | [`qp`], [`linear`] | dual QPs over half-lines and discs; factorisations |
 //! | [`fields`], [`vtk`] | displacements, stresses and contact fields of a solved shape; their files |
 //! | [`memory`] | memory estimated before any work |
 //! | [`error`] | what can be wrong with a scene, and why a contact problem has no answer |
 
+mod any_solver;
 pub mod body;
 pub mod contact_shape;
 pub mod cost;
@@ -58,8 +59,11 @@ pub mod fields;
 pub mod linear;
 pub mod memory;
 pub mod qp;
-pub mod scalar;
+mod scalar;
 pub mod scene;
+#[cfg(feature = "schema")]
+mod schema;
 pub mod shape;
+mod solver_kind;
 pub mod tfeti;
 pub mod vtk;

@@ -4,9 +4,9 @@
 //! sparse factor of n dofs of a box in nested dissection:   values ≈ 268 000·(n/1536)^1.48     (measured from 7³ to 10³ nodes)
 //! ```
 
-use crate::contact_shape::SolverKind;
 use crate::error::SceneError;
 use crate::scene::Scene;
+use crate::solver_kind::SolverKind;
 use crate::tfeti::PreconditionerKind;
 
 /// Bytes of one number.
@@ -28,7 +28,7 @@ fn factor_values(dofs: f64) -> f64 {
 }
 
 /// Estimated bytes for a scene.
-pub fn estimate(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind) -> f64 {
+fn estimate(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind) -> f64 {
     let bodies = if scene.upper.is_some() { 2.0 } else { 1.0 };
     let nodes = |cells: [f64; 3]| cells.iter().map(|cells| cells + 1.0).product::<f64>();
     let mesh = scene.mesh.map(|cells| cells as f64);

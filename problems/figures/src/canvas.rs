@@ -2,9 +2,10 @@
 //!
 //! A superscript is written `^{…}` and raised when the text is drawn.
 
-use super::png::FAMILY;
 use std::fmt::Write;
 
+/// Family of all text in figures; the PNG renderer brings its file.
+pub(super) const FAMILY: &str = "Ubuntu";
 /// Size of captions and titles, points.
 pub(super) const TITLE: f64 = 14.0;
 /// Size of labels and notes, points.
@@ -16,6 +17,16 @@ const LETTER: f64 = 0.5;
 
 /// A position in points.
 pub(super) type Place = [f64; 2];
+
+/// Which point of a line of text is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+    /// The middle of a line that reads upwards.
+    Upward,
+}
 
 /// How a line is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,10 +66,21 @@ impl Canvas {
     }
 
     /// One line of text of some size that begins at a place.
-    pub fn text(&mut self, [x, y]: Place, size: f64, text: &str) {
+    pub fn text(&mut self, at: Place, size: f64, text: &str) {
+        self.anchored(at, size, Anchor::Start, text);
+    }
+
+    /// One line of text of some size; the place is that of a point on its baseline.
+    pub fn anchored(&mut self, [x, y]: Place, size: f64, anchor: Anchor, text: &str) {
+        let more = match anchor {
+            Anchor::Start => String::new(),
+            Anchor::Middle => " text-anchor=\"middle\"".to_owned(),
+            Anchor::End => " text-anchor=\"end\"".to_owned(),
+            Anchor::Upward => format!(" text-anchor=\"middle\" transform=\"rotate(-90 {x:.1} {y:.1})\""),
+        };
         let _ = writeln!(
             self.body,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{INK}\">{}</text>",
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{INK}\"{more}>{}</text>",
             raised(&escaped(text), size)
         );
     }
@@ -162,7 +184,7 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// `^{…}` as superscripts in a text that is escaped already.
-pub(super) fn raised(text: &str, size: f64) -> String {
+fn raised(text: &str, size: f64) -> String {
     let (small, rise) = (0.75 * size, 0.35 * size);
     let mut pieces = text.split("^{");
     let mut all = pieces.next().unwrap_or_default().to_owned();

@@ -1,24 +1,22 @@
-//! Axes around a rectangle, drawn by plotters; curves and marks inside.
-//!
-//! plotters places everything on whole pixels, so it draws ten times as large as the figure.
+//! A rectangle with axes at its left and lower side: ticks, labels, titles, grid lines.
 
-use super::FigureError;
-use super::canvas::{Canvas, INK, LABEL, Place, Stroke, raised};
-use super::png::FAMILY;
+use super::canvas::{Anchor, Canvas, INK, LABEL, Place, Stroke};
 use super::scale::Axis;
-use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
-use plotters::prelude::*;
-use std::ops::Range;
 
-/// Pixels of plotters per point.
-const FINENESS: f64 = 10.0;
+/// Room below a frame for the labels and the title of its horizontal axis, points.
+pub(super) const ROOM_BELOW: f64 = 42.0;
+/// Length of a tick, points.
+const TICK: f64 = 3.5;
+/// Distance of the labels from the frame, points.
+const GAP: f64 = 7.0;
+/// Width of frame and ticks, points.
+const LINE: f64 = 0.8;
+/// Height of a digit above the baseline, relative to the size of the text.
+const DIGIT: f64 = 0.7;
 /// Colour of grid lines.
-const GRID: RGBColor = RGBColor(225, 225, 225);
-const AXIS: RGBColor = RGBColor(34, 34, 34);
-/// plotters writes font sizes divided by this number.
-const PLOTTERS_FONT: f64 = 1.24;
+const GRID: &str = "#e1e1e1";
 
-/// A rectangle with axes at its left and its lower side.
+/// A rectangle for curves or for a map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame {
     pub left: f64,
@@ -30,119 +28,45 @@ pub(super) struct Frame {
 /// Which parts of the axes are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Parts {
-    /// Room at the left for labels and title of the upward axis, points; none: not labelled.
+    /// Room at the left for ticks, labels and title of the vertical axis, points; none: only its line is drawn.
     pub left: Option<f64>,
-    /// Room below for labels and title of the axis across, points; none: not labelled.
-    pub below: Option<f64>,
     /// Lines across the frame at the ticks.
     pub grid: bool,
 }
 
 impl Frame {
-    /// Place of shares of both axes, the upward one counted from below.
+    /// Place of shares of both axes; the vertical one is counted from below.
     pub fn place(&self, [across, up]: [f64; 2]) -> Place {
         [self.left + across * self.width, self.top + (1.0 - up) * self.height]
     }
 
-    /// Axes with ticks, labels and titles.
-    pub fn axes(&self, canvas: &mut Canvas, across: &Axis, up: &Axis, parts: Parts) -> Result<(), FigureError> {
-        let mut text = String::new();
-        self.plot([canvas.width, canvas.height], across, up, parts, &mut text)
-            .map_err(|error| FigureError::Drawing(error.to_string()))?;
-        canvas.raw(&format!("<g transform=\"scale({})\">\n", 1.0 / FINENESS));
-        canvas.raw(&inner(&text));
-        canvas.raw("</g>\n");
-        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|share| self.place(share));
-        canvas.outline(&corners, Stroke::solid(INK, 0.8));
-        Ok(())
-    }
-
-    /// Ticks are given to plotters as shares, so that its own ranges and labels, which fail for extreme numbers, are not used.
-    fn plot(
-        &self,
-        size: [f64; 2],
-        across: &Axis,
-        up: &Axis,
-        parts: Parts,
-        text: &mut String,
-    ) -> Result<(), DrawingAreaErrorKind<std::io::Error>> {
-        let pixels = |length: f64| (FINENESS * length).round().max(0.0) as u32;
-        let (left, below) = (parts.left.unwrap_or(0.0), parts.below.unwrap_or(0.0));
-        let root = SVGBackend::with_string(text, (pixels(size[0]), pixels(size[1]))).into_drawing_area();
-        let shares = |axis: &Axis| Shares(axis.ticks.iter().map(|tick| tick.share).collect());
-        let label = |axis: &Axis, share: f64| {
-            let nearest = axis.ticks.iter().min_by(|a, b| (a.share - share).abs().total_cmp(&(b.share - share).abs()));
-            nearest.map_or_else(String::new, |tick| tick.label.clone())
-        };
-        let mut chart = ChartBuilder::on(&root)
-            .margin_left(pixels(self.left - left))
-            .margin_top(pixels(self.top))
-            .margin_right(pixels(size[0] - self.left - self.width))
-            .margin_bottom(pixels(size[1] - self.top - self.height - below))
-            .y_label_area_size(pixels(left))
-            .x_label_area_size(pixels(below))
-            .build_cartesian_2d(shares(across), shares(up))?;
-        let font = (FAMILY, PLOTTERS_FONT * FINENESS * LABEL).into_font().color(&AXIS);
-        let (across_label, up_label) = (|share: &f64| label(across, *share), |share: &f64| label(up, *share));
-        let mut mesh = chart.configure_mesh();
-        // An axis that is disabled loses ticks and numbers as well as its line.
-        match parts.below {
-            Some(_) => mesh.x_desc(across.title.clone()),
-            None => mesh.disable_x_axis(),
-        };
-        match parts.left {
-            Some(_) => mesh.y_desc(up.title.clone()),
-            None => mesh.disable_y_axis(),
-        };
-        let grid = if parts.grid { GRID.to_rgba() } else { TRANSPARENT };
-        mesh.bold_line_style(grid.stroke_width(7))
-            .light_line_style(TRANSPARENT)
-            .axis_style(AXIS.stroke_width(8))
-            .set_all_tick_mark_size(35)
-            .label_style(font.clone())
-            .axis_desc_style(font)
-            .x_label_formatter(&across_label)
-            .y_label_formatter(&up_label);
-        mesh.draw()?;
-        drop(chart);
-        root.present()
-    }
-}
-
-/// An axis from 0 to 1 with ticks at given places.
-struct Shares(Vec<f64>);
-
-impl Ranged for Shares {
-    type FormatOption = DefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, share: &f64, (from, to): (i32, i32)) -> i32 {
-        from + (f64::from(to - from) * share).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() { Vec::new() } else { self.0.clone() }
-    }
-
-    fn range(&self) -> Range<f64> {
-        0.0..1.0
-    }
-}
-
-/// The elements inside plotters' SVG element, each on one line, superscripts raised. Their font is that of the whole figure, which
-/// names a family to fall back on as well.
-fn inner(svg: &str) -> String {
-    let mut text = String::new();
-    for line in svg.lines().filter(|line| !line.starts_with("<svg") && !line.starts_with("</svg")) {
-        if line.starts_with('<') {
-            text += &line.replace(&format!(" font-family=\"{FAMILY}\""), "");
-        } else {
-            // plotters puts what is written on a line of its own.
-            text += &raised(line, FINENESS * LABEL);
+    /// Draws the axes.
+    pub fn axes(&self, canvas: &mut Canvas, across: &Axis, up: &Axis, parts: Parts) {
+        let (grid, ink) = (Stroke::solid(GRID, 0.7), Stroke::solid(INK, LINE));
+        let [middle, foot] = self.place([0.5, 0.0]);
+        if parts.grid {
+            for tick in &across.ticks {
+                canvas.line(&[0.0, 1.0].map(|end| self.place([tick.share, end])), grid);
+            }
+            for tick in &up.ticks {
+                canvas.line(&[0.0, 1.0].map(|end| self.place([end, tick.share])), grid);
+            }
         }
-        if !line.starts_with("<text") && line.starts_with('<') {
-            text.push('\n');
+        for tick in &across.ticks {
+            let [x, y] = self.place([tick.share, 0.0]);
+            canvas.line(&[[x, y], [x, y + TICK]], ink);
+            canvas.anchored([x, y + GAP + DIGIT * LABEL], LABEL, Anchor::Middle, &tick.label);
         }
+        canvas.anchored([middle, foot + ROOM_BELOW - 3.0], LABEL, Anchor::Middle, &across.title);
+        if let Some(room) = parts.left {
+            for tick in &up.ticks {
+                let [x, y] = self.place([0.0, tick.share]);
+                canvas.line(&[[x - TICK, y], [x, y]], ink);
+                canvas.anchored([x - GAP, y + 0.5 * DIGIT * LABEL], LABEL, Anchor::End, &tick.label);
+            }
+            let title = [self.left - room + DIGIT * LABEL, self.top + 0.5 * self.height];
+            canvas.anchored(title, LABEL, Anchor::Upward, &up.title);
+        }
+        canvas.outline(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|share| self.place(share)), ink);
     }
-    text
 }

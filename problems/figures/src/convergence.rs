@@ -1,11 +1,12 @@
 //! The course of an optimization: every value, the best one so far, and what kind of step each evaluation was.
 
-use super::canvas::{Canvas, LABEL, Place, Stroke, TITLE, text_width};
-use super::chart::{Frame, Parts};
+use super::canvas::{Canvas, Place, Stroke, TITLE, text_width};
+use super::chart::{Frame, Parts, ROOM_BELOW};
 use super::colours::CURVES;
-use super::error::{finite, some};
+use super::error::{FigureError, finite, some};
+use super::figure::Figure;
+use super::marks::{self, Sign, kinds, legend_width, rows};
 use super::scale::Axis;
-use super::{Figure, FigureError};
 
 /// Values over the number of the evaluation.
 ///
@@ -55,8 +56,6 @@ pub struct Step {
 const SIZE: [f64; 2] = [520.0, 300.0];
 /// Ratio of the largest to the smallest value from which the axis is logarithmic.
 const LOGARITHMIC_FROM: f64 = 8.0;
-/// Half the size of a mark, points.
-const MARK: f64 = 3.2;
 
 impl Convergence {
     /// Draws it.
@@ -74,41 +73,29 @@ impl Convergence {
         let across = Axis::linear("evaluation", "", [0.5, last + 0.5], 0.0, 8);
         let frame = Frame { left: 76.0, top: 40.0, width: SIZE[0], height: SIZE[1] };
         let kinds = kinds(self.steps.iter().map(|step| step.kind.as_str()));
-        let names = kinds.iter().map(|(kind, count)| format!("{kind} ({count})"));
-        let names: Vec<String> = names.chain(["best so far".into()]).chain(self.reference_name()).collect();
-        let legend = names.iter().fold(0.0_f64, |width, name| width.max(text_width(name, LABEL))) + 44.0;
-        let width = (frame.left + SIZE[0] + 14.0 + legend).max(text_width(&self.title, TITLE) + 32.0);
-        let mut canvas = Canvas::new(width, frame.top + SIZE[1] + 50.0);
+        let (course, level) = (Stroke::solid(CURVES[0], 1.6), Stroke::dashed(CURVES[5], 1.2));
+        let mut legend = rows(&kinds);
+        legend.push((Sign::Line(course), "best so far".to_owned()));
+        legend.extend(self.reference.iter().map(|(name, _)| (Sign::Line(level), name.clone())));
+        let right = frame.left + SIZE[0] + 14.0;
+        let width = (right + legend_width(&legend)).max(text_width(&self.title, TITLE) + 32.0);
+        let mut canvas = Canvas::new(width, frame.top + SIZE[1] + ROOM_BELOW + 8.0);
         canvas.text([16.0, 22.0], TITLE, &self.title);
-        frame.axes(&mut canvas, &across, &up, Parts { left: Some(60.0), below: Some(42.0), grid: true })?;
+        frame.axes(&mut canvas, &across, &up, Parts { left: Some(60.0), grid: true });
         let place = |number: f64, value: f64| {
             let share = [across.share(number).unwrap_or(0.0), up.share(value).unwrap_or(0.0).clamp(0.0, 1.0)];
             frame.place(share)
         };
         if let Some((_, value)) = self.reference {
-            canvas.line(&[place(0.5, value), place(last + 0.5, value)], Stroke::dashed(CURVES[5], 1.2));
+            canvas.line(&[place(0.5, value), place(last + 0.5, value)], level);
         }
-        canvas.line(&self.stairs(place), Stroke::solid(CURVES[0], 1.6));
+        canvas.line(&self.stairs(place), course);
         for (number, step) in (1..).zip(&self.steps) {
             let at = place(f64::from(number), step.value.unwrap_or(up.ends()[0]));
-            mark(&mut canvas, &step.kind, order(&kinds, &step.kind), at);
+            marks::step(&mut canvas, &kinds, &step.kind, at);
         }
-        let mut row = [frame.left + SIZE[0] + 14.0, frame.top + 8.0];
-        for (index, name) in names.iter().enumerate() {
-            let [x, y] = row;
-            match kinds.get(index) {
-                Some((kind, _)) => mark(&mut canvas, &format!("legend {kind}"), index, [x + 11.0, y]),
-                None if index == kinds.len() => canvas.line(&[[x, y], [x + 22.0, y]], Stroke::solid(CURVES[0], 1.6)),
-                None => canvas.line(&[[x, y], [x + 22.0, y]], Stroke::dashed(CURVES[5], 1.2)),
-            }
-            canvas.text([x + 29.0, y + 0.34 * LABEL], LABEL, name);
-            row[1] += 20.0;
-        }
+        marks::legend(&mut canvas, [right, frame.top + 8.0], &legend);
         Ok(Figure::new(&self.name, &self.title, canvas))
-    }
-
-    fn reference_name(&self) -> Option<String> {
-        self.reference.as_ref().map(|(name, _)| name.clone())
     }
 
     fn axis(&self) -> Axis {
@@ -143,39 +130,6 @@ impl Convergence {
     }
 }
 
-/// Kinds in the order in which they appear, with their numbers.
-pub(super) fn kinds<'a>(all: impl Iterator<Item = &'a str>) -> Vec<(String, usize)> {
-    let mut kinds: Vec<(String, usize)> = Vec::new();
-    for kind in all {
-        match kinds.iter_mut().find(|(known, _)| known == kind) {
-            Some((_, count)) => *count += 1,
-            None => kinds.push((kind.to_owned(), 1)),
-        }
-    }
-    kinds
-}
-
-fn order(kinds: &[(String, usize)], kind: &str) -> usize {
-    kinds.iter().position(|(other, _)| other == kind).unwrap_or(0)
-}
-
-/// A mark in the shape and colour of the kind's place in the legend.
-pub(super) fn mark(canvas: &mut Canvas, kind: &str, place_in_legend: usize, [x, y]: Place) {
-    // Blue is the line's colour.
-    let colour = CURVES[1 + place_in_legend % (CURVES.len() - 1)];
-    let r = MARK;
-    let shape = match place_in_legend % 4 {
-        0 => format!("M{x:.1} {:.1}l{r} {r} -{r} {r} -{r} -{r}z", y - r),
-        1 => format!("M{:.1} {y:.1}a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0 -{d} 0z", x - r, d = 2.0 * r),
-        2 => format!("M{:.1} {:.1}h{d}v{d}h-{d}z", x - 0.9 * r, y - 0.9 * r, d = 1.8 * r),
-        _ => format!("M{x:.1} {:.1}l{r} {d} -{d} 0z", y - r, d = 2.0 * r),
-    };
-    let class = super::canvas::escaped(kind).replace('"', "&quot;");
-    canvas.raw(&format!(
-        "<path class=\"{class}\" d=\"{shape}\" fill=\"{colour}\" stroke=\"#ffffff\" stroke-width=\"0.6\"/>\n"
-    ));
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -205,7 +159,6 @@ mod tests {
         assert_eq!(figure.svg.matches("font-family").count(), 1);
         assert!(figure.svg.contains("null (2)") && figure.svg.contains(">bound<"));
         assert_eq!(figure, course.figure().expect("numbers"));
-        assert!(figure.png(1.0).expect("a picture").starts_with(b"\x89PNG"));
     }
 
     #[test]

@@ -41,6 +41,7 @@ pub enum FigureError {
         allowed: &'static str,
     },
     /// A factor between points and pixels that gives no picture.
+    #[cfg(feature = "png")]
     #[error("pixels per point are {value}, allowed are numbers > 0 that give at most {most} pixels in all")]
     Scale {
         /// The factor.
@@ -49,6 +50,7 @@ pub enum FigureError {
         most: u64,
     },
     /// The SVG text was not understood by the renderer, or the picture not written.
+    #[cfg(feature = "png")]
     #[error("the figure cannot be drawn: {0}")]
     Drawing(String),
 }

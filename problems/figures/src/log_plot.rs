@@ -1,11 +1,12 @@
 //! Curves over two logarithmic axes, with straight lines of given slopes.
 
-use super::canvas::{Canvas, LABEL, Place, Stroke, TITLE, text_width};
-use super::chart::{Frame, Parts};
+use super::canvas::{Canvas, Place, Stroke, TITLE, text_width};
+use super::chart::{Frame, Parts, ROOM_BELOW};
 use super::colours::CURVES;
-use super::error::finite;
+use super::error::{FigureError, finite};
+use super::figure::Figure;
+use super::marks::{self, Sign, legend_width};
 use super::scale::Axis;
-use super::{Figure, FigureError};
 
 /// Points of one name; those that are not positive, NaN among them, are left out.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,6 +52,7 @@ pub struct LogPlot {
 
 /// Size of the frame, points.
 const SIZE: [f64; 2] = [460.0, 320.0];
+/// Colour of the straight lines.
 const GUIDE: &str = "#999999";
 
 impl LogPlot {
@@ -65,36 +67,31 @@ impl LogPlot {
         let across = Axis::logarithmic(&self.x, "", visible().map(|point| point.0), 0.04, 8);
         let up = Axis::logarithmic(&self.y, "", visible().map(|point| point.1), 0.04, 8);
         let frame = Frame { left: 82.0, top: 40.0, width: SIZE[0], height: SIZE[1] };
-        let names = self.series.iter().map(|series| &series.name).chain(self.guides.iter().map(|guide| &guide.0));
-        let legend = names.clone().fold(0.0_f64, |width, name| width.max(text_width(name, LABEL))) + 44.0;
-        let width = (frame.left + SIZE[0] + 14.0 + legend).max(text_width(&self.title, TITLE) + 32.0);
-        let mut canvas = Canvas::new(width, frame.top + SIZE[1] + 52.0);
+        let guide = Stroke::dashed(GUIDE, 1.0);
+        let series = self.series.iter().enumerate().map(|(index, series)| (Sign::Point(index), series.name.clone()));
+        let guides = self.guides.iter().map(|(name, ..)| (Sign::Line(guide), name.clone()));
+        let legend: Vec<_> = series.chain(guides).collect();
+        let right = frame.left + SIZE[0] + 14.0;
+        let width = (right + legend_width(&legend)).max(text_width(&self.title, TITLE) + 32.0);
+        let mut canvas = Canvas::new(width, frame.top + SIZE[1] + ROOM_BELOW + 8.0);
         canvas.text([16.0, 22.0], TITLE, &self.title);
-        frame.axes(&mut canvas, &across, &up, Parts { left: Some(66.0), below: Some(44.0), grid: true })?;
+        frame.axes(&mut canvas, &across, &up, Parts { left: Some(66.0), grid: true });
         let place = |x: f64, y: f64| Some(frame.place([across.share(x)?, up.share(y)?]));
         canvas.clipped("inside", [frame.left, frame.top], SIZE, |canvas| {
             for (_, factor, slope) in &self.guides {
                 let ends: Vec<Place> =
                     across.ends().into_iter().filter_map(|x| place(x, factor * x.powf(*slope))).collect();
-                canvas.line(&ends, Stroke::dashed(GUIDE, 1.0));
+                canvas.line(&ends, guide);
             }
             for (index, series) in self.series.iter().enumerate() {
                 let places: Vec<Place> = series.visible().filter_map(|(x, y)| place(x, y)).collect();
                 if series.joined {
                     canvas.line(&places, Stroke::solid(CURVES[index % CURVES.len()], 1.2));
                 }
-                places.into_iter().for_each(|at| point(canvas, "point", index, at));
+                places.into_iter().for_each(|at| marks::point(canvas, "point", index, at));
             }
         });
-        let [x, mut y] = [frame.left + SIZE[0] + 14.0, frame.top + 8.0];
-        for (index, name) in names.enumerate() {
-            match index < self.series.len() {
-                true => point(&mut canvas, "legend", index, [x + 11.0, y]),
-                false => canvas.line(&[[x, y], [x + 22.0, y]], Stroke::dashed(GUIDE, 1.0)),
-            }
-            canvas.text([x + 29.0, y + 0.34 * LABEL], LABEL, name);
-            y += 18.0;
-        }
+        marks::legend(&mut canvas, [right, frame.top + 8.0], &legend);
         Ok(Figure::new(&self.name, &self.title, canvas))
     }
 }
@@ -103,11 +100,6 @@ impl Series {
     fn visible(&self) -> impl Iterator<Item = (f64, f64)> {
         self.points.iter().copied().filter(|(x, y)| *x > 0.0 && *y > 0.0)
     }
-}
-
-fn point(canvas: &mut Canvas, class: &str, index: usize, [x, y]: Place) {
-    let colour = CURVES[index % CURVES.len()];
-    canvas.raw(&format!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.8\" fill=\"{colour}\"/>\n"));
 }
 
 #[cfg(test)]
@@ -130,7 +122,6 @@ mod tests {
         let figure = plot(vec![(1.0, 1e-3), (10.0, 0.0), (100.0, 1e-5)]).figure().expect("numbers");
         assert_eq!(figure.svg.matches("class=\"point\"").count(), 2);
         assert!(figure.svg.contains("a &lt; b") && figure.svg.contains(">slope −1<"));
-        assert!(figure.png(1.0).expect("a picture").len() > 2000);
     }
 
     #[test]

@@ -1,9 +1,10 @@
 //! Panels with bodies in space side by side: title, captions, arrows of the axes, note and colour bar around them.
 
 use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, text_width};
+use super::error::FigureError;
+use super::figure::Figure;
 use super::levels::ColourScale;
 use super::oblique::{Point, Sheet, View, bounds, paint};
-use super::{Figure, FigureError};
 
 /// Larger side of a panel, points.
 const SIDE: f64 = 300.0;

@@ -1,14 +1,12 @@
 //! SVG to PNG with fonts of its own, so that a figure looks the same on every machine.
 
-use super::FigureError;
+use super::canvas::FAMILY;
+use super::error::FigureError;
 use resvg::{tiny_skia, usvg};
 use std::sync::{Arc, OnceLock};
 
-/// Family of the text in figures; its file is part of the program.
-pub(super) const FAMILY: &str = "Ubuntu";
-
-/// Most pixels of a picture: 400 MB while it is drawn.
-const MOST_PIXELS: u64 = 100_000_000;
+/// Largest number of pixels of a picture: 400 MB while it is drawn.
+const MAX_PIXELS: u64 = 100_000_000;
 
 /// The figure's font, and a second one for mathematical signs that the first does not have.
 fn fonts() -> &'static Arc<usvg::fontdb::Database> {
@@ -29,11 +27,11 @@ pub(super) fn png(svg: &str, scale: f64) -> Result<Vec<u8>, FigureError> {
     let tree = usvg::Tree::from_str(svg, &options).map_err(|error| FigureError::Drawing(error.to_string()))?;
     let [width, height] = [tree.size().width(), tree.size().height()].map(|side| (f64::from(side) * scale).ceil());
     // The comparison is false for NaN.
-    if !(width >= 1.0 && height >= 1.0 && width * height <= MOST_PIXELS as f64) {
-        return Err(FigureError::Scale { value: scale, most: MOST_PIXELS });
+    if !(width >= 1.0 && height >= 1.0 && width * height <= MAX_PIXELS as f64) {
+        return Err(FigureError::Scale { value: scale, most: MAX_PIXELS });
     }
     let mut pixels = tiny_skia::Pixmap::new(width as u32, height as u32)
-        .ok_or(FigureError::Scale { value: scale, most: MOST_PIXELS })?;
+        .ok_or(FigureError::Scale { value: scale, most: MAX_PIXELS })?;
     let transform = tiny_skia::Transform::from_scale(scale as f32, scale as f32);
     resvg::render(&tree, transform, &mut pixels.as_mut());
     pixels.encode_png().map_err(|error| FigureError::Drawing(error.to_string()))

@@ -1,11 +1,11 @@
 //! Heights over rectangles as surfaces in space side by side, on one colour scale.
 
-use super::error::{area, cells, count, finite, some};
+use super::error::{FigureError, area, cells, count, finite, some};
+use super::figure::Figure;
 use super::levels::ColourScale;
 use super::oblique::{Point, Sheet};
 use super::panels::{Panel, Row};
 use super::scale::{extent, nice_below, number};
-use super::{Figure, FigureError};
 
 /// Heights over rectangles, seen from the front, the right and above; magnified so that small differences are seen.
 ///
@@ -177,7 +177,6 @@ mod tests {
         // A difference of 0.001 may be drawn up to 0.9 high: 500 times.
         let waved = surfaces(vec![7.0, 7.0, 7.001, 7.0, 7.0, 7.0]).figure().expect("numbers");
         assert!(waved.svg.contains("heights × 500<"));
-        assert!(waved.png(1.0).expect("a picture").len() > 1000);
         assert_eq!(waved, surfaces(vec![7.0, 7.0, 7.001, 7.0, 7.0, 7.0]).figure().expect("numbers"));
     }
 

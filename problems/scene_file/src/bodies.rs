@@ -50,26 +50,7 @@ pub struct MaterialSection {
     pub poisson_ratio: f64,
     /// Bricks: `mean-dilatation` against locking of nearly incompressible materials.
     #[serde(default)]
-    pub formulation: FormulationName,
-}
-
-/// Treatment of the volume change in a brick.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names are the meaning")]
-pub enum FormulationName {
-    #[default]
-    Standard,
-    MeanDilatation,
-}
-
-impl From<FormulationName> for Formulation {
-    fn from(name: FormulationName) -> Self {
-        match name {
-            FormulationName::Standard => Self::Standard,
-            FormulationName::MeanDilatation => Self::MeanDilatation,
-        }
-    }
+    pub formulation: Formulation,
 }
 
 /// Displacements held at zero on a face.
@@ -77,7 +58,7 @@ impl From<FormulationName> for Formulation {
 #[serde(deny_unknown_fields)]
 pub struct SupportSection {
     /// The face.
-    pub face: FaceName,
+    pub face: Face,
     /// Displacement components that are zero there; u3 only on the face opposite to the contact boundary.
     pub held: Vec<Component>,
 }
@@ -87,23 +68,10 @@ pub struct SupportSection {
 #[serde(deny_unknown_fields)]
 pub struct LoadSection {
     /// The face.
-    pub face: FaceName,
+    pub face: Face,
     /// Traction along x1, x2, x3.
     #[schemars(inner(range(min = -1e15, max = 1e15)), extend("x-unit" = "MPa"))]
     pub traction: [f64; 3],
-}
-
-/// A face of a body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "the names are the meaning")]
-pub enum FaceName {
-    X1Min,
-    X1Max,
-    X2Min,
-    X2Max,
-    Bottom,
-    Top,
 }
 
 /// A displacement component.
@@ -114,19 +82,6 @@ pub enum Component {
     U1,
     U2,
     U3,
-}
-
-impl From<FaceName> for Face {
-    fn from(name: FaceName) -> Self {
-        match name {
-            FaceName::X1Min => Self::X1Min,
-            FaceName::X1Max => Self::X1Max,
-            FaceName::X2Min => Self::X2Min,
-            FaceName::X2Max => Self::X2Max,
-            FaceName::Bottom => Self::Bottom,
-            FaceName::Top => Self::Top,
-        }
-    }
 }
 
 impl BodySection {
@@ -155,13 +110,12 @@ fn body(
     loads: &[LoadSection],
 ) -> Result<BodyScene, SceneError> {
     let support = |section: &SupportSection| Support {
-        face: section.face.into(),
+        face: section.face,
         components: [Component::U1, Component::U2, Component::U3].map(|component| section.held.contains(&component)),
     };
     Ok(BodyScene {
-        material: Material::new(material.young_modulus, material.poisson_ratio)?
-            .with_formulation(material.formulation.into()),
+        material: Material::new(material.young_modulus, material.poisson_ratio)?.with_formulation(material.formulation),
         supports: supports.iter().map(support).collect(),
-        loads: loads.iter().map(|load| Load { face: load.face.into(), traction: load.traction }).collect(),
+        loads: loads.iter().map(|load| Load { face: load.face, traction: load.traction }).collect(),
     })
 }

@@ -70,8 +70,8 @@ impl Case {
             scene,
             start,
             measure: measure(&file.objective)?,
-            solver: file.solver.kind.into(),
-            preconditioner: file.solver.preconditioner.into(),
+            solver: file.solver.kind,
+            preconditioner: file.solver.preconditioner,
             optimizer: file.optimizer.clone(),
             output: file.output.clone(),
         })

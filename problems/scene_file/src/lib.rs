@@ -17,14 +17,11 @@ mod settings;
 mod surfaces;
 mod table;
 
-pub use bodies::{
-    BodySection, Component, FaceName, FormulationName, LoadSection, MaterialSection, SupportSection, UpperSection,
-};
+pub use bodies::{BodySection, Component, LoadSection, MaterialSection, SupportSection, UpperSection};
 pub use case::{Case, default_subdomains};
 pub use schema::schema;
 pub use settings::{
-    AccuracyName, MeasureName, MeshSection, ObjectiveSection, OptimizerSection, OutputSection, PreconditionerName,
-    SolverName, SolverSection,
+    AccuracyName, MeasureName, MeshSection, ObjectiveSection, OptimizerSection, OutputSection, SolverSection,
 };
 pub use surfaces::{AdmissibleSection, CounterSection, SplineName, StartSection, SurfaceSection};
 pub use table::field_table;

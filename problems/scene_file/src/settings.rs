@@ -37,7 +37,8 @@ pub struct ObjectiveSection {
 }
 
 /// Which function of the contact pressure is minimised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, clap::ValueEnum)]
+// The tag of `PressureMeasure`, whose exponent is a field of its own in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MeasureName {
     /// Σσ^p.
@@ -52,31 +53,9 @@ pub enum MeasureName {
 #[serde(default, deny_unknown_fields)]
 pub struct SolverSection {
     /// Newton on total FETI, direct condensation, or successive approximations on total FETI.
-    pub kind: SolverName,
+    pub kind: SolverKind,
     /// Preconditioner of the dual operator of total FETI.
-    pub preconditioner: PreconditionerName,
-}
-
-/// Which contact solver.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "explained at the kinds they stand for")]
-pub enum SolverName {
-    #[default]
-    Newton,
-    Direct,
-    AugmentedLagrangian,
-}
-
-/// Which preconditioner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-#[allow(missing_docs, reason = "explained at the kinds they stand for")]
-pub enum PreconditionerName {
-    #[default]
-    Dirichlet,
-    Lumped,
-    None,
+    pub preconditioner: PreconditionerKind,
 }
 
 /// The optimizer.
@@ -139,7 +118,7 @@ pub struct OutputSection {
     /// Folder for the files of a run, relative to where the program is started, made if it does not exist. Default none: nothing is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<String>,
-    /// Whether pictures are drawn into the folder, as SVG and PNG.
+    /// Whether pictures are drawn into the folder, as SVG and, by a program built with the feature `png`, as PNG.
     pub pictures: bool,
     /// Whether displacements, stresses and the contact boundary are written for ParaView.
     pub vtk: bool,
@@ -150,25 +129,5 @@ pub struct OutputSection {
 impl Default for OutputSection {
     fn default() -> Self {
         Self { folder: None, pictures: true, vtk: true, report: true }
-    }
-}
-
-impl From<SolverName> for SolverKind {
-    fn from(name: SolverName) -> Self {
-        match name {
-            SolverName::Newton => Self::Newton,
-            SolverName::Direct => Self::Direct,
-            SolverName::AugmentedLagrangian => Self::AugmentedLagrangian,
-        }
-    }
-}
-
-impl From<PreconditionerName> for PreconditionerKind {
-    fn from(name: PreconditionerName) -> Self {
-        match name {
-            PreconditionerName::Dirichlet => Self::Dirichlet,
-            PreconditionerName::Lumped => Self::Lumped,
-            PreconditionerName::None => Self::None,
-        }
     }
 }

@@ -64,6 +64,7 @@ pub struct SurfaceSection {
 }
 
 /// Which spline.
+// The tag of `SplineKind`, whose degree is a field of its own in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[allow(missing_docs, reason = "the names are the meaning")]

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    problems::commands::run("hertz.toml", include_str!("../../scenes/hertz.toml"))
+    problems::commands::run(env!("CARGO_BIN_NAME"), include_str!("../../scenes/hertz.toml"))
 }

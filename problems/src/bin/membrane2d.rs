@@ -5,16 +5,16 @@ use figures::{Map, MapPanel};
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
 };
-use problems::commands::{Failure, Folder};
+use problems::commands::{Failure, Folder, finish, json};
 use problems::membrane::{MembraneObjective, MembraneState, PATCHES, admissible_loads, example};
-use std::io::{self, Write};
+use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Loads a membrane over a dome so that it takes a wanted shape without pressing on the dome.
 /// Exit status: 0 a report was printed, 1 the computation failed, 2 bad input.
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(name = "membrane2d", version)]
 struct Arguments {
     /// Grid cells per edge
     #[arg(long, value_name = "N", default_value_t = 48, value_parser = clap::value_parser!(u16).range(2..=512))]
@@ -34,19 +34,12 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            // A closed stderr leaves the exit status as the message.
-            let _ = writeln!(io::stderr(), "error: {failure}");
-            failure.exit_code()
-        }
-    }
+    finish(run(&Arguments::parse()))
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<String, Failure> {
     let folder = arguments.out.as_deref().map(|path| Folder::with_room(path, 1 << 20)).transpose()?;
-    let theta = example(usize::from(arguments.cells)).map_err(computation)?;
+    let theta = example(usize::from(arguments.cells)).map_err(Failure::computation)?;
     let config = BundleTrustConfig { max_evaluations: arguments.max_evaluations, ..Default::default() };
     let mut method = BundleTrust::new(config)?.constraints(admissible_loads());
     if arguments.table {
@@ -54,41 +47,36 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let start = Vector::zeros(PATCHES * PATCHES);
     let report = method.minimize(&theta, start.clone())?;
-    print(arguments, &theta, &report)?;
-    if let Some(folder) = &folder {
-        folder.write("report.json", &serde_json::to_string_pretty(&report).map_err(computation)?)?;
+    let object = json(&report)?;
+    let text = if arguments.json { object.clone() } else { page(&theta, &report)? };
+    let write = |folder: &Folder| {
+        folder.write("report.json", &object)?;
         let states = [solve(&theta, &start)?, solve(&theta, &report.solution)?];
-        pictures(folder, &theta, &states)?;
-    }
-    Ok(())
-}
-
-fn print(arguments: &Arguments, theta: &MembraneObjective, report: &Report) -> Result<(), Failure> {
-    let text = if arguments.json {
-        serde_json::to_string_pretty(report).map_err(computation)?
-    } else {
-        let state = solve(theta, &report.solution)?;
-        let (pressing, touching) = contact(theta, &state);
-        let nodes = state.active.len();
-        let value = theta.evaluate(&Request::tight(&report.solution))?.into_evaluation().value;
-        format!(
-            "Θ = {value:.6e}; of {nodes} nodes {pressing} are pressed by the dome and {touching} just touch it \
-             (gap below {TOUCHING:e} of the largest height)\n{report}"
-        )
+        pictures(folder, &theta, &states)
     };
-    // A reader that closes the pipe early has seen what it wanted.
-    let _ = writeln!(io::stdout(), "{}", text.trim_end());
-    Ok(())
+    Failure::printed_with_files(text, folder.as_ref().map_or(Ok(()), write))
 }
 
-/// Gap, relative to the largest height, that counts as none.
-const TOUCHING: f64 = 1e-6;
+fn page(theta: &MembraneObjective, report: &Report) -> Result<String, Failure> {
+    let state = solve(theta, &report.solution)?;
+    let (pressing, touching) = contact(theta, &state);
+    let nodes = state.active.len();
+    let value = theta.evaluate(&Request::tight(&report.solution))?.into_evaluation().value;
+    Ok(format!(
+        "Θ = {value:.6e}; of {nodes} nodes {pressing} are pressed by the dome and {touching} just touch it \
+         (gap below {MAX_TOUCHING_GAP:e} of the largest height)\n{report}"
+    ))
+}
+
+/// Largest gap, relative to the largest height, that counts as none.
+const MAX_TOUCHING_GAP: f64 = 1e-6;
 
 /// Numbers of nodes on which the obstacle presses, and of others that touch it: those are at the kink.
 fn contact(theta: &MembraneObjective, state: &MembraneState) -> (usize, usize) {
     let largest = state.displacement.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
     let gaps = state.displacement.iter().zip(theta.solver().obstacle()).map(|(u, psi)| u - psi);
-    let touching = gaps.zip(&state.active).filter(|(gap, active)| !**active && *gap <= TOUCHING * largest).count();
+    let touching =
+        gaps.zip(&state.active).filter(|(gap, active)| !**active && *gap <= MAX_TOUCHING_GAP * largest).count();
     (state.active.iter().filter(|&&active| active).count(), touching)
 }
 
@@ -129,11 +117,7 @@ fn pictures(folder: &Folder, theta: &MembraneObjective, states: &[MembraneState;
             axes: ["x".into(), "y".into()],
             panels: states.iter().zip(["start", "optimum"]).map(panel).collect(),
         };
-        folder.draw(&map.figure().map_err(computation)?)?;
+        folder.draw(&map.figure().map_err(Failure::computation)?)?;
     }
     Ok(())
-}
-
-fn computation(error: impl std::fmt::Display) -> Failure {
-    Failure::Computation(error.to_string())
 }

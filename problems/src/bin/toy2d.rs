@@ -3,7 +3,7 @@
 use clap::Parser;
 use figures::{self, Convergence, Step, Visit};
 use nonsmooth::IterationRecord;
-use problems::commands::{Failure, Folder};
+use problems::commands::{Failure, Folder, finish};
 use problems::toy::{self, landscape::Landscape};
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -13,7 +13,7 @@ use std::process::ExitCode;
 /// Minimises the 2D toy (two nodes on a shaped support with Coulomb friction) and compares with the exact minimiser.
 /// Exit status: 0 every run found it, 1 the computation failed, 2 bad input.
 #[derive(Debug, Parser)]
-#[command(version)]
+#[command(name = "toy2d", version)]
 struct Arguments {
     /// One start A,B in [-4, 6]² instead of random ones
     #[arg(long, value_name = "A,B", value_parser = parse_start, allow_hyphen_values = true)]
@@ -39,17 +39,10 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    match run(&Arguments::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            // A closed stderr leaves the exit status as the message.
-            let _ = writeln!(io::stderr(), "error: {failure}");
-            failure.exit_code()
-        }
-    }
+    finish(run(&Arguments::parse()))
 }
 
-fn run(arguments: &Arguments) -> Result<(), Failure> {
+fn run(arguments: &Arguments) -> Result<String, Failure> {
     if let Some(file) = &arguments.landscape {
         write_landscape(file, arguments.cells as usize)?;
     }
@@ -61,19 +54,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let study = toy::run_study(&starts)?.ok_or_else(|| Failure::computation("no start"))?;
     let text =
         if arguments.json { serde_json::to_string(&study).map_err(Failure::computation)? } else { study.to_string() };
-    writeln!(io::stdout(), "{}", text.trim_end()).map_err(Failure::computation)?;
+    let text = text.trim_end().to_owned() + "\n";
     if let (Some(folder), Some(start)) = (&folder, starts.first()) {
-        pictures(folder, *start, arguments.cells as usize)?;
+        pictures(folder, *start, arguments.cells as usize).map_err(|failure| failure.after(&text))?;
     }
     if study.all_found() {
-        return Ok(());
+        return Ok(text);
     }
-    let missed = study.runs.len() - study.successes();
-    Err(Failure::computation(format!(
-        "{missed} of {} runs missed the minimiser by more than {:e}",
-        study.runs.len(),
-        toy::SUCCESS
-    )))
+    let (missed, runs) = (study.runs.len() - study.successes(), study.runs.len());
+    let reason = format!("{missed} of {runs} runs missed the minimiser by more than {:e}", toy::SUCCESS);
+    Err(Failure::Incomplete { text, reason, status: 1 })
 }
 
 fn write_landscape(file: &PathBuf, cells: usize) -> Result<(), Failure> {

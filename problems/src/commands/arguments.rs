@@ -1,12 +1,16 @@
-//! Options of the contact binaries: what to do, and which fields of the scene file they override.
+//! The command and the options of the contact binaries, and the fields of the scene file that the options override.
 
-use crate::commands::Failure;
+use crate::commands::failure::Failure;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
+use contact::body::elasticity::Formulation;
+use contact::contact_shape::SolverKind;
 use contact::error::SceneError;
 use contact::shape::SplineKind;
-use scene_file::{
-    FormulationName, MeasureName, PreconditionerName, SceneFile, SolverName, SplineName, default_subdomains,
-};
+use contact::tfeti::PreconditionerKind;
+use scene_file::{MeasureName, SceneFile, SplineName, default_subdomains};
+use serde::de::value::Error as NameError;
+use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::path::PathBuf;
 
 /// What to do.
@@ -14,21 +18,27 @@ use std::path::PathBuf;
 pub enum Command {
     /// Optimize the shape.
     Optimize,
-    /// Optimize with and without friction, and look at both shapes with and without it (Example 5.3 of the paper).
+    /// Optimize with and without friction, and solve both shapes with and without it (Example 5.3 of the paper).
     Compare,
     /// Objective, subgradient and certificates at one shape.
     Evaluate,
     /// Taylor test of the subgradient at one shape.
     Verify,
+    /// Compute norm and error of the certificate of an optimization again, from the files in its folder DIR.
+    Recheck,
 }
 
-/// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa).
+/// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa). An option that is not given leaves the field of the
+/// scene as it is; --print-scene shows all fields.
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(version, allow_negative_numbers = true)]
 pub struct Arguments {
     /// What to do.
     #[arg(value_enum, default_value_t = Command::Optimize)]
     pub command: Command,
+    /// With recheck: the folder that an optimization of this scene has left.
+    #[arg(value_name = "DIR")]
+    pub certified: Option<PathBuf>,
     /// Bricks per edge of each body.
     #[arg(long, value_name = "N")]
     pub mesh: Option<usize>,
@@ -52,19 +62,19 @@ pub struct Arguments {
     #[arg(long, value_name = "E")]
     pub young_modulus: Option<f64>,
     /// How bricks of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials.
-    #[arg(long, value_parser = parse_formulation, value_name = "standard|mean-dilatation")]
-    pub formulation: Option<FormulationName>,
+    #[arg(long, value_parser = named::<Formulation>, value_name = "standard|mean-dilatation")]
+    pub formulation: Option<Formulation>,
     /// Factor on all loads (negative: reversed).
     #[arg(long, value_name = "F")]
     pub load_factor: Option<f64>,
     /// Contact solver.
-    #[arg(long, value_parser = parse_solver, value_name = "newton|direct|augmented-lagrangian")]
-    pub solver: Option<SolverName>,
+    #[arg(long, value_parser = named::<SolverKind>, value_name = "newton|direct|augmented-lagrangian")]
+    pub solver: Option<SolverKind>,
     /// Preconditioner of the dual operator.
-    #[arg(long, value_parser = parse_preconditioner, value_name = "dirichlet|lumped|none")]
-    pub preconditioner: Option<PreconditionerName>,
+    #[arg(long, value_parser = named::<PreconditionerKind>, value_name = "dirichlet|lumped|none")]
+    pub preconditioner: Option<PreconditionerKind>,
     /// What is minimised.
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = measures())]
     pub objective: Option<MeasureName>,
     /// Exponent p of the pressure norm.
     #[arg(long, value_name = "P")]
@@ -113,29 +123,7 @@ impl Arguments {
     /// # Errors
     /// [`Failure::Input`] naming the option.
     pub fn check(&self) -> Result<(), Failure> {
-        let optimizing = matches!(self.command, Command::Optimize | Command::Compare);
-        let wrong = |option: &str, allowed: &str| Err(Failure::Input(format!("{option} is allowed {allowed}")));
-        if optimizing && self.controls.is_some() {
-            return wrong("--controls", "with evaluate and verify only (optimize and compare take --start-controls)");
-        }
-        if !optimizing && self.start_controls.is_some() {
-            return wrong("--start-controls", "with optimize and compare only (evaluate and verify take --controls)");
-        }
-        if !optimizing && self.max_evaluations.is_some() {
-            return wrong("--max-evaluations", "with optimize and compare only");
-        }
-        if self.diagnose && self.command != Command::Evaluate {
-            return wrong("--diagnose", "with evaluate only");
-        }
-        for (option, given) in [
-            ("--time-limit", self.time_limit.is_some()),
-            ("--continuation", self.continuation.is_some()),
-            ("--resume", self.resume.is_some()),
-        ] {
-            if !optimizing && given {
-                return wrong(option, "with optimize and compare only");
-            }
-        }
+        self.check_command()?;
         if let Some(limit) = self.time_limit.filter(|limit| !(*limit > 0.0 && limit.is_finite())) {
             return Err(SceneError::out_of_range("--time-limit", limit, "a finite number of seconds > 0").into());
         }
@@ -143,7 +131,7 @@ impl Arguments {
             return Err(SceneError::out_of_range("--continuation", bricks, "meshes of 1 to 400 bricks per edge").into());
         }
         if self.continuation.is_some() && self.mesh.is_some() {
-            return wrong("--mesh", "without --continuation, which names the meshes");
+            return refused("--mesh", "without --continuation, which names the meshes");
         }
         for (option, path) in [("--out", &self.out), ("--resume", &self.resume)] {
             if let Some(path) = path.as_ref().filter(|path| path.to_str().is_none()) {
@@ -158,12 +146,46 @@ impl Arguments {
             return Err(SceneError::out_of_range("--threads", 0, "a number ≥ 1").into());
         }
         if self.exponent.is_some() && self.objective == Some(MeasureName::PeakPressure) {
-            return wrong("--exponent", "with --objective pressure-norm only");
+            return refused("--exponent", "with --objective pressure-norm only");
         }
         Ok(())
     }
 
-    /// A run that is continued has its scene and its options from its folder, apart from limits.
+    /// Refuses options that the command does not take.
+    fn check_command(&self) -> Result<(), Failure> {
+        let evaluating = matches!(self.command, Command::Evaluate | Command::Verify);
+        let optimizing = matches!(self.command, Command::Optimize | Command::Compare);
+        let rechecking = self.command == Command::Recheck;
+        let takes_controls = "with evaluate and verify only (optimize and compare take --start-controls)";
+        let takes_start = "with optimize and compare only (evaluate and verify take --controls)";
+        let limits = "with optimize and compare only";
+        for (option, given, taken, allowed) in [
+            ("--controls", self.controls.is_some(), evaluating, takes_controls),
+            ("--start-controls", self.start_controls.is_some(), optimizing, takes_start),
+            ("--max-evaluations", self.max_evaluations.is_some(), optimizing, limits),
+            ("--diagnose", self.diagnose, self.command == Command::Evaluate, "with evaluate only"),
+            ("--time-limit", self.time_limit.is_some(), optimizing, limits),
+            ("--continuation", self.continuation.is_some(), optimizing, limits),
+            ("--resume", self.resume.is_some(), optimizing, limits),
+            ("--out", self.out.is_some(), !rechecking, "without recheck, which writes no file"),
+            ("DIR", self.certified.is_some(), rechecking, "with recheck only"),
+        ] {
+            if given && !taken {
+                return refused(option, allowed);
+            }
+        }
+        if rechecking && self.certified.is_none() {
+            return Err(Failure::Input("recheck needs DIR, the folder that an optimization has left".into()));
+        }
+        Ok(())
+    }
+
+    /// The result of a command for stdout, in the form that is asked for.
+    pub fn printed(&self, text: String, json: String) -> String {
+        if self.json { json } else { text }
+    }
+
+    /// Refuses options beside --resume that are no limits: a run that is continued has its scene and its options in its folder.
     fn check_resume(&self) -> Result<(), Failure> {
         if self.resume.is_none() {
             return Ok(());
@@ -237,6 +259,10 @@ impl Arguments {
     }
 }
 
+fn refused(option: &str, allowed: &str) -> Result<(), Failure> {
+    Err(Failure::Input(format!("{option} is allowed {allowed}")))
+}
+
 fn parse_surface(text: &str) -> Result<SplineKind, String> {
     match text.split_once(':') {
         None if text == "bezier" => Ok(SplineKind::Bezier),
@@ -258,35 +284,38 @@ fn parse_counts(text: &str) -> Result<[usize; 2], String> {
     }
 }
 
-fn parse_solver(text: &str) -> Result<SolverName, String> {
-    match text {
-        "newton" => Ok(SolverName::Newton),
-        "direct" => Ok(SolverName::Direct),
-        "augmented-lagrangian" => Ok(SolverName::AugmentedLagrangian),
-        _ => Err("allowed: newton, direct, augmented-lagrangian".into()),
-    }
+/// A choice by its name in scene files; the error lists all names.
+fn named<T: DeserializeOwned>(text: &str) -> Result<T, NameError> {
+    T::deserialize(text.into_deserializer())
 }
 
-fn parse_formulation(text: &str) -> Result<FormulationName, String> {
-    match text {
-        "standard" => Ok(FormulationName::Standard),
-        "mean-dilatation" => Ok(FormulationName::MeanDilatation),
-        _ => Err("allowed: standard, mean-dilatation".into()),
-    }
-}
-
-fn parse_preconditioner(text: &str) -> Result<PreconditionerName, String> {
-    match text {
-        "dirichlet" => Ok(PreconditionerName::Dirichlet),
-        "lumped" => Ok(PreconditionerName::Lumped),
-        "none" => Ok(PreconditionerName::None),
-        _ => Err("allowed: dirichlet, lumped, none".into()),
-    }
+fn measures() -> impl TypedValueParser<Value = MeasureName> {
+    let value = |name, meaning| PossibleValue::new(name).help(meaning);
+    PossibleValuesParser::new([value("pressure-norm", "Σσ^p"), value("peak-pressure", "max σ")])
+        .try_map(|name| named(&name))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_name_that_the_help_lists_is_one() {
+        let command = <Arguments as clap::CommandFactory>::command();
+        for option in ["solver", "preconditioner", "formulation", "objective"] {
+            let argument = command.get_arguments().find(|argument| argument.get_id() == option).expect(option);
+            let listed: Vec<String> = match argument.get_possible_values() {
+                values if !values.is_empty() => values.iter().map(|value| value.get_name().to_owned()).collect(),
+                _ => argument.get_value_names().expect(option)[0].split('|').map(str::to_owned).collect(),
+            };
+            assert!(listed.len() > 1, "{option}");
+            for name in listed {
+                Arguments::try_parse_from(["contact", &format!("--{option}"), &name]).expect(&name);
+            }
+        }
+        let refusal = Arguments::try_parse_from(["contact", "--solver", "newtn"]).expect_err("no solver").to_string();
+        assert!(refusal.contains("`newton`, `direct`, `augmented-lagrangian`"), "{refusal}");
+    }
 
     #[test]
     fn surfaces_and_counts_are_parsed_or_refused() {

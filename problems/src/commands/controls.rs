@@ -12,7 +12,7 @@ use std::path::Path;
 /// [`SceneError`] for an unreadable file, a wrong count, numbers that are not finite, controls outside U.
 pub fn load(shape: &ContactShape, case: &Case, file: Option<&Path>) -> Result<Vector, SceneError> {
     let controls = match (file, &case.start) {
-        (Some(file), _) => parse(&read(file)?, &file.display().to_string(), shape.control_dimension())?,
+        (Some(file), _) => read(file, shape.control_dimension())?,
         (None, Some(controls)) => Vector::from_column_slice(controls),
         (None, None) => shape.start(),
     };
@@ -20,9 +20,16 @@ pub fn load(shape: &ContactShape, case: &Case, file: Option<&Path>) -> Result<Ve
     Ok(controls)
 }
 
-fn read(file: &Path) -> Result<String, SceneError> {
-    std::fs::read_to_string(file)
-        .map_err(|error| SceneError::File { path: file.display().to_string(), reason: error.to_string() })
+/// The controls of a file.
+///
+/// # Errors
+/// [`SceneError`] for an unreadable file; as [`parse`].
+pub fn read(file: &Path, expected: usize) -> Result<Vector, SceneError> {
+    let path = file.display().to_string();
+    match std::fs::read_to_string(file) {
+        Ok(text) => parse(&text, &path, expected),
+        Err(error) => Err(SceneError::File { path, reason: error.to_string() }),
+    }
 }
 
 /// The controls in a text; `name` stands in messages.

@@ -1,18 +1,22 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
-use crate::commands::output::{self, Folder};
-use crate::commands::solved::Solved;
-use crate::commands::{Arguments, ContactObjective, Failure, Source, controls, results};
+use crate::commands::arguments::Arguments;
+use crate::commands::contact_objective::ContactObjective;
+use crate::commands::controls;
+use crate::commands::failure::Failure;
+use crate::commands::folder::json;
+use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::long_run::RunFolder;
+use crate::commands::report::files;
+use crate::commands::solved_shape::SolvedShape;
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
-use nonsmooth::{Accuracy, StateSolver};
-use scene_file::Case;
 use serde::Serialize;
 use std::fmt;
 use std::time::Instant;
 
-/// What `evaluate` reports; the keys of its JSON.
+/// The keys of the JSON of `evaluate`.
 #[derive(Debug, Serialize)]
-struct Evaluated {
+struct EvaluationJson {
     objective: f64,
     subgradient: Vec<f64>,
     peak_pressure: f64,
@@ -35,47 +39,39 @@ struct Seconds {
     subgradient: f64,
 }
 
-pub fn run(
-    objective: &ContactObjective,
-    source: &Source,
-    case: &Case,
-    arguments: &Arguments,
-) -> Result<String, Failure> {
-    let folder = Folder::for_results(case.output.folder.as_deref())?;
-    let shape = objective.solver();
-    let control = controls::load(shape, case, arguments.controls.as_deref())?;
+/// The command.
+pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
+    let folder = RunFolder::folder_for_results(loaded.case.output.folder.as_deref())?;
+    let solver = objective.solver();
+    let controls = controls::load(solver, &loaded.case, arguments.controls.as_deref())?;
     let clock = Instant::now();
-    let state = shape.solve(&control, None, Accuracy::TIGHTEST)?;
+    let shape = SolvedShape::at(objective, &controls)?;
     let state_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let evaluation = objective.differentiate(&control, &state)?;
+    let evaluation = objective.differentiate(&controls, &shape.state)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
-    let diagnosis = if arguments.diagnose { Some(shape.diagnose(&state)?) } else { None };
-    let result = Evaluated {
+    let (state, forces) = (&shape.state, &shape.state.forces);
+    let result = EvaluationJson {
         objective: evaluation.value,
         subgradient: evaluation.subgradient.as_slice().to_vec(),
-        peak_pressure: output::peak_pressure(objective, &state),
-        total_normal_force: state.forces.total_normal_force(),
-        status: state.forces.counts(),
-        kink: state.forces.kink,
-        residuals: state.forces.residuals,
+        peak_pressure: shape.peak_pressure,
+        total_normal_force: forces.total_normal_force(),
+        status: forces.counts(),
+        kink: forces.kink,
+        residuals: forces.residuals,
         work: state.work(),
         contraction: state.contraction,
-        diagnosis,
+        diagnosis: arguments.diagnose.then(|| solver.diagnose(state)).transpose()?,
         seconds: Seconds { state: state_seconds, subgradient: subgradient_seconds },
-        left_out: shape.left_out(),
+        left_out: solver.left_out(),
     };
-    let json = output::json(&result)?;
-    if let Some(folder) = folder {
-        let solved = Solved { controls: control, value: result.objective, peak_pressure: result.peak_pressure, state };
-        let printed = if arguments.json { json.clone() } else { result.to_string() };
-        results::write_evaluation(&folder, source, case, objective, &solved, &json)
-            .map_err(|failure| failure.after(&printed))?;
-    }
-    Ok(if arguments.json { json } else { result.to_string() })
+    let object = json(&result)?;
+    let write = |folder| files::write_evaluation(&folder, loaded, objective, &shape, &object);
+    let written = folder.map_or(Ok(()), write);
+    Failure::printed_with_files(arguments.printed(result.to_string(), object), written)
 }
 
-impl fmt::Display for Evaluated {
+impl fmt::Display for EvaluationJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let norm = self.subgradient.iter().map(|x| x * x).sum::<f64>().sqrt();
         writeln!(f, "objective            {:.10e}", self.objective)?;

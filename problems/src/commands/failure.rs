@@ -1,8 +1,9 @@
-//! Why a binary fails, and with which exit status.
+//! The failures of a command, each with its exit status.
 
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
-use nonsmooth::{InputError, OptimizeError, OracleError};
+use nonsmooth::{InputError, JournalError, OptimizeError, OracleError};
+use std::io::{self, Write};
 use std::process::ExitCode;
 use thiserror::Error;
 
@@ -16,12 +17,12 @@ pub enum Failure {
     /// The computation failed: exit status 1.
     #[error("{0}")]
     Computation(String),
-    /// There is a result for stdout, and something to say about it.
+    /// The result for stdout is there, but something is to be said about it.
     #[error("{reason}")]
     Incomplete {
         /// The result.
         text: String,
-        /// What is to be said.
+        /// The message about it.
         reason: String,
         /// Exit status.
         status: u8,
@@ -43,12 +44,31 @@ impl Failure {
         }
     }
 
+    /// The text for stdout.
+    fn text(&self) -> &str {
+        if let Self::Incomplete { text, .. } = self { text } else { "" }
+    }
+
     /// [`Failure::status`] for the operating system.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.status())
     }
 
-    /// The same failure after something for stdout is there already: it is not lost.
+    /// The text for stdout after files were written; a file that could not be written does not lose the text.
+    ///
+    /// # Errors
+    /// [`Failure::Incomplete`] with the text if a file could not be written.
+    pub fn printed_with_files(text: String, written: Result<(), Self>) -> Result<String, Self> {
+        match written {
+            Ok(()) => Ok(text),
+            Err(failure) => {
+                let reason = format!("{failure}; the report above is complete");
+                Err(Self::Incomplete { text, reason, status: 1 })
+            }
+        }
+    }
+
+    /// The same failure after a text for stdout is there already, so that the text is not lost.
     #[must_use]
     pub fn after(self, printed: &str) -> Self {
         let status = self.status();
@@ -62,8 +82,28 @@ impl Failure {
     }
 }
 
+/// Prints the text of a command on stdout and the message of its failure on stderr; the exit status that belongs to them.
+pub fn finish(result: Result<String, Failure>) -> ExitCode {
+    let (text, failure) = match result {
+        Ok(text) => (text, None),
+        Err(failure) => (failure.text().to_owned(), Some(failure)),
+    };
+    // A reader that closes the pipe early has seen what it wanted; then the exit status is the message.
+    let _ = io::stdout().write_all(text.as_bytes());
+    failure.map_or(ExitCode::SUCCESS, |failure| {
+        let _ = writeln!(io::stderr(), "error: {failure}");
+        failure.exit_code()
+    })
+}
+
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl From<JournalError> for Failure {
+    fn from(error: JournalError) -> Self {
         Self::Input(error.to_string())
     }
 }

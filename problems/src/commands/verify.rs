@@ -1,7 +1,11 @@
 //! `verify`: Taylor test of the subgradient on the smooth piece around one shape.
 
-use crate::commands::output;
-use crate::commands::{Arguments, ContactObjective, Failure, Folder, controls};
+use crate::commands::arguments::Arguments;
+use crate::commands::contact_objective::ContactObjective;
+use crate::commands::controls;
+use crate::commands::failure::Failure;
+use crate::commands::folder::{Folder, json};
+use crate::commands::long_run::RunFolder;
 use contact::equilibrium::{ContactStatus, Residuals};
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -9,19 +13,19 @@ use scene_file::Case;
 use serde::Serialize;
 
 /// Seed of the direction.
-const SEED: u64 = 20_231;
-/// Steps of the table.
-const STEPS: usize = 9;
-/// Ratio of neighbouring steps.
-const RATIO: f64 = 0.316_227_766_016_837_94;
+const DIRECTION_SEED: u64 = 20_231;
+/// Number of steps in the table.
+const STEP_COUNT: usize = 9;
+/// Ratio of neighbouring steps: ten to the power −½.
+const STEP_RATIO: f64 = 0.316_227_766_016_837_94;
 /// Largest step tried, relative to the height of the body.
-const LARGEST_STEP: f64 = 1e-3;
-/// Times the step is shortened in search of the smooth piece.
-const SHORTENINGS: usize = 16;
+const MAX_RELATIVE_STEP: f64 = 1e-3;
+/// Number of times that the step is shortened in search of the smooth piece.
+const MAX_SHORTENINGS: usize = 16;
 
-/// What `verify` reports; the keys of its JSON.
+/// The keys of the JSON of `verify`.
 #[derive(Debug, Serialize)]
-struct Verified {
+struct VerificationJson {
     #[serde(flatten)]
     test: TaylorTest,
     /// Largest step up to which no contact node changes its status.
@@ -32,37 +36,42 @@ struct Verified {
     residuals: Residuals,
 }
 
+/// The command.
 pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = Folder::for_results(case.output.folder.as_deref())?;
+    let folder = RunFolder::folder_for_results(case.output.folder.as_deref())?;
     let shape = objective.solver();
     let control = controls::load(shape, case, arguments.controls.as_deref())?;
-    let direction = nonsmooth::verify::seeded_direction(control.len(), SEED);
+    let direction = nonsmooth::verify::seeded_direction(control.len(), DIRECTION_SEED);
     let here = shape.solve(&control, None, Accuracy::TIGHTEST)?;
     let step = smooth_step(objective, &control, &direction, &here.forces.status)?;
-    let steps: Vec<f64> = (0..STEPS).map(|index| step * RATIO.powi(index as i32)).collect();
+    let steps: Vec<f64> = (0..STEP_COUNT).map(|index| step * STEP_RATIO.powi(index as i32)).collect();
     let test = taylor_test(objective, &control, &Direction::Given(direction), &steps)?;
-    let result = Verified {
+    let result = VerificationJson {
         test,
         smooth_step: step,
         smallest_margin: here.forces.kink.smallest_margin,
         weakly_active: here.forces.kink.weakly_active,
         residuals: here.forces.residuals,
     };
-    let json = output::json(&result)?;
+    let object = json(&result)?;
     let text = format!(
         "{}no contact node changes its status up to the step {:.1e} mm (nearest kink: relative margin {:.1e}, {} nodes weakly active)\n\
          relative residuals of the state: {}\n",
         result.test, step, result.smallest_margin, result.weakly_active, result.residuals
     );
-    if let Some(folder) = folder {
-        let printed = if arguments.json { &json } else { &text };
-        let written = folder.write("verification.json", &json).and_then(|()| folder.write("verification.txt", &text));
-        written.map_err(|failure| failure.after(printed))?;
-    }
-    Ok(if arguments.json { json } else { text })
+    let write = |folder: Folder| {
+        folder.write("verification.json", &object)?;
+        folder.write("verification.txt", &text)
+    };
+    let written = folder.map_or(Ok(()), write);
+    Failure::printed_with_files(arguments.printed(text, object), written)
 }
 
-/// A step along which no contact node changes its status, to either side; the shortest one tried if all do.
+/// A step along the direction and against it over which no contact node changes its status; the shortest step tried if there is
+/// none.
+///
+/// # Errors
+/// [`Failure`] of the contact solver.
 pub fn smooth_step(
     objective: &ContactObjective,
     control: &Vector,
@@ -70,17 +79,17 @@ pub fn smooth_step(
     status: &[ContactStatus],
 ) -> Result<f64, Failure> {
     let height = control.iter().map(|height| height.abs()).sum::<f64>() / control.len() as f64;
-    let mut step = LARGEST_STEP * height;
-    for _shortening in 0..SHORTENINGS {
+    let mut step = MAX_RELATIVE_STEP * height;
+    for _shortening in 0..MAX_SHORTENINGS {
         if same_piece(objective, control, direction, step, status)? {
             break;
         }
-        step *= RATIO;
+        step *= STEP_RATIO;
     }
     Ok(step)
 }
 
-/// Whether all contact nodes keep their status a step to either side.
+/// Whether all contact nodes keep their status over a step along the direction and over one against it.
 fn same_piece(
     objective: &ContactObjective,
     control: &Vector,

@@ -6,9 +6,10 @@
 //! A is an M-matrix, so that u grows and the inactive part only shrinks after the first step: the method ends.
 
 use crate::membrane::MembraneGrid;
-use contact::error::ContactError;
-use contact::linear::cholesky::{NumericFactor, SymbolicFactor, sequential};
+use contact::linear::FactorizationError;
+use contact::linear::cholesky::{NumericFactor, SymbolicFactor};
 use contact::linear::symmetric::LowerPattern;
+use nonsmooth::OracleError;
 use std::sync::Arc;
 
 /// The matrix with active rows and columns replaced by the identity.
@@ -29,19 +30,19 @@ pub struct Solved {
     pub active: Vec<bool>,
     /// Factor of the matrix of the active set.
     pub factor: NumericFactor,
-    /// Systems solved.
+    /// Number of linear systems solved.
     pub steps: usize,
 }
 
-/// Steps after which the method is given up; it needs about as many as there are grid lines.
-const MOST_STEPS: usize = 1000;
+/// Largest number of steps; the method needs about as many as there are grid lines.
+const MAX_STEPS: usize = 1000;
 
 impl ReducedMembrane {
     /// One symbolic analysis for all active sets.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when it fails.
-    pub fn new(grid: &MembraneGrid) -> Result<Self, ContactError> {
+    /// [`FactorizationError`] when it fails.
+    pub fn new(grid: &MembraneGrid) -> Result<Self, FactorizationError> {
         let (pattern, symbolic) = grid.analyse()?;
         Ok(Self { pattern, symbolic })
     }
@@ -49,27 +50,28 @@ impl ReducedMembrane {
     /// Solves A u − b = λ ≥ 0, u ≥ ψ, λ(u − ψ) = 0 from an active set.
     ///
     /// # Errors
-    /// [`ContactError::NotFinite`]; [`ContactError::NotConverged`] with the share of nodes that still changed as residual.
+    /// [`OracleError::NotConverged`] with the share of nodes that still changed as residual, [`OracleError::NotFinite`], and
+    /// [`OracleError::Failed`] when the matrix cannot be factored.
     pub fn solve(
         &self,
         grid: &MembraneGrid,
         load: &[f64],
         obstacle: &[f64],
         start: Option<&[bool]>,
-    ) -> Result<Solved, ContactError> {
+    ) -> Result<Solved, OracleError> {
         let mut active = start.map_or_else(|| vec![false; load.len()], <[bool]>::to_vec);
         let size = load.iter().zip(obstacle).fold(0.0_f64, |size, (b, psi)| size.max(b.abs()).max(psi.abs()));
         let rounding = 64.0 * f64::EPSILON * size;
         let mut changed = 0;
-        for step in 1..=MOST_STEPS {
-            let factor = self.factorize(&active)?;
+        for step in 1..=MAX_STEPS {
+            let factor = self.factorize(&active).map_err(|error| OracleError::Failed(Box::new(error)))?;
             let held: Vec<f64> = active.iter().zip(obstacle).map(|(&a, &psi)| if a { psi } else { 0.0 }).collect();
             let from_held = grid.multiply(&held);
             let mut u: Vec<f64> =
                 (0..load.len()).map(|i| if active[i] { obstacle[i] } else { load[i] - from_held[i] }).collect();
-            factor.solve_in_place(&mut u, 1, sequential());
+            factor.solve_in_place(&mut u);
             if u.iter().any(|value| !value.is_finite()) {
-                return Err(ContactError::NotFinite { what: "membrane" });
+                return Err(OracleError::NotFinite { what: "membrane" });
             }
             let image = grid.multiply(&u);
             let reaction: Vec<f64> = (0..u.len()).map(|i| if active[i] { image[i] - load[i] } else { 0.0 }).collect();
@@ -83,16 +85,14 @@ impl ReducedMembrane {
             }
             active = next;
         }
-        Err(ContactError::NotConverged {
+        Err(OracleError::NotConverged {
             solver: "primal–dual active sets",
             residual: changed as f64 / load.len() as f64,
-            tolerance: 0.0,
-            iterations: MOST_STEPS,
-            history: Vec::new(),
+            iterations: MAX_STEPS,
         })
     }
 
-    fn factorize(&self, active: &[bool]) -> Result<NumericFactor, ContactError> {
+    fn factorize(&self, active: &[bool]) -> Result<NumericFactor, FactorizationError> {
         let mut values = Vec::with_capacity(self.pattern.entry_count());
         for column in 0..self.pattern.dimension() {
             for &row in &self.pattern.rows()[self.pattern.starts()[column]..self.pattern.starts()[column + 1]] {
@@ -104,6 +104,6 @@ impl ReducedMembrane {
                 });
             }
         }
-        self.symbolic.factorize(&values, sequential())
+        self.symbolic.factorize(&values)
     }
 }

@@ -1,4 +1,4 @@
-//! What is wanted of a membrane: a shape, little load, no pressure on the obstacle.
+//! The cost of a membrane: its distance from a wanted shape, its load and the pressure on the obstacle.
 //!
 //! ```text
 //! J(α, u, λ) = ½ h² Σ (u − u_d)² + (ν/2) w Σ α_k² + κ h² Σ λ          w: area of a patch
@@ -7,16 +7,16 @@
 use crate::membrane::{MembraneGrid, MembraneState};
 use nonsmooth::{Cost, CostGradient, Vector};
 
-/// Weights of the wishes.
+/// Weights of the terms of the cost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MembraneWishes {
-    /// ν.
+    /// ν, the weight of the load.
     pub load_weight: f64,
-    /// κ.
+    /// κ, the weight of the reaction.
     pub reaction_weight: f64,
 }
 
-/// J.
+/// The cost J.
 #[derive(Debug, Clone)]
 pub struct MembraneCost {
     wanted: Vec<f64>,

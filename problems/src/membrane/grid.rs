@@ -4,7 +4,8 @@
 //! (A u)_i = 4u_i − Σ u_neighbours ≈ h² (−Δu)(x_i)
 //! ```
 
-use contact::error::{ContactError, SceneError};
+use contact::error::SceneError;
+use contact::linear::FactorizationError;
 use contact::linear::cholesky::SymbolicFactor;
 use contact::linear::ordering::nested_dissection;
 use contact::linear::symmetric::LowerPattern;
@@ -13,7 +14,7 @@ use std::sync::Arc;
 /// A square with N × N cells; unknowns are the (N − 1)² inner nodes, i·(N − 1) + j with i along x₁.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MembraneGrid {
-    /// N ≥ 2.
+    /// Number N ≥ 2 of cells per edge.
     pub cells: usize,
     /// Lower left corner.
     pub origin: [f64; 2],
@@ -39,7 +40,7 @@ impl MembraneGrid {
         Ok(Self { cells, origin, length })
     }
 
-    /// h.
+    /// The mesh width h.
     pub fn width(&self) -> f64 {
         self.length / self.cells as f64
     }
@@ -95,7 +96,7 @@ impl MembraneGrid {
     }
 
     /// Pattern and elimination order of A.
-    pub(super) fn analyse(&self) -> Result<(Arc<LowerPattern>, Arc<SymbolicFactor>), ContactError> {
+    pub(super) fn analyse(&self) -> Result<(Arc<LowerPattern>, Arc<SymbolicFactor>), FactorizationError> {
         let pattern = Arc::new(LowerPattern::from_columns(
             (0..self.node_count()).map(|index| self.neighbours(index).collect()).collect(),
         ));

@@ -19,7 +19,8 @@ pub use cost::{MembraneCost, MembraneWishes};
 pub use grid::MembraneGrid;
 pub use problem::{MembraneControl, MembraneData, MembraneState};
 
-use contact::error::{ContactError, SceneError};
+use contact::error::SceneError;
+use contact::linear::FactorizationError;
 use nonsmooth::{Polyhedron, ReducedObjective, Vector};
 use thiserror::Error;
 
@@ -30,15 +31,15 @@ pub type MembraneObjective = ReducedObjective<MembraneControl, MembraneCost>;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum MembraneError {
-    /// The data describe none.
+    /// The data describe no membrane.
     #[error(transparent)]
     Data(#[from] SceneError),
-    /// Its matrix could not be analysed.
+    /// The matrix could not be analysed or factored.
     #[error(transparent)]
-    Solver(#[from] ContactError),
+    Matrix(#[from] FactorizationError),
 }
 
-/// Patches of loads per edge of the example.
+/// Number of load patches per edge in the example.
 pub const PATCHES: usize = 4;
 /// Largest load of a patch of the example.
 pub const LARGEST_LOAD: f64 = 40.0;

@@ -10,17 +10,17 @@
 use crate::membrane::active_set::ReducedMembrane;
 use crate::membrane::{MembraneError, MembraneGrid};
 use contact::error::SceneError;
-use contact::linear::cholesky::{NumericFactor, sequential};
+use contact::linear::cholesky::NumericFactor;
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
 
 /// A function of the position.
 pub type Field = Box<dyn Fn([f64; 2]) -> f64 + Send + Sync>;
 
-/// What a membrane problem is made of.
+/// The data of a membrane problem.
 pub struct MembraneData {
     /// f₀, load per area without controls.
     pub load: Field,
-    /// ψ.
+    /// ψ, the height of the obstacle.
     pub obstacle: Field,
     /// g, heights of the clamped edge.
     pub boundary: Field,
@@ -48,7 +48,7 @@ pub struct MembraneState {
     pub reaction: Vec<f64>,
     /// Nodes on which the obstacle presses.
     pub active: Vec<bool>,
-    /// Linear systems solved.
+    /// Number of linear systems solved.
     pub steps: usize,
     factor: NumericFactor,
 }
@@ -57,7 +57,7 @@ impl MembraneControl {
     /// Evaluates the data on the grid and analyses the pattern.
     ///
     /// # Errors
-    /// [`MembraneError::Data`] without patches and for data that are not numbers, [`MembraneError::Solver`] when the analysis
+    /// [`MembraneError::Data`] without patches and for data that are not numbers, [`MembraneError::Matrix`] when the analysis
     /// fails.
     pub fn new(grid: MembraneGrid, data: &MembraneData) -> Result<Self, MembraneError> {
         if data.patches == 0 {
@@ -125,8 +125,7 @@ impl StateSolver for MembraneControl {
     ) -> Result<MembraneState, OracleError> {
         let load = self.load(control)?;
         let area = self.grid.width() * self.grid.width();
-        let solved = self.reduced.solve(&self.grid, &load, &self.obstacle, start.map(Vec::as_slice));
-        let solved = solved.map_err(|error| OracleError::Failed(Box::new(error)))?;
+        let solved = self.reduced.solve(&self.grid, &load, &self.obstacle, start.map(Vec::as_slice))?;
         Ok(MembraneState {
             displacement: solved.displacement,
             reaction: solved.reaction.into_iter().map(|reaction| reaction / area).collect(),
@@ -160,7 +159,7 @@ impl Coderivative for MembraneControl {
         let from_pressing = self.grid.multiply(&pressing);
         let mut adjoint: Vec<f64> =
             (0..count).map(|i| if state.active[i] { 0.0 } else { toward[i] + from_pressing[i] }).collect();
-        state.factor.solve_in_place(&mut adjoint, 1, sequential());
+        state.factor.solve_in_place(&mut adjoint);
         let mut result = Vector::zeros(self.control_dimension());
         for (i, &patch) in self.patch_of_node.iter().enumerate() {
             result[patch] += area * (adjoint[i] - pressing[i]);

@@ -14,17 +14,17 @@ const TOLERANCE: f64 = 1e-10;
 /// One run of the engine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ToyRun {
-    /// Where it started.
+    /// The initial controls.
     pub start: [f64; 2],
-    /// Where it ended.
+    /// The controls that it found.
     pub solution: [f64; 2],
-    /// Θ there.
+    /// Θ at these controls.
     pub value: f64,
-    /// |α − α*|.
+    /// The distance |α − α*| of these controls from the minimiser, mm.
     pub error: f64,
-    /// Evaluations of Θ.
+    /// Number of evaluations of Θ.
     pub evaluations: usize,
-    /// Why it ended.
+    /// The reason why it ended.
     pub termination: Termination,
 }
 
@@ -96,7 +96,7 @@ fn run(start: &[f64; 2]) -> Result<ToyRun, OptimizeError> {
 }
 
 impl ToyStudy {
-    /// Runs that found the minimiser up to [`SUCCESS`].
+    /// Number of runs that found the minimiser up to [`SUCCESS`].
     pub fn successes(&self) -> usize {
         self.runs.iter().filter(|run| run.error <= SUCCESS).count()
     }

@@ -8,13 +8,13 @@ use std::cell::RefCell;
 /// A run with the points of its evaluations.
 #[derive(Debug, Clone)]
 pub struct ToyTrace {
-    /// How it went; one record per evaluation.
+    /// The report of the engine, with one record per evaluation.
     pub report: Report,
-    /// Where each evaluation was.
+    /// The points of the evaluations.
     pub points: Vec<[f64; 2]>,
 }
 
-/// Writes down where it is evaluated.
+/// An objective that keeps the points at which it is evaluated.
 struct Recorded {
     inner: ToyObjective,
     points: RefCell<Vec<[f64; 2]>>,

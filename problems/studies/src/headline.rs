@@ -4,7 +4,8 @@
 
 use crate::scaling::{Case, SceneName, peak_memory};
 use clap::Parser;
-use problems::commands::{Failure, Source, execute};
+use problems::commands::{Arguments, Failure, execute};
+use scene_file::SceneFile;
 use serde_json::Value;
 use std::process::ExitCode;
 
@@ -34,8 +35,8 @@ fn run(scene: SceneName, options: &[&str]) -> Result<Value, Failure> {
         SceneName::Hertz => ("hertz.toml", include_str!("../../scenes/hertz.toml")),
     };
     let arguments = [&["contact"], options, &["--json"]].concat();
-    let arguments = problems::commands::Arguments::try_parse_from(arguments).map_err(Failure::computation)?;
-    let text = execute(|| Ok(Source::embedded(name, text)?), &arguments)?;
+    let arguments = Arguments::try_parse_from(arguments).map_err(Failure::computation)?;
+    let text = execute(|| Ok((SceneFile::parse(text, name)?, None)), &arguments)?;
     serde_json::from_str(&text).map_err(Failure::computation)
 }
 

@@ -8,7 +8,8 @@ use contact::cost::PressureCost;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::memory;
-use problems::commands::{long_run, parse_controls};
+use nonsmooth::Journal;
+use problems::commands::parse_controls;
 use scene_file::{Case, SceneFile};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -182,6 +183,28 @@ struct Corpus {
     folder: PathBuf,
 }
 
+/// A journal with an answer, a failure and an answer that has all kinds of numbers.
+fn journal() -> String {
+    let entry = |number: usize, target: &str, answer: &str| {
+        format!(
+            "{{\"evaluation\":{number},\"point\":[100.0,99.5],\"accuracy\":1e-12,\"target\":{target},\"restarted_from\":null,\
+             \"seconds\":0.5,\"answer\":{answer}}}\n"
+        )
+    };
+    let evaluated = |value: &str| {
+        format!(
+            "{{\"evaluated\":{{\"value\":{value},\"subgradient\":[1.5,-2e-3],\"error_bound\":0.0,\"no_descent\":false,\
+             \"restart_data\":true}}}}"
+        )
+    };
+    let text = "{\"journal\":2,\"identity\":\"a scene\",\"dimension\":2}\n".to_owned()
+        + &entry(1, "null", &evaluated("4e17"))
+        + &entry(2, "3e17", "{\"failed\":\"an element is inverted\"}")
+        + &entry(3, "3e17", &evaluated("\"-inf\""));
+    assert_eq!(Journal::parse(text.as_bytes(), Path::new("journal")).unwrap().unwrap().entries.len(), 3);
+    text
+}
+
 impl Corpus {
     /// The inputs; files go to the folder `scratch`.
     fn new(scratch: &Path) -> Self {
@@ -194,18 +217,7 @@ impl Corpus {
         let heights: Vec<String> = (0..36).map(|i| format!("{}", 100.0 + 0.125 * f64::from(i))).collect();
         std::fs::copy(folder.join("flat_punch.csv"), scratch.join("flat_punch.csv")).unwrap();
         let controls = format!("[{}]", heights.join(", "));
-        let answer =
-            "{\"answer\":{\"value\":4e17,\"subgradient\":[1.5,-2e-3],\"error_bound\":0.0,\"no_descent\":false}}";
-        let entry = |number: usize, outcome: &str| {
-            let point = "[100.0,99.5]";
-            format!(
-                "{{\"evaluation\":{number},\"point\":{point},\"accuracy\":1e-12,\"seconds\":0.5,\"outcome\":{outcome}}}\n"
-            )
-        };
-        let failure = "{\"failure\":\"an element is inverted\"}";
-        let journal = format!("{{\"journal\":1}}\n{}{}{}", entry(1, answer), entry(2, failure), entry(3, answer));
-        assert_eq!(long_run::parse_journal(journal.as_bytes()).unwrap().0.len(), 3);
-        Self { scenes, controls, grid: read("flat_punch.csv"), journal, folder: scratch.to_path_buf() }
+        Self { scenes, controls, grid: read("flat_punch.csv"), journal: journal(), folder: scratch.to_path_buf() }
     }
 
     /// Input `number` and whether it was accepted.
@@ -226,7 +238,7 @@ impl Corpus {
             }
             3 => {
                 let text = mutate(&self.journal, &mut random);
-                let result = catch_unwind(|| long_run::parse_journal(text.as_bytes()).is_ok());
+                let result = catch_unwind(|| Journal::parse(text.as_bytes(), Path::new("journal")).is_ok());
                 (text, result)
             }
             _ => {

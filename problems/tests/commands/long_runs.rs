@@ -1,7 +1,7 @@
 //! Long runs: killed, interrupted and limited runs continue to the same bits; folders that fail do not take a run along.
 
 #![cfg(unix)]
-use nonsmooth::Snapshot;
+use nonsmooth::Journal;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Child, Command, Output};
@@ -117,9 +117,9 @@ fn an_interrupted_run_reports_says_how_to_resume_and_resumes() {
     let report = printed(&output);
     assert_eq!(report["termination"]["reason"], "stopped_by_observer");
     assert_eq!(std::fs::read(folder.join("report.json")).unwrap(), output.stdout);
-    let snapshot = Snapshot::read(&folder.join("snapshot.json")).unwrap();
-    assert_eq!(snapshot.evaluations() as u64, report["evaluations"].as_u64().unwrap());
-    assert_eq!(snapshot.value(), report["objective"].as_f64().unwrap());
+    let journal = Journal::read(&folder).unwrap().unwrap();
+    assert_eq!(journal.entries.len() as u64, report["evaluations"].as_u64().unwrap());
+    assert_eq!(journal.dimension, report["controls"].as_array().unwrap().len());
     assert_eq!(found(&succeeded(&["--resume", text(&folder), "--json"])), found(&whole));
 }
 
@@ -189,6 +189,13 @@ fn what_is_no_run_is_not_resumed_and_no_run_is_lost() {
     std::fs::write(&journal, lines.replacen("\"evaluation\":2", "\"evaluation\":7", 1)).unwrap();
     refused(&["--resume", text(&folder)], &["journal.jsonl", "line 3"]);
     std::fs::write(&journal, lines).unwrap();
+    // The journal of another scene would answer for it.
+    let scene = folder.join("scene.toml");
+    let stated = std::fs::read_to_string(&scene).unwrap();
+    let friction = stated.lines().find(|line| line.starts_with("friction = ")).unwrap();
+    std::fs::write(&scene, stated.replacen(friction, "friction = 0.125", 1)).unwrap();
+    refused(&["--resume", text(&folder)], &["journal.jsonl", "another objective", "0.125"]);
+    std::fs::write(&scene, stated).unwrap();
     succeeded(&["--resume", text(&folder), "--json"]);
     succeeded(&first);
 }
@@ -202,7 +209,7 @@ fn what_the_folder_lacks_is_computed_again_with_a_warning() {
     succeeded(&["--mesh", "4", "--max-evaluations", "5", "--json", "--out", text(&folder)]);
     for entry in std::fs::read_dir(&folder).unwrap() {
         let path = entry.unwrap().path();
-        if path.extension().is_some_and(|extension| extension == "bin") {
+        if path.file_name().unwrap().to_str().unwrap().starts_with("warm_start_") {
             std::fs::remove_file(path).unwrap();
         }
     }

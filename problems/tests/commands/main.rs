@@ -15,12 +15,15 @@ fn binary(name: &str) -> Option<&'static str> {
 }
 
 mod binaries;
+mod certificates;
 mod compare;
 mod contact3d;
 mod fuzz;
 mod long_runs;
 mod pages_run;
+mod pictures;
 mod pins;
+mod recheck;
 mod reports;
 mod stages;
 mod toy2d;

@@ -1,7 +1,6 @@
 //! What `--out DIR` delivers: reports, pictures, files for ParaView; and nothing of it without being asked.
 
 use crate::binary;
-use resvg::usvg::{Options, Tree};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -27,16 +26,16 @@ fn names(folder: &Path) -> BTreeSet<String> {
     entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }
 
-/// Every figure exists as SVG and PNG, is understood by a renderer, and stands in the page, which loads nothing else.
+/// Every figure exists as SVG (and as PNG, if the program can), is well-formed, and stands in the page, which loads nothing else.
 fn check_page(scratch: &Path, folder: &str, figures: &[&str]) -> String {
     let found = names(&scratch.join(folder).join("figures"));
-    let expected = figures.iter().flat_map(|name| [format!("{name}.svg"), format!("{name}.png")]).collect();
+    let endings: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
+    let expected =
+        figures.iter().flat_map(|name| endings.iter().map(move |ending| format!("{name}.{ending}"))).collect();
     assert_eq!(found, expected, "{folder}");
     for name in figures {
         let svg = read(scratch, &format!("{folder}/figures/{name}.svg"));
-        assert!(Tree::from_str(&svg, &Options::default()).is_ok(), "{name}");
-        let png = std::fs::read(scratch.join(format!("{folder}/figures/{name}.png"))).unwrap();
-        assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 5000, "{name}: {} bytes", png.len());
+        assert!(roxmltree::Document::parse(&svg).is_ok(), "{name}");
     }
     let page = read(scratch, &format!("{folder}/report.html"));
     assert_eq!(page.matches("data:image/svg+xml;base64,").count(), figures.len());

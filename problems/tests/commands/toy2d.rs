@@ -44,10 +44,7 @@ fn pictures_show_every_evaluation_of_the_first_run() {
     let svg = std::fs::read_to_string(out.join("landscape.svg")).expect("the landscape");
     let marks = ["start", "serious", "null", "refined"].map(|kind| svg.matches(&format!("class=\"{kind}\"")).count());
     assert_eq!(marks.iter().sum::<usize>(), evaluations, "{marks:?}");
-    for name in ["landscape", "convergence"] {
-        let png = std::fs::read(out.join(format!("{name}.png"))).expect("a picture");
-        assert!(png.starts_with(b"\x89PNG") && png.len() > 5000, "{name}");
-    }
+    assert!(out.join("convergence.svg").exists());
 }
 
 #[test]

@@ -5,7 +5,8 @@
 //! ```
 
 use crate::body::elasticity::Material;
-use crate::body::elasticity::hex8::{self, DOFS};
+use crate::body::elasticity::brick::DOFS;
+use crate::body::elasticity::hex8;
 use crate::body::mesh::{Block, Subdomain};
 use crate::body::shape_load::{height_derivative, loaded_faces};
 use crate::scene::Load;

@@ -26,7 +26,7 @@ impl CondensedContact<'_> {
             let equations = node_equations(&linearizations[index], rows.len(), self.boundary.friction, self.stiffness);
             for (&(dof, _), equation) in rows.iter().zip(equations) {
                 has_row[dof] = true;
-                let target = if self.lower_held[dof] { size + dof } else { dof };
+                let target = if self.held[0][dof] { size + dof } else { dof };
                 for (offset, jump, force) in equation {
                     let (other, packed) = rows[offset];
                     self.add_jump(&mut matrix, target, other, jump);
@@ -57,7 +57,7 @@ impl CondensedContact<'_> {
 
     /// matrix[target] += factor·η[dof].
     fn add_reaction(&self, matrix: &mut Mat<f64>, target: usize, dof: usize, factor: f64) {
-        let (body, sign) = if self.lower_held[dof] { (1, 1.0) } else { (0, -1.0) };
+        let (body, sign) = if self.held[0][dof] { (1, 1.0) } else { (0, -1.0) };
         self.add_schur(matrix, target, body, dof, sign * factor);
     }
 
@@ -73,12 +73,12 @@ impl CondensedContact<'_> {
 
     /// The second equation of a dof with a row: p₁ = 0 where the lower body is held, S₁p₁ + S₂p₂ = 0 where both are free.
     fn add_balance(&self, matrix: &mut Mat<f64>, dof: usize) {
-        if self.lower_held[dof] {
+        if self.held[0][dof] {
             self.add_schur(matrix, dof, 0, dof, 1.0);
         } else if self.bodies.len() == 2 {
             let target = self.size() + dof;
             self.add_schur(matrix, target, 1, dof, 1.0);
-            if !self.upper_decoupled(dof) {
+            if !self.held[1][dof] {
                 self.add_schur(matrix, target, 0, dof, 1.0);
             }
         }
@@ -91,7 +91,7 @@ impl CondensedContact<'_> {
         let mut packed = vec![0.0; self.boundary.row_count];
         for (index, point) in self.boundary.points.iter().enumerate() {
             for (dof, row) in Self::rows_of(index, point) {
-                packed[row] = if self.lower_held[dof] { products[1][dof] } else { -products[0][dof] };
+                packed[row] = if self.held[0][dof] { products[1][dof] } else { -products[0][dof] };
             }
         }
         packed

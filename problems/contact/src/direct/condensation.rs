@@ -6,13 +6,13 @@
 //! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly.
 
 use crate::body::elasticity::traction::face_weights;
+use crate::body::local_pattern::LocalPattern;
 use crate::body::mesh::{Block, Grid, Subdomain};
 use crate::body::shape_load::loaded_faces;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
-use crate::linear::dense::multiply;
+use crate::linear::dense::{DenseLu, multiply};
 use crate::scene::BodyScene;
-use crate::tfeti::LocalPattern;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
 use std::sync::Arc;
@@ -31,9 +31,9 @@ pub struct CondensationPattern {
 #[derive(Debug)]
 pub struct CondensedBody {
     /// S over contact dofs 3·node + component, N/mm.
-    pub schur: Mat<f64>,
+    pub(crate) schur: Mat<f64>,
     /// f_c, N.
-    pub load: Vec<f64>,
+    pub(crate) load: Vec<f64>,
     factor: NumericFactor,
     full_load: Vec<f64>,
     contact: Vec<usize>,
@@ -64,7 +64,7 @@ impl CondensationPattern {
         let mut values = self.pattern.assemble(&scene.material, |brick| block.brick(brick));
         let mut full_load = body_load(block, scene, &self.pattern.shape);
         let shift = self.impose(&mut values, &mut full_load);
-        let factor = self.symbolic.factorize(&values, Par::Seq)?;
+        let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();
         let lower = factor.trailing_block(size)?;
         let mut schur = Mat::<f64>::zeros(size, size);
@@ -80,7 +80,7 @@ impl CondensationPattern {
             Par::Seq,
         );
         let mut solution = full_load.clone();
-        factor.solve_in_place(&mut solution, 1, Par::Seq);
+        factor.solve_in_place(&mut solution);
         let load = multiply(&schur, &contact_part(&self.contact, &solution));
         for dof in 0..size {
             schur[(dof, dof)] -= shift;
@@ -112,6 +112,13 @@ impl CondensationPattern {
 }
 
 impl CondensedBody {
+    /// S⁻¹f: displacements (mm) of the contact nodes under forces f (N) on them alone, for a body that supports hold.
+    pub fn deflection(&self, forces: &[f64]) -> Vec<f64> {
+        let mut displacement = forces.to_vec();
+        DenseLu::new(&self.schur).solve_in_place(&mut displacement);
+        displacement
+    }
+
     /// Extends contact displacements to the whole body; `forces` act on the contact dofs, `loaded` adds the loads.
     pub fn extend(&self, contact_displacement: &[f64], forces: &[f64], loaded: bool) -> Vec<f64> {
         let mut u = if loaded { self.full_load.clone() } else { vec![0.0; self.full_load.len()] };
@@ -121,7 +128,7 @@ impl CondensedBody {
                 u[first + component] += forces[dof] + self.shift * contact_displacement[dof];
             }
         }
-        self.factor.solve_in_place(&mut u, 1, Par::Seq);
+        self.factor.solve_in_place(&mut u);
         u
     }
 }

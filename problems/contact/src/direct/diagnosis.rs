@@ -44,7 +44,7 @@ impl CondensedContact<'_> {
             let mut change = vec![0.0; self.size() * self.bodies.len()];
             let rows = Self::rows_of(*index, &self.boundary.points[*index]);
             for ((dof, _), entry) in rows.skip(1).zip(direction) {
-                let equation = if self.lower_held[dof] { self.size() + dof } else { dof };
+                let equation = if self.held[0][dof] { self.size() + dof } else { dof };
                 change[equation] = *entry;
             }
             factors.solve_in_place(&mut change);

@@ -18,7 +18,7 @@ impl CondensedContact<'_> {
         let at_dof = |dof: usize| match rows[dof] {
             Some(row) => {
                 let weight = direction[row] - (p[dof] - second(dof)) - eta[row] / self.stiffness;
-                let balance = match (self.bodies.len(), self.lower_held[dof]) {
+                let balance = match (self.bodies.len(), self.held[0][dof]) {
                     (2, true) => p[dof] * residual[dof],
                     (2, false) => second(dof) * residual[size + dof],
                     _ => 0.0,

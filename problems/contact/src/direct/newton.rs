@@ -21,16 +21,16 @@ pub struct CondensedContact<'a> {
     pub bodies: Vec<&'a CondensedBody>,
     /// Contact nodes.
     pub boundary: &'a ContactBoundary,
-    /// Held contact dofs of the lower body.
-    pub lower_held: &'a [bool],
+    /// Held contact dofs, per body.
+    pub held: &'a [Vec<bool>],
     /// Initial gaps, mm.
-    pub gaps: Vec<f64>,
+    pub gaps: &'a [f64],
     /// c, N/mm.
     pub stiffness: f64,
     /// Force that residuals are relative to, N.
     pub load: f64,
     /// Motions of the contact dofs of all bodies that nothing holds, to be grounded.
-    pub grounded: Vec<Vec<f64>>,
+    pub grounded: &'a [Vec<f64>],
 }
 
 /// A Newton result.
@@ -136,7 +136,7 @@ impl CondensedContact<'_> {
             let diagonal = (0..self.size()).map(|dof| body.schur[(dof, dof)].abs()).fold(0.0, f64::max);
             diagonal * largest(u)
         });
-        f64::EPSILON * products.fold(self.stiffness * largest(&self.gaps), f64::max) / self.load
+        f64::EPSILON * products.fold(self.stiffness * largest(self.gaps), f64::max) / self.load
     }
 
     /// φ of every body.
@@ -156,7 +156,7 @@ impl CondensedContact<'_> {
         let (mut forces, mut jumps) = (vec![0.0; self.boundary.row_count], vec![0.0; self.boundary.row_count]);
         for (index, point) in self.boundary.points.iter().enumerate() {
             for (dof, row) in Self::rows_of(index, point) {
-                forces[row] = if self.lower_held[dof] { -reactions[1][dof] } else { reactions[0][dof] };
+                forces[row] = if self.held[0][dof] { -reactions[1][dof] } else { reactions[0][dof] };
                 jumps[row] = u[dof] - if self.bodies.len() == 2 { u[self.size() + dof] } else { 0.0 };
             }
             jumps[point.start] -= self.gaps[index];
@@ -193,7 +193,7 @@ impl CondensedContact<'_> {
         for (dof, row) in self.rows_by_dof().into_iter().enumerate() {
             let second = (self.bodies.len() == 2).then(|| reactions[1][dof]);
             let (first, upper) = match row {
-                Some(row) if self.lower_held[dof] => (reactions[0][dof], Some(law[row])),
+                Some(row) if self.held[0][dof] => (reactions[0][dof], Some(law[row])),
                 Some(row) => (law[row], second.map(|second| self.coupling(reactions[0][dof], second, dof))),
                 None => (reactions[0][dof], second),
             };
@@ -207,13 +207,7 @@ impl CondensedContact<'_> {
 
     /// φ₁ + φ₂ on a shared dof; φ₂ where the upper body is held (its S row is decoupled, φ₂ = −s u₂).
     fn coupling(&self, first: f64, second: f64, dof: usize) -> f64 {
-        if self.upper_decoupled(dof) { second } else { first + second }
-    }
-
-    /// Whether the upper body is held at a dof: its row of S has no coupling.
-    pub fn upper_decoupled(&self, dof: usize) -> bool {
-        let schur = &self.bodies[1].schur;
-        (0..self.size()).all(|other| other == dof || schur[(dof, other)] == 0.0)
+        if self.held[1][dof] { second } else { first + second }
     }
 
     /// The solution of the equations linearised with the given derivatives at u.
@@ -233,7 +227,6 @@ impl CondensedContact<'_> {
         let coefficient = |body: usize, dof: usize, other: usize| -self.bodies[body].schur[(dof, other)];
         let law_rows = self.law_coefficients(linearizations, coupling);
         let rows = self.rows_by_dof();
-        let decoupled: Vec<bool> = (0..size).map(|dof| self.bodies.len() == 2 && self.upper_decoupled(dof)).collect();
         for column in 0..size {
             for dof in 0..size {
                 let Some(row) = rows[dof] else {
@@ -242,10 +235,10 @@ impl CondensedContact<'_> {
                     }
                     continue;
                 };
-                let lower_held = self.lower_held[dof];
+                let lower_held = self.held[0][dof];
                 let equation = if lower_held { size + dof } else { dof };
                 for &(force_dof, force_factor, jump_factor) in &law_rows[row] {
-                    let (body, sign) = if self.lower_held[force_dof] { (1, -1.0) } else { (0, 1.0) };
+                    let (body, sign) = if self.held[0][force_dof] { (1, -1.0) } else { (0, 1.0) };
                     matrix[(equation, body * size + column)] +=
                         sign * force_factor * coefficient(body, force_dof, column);
                     if force_dof == column {
@@ -259,7 +252,7 @@ impl CondensedContact<'_> {
                     matrix[(dof, column)] += coefficient(0, dof, column);
                 } else if self.bodies.len() == 2 {
                     matrix[(size + dof, size + column)] += coefficient(1, dof, column);
-                    if !decoupled[dof] {
+                    if !self.held[1][dof] {
                         matrix[(size + dof, column)] += coefficient(0, dof, column);
                     }
                 }
@@ -271,7 +264,7 @@ impl CondensedContact<'_> {
 
     /// Adds −s m mᵀ for motions that nothing holds: their resultant is zero, so they stay at rest.
     pub fn ground(&self, matrix: &mut Mat<f64>) {
-        for motion in &self.grounded {
+        for motion in self.grounded {
             for (j, right) in motion.iter().enumerate() {
                 for (i, left) in motion.iter().enumerate() {
                     matrix[(i, j)] -= self.stiffness * left * right;
@@ -308,7 +301,7 @@ impl CondensedContact<'_> {
             let (_, jumps) = self.packed(u);
             for (dof, row) in self.rows_by_dof().into_iter().enumerate() {
                 if let Some(row) = row {
-                    let equation = if self.lower_held[dof] { self.size() + dof } else { dof };
+                    let equation = if self.held[0][dof] { self.size() + dof } else { dof };
                     residual[equation] = -self.stiffness * jumps[row];
                 }
             }

@@ -3,7 +3,7 @@
 use crate::body::mesh::Block;
 use crate::direct::newton::CondensedContact;
 use crate::direct::solver::{DirectSolver, DirectState};
-use crate::equilibrium::{ContactProblem, SolvedBody};
+use crate::equilibrium::SolvedBody;
 use crate::error::ContactError;
 
 impl DirectSolver {
@@ -11,8 +11,8 @@ impl DirectSolver {
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for a state of another mesh, [`ContactError::InvertedElement`] never for a solved one.
-    pub fn bodies(&self, problem: &ContactProblem, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
-        let solution = &state.solution.displacement;
+    pub(super) fn whole_bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
+        let (problem, solution) = (&self.problem, &state.solution.displacement);
         let size = 3 * problem.boundary.points.len();
         let expected = size * self.held.len();
         if expected != solution.len() || state.system.block.grid != problem.grid {
@@ -22,7 +22,7 @@ impl DirectSolver {
         let parts = blocks.into_iter().zip(solution.chunks_exact(size)).enumerate();
         Ok(parts
             .map(|(body, (block, contact))| {
-                let u = self.extend(problem, state, body, contact, &state.solution.forces, true);
+                let u = self.extend(state, body, contact, &state.solution.forces, true);
                 SolvedBody {
                     displacement: u.chunks_exact(3).map(|u| [u[0], u[1], u[2]]).collect(),
                     gluing_defect: 0.0,
@@ -37,7 +37,6 @@ impl DirectSolver {
     /// down and the upper one (1) up; with or without its loads.
     pub(super) fn extend(
         &self,
-        problem: &ContactProblem,
         state: &DirectState,
         body: usize,
         contact: &[f64],
@@ -49,7 +48,7 @@ impl DirectSolver {
             _ => (-1.0, &state.system.lower),
         };
         let mut forces = vec![0.0; contact.len()];
-        for (index, point) in problem.boundary.points.iter().enumerate() {
+        for (index, point) in self.problem.boundary.points.iter().enumerate() {
             for (dof, row) in CondensedContact::rows_of(index, point) {
                 if !self.held[body][dof] {
                     forces[dof] = sign * multipliers[row];

@@ -6,14 +6,20 @@ use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::newton::{CondensedContact, CondensedSolution};
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
-use crate::equilibrium::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Stage, ValueError, Work, modes};
+use crate::equilibrium::{
+    Configuration, ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Kink,
+    Residuals, Sensitivities, SolvedBody, SolverState, Stage, ValueError, Work, modes,
+};
 use crate::error::ContactError;
 use crate::scene::BodyScene;
+use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
+use std::time::Instant;
 
-/// The direct solver of one scene.
+/// The direct solver of one problem.
 #[derive(Debug)]
 pub struct DirectSolver {
+    pub(super) problem: Arc<ContactProblem>,
     lower: CondensationPattern,
     upper: Option<CondensationPattern>,
     fixed: OnceLock<Arc<CondensedBody>>,
@@ -41,11 +47,11 @@ pub struct DirectState {
 }
 
 impl DirectSolver {
-    /// Analyses the bodies of a scene.
+    /// Analyses the bodies of a problem.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
-    pub fn new(problem: &ContactProblem) -> Result<Self, ContactError> {
+    pub fn new(problem: Arc<ContactProblem>) -> Result<Self, ContactError> {
         let (scene, grid) = (&problem.scene, &problem.grid);
         let lower = CondensationPattern::new(grid, &scene.lower, grid.cells[2])?;
         let upper = match &scene.upper {
@@ -56,150 +62,175 @@ impl DirectSolver {
             grid.columns().flat_map(|(i, j)| scene.held(grid, [i, j, layer])).collect()
         };
         let held = problem.bodies().zip([grid.cells[2], 0]).map(held).collect();
-        Ok(Self { lower, upper, fixed: OnceLock::new(), held })
+        Ok(Self { problem, lower, upper, fixed: OnceLock::new(), held })
     }
 
-    /// Solves one shape to a relative residual; `start`: contact displacements of a similar shape.
-    ///
-    /// # Errors
-    /// [`ContactError`]: inverted elements, no equilibrium, no convergence.
-    pub fn solve(
-        &self,
-        problem: &ContactProblem,
-        controls: &[f64],
-        start: Option<&[f64]>,
-        tolerance: f64,
-    ) -> Result<(DirectState, ContactForces, Work), ContactError> {
-        Stage::Equilibrium.enter();
-        let mut blocks = problem.blocks(controls)?;
-        let rigid = problem.rigid_scene(&blocks);
-        let grounded: Vec<Vec<f64>> =
-            rigid.analyse(&problem.boundary)?.iter().map(|motion| contact_motion(&rigid, motion)).collect();
+    /// Condenses all bodies of a shape; also the number of factorisations done.
+    fn condense(&self, configuration: &mut Configuration) -> Result<(CondensedSystem, usize), ContactError> {
         Stage::Factorization.enter();
-        let lower = self.lower.condense(&blocks[0], &problem.scene.lower)?;
-        let mut factorizations = 1;
-        let upper = self.upper_body(problem, &blocks, &mut factorizations)?;
-        let gaps = problem.gaps(&blocks[0]);
+        let rigid = &configuration.rigid;
+        let grounded = configuration.grounded.iter().map(|motion| contact_motion(rigid, motion)).collect();
+        let lower = self.lower.condense(&configuration.blocks[0], &self.problem.scene.lower)?;
+        let (upper, factorizations) = self.upper_body(&configuration.blocks)?;
         let stiffness = contact_stiffness(&lower, upper.as_deref());
-        let penetration: f64 = gaps.iter().map(|gap| (-gap).max(0.0)).sum();
-        let load = rigid.total_load() + stiffness * penetration;
-        let system = CondensedSystem { block: blocks.swap_remove(0), lower, upper, grounded, gaps, stiffness, load };
-        Stage::Contact.enter();
-        let contact = self.contact(problem, &system);
-        let solution = if load > 0.0 { contact.solve(start, tolerance)? } else { contact.at_rest() };
-        let work = Work { newton_steps: solution.steps, factorizations, ..Work::default() };
-        let state = DirectState { system, solution };
-        let forces = unpack(problem, &state);
-        Ok((state, forces, work))
+        let load = configuration.load(stiffness);
+        let gaps = std::mem::take(&mut configuration.gaps);
+        let block = configuration.blocks.swap_remove(0);
+        Ok((CondensedSystem { block, lower, upper, grounded, gaps, stiffness, load }, 1 + factorizations))
     }
 
-    fn upper_body(
-        &self,
-        problem: &ContactProblem,
-        blocks: &[Block],
-        factorizations: &mut usize,
-    ) -> Result<Option<Arc<CondensedBody>>, ContactError> {
-        let (Some(pattern), Some(scene)) = (&self.upper, &problem.scene.upper) else { return Ok(None) };
-        if self.fixed.get().is_none() {
-            let body = Arc::new(pattern.condense(&blocks[1], &scene.body)?);
-            *factorizations += 1;
-            // Another thread may have been first; its factor is the same.
-            let _ = self.fixed.set(body);
+    /// The upper body, which keeps its shape: it is factored at the first call and shared afterwards. Also the number of
+    /// factorisations done.
+    fn upper_body(&self, blocks: &[Block]) -> Result<(Option<Arc<CondensedBody>>, usize), ContactError> {
+        let (Some(pattern), Some(scene)) = (&self.upper, &self.problem.scene.upper) else { return Ok((None, 0)) };
+        if let Some(body) = self.fixed.get() {
+            return Ok((Some(Arc::clone(body)), 0));
         }
-        Ok(self.fixed.get().cloned())
+        let body = Arc::new(pattern.condense(&blocks[1], &scene.body)?);
+        // Another thread may have been first; its factor is the same.
+        Ok((Some(Arc::clone(self.fixed.get_or_init(|| body))), 1))
     }
 
-    fn contact<'a>(&'a self, problem: &'a ContactProblem, state: &'a CondensedSystem) -> CondensedContact<'a> {
+    fn contact<'a>(&'a self, state: &'a CondensedSystem) -> CondensedContact<'a> {
         CondensedContact {
             bodies: std::iter::once(&state.lower).chain(state.upper.as_deref()).collect(),
-            boundary: &problem.boundary,
-            lower_held: &self.held[0],
-            gaps: state.gaps.clone(),
+            boundary: &self.problem.boundary,
+            held: &self.held,
+            gaps: &state.gaps,
             stiffness: state.stiffness,
             load: state.load,
-            grounded: state.grounded.clone(),
+            grounded: &state.grounded,
         }
     }
+}
 
-    /// Contraction factor and condition at a solved shape.
-    ///
-    /// # Errors
-    /// [`ContactError::NotFinite`].
-    pub fn diagnose(&self, problem: &ContactProblem, state: &DirectState) -> Result<Diagnosis, ContactError> {
-        if state.system.load == 0.0 {
-            return Ok(Diagnosis { contraction: 0.0, condition: None });
-        }
-        self.contact(problem, &state.system).diagnose(&state.solution.linearizations)
+impl ContactSolver for DirectSolver {
+    type State = DirectState;
+
+    fn problem(&self) -> &ContactProblem {
+        &self.problem
     }
 
-    /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed rows, and what the state's residual does to J.
-    ///
-    /// # Errors
-    /// [`ContactError::NotFinite`] when the adjoint matrix is singular.
-    pub fn sensitivities(
+    fn sizes(&self) -> [usize; 2] {
+        [3 * self.problem.grid.node_count() * self.held.len(), self.problem.boundary.row_count]
+    }
+
+    fn left_out(&self) -> Option<&'static str> {
+        Some("tearing, gluing, dual operator (direct condensation)")
+    }
+
+    fn solve(
         &self,
-        problem: &ContactProblem,
+        controls: &[f64],
+        start: Option<&ContactWarmStart>,
+        tolerance: f64,
+    ) -> Result<ContactState<DirectState>, ContactError> {
+        let start = match start {
+            Some(ContactWarmStart::Displacements(displacements)) => Some(displacements.as_slice()),
+            _ => None,
+        };
+        let (system, factorizations) = self.condense(&mut Configuration::new(&self.problem, controls)?)?;
+        Stage::Contact.enter();
+        let contact = self.contact(&system);
+        let solution = if system.load > 0.0 { contact.solve(start, tolerance)? } else { contact.at_rest() };
+        let work = Work { newton_steps: solution.steps, factorizations, ..Work::default() };
+        let state = DirectState { system, solution };
+        Ok(ContactState {
+            forces: state.forces(&self.problem),
+            load: state.system.load,
+            contraction: None,
+            stages: None,
+            work,
+            adjoint_applications: AtomicUsize::new(0),
+            solution: state,
+        })
+    }
+
+    fn sensitivities(
+        &self,
         state: &DirectState,
         direction: &[f64],
-    ) -> Result<(Vec<f64>, ValueError), ContactError> {
+        _tolerance: f64,
+    ) -> Result<Sensitivities, ContactError> {
         if state.system.load == 0.0 {
-            // Bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
-            return Ok((vec![0.0; problem.grid.column_count()], ValueError::default()));
+            return Ok(Sensitivities::at_rest(self.problem.grid.column_count()));
         }
+        let clock = Instant::now();
         Stage::Adjoint.enter();
-        let contact = self.contact(problem, &state.system);
+        let contact = self.contact(&state.system);
         let (p, eta) = contact.adjoint(&state.solution.linearizations, direction);
         let terms = contact.weighted_residuals(&state.solution, &p, &eta, direction);
         let value_error = ValueError::from_terms(&terms, direction, &state.solution.forces);
         let size = contact.size();
-        let u = self.extend(problem, state, 0, &state.solution.displacement[..size], &state.solution.forces, true);
-        let p = self.extend(problem, state, 0, &p[..size], &eta, false);
+        let u = self.extend(state, 0, &state.solution.displacement[..size], &state.solution.forces, true);
+        let p = self.extend(state, 0, &p[..size], &eta, false);
+        let adjoint_seconds = clock.elapsed().as_secs_f64();
         Stage::ShapeDerivative.enter();
-        let whole = Subdomain { first_cell: [0; 3], cells: problem.grid.cells };
-        let lower = &problem.scene.lower;
-        let mut heights = vec![0.0; problem.grid.column_count()];
-        for (column, value) in column_sensitivities(&state.system.block, &whole, &lower.material, &lower.loads, &u, &p)
-        {
-            heights[column] += value;
-        }
-        for (height, point) in heights.iter_mut().zip(&problem.boundary.points) {
-            *height -= eta[point.start];
-        }
+        let heights = self.height_sensitivities(state, &u, &p, &eta);
         if heights.iter().any(|height| !height.is_finite()) {
             return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
         }
-        Ok((heights, value_error))
+        let shape_seconds = clock.elapsed().as_secs_f64() - adjoint_seconds;
+        Ok(Sensitivities { heights, applications: 0, adjoint_seconds, shape_seconds, value_error })
+    }
+
+    fn diagnose(&self, state: &DirectState) -> Result<Diagnosis, ContactError> {
+        if state.system.load == 0.0 {
+            return Ok(Diagnosis { contraction: 0.0, condition: None });
+        }
+        self.contact(&state.system).diagnose(&state.solution.linearizations)
+    }
+
+    fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
+        self.whole_bodies(state)
+    }
+
+    fn strain_energy(&self, _state: &DirectState) -> Option<f64> {
+        None
+    }
+}
+
+impl DirectSolver {
+    /// Element sums over the lower body, per contact node: displacements u, their adjoint p, packed multipliers η.
+    fn height_sensitivities(&self, state: &DirectState, u: &[f64], p: &[f64], eta: &[f64]) -> Vec<f64> {
+        let (grid, lower) = (&self.problem.grid, &self.problem.scene.lower);
+        let whole = Subdomain { first_cell: [0; 3], cells: grid.cells };
+        let mut heights = vec![0.0; grid.column_count()];
+        for (column, value) in column_sensitivities(&state.system.block, &whole, &lower.material, &lower.loads, u, p) {
+            heights[column] += value;
+        }
+        // The gap F² − F_α falls as the surface rises.
+        for (height, point) in heights.iter_mut().zip(&self.problem.boundary.points) {
+            *height -= eta[point.start];
+        }
+        heights
+    }
+}
+
+impl SolverState for DirectState {
+    fn warm_start(&self) -> ContactWarmStart {
+        ContactWarmStart::Displacements(self.solution.displacement.clone())
     }
 }
 
 impl DirectState {
-    /// Contact displacements of all bodies, to start a similar problem from.
-    pub fn contact_displacement(&self) -> &[f64] {
-        &self.solution.displacement
-    }
-
-    /// Force that residuals are relative to, N.
-    pub fn load(&self) -> f64 {
-        self.system.load
-    }
-}
-
-fn unpack(problem: &ContactProblem, state: &DirectState) -> ContactForces {
-    let (solution, boundary, stiffness) = (&state.solution, &problem.boundary, state.system.stiffness);
-    let status = boundary.points.iter().zip(&solution.linearizations);
-    let status = status.map(|(point, linearization)| linearization.status(point)).collect();
-    let arguments: Vec<f64> =
-        solution.forces.iter().zip(&solution.jumps).map(|(force, jump)| force + stiffness * jump).collect();
-    let law = law_residuals(boundary, &solution.forces, &solution.jumps, stiffness, state.system.load);
-    // Equilibrium holds through the equations φ₁ + φ₂ = 0, whose residual is part of Newton's.
-    let residuals = Residuals { equilibrium: solution.residual, newton: solution.residual, ..law };
-    let mut forces = solution.forces.clone();
-    for (point, linearization) in boundary.points.iter().zip(&solution.linearizations) {
-        if *linearization == Linearization::Open {
-            forces[point.start..point.start + point.row_count()].fill(0.0);
+    fn forces(&self, problem: &ContactProblem) -> ContactForces {
+        let (solution, boundary, stiffness) = (&self.solution, &problem.boundary, self.system.stiffness);
+        let status = boundary.points.iter().zip(&solution.linearizations);
+        let status = status.map(|(point, linearization)| linearization.status(point)).collect();
+        let arguments: Vec<f64> =
+            solution.forces.iter().zip(&solution.jumps).map(|(force, jump)| force + stiffness * jump).collect();
+        let law = law_residuals(boundary, &solution.forces, &solution.jumps, stiffness, self.system.load);
+        // Equilibrium holds through the equations φ₁ + φ₂ = 0, whose residual is part of Newton's.
+        let residuals = Residuals { equilibrium: solution.residual, newton: solution.residual, ..law };
+        let mut forces = solution.forces.clone();
+        for (point, linearization) in boundary.points.iter().zip(&solution.linearizations) {
+            if *linearization == Linearization::Open {
+                forces[point.start..point.start + point.row_count()].fill(0.0);
+            }
         }
+        ContactForces::unpack(boundary, &forces, &solution.jumps, status, residuals, Kink::of(boundary, &arguments))
     }
-    ContactForces::unpack(boundary, &forces, &solution.jumps, status, residuals, Kink::of(boundary, &arguments))
 }
 
 /// Mean normal stiffness of the contact nodes, bodies in series, N/mm.

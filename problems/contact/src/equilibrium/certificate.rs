@@ -1,7 +1,7 @@
 //! Residual certificates of a contact state and its distance to the nearest kink.
 
+use crate::equilibrium::ContactBoundary;
 use crate::equilibrium::law::{self, tangential_norm};
-use crate::equilibrium::{ContactBoundary, ContactStatus};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -38,25 +38,6 @@ impl fmt::Display for Residuals {
             "equilibrium {:.1e}, complementarity {:.1e}, friction cone {:.1e}, dissipation {:.1e}, Newton {:.1e}",
             self.equilibrium, self.complementarity, self.friction_cone, self.dissipation, self.newton
         )
-    }
-}
-
-/// Numbers of nodes per status.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct StatusCounts {
-    /// No contact.
-    pub open: usize,
-    /// Closed, no sliding.
-    pub stick: usize,
-    /// Closed, sliding.
-    pub slip: usize,
-}
-
-impl StatusCounts {
-    /// Counts a list of statuses.
-    pub fn of(statuses: &[ContactStatus]) -> Self {
-        let count = |status| statuses.iter().filter(|&&other| other == status).count();
-        Self { open: count(ContactStatus::Open), stick: count(ContactStatus::Stick), slip: count(ContactStatus::Slip) }
     }
 }
 

@@ -41,8 +41,8 @@ impl fmt::Display for Diagnosis {
     }
 }
 
-/// Sweeps of the eigenvalue iteration per unknown.
-const SWEEPS: usize = 100;
+/// Sweeps of the eigenvalue iteration allowed per unknown.
+const MAX_SWEEPS: usize = 100;
 
 /// Spectral radius of a small dense matrix, row major; NaN if its eigenvalues are not found.
 pub fn spectral_radius(size: usize, entries: &[f64]) -> f64 {
@@ -53,7 +53,7 @@ pub fn spectral_radius(size: usize, entries: &[f64]) -> f64 {
     if entries.iter().any(|entry| !entry.is_finite()) {
         return f64::NAN;
     }
-    match Schur::try_new(matrix, f64::EPSILON, SWEEPS * size) {
+    match Schur::try_new(matrix, f64::EPSILON, MAX_SWEEPS * size) {
         Some(schur) => schur.complex_eigenvalues().iter().map(|value| value.re.hypot(value.im)).fold(0.0, f64::max),
         None => f64::NAN,
     }

@@ -1,33 +1,28 @@
-//! Unilateral contact with Coulomb friction: boundary, law, state.
-
-pub mod diagnosis;
-pub mod law;
-pub mod modes;
+//! Unilateral contact with Coulomb friction: boundary, law, rigid motions, certificates; what a contact solver solves and
+//! returns.
 
 mod boundary;
-pub mod certificate;
+pub(crate) mod certificate;
+mod configuration;
+mod contact_solver;
+pub(crate) mod diagnosis;
+pub(crate) mod law;
+pub(crate) mod modes;
 mod problem;
 mod solved_body;
 mod stage;
 mod state;
+mod status;
 mod value_error;
 
 pub use boundary::{ContactBoundary, ContactPoint};
-pub use certificate::{Kink, Residuals, StatusCounts};
+pub use certificate::{Kink, Residuals, WEAKLY_ACTIVE};
+pub use configuration::Configuration;
+pub use contact_solver::{ContactSolver, Sensitivities};
 pub use diagnosis::Diagnosis;
 pub use problem::ContactProblem;
 pub use solved_body::SolvedBody;
 pub use stage::{Stage, TARGET as STAGE_TARGET};
-pub use state::{ContactForces, StageSeconds, Work};
+pub use state::{AnyState, ContactForces, ContactState, ContactWarmStart, SolverState, StageSeconds, Work};
+pub use status::{ContactStatus, StatusCounts};
 pub use value_error::ValueError;
-
-/// What a contact node does; method.md (3.2), (3.3).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-pub enum ContactStatus {
-    /// No contact: λ_N = 0.
-    Open,
-    /// Closed, |λ_T| < 𝓕λ_N, no tangential jump.
-    Stick,
-    /// Closed, |λ_T| = 𝓕λ_N.
-    Slip,
-}

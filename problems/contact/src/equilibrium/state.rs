@@ -1,7 +1,10 @@
-//! The contact part of a state: forces, status, certificates, work.
+//! A solved shape: contact forces, status, certificates, work.
 
 use crate::equilibrium::{ContactBoundary, ContactStatus, Kink, Residuals, StatusCounts};
 use serde::{Deserialize, Serialize};
+use std::any::Any;
+use std::fmt;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Work spent on one state and its subgradient.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -24,7 +27,7 @@ pub struct Work {
     pub factorizations: usize,
 }
 
-/// Wall-clock seconds of the stages of one state and its subgradient.
+/// Wall-clock seconds of the stages of one state.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct StageSeconds {
     /// Rigid body analysis of the scene.
@@ -37,10 +40,66 @@ pub struct StageSeconds {
     pub newton: f64,
     /// Displacements and certificates.
     pub recovery: f64,
-    /// Adjoint system.
-    pub adjoint: f64,
-    /// Element sums of the shape derivative.
-    pub shape_derivative: f64,
+}
+
+/// What a solver keeps of a solved shape.
+pub trait SolverState: Any + fmt::Debug + Send + Sync {
+    /// What a similar shape can be solved from.
+    fn warm_start(&self) -> ContactWarmStart;
+}
+
+/// What a solver of any kind keeps of a solved shape.
+pub type AnyState = Box<dyn SolverState>;
+
+impl SolverState for AnyState {
+    fn warm_start(&self) -> ContactWarmStart {
+        self.as_ref().warm_start()
+    }
+}
+
+/// What restarts a solve nearby.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactWarmStart {
+    /// Multipliers of the torn problem, all rows.
+    Multipliers(Vec<f64>),
+    /// Contact displacements of the condensed problem, all bodies, mm.
+    Displacements(Vec<f64>),
+}
+
+/// A solved shape; `S` is what its solver keeps ([`ContactSolver::State`](crate::equilibrium::ContactSolver::State)).
+#[derive(Debug)]
+pub struct ContactState<S = AnyState> {
+    /// Forces, status, certificates.
+    pub forces: ContactForces,
+    /// What derivative, diagnosis and displacements are computed from.
+    pub solution: S,
+    /// Force that residuals are relative to, N.
+    pub load: f64,
+    /// Contraction factor observed by the successive approximations, where that method found the state and took enough steps.
+    pub contraction: Option<f64>,
+    /// Seconds of the stages, where the solver takes them.
+    pub stages: Option<StageSeconds>,
+    pub(crate) work: Work,
+    pub(crate) adjoint_applications: AtomicUsize,
+}
+
+impl<S> ContactState<S> {
+    /// Work spent so far, the adjoint included.
+    pub fn work(&self) -> Work {
+        let adjoint_applications = self.adjoint_applications.load(Ordering::Relaxed);
+        Work {
+            adjoint_applications,
+            dual_operator_applications: self.work.dual_operator_applications + adjoint_applications,
+            ..self.work
+        }
+    }
+
+    /// The same shape with another form of the solver's own part.
+    pub(crate) fn map<T>(self, change: impl FnOnce(S) -> T) -> ContactState<T> {
+        let Self { forces, solution, load, contraction, stages, work, adjoint_applications } = self;
+        ContactState { forces, solution: change(solution), load, contraction, stages, work, adjoint_applications }
+    }
 }
 
 /// Forces on the contact nodes and what is known about them; physical units, whatever solver found them.

@@ -1,7 +1,7 @@
 //! Displacements and stresses of one body.
 
 use crate::body::elasticity::Material;
-use crate::body::elasticity::hex8::{self, DOFS};
+use crate::body::elasticity::brick::{self, DOFS};
 use crate::body::elasticity::stress::{BrickStress, SymmetricTensor, von_mises};
 use crate::body::mesh::Block;
 use crate::equilibrium::SolvedBody;
@@ -38,7 +38,7 @@ impl BodyFields {
             .map(|&brick| {
                 let (coordinates, corners) = (block.brick(brick), grid.brick_nodes(brick));
                 let u: [f64; DOFS] = std::array::from_fn(|dof| displacement[corners[dof / 3]][dof % 3]);
-                (BrickStress::new(&coordinates, material, &u).at_centre(), hex8::volume(&coordinates))
+                (BrickStress::new(&coordinates, material, &u).at_centre(), brick::volume(&coordinates))
             })
             .collect();
         let stress: Vec<SymmetricTensor> = values.iter().map(|(stress, _)| *stress).collect();

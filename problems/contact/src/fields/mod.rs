@@ -8,40 +8,10 @@
 
 mod bodies;
 mod contact;
+mod solved_shape;
 mod vtk;
 
 pub use bodies::BodyFields;
 pub use contact::ContactFields;
+pub use solved_shape::Fields;
 pub use vtk::{FieldState, FieldsError, vtk_files};
-
-use crate::equilibrium::{ContactForces, ContactProblem, SolvedBody};
-
-/// All fields of a solved shape.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fields {
-    /// The bodies, lower first.
-    pub bodies: Vec<BodyFields>,
-    /// The contact boundary.
-    pub contact: ContactFields,
-}
-
-impl Fields {
-    /// From the bodies (lower first, as many as the scene has) and the contact forces of a solved shape.
-    pub(crate) fn new(problem: &ContactProblem, bodies: Vec<SolvedBody>, forces: &ContactForces) -> Self {
-        let contact = ContactFields::new(problem, &bodies[0], forces);
-        let scenes = problem.bodies();
-        Self {
-            bodies: bodies
-                .into_iter()
-                .zip(scenes)
-                .map(|(body, scene)| BodyFields::new(body, &scene.material))
-                .collect(),
-            contact,
-        }
-    }
-
-    /// Largest gluing defect of the bodies, mm; see [`SolvedBody::gluing_defect`].
-    pub fn gluing_defect(&self) -> f64 {
-        self.bodies.iter().map(|body| body.gluing_defect).fold(0.0, f64::max)
-    }
-}

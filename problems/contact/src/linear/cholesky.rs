@@ -1,6 +1,6 @@
 //! Sparse Cholesky factorisation A = L Lᵀ by faer: one symbolic analysis for all matrices of a pattern.
 
-use crate::error::ContactError;
+use crate::linear::FactorizationError;
 use crate::linear::symmetric::LowerPattern;
 use crate::linear::vector::{add_scaled, norm};
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -13,6 +13,9 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Mat, MatMut, Par, Side};
 use std::sync::{Arc, OnceLock};
+
+/// A factorisation works on one thread: subdomains are what threads are shared among.
+const SEQUENTIAL: Par = Par::Seq;
 
 /// Elimination order and fill of one pattern.
 #[derive(Debug)]
@@ -30,17 +33,12 @@ pub struct NumericFactor {
     single: OnceLock<Vec<f32>>,
 }
 
-/// One thread, for callers that do not name the factorisation library.
-pub fn sequential() -> Par {
-    Par::Seq
-}
-
 impl SymbolicFactor {
     /// Analyses a pattern for the elimination order `order[new] = old`, a permutation of all indices.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when the analysis fails (out of memory, index overflow).
-    pub fn new(pattern: Arc<LowerPattern>, order: Vec<usize>) -> Result<Self, ContactError> {
+    /// [`FactorizationError`] when the analysis fails (out of memory, index overflow).
+    pub fn new(pattern: Arc<LowerPattern>, order: Vec<usize>) -> Result<Self, FactorizationError> {
         let n = pattern.dimension();
         let mut inverse = vec![0; n];
         for (new, &old) in order.iter().enumerate() {
@@ -69,18 +67,18 @@ impl SymbolicFactor {
     /// Factors the matrix with these lower values.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when the matrix is not positive definite.
-    pub fn factorize(self: &Arc<Self>, values: &[f64], threads: Par) -> Result<NumericFactor, ContactError> {
+    /// [`FactorizationError`] when the matrix is not positive definite.
+    pub fn factorize(self: &Arc<Self>, values: &[f64]) -> Result<NumericFactor, FactorizationError> {
         let mut factor = vec![0.0; self.symbolic.len_val()];
         let mut memory =
-            MemBuffer::new(self.symbolic.factorize_numeric_llt_scratch::<f64>(threads, Default::default()));
+            MemBuffer::new(self.symbolic.factorize_numeric_llt_scratch::<f64>(SEQUENTIAL, Default::default()));
         self.symbolic
             .factorize_numeric_llt(
                 &mut factor,
                 SparseColMatRef::new(pattern_ref(&self.pattern), values),
                 Side::Lower,
                 Default::default(),
-                threads,
+                SEQUENTIAL,
                 MemStack::new(&mut memory),
                 Default::default(),
             )
@@ -89,26 +87,26 @@ impl SymbolicFactor {
     }
 }
 
-/// Steps of iterative refinement.
-const REFINEMENTS: usize = 4;
+/// Steps of iterative refinement allowed.
+const MAX_REFINEMENTS: usize = 4;
 /// Largest |A x − b|/|b| of a refined solution.
-const REFINED: f64 = 1e-9;
+const LARGEST_RESIDUAL: f64 = 1e-9;
 
 impl SymbolicFactor {
     /// Factors the matrix and solves A x = b in place with iterative refinement; returns |A x − b|/|b|.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when the matrix is not positive definite or the residual stays above 1e-9.
-    pub fn solve_refined(self: &Arc<Self>, values: &[f64], b: &mut [f64]) -> Result<f64, ContactError> {
-        let factor = self.factorize(values, Par::Seq)?;
+    /// [`FactorizationError`] when the matrix is not positive definite or the residual stays above 1e-9.
+    pub fn solve_refined(self: &Arc<Self>, values: &[f64], b: &mut [f64]) -> Result<f64, FactorizationError> {
+        let factor = self.factorize(values)?;
         let right = b.to_vec();
         let size = norm(&right);
         b.fill(0.0);
         let (mut rest, mut image) = (right.clone(), vec![0.0; right.len()]);
         let mut residual = size;
-        for _step in 0..=REFINEMENTS {
+        for _step in 0..=MAX_REFINEMENTS {
             let mut correction = rest.clone();
-            factor.solve_in_place(&mut correction, 1, Par::Seq);
+            factor.solve_in_place(&mut correction);
             add_scaled(b, 1.0, &correction);
             self.pattern.multiply(values, b, &mut image);
             for (rest, (right, image)) in rest.iter_mut().zip(right.iter().zip(&image)) {
@@ -119,8 +117,9 @@ impl SymbolicFactor {
                 break;
             }
         }
-        if size > 0.0 && (residual.is_nan() || residual > REFINED * size) {
-            let reason = format!("relative residual {:.1e} after refinement, allowed: {REFINED:.0e}", residual / size);
+        if size > 0.0 && (residual.is_nan() || residual > LARGEST_RESIDUAL * size) {
+            let reason =
+                format!("relative residual {:.1e} after refinement, allowed: {LARGEST_RESIDUAL:.0e}", residual / size);
             return Err(failure("refined solution", reason));
         }
         Ok(if size > 0.0 { residual / size } else { 0.0 })
@@ -128,37 +127,40 @@ impl SymbolicFactor {
 }
 
 impl NumericFactor {
-    /// Solves A x = b in place for `columns` right-hand sides stored one after the other.
-    pub fn solve_in_place(&self, b: &mut [f64], columns: usize, threads: Par) {
+    /// Solves A x = b in place.
+    pub fn solve_in_place(&self, b: &mut [f64]) {
         let symbolic = &self.symbolic.symbolic;
         let rows = self.symbolic.pattern.dimension();
-        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(columns, threads));
+        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, SEQUENTIAL));
         LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
             Conj::No,
-            MatMut::from_column_major_slice_mut(b, rows, columns),
-            threads,
+            MatMut::from_column_major_slice_mut(b, rows, 1),
+            SEQUENTIAL,
             MemStack::new(&mut memory),
         );
     }
 
-    /// As [`NumericFactor::solve_in_place`] for one right-hand side, with factor and vector in single precision. The rounded
-    /// factor is made at the first call and kept.
-    pub fn solve_in_place_single(&self, b: &mut [f32], threads: Par) {
+    /// As [`NumericFactor::solve_in_place`], with factor and vector in single precision. The rounded factor is made at the
+    /// first call and kept.
+    pub fn solve_in_place_single(&self, b: &mut [f32]) {
         let values = self.single.get_or_init(|| self.values.iter().map(|&value| value as f32).collect());
         let symbolic = &self.symbolic.symbolic;
         let rows = self.symbolic.pattern.dimension();
-        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f32>(1, threads));
+        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f32>(1, SEQUENTIAL));
         LltRef::new(symbolic, values).solve_in_place_with_conj(
             Conj::No,
             MatMut::from_column_major_slice_mut(b, rows, 1),
-            threads,
+            SEQUENTIAL,
             MemStack::new(&mut memory),
         );
     }
 
     /// L₂₂ of the trailing `size` indices of the elimination order: L₂₂L₂₂ᵀ is their Schur complement. Row and column p
     /// belong to index `order[n − size + p]`.
-    pub fn trailing_block(&self, size: usize) -> Result<Mat<f64>, ContactError> {
+    ///
+    /// # Errors
+    /// [`FactorizationError`] when the factor is not stored by supernodes.
+    pub(crate) fn trailing_block(&self, size: usize) -> Result<Mat<f64>, FactorizationError> {
         let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.symbolic.raw() else {
             return Err(failure("Schur complement", "the factor is not supernodal".into()));
         };
@@ -195,8 +197,8 @@ fn pattern_ref(pattern: &LowerPattern) -> SymbolicSparseColMatRef<'_, usize> {
     SymbolicSparseColMatRef::new_checked(n, n, pattern.starts(), None, pattern.rows())
 }
 
-fn failure(what: &str, reason: String) -> ContactError {
-    ContactError::Factorization { what: what.into(), reason }
+fn failure(what: &'static str, reason: String) -> FactorizationError {
+    FactorizationError { what, reason }
 }
 
 #[cfg(test)]
@@ -216,9 +218,9 @@ mod tests {
         let (pattern, values) = laplacian();
         let order = vec![0, 1, 2, 4, 5, 6, 3];
         let symbolic = Arc::new(SymbolicFactor::new(Arc::clone(&pattern), order).expect("symbolic"));
-        let factor = symbolic.factorize(&values, Par::Seq).expect("numeric");
+        let factor = symbolic.factorize(&values).expect("numeric");
         let mut x = vec![1.0; 7];
-        factor.solve_in_place(&mut x, 1, Par::Seq);
+        factor.solve_in_place(&mut x);
         for (i, x) in x.iter().enumerate() {
             let node = i as f64 + 1.0;
             assert!((x - node * (8.0 - node) / 2.0).abs() < 1e-13);
@@ -242,6 +244,7 @@ mod tests {
         let (pattern, mut values) = laplacian();
         values[0] = -1.0;
         let symbolic = Arc::new(SymbolicFactor::new(pattern, (0..7).collect()).expect("symbolic"));
-        assert!(matches!(symbolic.factorize(&values, Par::Seq), Err(ContactError::Factorization { .. })));
+        let error = symbolic.factorize(&values).expect_err("indefinite");
+        assert!(error.to_string().contains("not positive definite"), "{error}");
     }
 }

@@ -1,30 +1,52 @@
-//! Dense LU factorisation with partial pivoting, by faer.
+//! Dense LU and Cholesky factorisations by faer, on one thread whatever the process is set to.
 
+use crate::linear::FactorizationError;
 use crate::linear::vector::norm;
-use faer::linalg::solvers::{PartialPivLu, SolveCore};
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt;
+use faer::linalg::lu::partial_pivoting as lu;
+use faer::linalg::svd::{ComputeSvdVectors, svd, svd_scratch};
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::perm::Perm;
 use faer::{Conj, Mat, MatMut, Par};
 
-/// Factors P A = L U of a square matrix.
+/// The number of threads, given with every call: results do not depend on it, and no caller's own setting is changed.
+const SEQUENTIAL: Par = Par::Seq;
+
+/// Factors P A = L U of a square matrix, by partial pivoting.
 #[derive(Debug)]
 pub struct DenseLu {
-    factors: PartialPivLu<f64>,
+    /// U on and above the diagonal, L (whose diagonal is 1) below it.
+    factors: Mat<f64>,
+    permutation: Perm<usize>,
     pivot_ratio: f64,
 }
 
 impl DenseLu {
     /// Factors a square matrix; a singular one gives a `pivot_ratio` near 0.
     pub fn new(matrix: &Mat<f64>) -> Self {
-        faer::set_global_parallelism(Par::Seq);
-        let factors = matrix.partial_piv_lu();
-        let upper = factors.U();
+        let size = matrix.nrows();
+        let mut factors = matrix.clone();
+        let (mut forward, mut inverse) = (vec![0; size], vec![0; size]);
+        let scratch = lu::factor::lu_in_place_scratch::<usize, f64>(size, size, SEQUENTIAL, Default::default());
+        lu::factor::lu_in_place(
+            factors.as_mut(),
+            &mut forward,
+            &mut inverse,
+            SEQUENTIAL,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+            Default::default(),
+        );
         let (mut smallest, mut largest) = (f64::INFINITY, 0.0_f64);
-        for i in 0..upper.nrows() {
-            let pivot = upper[(i, i)].abs();
+        for i in 0..size {
+            let pivot = factors[(i, i)].abs();
             smallest = if pivot.is_nan() { 0.0 } else { smallest.min(pivot) };
             largest = largest.max(pivot);
         }
         let pivot_ratio = if largest > 0.0 { smallest / largest } else { 0.0 };
-        Self { factors, pivot_ratio: if matrix.nrows() == 0 { 1.0 } else { pivot_ratio } }
+        let permutation = Perm::new_checked(forward.into_boxed_slice(), inverse.into_boxed_slice(), size);
+        Self { factors, permutation, pivot_ratio: if size == 0 { 1.0 } else { pivot_ratio } }
     }
 
     /// Smallest pivot over largest pivot: a cheap sign of singularity.
@@ -34,8 +56,17 @@ impl DenseLu {
 
     /// Solves A x = b in place.
     pub fn solve_in_place(&self, b: &mut [f64]) {
-        let rows = b.len();
-        self.factors.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(b, rows, 1));
+        let size = b.len();
+        let scratch = lu::solve::solve_in_place_scratch::<usize, f64>(size, 1, SEQUENTIAL);
+        lu::solve::solve_in_place_with_conj(
+            self.factors.as_ref(),
+            self.factors.as_ref(),
+            self.permutation.as_ref(),
+            Conj::No,
+            MatMut::from_column_major_slice_mut(b, size, 1),
+            SEQUENTIAL,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
     }
 
     /// Solves A x = b in place with one step of iterative refinement against the matrix that was factored; the correction is
@@ -57,8 +88,60 @@ impl DenseLu {
 
     /// Solves Aᵀ x = b in place.
     pub fn solve_transpose_in_place(&self, b: &mut [f64]) {
-        let rows = b.len();
-        self.factors.solve_transpose_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(b, rows, 1));
+        let size = b.len();
+        let scratch = lu::solve::solve_transpose_in_place_scratch::<usize, f64>(size, 1, SEQUENTIAL);
+        lu::solve::solve_transpose_in_place_with_conj(
+            self.factors.as_ref(),
+            self.factors.as_ref(),
+            self.permutation.as_ref(),
+            Conj::No,
+            MatMut::from_column_major_slice_mut(b, size, 1),
+            SEQUENTIAL,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+    }
+}
+
+/// The factor of a symmetric positive definite matrix, A = L Lᵀ.
+#[derive(Debug)]
+pub struct DenseCholesky {
+    /// L on and below the diagonal; above it, A.
+    factor: Mat<f64>,
+}
+
+impl DenseCholesky {
+    /// Factors a symmetric matrix, of which the lower triangle is read.
+    ///
+    /// # Errors
+    /// [`FactorizationError`] when the matrix is not positive definite.
+    pub fn new(mut matrix: Mat<f64>) -> Result<Self, FactorizationError> {
+        let scratch = llt::factor::cholesky_in_place_scratch::<f64>(matrix.nrows(), SEQUENTIAL, Default::default());
+        llt::factor::cholesky_in_place(
+            matrix.as_mut(),
+            Default::default(),
+            SEQUENTIAL,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+            Default::default(),
+        )
+        .map_err(|error| FactorizationError {
+            what: "dense Cholesky factorisation",
+            reason: format!("{error:?}: not positive definite"),
+        })?;
+        Ok(Self { factor: matrix })
+    }
+
+    /// Solves L x = b in place.
+    pub fn solve_lower_in_place(&self, b: &mut [f64]) {
+        let size = b.len();
+        let right = MatMut::from_column_major_slice_mut(b, size, 1);
+        solve_lower_triangular_in_place(self.factor.as_ref(), right, SEQUENTIAL);
+    }
+
+    /// Solves Lᵀ x = b in place.
+    pub fn solve_upper_in_place(&self, b: &mut [f64]) {
+        let size = b.len();
+        let right = MatMut::from_column_major_slice_mut(b, size, 1);
+        solve_upper_triangular_in_place(self.factor.transpose(), right, SEQUENTIAL);
     }
 }
 
@@ -73,7 +156,7 @@ pub fn multiply(matrix: &Mat<f64>, x: &[f64]) -> Vec<f64> {
     y
 }
 
-/// Largest over smallest singular value after the rows are brought to equal length; infinite for a singular matrix, none
+/// Largest over smallest singular value of a square matrix after the rows are brought to equal length; infinite for a singular matrix, none
 /// when the singular values cannot be found.
 pub fn spectral_condition(matrix: &Mat<f64>) -> Option<f64> {
     let mut scaled = matrix.clone();
@@ -83,7 +166,14 @@ pub fn spectral_condition(matrix: &Mat<f64>) -> Option<f64> {
             scaled.row_mut(row).iter_mut().for_each(|entry| *entry /= length);
         }
     }
-    let values = scaled.singular_values().ok()?;
+    let size = scaled.nrows();
+    let mut values = Diag::<f64>::zeros(size);
+    let none = ComputeSvdVectors::No;
+    let scratch = svd_scratch::<f64>(size, size, none, none, SEQUENTIAL, Default::default());
+    let mut memory = MemBuffer::new(scratch);
+    let stack = MemStack::new(&mut memory);
+    svd(scaled.as_ref(), values.as_mut(), None, None, SEQUENTIAL, stack, Default::default()).ok()?;
+    let values: Vec<f64> = values.column_vector().iter().copied().collect();
     let largest = values.iter().copied().fold(0.0, f64::max);
     let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
     if values.is_empty() { Some(1.0) } else { Some(largest / smallest).filter(|condition| !condition.is_nan()) }

@@ -1,10 +1,13 @@
 //! Linear algebra that the contact solvers stand on; the only place that knows faer.
 
 pub mod cholesky;
-pub mod csr;
-pub mod dense;
-pub mod gmres;
+pub(crate) mod csr;
+pub(crate) mod dense;
+mod error;
+pub(crate) mod gmres;
 pub mod ordering;
-pub mod pcg;
+pub(crate) mod pcg;
 pub mod symmetric;
 pub mod vector;
+
+pub use error::FactorizationError;

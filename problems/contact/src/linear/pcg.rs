@@ -7,8 +7,6 @@ use crate::linear::vector::{add_scaled, dot, norm};
 pub struct PcgSolution {
     /// x.
     pub solution: Vec<f64>,
-    /// Unprojected products of all directions, combined as x is.
-    pub image: Vec<f64>,
     /// Norm of the residual by the recurrence.
     pub residual: f64,
     /// Iterations done.
@@ -17,18 +15,17 @@ pub struct PcgSolution {
 
 /// Solves A x = r until the residual norm falls to `target` or `max_iterations` is reached.
 ///
-/// `precondition(v)` returns z = M v; `apply(z)` returns (projected A z, unprojected A z). Stops early when a direction has no
+/// `precondition(v)` returns z = M v; `apply(z)` returns A z, projected. Stops early when a direction has no
 /// positive curvature left (rounding); the caller judges the residual.
 pub fn pcg(
     residual: &[f64],
     target: f64,
     max_iterations: usize,
     mut precondition: impl FnMut(&[f64]) -> Vec<f64>,
-    mut apply: impl FnMut(&[f64]) -> (Vec<f64>, Vec<f64>),
+    mut apply: impl FnMut(&[f64]) -> Vec<f64>,
 ) -> PcgSolution {
     let mut rest = residual.to_vec();
-    let zero = || vec![0.0; residual.len()];
-    let mut result = PcgSolution { solution: zero(), image: zero(), residual: norm(&rest), iterations: 0 };
+    let mut result = PcgSolution { solution: vec![0.0; residual.len()], residual: norm(&rest), iterations: 0 };
     if result.residual <= target {
         return result;
     }
@@ -36,14 +33,13 @@ pub fn pcg(
     let mut direction = preconditioned.clone();
     let mut energy = dot(&rest, &preconditioned);
     while result.residual > target && result.iterations < max_iterations {
-        let (projected, product) = apply(&direction);
+        let projected = apply(&direction);
         let curvature = dot(&direction, &projected);
         if curvature.is_nan() || curvature <= 0.0 || energy <= 0.0 {
             break;
         }
         let step = energy / curvature;
         add_scaled(&mut result.solution, step, &direction);
-        add_scaled(&mut result.image, step, &product);
         add_scaled(&mut rest, -step, &projected);
         result.iterations += 1;
         result.residual = norm(&rest);
@@ -69,9 +65,8 @@ mod tests {
         let expected = [1.0, -2.0, 3.0];
         let b = multiply(&expected);
         let jacobi = |v: &[f64]| v.iter().zip([4.0, 3.0, 2.0]).map(|(v, d)| v / d).collect::<Vec<_>>();
-        let result = pcg(&b, 1e-13 * norm(&b), 10, jacobi, |z| (multiply(z), multiply(z)));
+        let result = pcg(&b, 1e-13 * norm(&b), 10, jacobi, multiply);
         assert_eq!(result.iterations, 3);
         assert!(result.solution.iter().zip(&expected).all(|(x, y)| (x - y).abs() < 1e-12));
-        assert!(result.image.iter().zip(&b).all(|(x, y)| (x - y).abs() < 1e-12));
     }
 }

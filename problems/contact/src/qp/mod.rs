@@ -6,9 +6,8 @@
 //! [`mpgp`]: gradient projection with conjugate gradients in the face, for Ω alone. [`smalse`]: an augmented Lagrangian loop
 //! around it for C x = e. [`kkt`]: residuals of a claimed solution.
 //!
-//! References: Dostál, *Optimal quadratic programming algorithms* (2009); Dostál, Kozubek, *Math. Program.* 135 (2012)
-//! (separable convex constraints); Dostál, Kučera, *SIAM J. Optim.* 20 (2010) (with equalities); Kučera, *Optim. Methods
-//! Softw.* 22 (2007) (reduced gradients).
+//! References: \[Dostal2009\] (the algorithms), \[DostalKozubek2012\] (separable convex constraints), \[DostalKucera2010\]
+//! (with equalities), \[Kucera2007\] (reduced gradients).
 
 mod error;
 mod face;

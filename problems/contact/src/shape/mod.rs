@@ -1,6 +1,6 @@
 //! The shape of the contact boundary: splines, control heights, admissible set.
 
-pub mod bspline;
+mod bspline;
 
 mod admissible;
 mod surface;

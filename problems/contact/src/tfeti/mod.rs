@@ -1,43 +1,31 @@
-//! Total FETI: torn bodies, dual operator, natural coarse space, preconditioners.
+//! Total FETI: the contact problem in the forces between torn pieces.
 //!
 //! ```text
-//! F = B K⁺ Bᵀ,  G = Rᵀ Bᵀ,  d = B K⁺ f − g,  e = Rᵀ f,      u = K⁺(f − Bᵀλ) + R a                    method.md (4.1), (4.2)
+//! torn        tear the bodies into subdomains; every row of B glues, supports, or meets the obstacle:     B u − g = w
+//!             K u + Bᵀλ = f per subdomain:    u = K⁺(f − Bᵀλ) + R a,    solvable if Rᵀ(f − Bᵀλ) = 0
+//! dual        eliminate u:    w = d − F λ + Gᵀ a,    G λ = e,    F = B K⁺ Bᵀ,  G = Rᵀ Bᵀ,  d = B K⁺ f − g,  e = Rᵀ f
+//!             w_E = 0 on the rows that glue and support,    λ = Π(λ + c w) on the contact rows
+//! newton      solve that nonsmooth equation for (λ, a): linearise Π at an iterate, solve for the active set, project by P
+//! paper       or: bound the slip by Ψ, minimise over λ (a QP), Ψ ← 𝓕 λ_N
+//! derivative  transpose the linearised equation for j = ∂J/∂λ: adjoint q, p; element sums give ∂J/∂(heights)
+//! solver      controls ─ factors ─ (d, F, G, e) ─ method ─▶ (λ, a) ─ forces, certificates, TornState ─ derivative
 //! ```
+//! method.md (4.1), (4.2). Each folder uses only those above it.
 
-mod adjoint;
-mod augmented_lagrangian;
-mod coarse;
-pub mod communication;
-mod constraints;
-mod descent;
-mod diagnosis;
-mod dual_operator;
-mod error_estimate;
-mod factors;
-mod holding;
-mod limits;
-mod linear_solve;
-mod local_pattern;
-mod model;
+mod contact_solver;
+mod derivative;
+mod dual;
 mod newton;
-mod preconditioner;
-mod projected_dual;
-mod recovery;
-mod recycling;
-mod reduced;
-mod rigid_modes;
+mod paper;
 mod solver;
+mod torn;
 
-pub use adjoint::TornAdjoint;
-pub use augmented_lagrangian::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
-pub use coarse::{CoarseProblem, CoarseSpace};
-pub use communication::{Communication, InProcess};
-pub use constraints::Constraints;
-pub use dual_operator::{DualOperator, Precision};
-pub use factors::{SubdomainFactors, SubdomainRigid};
-pub use local_pattern::LocalPattern;
-pub use model::{TornModel, TornSystem};
-pub use newton::{Iterate, NewtonSettings, Recycling, TornContact, TornSolution};
-pub use preconditioner::{Preconditioner, PreconditionerKind};
-pub use reduced::ReducedRows;
-pub use solver::{Sensitivities, TornSolver, TornState};
+pub use contact_solver::{DualMethod, TotalFeti};
+pub use dual::{DualOperator, Iterate, Precision, Preconditioner, TornContact, TornSolution};
+pub use newton::{NewtonSettings, Recycling};
+pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
+pub use solver::{TornSolver, TornState};
+pub use torn::{
+    Communication, Constraints, InProcess, PreconditionerKind, RowVector, SubdomainFactors, SubdomainRigid, TornModel,
+    TornSystem, TornVector,
+};

@@ -1,20 +1,28 @@
 //! The error that a state reports bounds the true error of Θ, over random scenes, solvers and tolerances.
 
-use contact::contact_shape::{ContactShape, SolverKind};
+use contact::contact_shape::{AnySolver, ContactShape, erase};
 use contact::cost::{PressureCost, PressureMeasure};
-use contact::equilibrium::ValueError;
+use contact::direct::DirectSolver;
+use contact::equilibrium::{ContactProblem, ValueError};
 use contact::scene::{Scene, hertz, signorini};
-use contact::tfeti::{PreconditionerKind, Recycling};
+use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
 use nonsmooth::{Accuracy, Cost, ReducedObjective, StateSolver, Vector};
 use proptest::prelude::*;
+use std::sync::Arc;
 
 type Objective = ReducedObjective<ContactShape, PressureCost>;
 
-fn objective(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind, recycling: Recycling) -> Objective {
-    let shape = ContactShape::with_preconditioner(scene.clone(), kind, preconditioner).unwrap();
-    let shape = shape.with_recycling(recycling);
-    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
-    ReducedObjective::new(shape, cost)
+/// A solver of total FETI, or direct condensation.
+type Solver = Option<(PreconditionerKind, DualMethod)>;
+
+fn objective(scene: &Scene, solver: Solver) -> Objective {
+    let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
+    let solver: Box<AnySolver> = match solver {
+        Some((preconditioner, method)) => erase(TotalFeti::new(problem, preconditioner, method).unwrap()),
+        None => erase(DirectSolver::new(problem).unwrap()),
+    };
+    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &solver.problem().boundary).unwrap();
+    ReducedObjective::new(ContactShape::by(solver), cost)
 }
 
 fn value(objective: &Objective, control: &Vector, accuracy: Accuracy) -> (f64, ValueError) {
@@ -27,16 +35,15 @@ fn value(objective: &Objective, control: &Vector, accuracy: Accuracy) -> (f64, V
 }
 
 fn check(scene: &Scene, control: &Vector) -> Result<(), TestCaseError> {
-    let exact = objective(scene, SolverKind::Direct, PreconditionerKind::Dirichlet, Recycling::Auto);
-    let exact = value(&exact, control, Accuracy::TIGHTEST).0;
-    for (kind, preconditioner, recycling) in [
-        (SolverKind::Newton, PreconditionerKind::Dirichlet, Recycling::On),
-        (SolverKind::Newton, PreconditionerKind::None, Recycling::On),
-        (SolverKind::Newton, PreconditionerKind::Lumped, Recycling::Off),
-        (SolverKind::AugmentedLagrangian, PreconditionerKind::Dirichlet, Recycling::Auto),
-        (SolverKind::Direct, PreconditionerKind::Dirichlet, Recycling::Auto),
+    let exact = value(&objective(scene, None), control, Accuracy::TIGHTEST).0;
+    for solver in [
+        Some((PreconditionerKind::Dirichlet, DualMethod::Newton(Recycling::On))),
+        Some((PreconditionerKind::None, DualMethod::Newton(Recycling::On))),
+        Some((PreconditionerKind::Lumped, DualMethod::Newton(Recycling::Off))),
+        Some((PreconditionerKind::Dirichlet, DualMethod::SuccessiveApproximations)),
+        None,
     ] {
-        let objective = objective(scene, kind, preconditioner, recycling);
+        let objective = objective(scene, solver);
         for tolerance in [1e-2, 1e-4, 1e-7, 1e-10] {
             let (found, error) = value(&objective, control, Accuracy::relative(tolerance).unwrap());
             let truth = (found - exact).abs();
@@ -44,7 +51,7 @@ fn check(scene: &Scene, control: &Vector) -> Result<(), TestCaseError> {
             let rounding = 1e-13 * exact;
             prop_assert!(
                 truth <= error.bound + rounding,
-                "{kind:?} {preconditioner:?} {recycling:?} {tolerance:.0e}: error {truth:.3e}, bound {:.3e}",
+                "{solver:?} {tolerance:.0e}: error {truth:.3e}, bound {:.3e}",
                 error.bound
             );
             // The first order term predicts the error, up to what the bound allows for.

@@ -2,7 +2,7 @@
 //! those of the contact law.
 
 use contact::body::elasticity::stress::{BrickStress, COMPONENTS};
-use contact::body::elasticity::{Formulation, hex8};
+use contact::body::elasticity::{Formulation, brick};
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
@@ -166,7 +166,7 @@ fn mean_vertical_stress_of_a_flat_layer_is_the_load_over_the_area() {
             for layer in 0..6 {
                 let bricks = body.block.grid.bricks().zip(&body.stress).filter(|(brick, _)| brick[2] == layer);
                 let (sum, volume) = bricks.fold((0.0, 0.0), |(sum, total), (brick, stress)| {
-                    let volume = hex8::volume(&body.block.brick(brick));
+                    let volume = brick::volume(&body.block.brick(brick));
                     (sum + volume * stress[2], total + volume)
                 });
                 assert!((sum / volume + 3000.0).abs() < 3000.0 * 1e-9, "{formulation:?} {kind:?}: {}", sum / volume);

@@ -1,9 +1,11 @@
 //! Independent paths give the same state: TFETI against direct condensation, different tearings, different numbers of threads.
 
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
+use contact::equilibrium::ContactProblem;
 use contact::scene::{Scene, hertz, signorini};
-use contact::tfeti::PreconditionerKind;
+use contact::tfeti::{Precision, PreconditionerKind, TornSolver};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
+use std::sync::Arc;
 use testset::kit::wavy;
 
 fn bent(scene: &Scene) -> Vector {
@@ -65,6 +67,41 @@ fn every_preconditioner_gives_the_same_state() {
     let reference = state(PreconditionerKind::Dirichlet);
     assert_same(&reference, &state(PreconditionerKind::Lumped), "lumped");
     assert_same(&reference, &state(PreconditionerKind::None), "none");
+}
+
+/// Largest difference over the largest entry of the second.
+fn relative_difference(first: &[f64], second: &[f64]) -> f64 {
+    let largest = second.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    first.iter().zip(second).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+}
+
+#[test]
+fn single_precision_of_search_directions_changes_neither_state_nor_subgradient() {
+    for scene in [signorini().unwrap(), hertz().unwrap()] {
+        for friction in [0.0, 0.3] {
+            let scene = Scene { mesh: [6; 3], subdomains: [2; 3], friction, ..scene.clone() };
+            let (label, control) = (format!("{} friction {friction}", scene.name), bent(&scene));
+            let problem = Arc::new(ContactProblem::new(scene).unwrap());
+            let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
+            let solve = |precision| {
+                let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
+                let solver = solver.with_precision(precision);
+                let (state, forces, work) = solver.solve(control.as_slice(), None, 0.0).unwrap();
+                let adjoint = solver.sensitivities(&state, &dual, 1e-11).unwrap();
+                (forces, adjoint.heights, work.dual_operator_applications)
+            };
+            let (mixed, mixed_slopes, mixed_products) = solve(Precision::Mixed);
+            let (double, double_slopes, double_products) = solve(Precision::Double);
+            let normal = relative_difference(&mixed.normal, &double.normal);
+            let slopes = relative_difference(&mixed_slopes, &double_slopes);
+            println!("{label}: normal {normal:.1e}, subgradient {slopes:.1e}, {mixed_products} {double_products}");
+            assert!(normal < 1e-10, "{label}: normal {normal:.1e}");
+            assert!(slopes < 1e-8, "{label}: subgradient {slopes:.1e}");
+            assert_eq!(mixed.status, double.status, "{label}");
+            // Residual replacement is all that the single precision costs.
+            assert!(mixed_products <= double_products + double_products / 2, "{mixed_products} {double_products}");
+        }
+    }
 }
 
 #[test]

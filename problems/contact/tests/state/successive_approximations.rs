@@ -8,12 +8,13 @@ use contact::scene::{Scene, Support, hertz, signorini};
 use contact::tfeti::{
     AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornSolver, TornState,
 };
+use std::sync::Arc;
 
-fn small(mut scene: Scene, mesh: usize, subdomains: usize, friction: f64) -> ContactProblem {
+fn small(mut scene: Scene, mesh: usize, subdomains: usize, friction: f64) -> Arc<ContactProblem> {
     scene.mesh = [mesh; 3];
     scene.subdomains = [subdomains; 3];
     scene.friction = friction;
-    ContactProblem::new(scene).expect("valid scene")
+    Arc::new(ContactProblem::new(scene).expect("valid scene"))
 }
 
 /// A gently wavy surface around the start height.
@@ -31,16 +32,12 @@ struct Paper {
 
 fn paper(
     solver: &TornSolver,
-    problem: &ContactProblem,
     start: Option<&[f64]>,
     settings: &AugmentedLagrangianSettings,
 ) -> Result<Paper, ContactError> {
-    let mut counts = AugmentedLagrangianCounts::default();
-    let (state, forces, work) = solver.solve_by(problem, &controls(problem), |contact| {
-        let (solution, spent) = contact.solve_by_successive_approximations(start, settings)?;
-        counts = spent;
-        Ok(solution)
-    })?;
+    let controls = controls(solver.problem());
+    let (state, forces, work, counts) =
+        solver.solve_by(&controls, |contact| contact.solve_by_successive_approximations(start, settings))?;
     Ok(Paper { state, forces, work, counts })
 }
 
@@ -53,18 +50,18 @@ fn difference(a: &ContactForces, b: &ContactForces) -> f64 {
 }
 
 /// Solves by both paths to 1e-9 and compares forces, statuses and subgradients.
-fn agrees(problem: &ContactProblem, kind: PreconditionerKind, precondition: bool) -> Paper {
-    let solver = TornSolver::new(problem, kind).expect("torn");
-    let (newton_state, newton, _) = solver.solve(problem, &controls(problem), None, 1e-11).expect("Newton");
+fn agrees(problem: &Arc<ContactProblem>, kind: PreconditionerKind, precondition: bool) -> Paper {
+    let solver = TornSolver::new(Arc::clone(problem), kind).expect("torn");
+    let (newton_state, newton, _) = solver.solve(&controls(problem), None, 1e-11).expect("Newton");
     let settings = AugmentedLagrangianSettings { precondition, ..AugmentedLagrangianSettings::to(1e-9) };
-    let paper = paper(&solver, problem, None, &settings).expect("successive approximations");
+    let paper = paper(&solver, None, &settings).expect("successive approximations");
     // The largest error of a force is 5 to 70 times the residual.
     assert!(difference(&paper.forces, &newton) < 1e-6, "{:.1e}", difference(&paper.forces, &newton));
     assert_eq!(paper.forces.status, newton.status);
     assert!(paper.forces.residuals.newton <= 1e-9 && paper.forces.residuals.equilibrium < 1e-10);
     assert_eq!(paper.work.newton_steps, paper.counts.fixed_point_steps);
     let direction: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
-    let derivative = |state| solver.sensitivities(problem, state, &direction, 1e-10).expect("adjoint").heights;
+    let derivative = |state| solver.sensitivities(state, &direction, 1e-10).expect("adjoint").heights;
     let (ours, theirs) = (derivative(&paper.state), derivative(&newton_state));
     let size = theirs.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     assert!(ours.iter().zip(&theirs).all(|(a, b)| (a - b).abs() < 1e-5 * size));
@@ -105,10 +102,10 @@ fn grounded_motion_common_to_both_bodies() {
 #[test]
 fn warm_start_needs_fewer_products() {
     let problem = small(signorini().expect("preset"), 6, 2, 0.3);
-    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).expect("torn");
+    let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet).expect("torn");
     let settings = AugmentedLagrangianSettings::to(1e-7);
-    let cold = paper(&solver, &problem, None, &settings).expect("cold");
-    let warm = paper(&solver, &problem, Some(cold.state.multipliers()), &settings).expect("warm");
+    let cold = paper(&solver, None, &settings).expect("cold");
+    let warm = paper(&solver, Some(cold.state.multipliers()), &settings).expect("warm");
     let (cold_work, warm_work) = (cold.work.dual_operator_applications, warm.work.dual_operator_applications);
     assert!(3 * warm_work < 2 * cold_work, "{warm_work} against {cold_work}");
     assert!(difference(&warm.forces, &cold.forces) < 1e-4);
@@ -117,9 +114,9 @@ fn warm_start_needs_fewer_products() {
 #[test]
 fn products_are_those_counted() {
     let problem = small(signorini().expect("preset"), 4, 2, 0.3);
-    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).expect("torn");
+    let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet).expect("torn");
     let settings = AugmentedLagrangianSettings::to(1e-6);
-    let Paper { work, counts, .. } = paper(&solver, &problem, None, &settings).expect("solved");
+    let Paper { work, counts, .. } = paper(&solver, None, &settings).expect("solved");
     let steps = counts.cg_steps + counts.expansion_steps + counts.proportioning_steps + counts.refreshed_gradients;
     // Beside the steps: λ₀, five Lanczos steps, the bonded start (about four), the final balanced multipliers.
     let rest = work.dual_operator_applications - steps;
@@ -135,9 +132,9 @@ fn large_friction_still_contracts_on_this_scene() {
 #[test]
 fn limits_end_in_typed_errors() {
     let problem = small(signorini().expect("preset"), 4, 2, 0.3);
-    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).expect("torn");
+    let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet).expect("torn");
     let defaults = AugmentedLagrangianSettings::to(1e-9);
-    let fail = |settings| paper(&solver, &problem, None, &settings).map(|_| ()).expect_err("must fail");
+    let fail = |settings| paper(&solver, None, &settings).map(|_| ()).expect_err("must fail");
     match fail(AugmentedLagrangianSettings { max_fixed_point_steps: 2, ..defaults }) {
         ContactError::NotConverged { solver: "successive approximations", history, .. } => assert_eq!(history.len(), 2),
         other => panic!("{other}"),

@@ -53,17 +53,19 @@ struct Outcome {
 }
 
 fn solve(scene: &Scene, communication: Option<Rank>) -> Outcome {
-    let problem = ContactProblem::new(scene.clone()).unwrap();
+    let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
     let solver = match communication {
-        Some(rank) => TornSolver::with_communication(&problem, PreconditionerKind::Dirichlet, Arc::new(rank)),
-        None => TornSolver::new(&problem, PreconditionerKind::Dirichlet),
+        Some(rank) => {
+            TornSolver::with_communication(Arc::clone(&problem), PreconditionerKind::Dirichlet, Arc::new(rank))
+        }
+        None => TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet),
     }
     .unwrap();
     let controls = vec![scene.start_height; 36];
-    let (state, forces, work) = solver.solve(&problem, &controls, None, 1e-12).unwrap();
+    let (state, forces, work) = solver.solve(&controls, None, 1e-12).unwrap();
     let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.3 * row as f64).sin()).collect();
-    let heights = solver.sensitivities(&problem, &state, &dual, 1e-11).unwrap().heights;
-    let bodies = solver.bodies(&problem, &state).unwrap();
+    let heights = solver.sensitivities(&state, &dual, 1e-11).unwrap().heights;
+    let bodies = solver.bodies(&state).unwrap();
     Outcome {
         normal: forces.normal,
         heights,

@@ -1,6 +1,6 @@
 //! VTU and PVD files read back: by `vtkio` number by number, and what the writer refuses.
 
-use contact::body::elasticity::hex8;
+use contact::body::elasticity::brick;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
@@ -123,7 +123,7 @@ fn check_hexahedra(found: &ReadGrid, fields: &Fields) {
         let turn = |i: usize, j: usize| points[i][0] * points[j][1] - points[j][0] * points[i][1];
         let area = 0.5 * (turn(0, 1) + turn(1, 2) + turn(2, 3) + turn(3, 0));
         assert!(area > 0.0 && heights > 0.0);
-        assert!((area * heights / hex8::volume(&nodes) - 1.0).abs() < 1e-12);
+        assert!((area * heights / brick::volume(&nodes) - 1.0).abs() < 1e-12);
     }
 }
 

@@ -1,9 +1,12 @@
 //! The folder of a run: what was asked for, so that the run can be continued from the folder alone.
 
-use crate::commands::long_run::journal::{Entry, Journal};
-use crate::commands::{Failure, Folder, Source, output};
+use crate::commands::controls;
+use crate::commands::failure::Failure;
+use crate::commands::folder::{Folder, json};
+use crate::commands::loaded_scene::LoadedScene;
 use contact::error::SceneError;
-use scene_file::{CounterSection, SceneFile, StartSection};
+use nonsmooth::{Journal, Journaled, NonsmoothObjective, Vector};
+use scene_file::{CounterSection, OptimizerSection, OutputSection, SceneFile, StartSection};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -25,11 +28,12 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// The scene of a run that is to be continued; `comparison`: of a run that has others in folders of its own.
+    /// The scene file of a run that is to be continued, with its path; `comparison` says that the run is a comparison, which
+    /// keeps its optimizations in folders of their own.
     ///
     /// # Errors
     /// [`SceneError::File`] if the folder holds no run of this kind.
-    pub fn scene(folder: &Path, comparison: bool) -> Result<Source, SceneError> {
+    pub fn scene(folder: &Path, comparison: bool) -> Result<(SceneFile, Option<PathBuf>), SceneError> {
         if !folder.join(SCENE).exists() || !folder.join(START).exists() {
             let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
             return Err(SceneError::File { path: folder.display().to_string(), reason });
@@ -43,15 +47,30 @@ impl RunFolder {
             };
             return Err(SceneError::File { path, reason: format!("holds {found} --resume") });
         }
-        Ok(Source::file(&folder.join(SCENE))?.map(|mut scene| {
-            scene.output.folder = Some(path);
-            scene
-        }))
+        let file = folder.join(SCENE);
+        let mut scene = SceneFile::read(&file)?;
+        scene.output.folder = Some(path);
+        Ok((scene, Some(file)))
     }
 
     /// Whether a folder holds a run, ended or not.
     pub fn is_one(folder: &Path) -> bool {
         folder.join(START).exists() && folder.join(SCENE).exists()
+    }
+
+    /// A folder for the results of another command, if one is asked for; refuses the folder of an optimization, whose report
+    /// would be replaced.
+    ///
+    /// # Errors
+    /// As [`Folder::prepare`].
+    pub fn folder_for_results(path: Option<&str>) -> Result<Option<Folder>, SceneError> {
+        match path.filter(|path| Self::is_one(Path::new(path))) {
+            None => Folder::prepare(path),
+            Some(path) => {
+                let reason = "holds an optimization, whose report would be replaced; --out takes another folder".into();
+                Err(SceneError::File { path: path.to_owned(), reason })
+            }
+        }
     }
 
     /// Prepares the folder for a run; `bytes` must fit into it.
@@ -88,40 +107,52 @@ impl RunFolder {
         Ok(found)
     }
 
-    /// Control heights that the run starts from: those kept in the folder, or `given`, which are kept from now on.
+    /// Whether the run continues what the folder holds.
+    pub fn is_resumed(&self) -> bool {
+        self.resumed
+    }
+
+    /// The initial controls of the run that the folder holds, which goes on from here with the limits of this scene.
     ///
     /// # Errors
     /// [`Failure`] if a file cannot be written or read.
-    pub fn begin(&self, source: &Source, given: &[f64]) -> Result<Vec<f64>, Failure> {
+    pub fn resume(&self, loaded: &LoadedScene, count: usize) -> Result<Vector, Failure> {
+        // From here on a folder without report is that of a run that has not ended. What the run has found so far stays until
+        // its end replaces it.
+        self.remove_old(&REPORTS[..1])?;
+        self.keep_scene(loaded.file.clone())?;
+        Ok(controls::read(&self.path(START), count)?)
+    }
+
+    /// Begins another run, with its scene and its initial controls.
+    ///
+    /// # Errors
+    /// [`Failure`] if a file cannot be written or read.
+    pub fn begin(&self, loaded: &LoadedScene, initial_controls: &[f64]) -> Result<(), Failure> {
         // From here on a folder without report is that of a run that has not ended.
-        // What a continued run has found so far stays until its end replaces it.
-        self.remove_old(if self.resumed { &REPORTS[..1] } else { &REPORTS })?;
-        let mut scene = source.scene.clone();
-        // The folder is where the file lies; a file that named it would send other commands there.
-        scene.output.folder = None;
-        if self.resumed {
-            self.folder.replace(SCENE, &scene.print()?)?;
-            let path = self.path(START).display().to_string();
-            let failed = |reason: String| SceneError::File { path: path.clone(), reason };
-            let text = std::fs::read_to_string(self.path(START)).map_err(|error| failed(error.to_string()))?;
-            return Ok(crate::commands::parse_controls(&text, &path, given.len())?.as_slice().to_vec());
-        }
+        self.remove_old(&REPORTS)?;
         // No journal may ever stand beside a scene that is not its own.
         let journals = self.journals()?;
         if !journals.is_empty() {
             eprintln!("warning: {}: the run that it held is replaced", self.folder.path().display());
         }
         for path in journals {
-            Journal::remove(&path)
-                .map_err(|error| SceneError::File { path: path.display().to_string(), reason: error.to_string() })?;
+            Journal::remove(&path)?;
         }
         for part in COMPARED {
             self.remove_old(&[SCENE, START, REPORT].map(|file| format!("{part}/{file}")))?;
         }
-        self.keep_grids(&mut scene, source.folder())?;
-        self.folder.replace(START, &output::json(&given)?)?;
-        self.folder.replace(SCENE, &scene.print()?)?;
-        Ok(given.to_vec())
+        let mut scene = loaded.file.clone();
+        self.keep_grids(&mut scene, loaded.folder())?;
+        self.folder.replace(START, &json(initial_controls)?)?;
+        self.keep_scene(scene)
+    }
+
+    /// Writes the scene file, without the folder: that is where the file lies, and a file that named it would send other
+    /// commands there.
+    fn keep_scene(&self, mut scene: SceneFile) -> Result<(), Failure> {
+        scene.output.folder = None;
+        self.folder.replace(SCENE, &scene.print()?)
     }
 
     /// Removes files of an earlier run, as far as there are any.
@@ -156,32 +187,34 @@ impl RunFolder {
         Ok(())
     }
 
-    /// The journal of the run or of one of its stages, with the evaluations that it holds already.
+    /// An objective with the journal of the run or of one of its stages.
     ///
     /// # Errors
-    /// [`Failure::Input`] for a folder that cannot be written to or a journal that cannot be read.
-    pub fn journal(&self, stage: Option<&str>) -> Result<(PathBuf, Journal, Vec<Entry>), Failure> {
-        let path = stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage));
-        let failed = |error: std::io::Error| SceneError::File {
-            path: path.display().to_string(),
-            reason: format!("cannot write there: {error}"),
-        };
-        std::fs::create_dir_all(&path).map_err(failed)?;
-        if self.resumed && Journal::exists(&path) {
-            let (journal, entries) = Journal::open(&path)?;
-            return Ok((path, journal, entries));
-        }
-        let journal = Journal::create(&path).map_err(failed)?;
-        Ok((path, journal, vec![]))
+    /// [`Failure::Input`] for a folder that cannot be written to, and for a journal that cannot be read or that is that of
+    /// another scene.
+    pub fn journaled<O: NonsmoothObjective>(&self, objective: O, stage: Option<&str>) -> Result<Journaled<O>, Failure> {
+        Ok(Journaled::open(objective, self.place(stage), &self.identity(stage)?)?)
+    }
+
+    /// All that the objective depends on: the scene that the folder holds, and the stage.
+    fn identity(&self, stage: Option<&str>) -> Result<String, Failure> {
+        let scene = SceneFile::read(&self.path(SCENE))?;
+        let scene = SceneFile { optimizer: OptimizerSection::default(), output: OutputSection::default(), ..scene };
+        let text = serde_json::to_string(&scene).map_err(Failure::computation)?;
+        Ok(stage.map_or_else(|| text.clone(), |stage| format!("{stage}: {text}")))
     }
 
     /// Number of evaluations that the journal of the run, or of one of its stages, holds.
     ///
     /// # Errors
-    /// [`SceneError::File`] for a journal that cannot be read.
-    pub fn evaluations(&self, stage: Option<&str>) -> Result<usize, SceneError> {
-        let path = stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage));
-        if Journal::exists(&path) { Journal::count(&path) } else { Ok(0) }
+    /// [`Failure::Input`] for a journal that cannot be read.
+    pub fn evaluations(&self, stage: Option<&str>) -> Result<usize, Failure> {
+        Ok(Journal::read(self.place(stage))?.map_or(0, |journal| journal.entries.len()))
+    }
+
+    /// Where the journal of the run, or of one of its stages, lies.
+    fn place(&self, stage: Option<&str>) -> PathBuf {
+        stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage))
     }
 
     /// The folder for the files of the report.

@@ -1,7 +1,7 @@
 //! One line per evaluation for people, one event for logs; and the place where an interruption takes effect.
 
-use crate::commands::long_run::StatusLine;
 use crate::commands::long_run::interrupt::interrupted;
+use crate::commands::long_run::status::StatusLine;
 use nonsmooth::{IterationRecord, Observer};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -32,6 +32,7 @@ impl Progress {
     /// The evaluation that begins, on the status line.
     fn announce(&self, evaluation: usize) {
         if evaluation <= self.limit {
+            tracing::debug!(evaluation, "evaluation begins");
             self.status.begin(format!("{}evaluation {evaluation:>4}/{}: ", self.label, self.limit));
         }
     }
@@ -89,13 +90,14 @@ fn time(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nonsmooth::StepKind;
+    use nonsmooth::{Origin, StepKind};
 
     #[test]
     fn a_line_has_count_best_value_prediction_and_times() {
         let record = IterationRecord {
             evaluation: 30,
             kind: StepKind::Serious,
+            origin: Origin::Cuts,
             value: Some(1.0),
             center_value: 1.5e16,
             predicted_decrease: 2e14,

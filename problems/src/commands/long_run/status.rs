@@ -4,67 +4,109 @@
 //! [`StatusLine`] shows the last one. Where stderr is no terminal there is neither line nor listener.
 
 use contact::equilibrium::STAGE_TARGET;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::fmt::{Debug, Write};
-use std::io::IsTerminal;
-use std::time::Duration;
+use std::io::{IsTerminal, Write as _};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 use tracing::field::{Field, Visit};
 use tracing::{Event, Subscriber};
 use tracing_subscriber::Layer;
 use tracing_subscriber::layer::Context;
 
 /// Time between two drawings of the line.
-const TICK: Duration = Duration::from_millis(200);
+const REDRAW_INTERVAL: Duration = Duration::from_millis(200);
+/// Begin of the line and the control sequence that erases it.
+const ERASE: &str = "\r\x1b[2K";
 
-/// A line that is overwritten in place, below the lines that stay.
+/// A line that is overwritten in place, below the lines that stay. Copies are handles of the same line.
 #[derive(Debug, Clone)]
-pub struct StatusLine(ProgressBar);
+pub struct StatusLine(Option<Arc<Mutex<Shown>>>);
+
+/// What the line shows.
+#[derive(Debug)]
+struct Shown {
+    task: String,
+    stage: String,
+    begun: Instant,
+}
 
 impl StatusLine {
-    /// The line of stderr, hidden if that is no terminal.
+    /// The line of stderr, hidden if that is no terminal. It is drawn while any handle of it is left.
     pub fn of_stderr() -> Self {
         if !std::io::stderr().is_terminal() {
             return Self::hidden();
         }
-        let bar = ProgressBar::new_spinner();
-        if let Ok(style) = ProgressStyle::with_template("{spinner} {prefix}{msg}  {elapsed}") {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(TICK);
-        Self(bar)
+        let shown = Arc::new(Mutex::new(Shown { task: String::new(), stage: String::new(), begun: Instant::now() }));
+        let drawn = Arc::downgrade(&shown);
+        std::thread::spawn(move || {
+            while let Some(shown) = drawn.upgrade() {
+                lock(&shown).draw();
+                drop(shown);
+                std::thread::sleep(REDRAW_INTERVAL);
+            }
+        });
+        Self(Some(shown))
     }
 
     /// A line that nobody sees.
     pub fn hidden() -> Self {
-        Self(ProgressBar::hidden())
+        Self(None)
     }
 
     /// Whether anybody sees the line.
     pub fn is_visible(&self) -> bool {
-        !self.0.is_hidden()
+        self.0.is_some()
     }
 
-    /// What is under way until further notice, with a clock of its own.
-    pub fn begin(&self, what: String) {
-        self.0.set_prefix(what);
-        self.0.set_message("");
-        self.0.reset_elapsed();
+    /// What is under way until further notice; its time begins now.
+    pub fn begin(&self, task: String) {
+        self.change(|shown| *shown = Shown { task, stage: String::new(), begun: Instant::now() });
     }
 
-    /// The stage of it.
+    /// The stage of what is under way.
     pub fn stage(&self, stage: String) {
-        self.0.set_message(stage);
+        self.change(|shown| shown.stage = stage);
     }
 
     /// A line that stays.
     pub fn print(&self, line: &str) {
-        self.0.println(line);
+        self.change(|_| write_stderr(&format!("{ERASE}{line}\n")));
     }
 
-    /// Takes the line off the terminal.
+    /// Takes the line off the terminal, until something begins.
     pub fn clear(&self) {
-        self.0.finish_and_clear();
+        self.change(|shown| {
+            shown.task.clear();
+            write_stderr(ERASE);
+        });
     }
+
+    fn change(&self, change: impl FnOnce(&mut Shown)) {
+        if let Some(shown) = &self.0 {
+            change(&mut lock(shown));
+        }
+    }
+}
+
+impl Shown {
+    fn draw(&self) {
+        if !self.task.is_empty() {
+            // The terminal cuts the line off instead of wrapping it, and what others write begins at the left.
+            let seconds = self.begun.elapsed().as_secs();
+            write_stderr(&format!("{ERASE}\x1b[?7l{}{}  {seconds} s\x1b[?7h\r", self.task, self.stage));
+        }
+    }
+}
+
+/// A thread that ended in the middle of a change leaves a text that can still be shown.
+fn lock(shown: &Mutex<Shown>) -> MutexGuard<'_, Shown> {
+    shown.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A terminal that is gone need not be told.
+fn write_stderr(text: &str) {
+    let mut stderr = std::io::stderr().lock();
+    let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }
 
 /// Hands the stages of the contact solvers, in words, to a function.

@@ -1,7 +1,8 @@
 //! Error of the contact solvers against tolerance and seconds, with the estimate that they report beside the true error.
 
-use crate::accuracy::objective::{Method, Objective, norm};
-use crate::scaling::SceneName;
+use crate::accuracy::extent::case;
+use crate::accuracy::objective::{METHODS, Objective, norm, objective_by};
+use crate::scaling::{SceneName, Variant};
 use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
 use problems::commands::Failure;
 use serde::Serialize;
@@ -63,7 +64,8 @@ struct Exact {
 /// # Errors
 /// [`Failure`] from a scene or a solver.
 pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<AlgebraStudy, Failure> {
-    let reference = Method::DIRECT.objective(scene, bricks, norm())?;
+    let objective = |variant| objective_by(variant, scene.scene(case(bricks))?, norm());
+    let reference = objective(Variant::Direct)?;
     let control = bent(&reference);
     let state = reference.solver().solve(&control, None, Accuracy::TIGHTEST)?;
     let evaluation = reference.differentiate(&control, &state)?;
@@ -73,12 +75,12 @@ pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<Algeb
         subgradient: evaluation.subgradient,
     };
     let mut rows = Vec::new();
-    for method in Method::ALL {
-        let objective = method.objective(scene, bricks, norm())?;
+    for (name, variant) in METHODS {
+        let objective = objective(variant)?;
         // The first solve pays for what is kept from solve to solve.
         objective.solver().solve(&control, None, Accuracy::relative(0.1)?)?;
         for &exponent in exponents {
-            rows.push(row(&objective, method.name, &control, 10.0_f64.powi(-exponent), &exact)?);
+            rows.push(row(&objective, name, &control, 10.0_f64.powi(-exponent), &exact)?);
         }
     }
     let mut ratios: Vec<f64> =

@@ -30,7 +30,7 @@ pub struct Arguments {
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
-    /// Folder for report.json, report.md and the pictures (SVG, PNG).
+    /// Folder for report.json, report.md and the pictures (SVG; PNG as well with the feature `png`).
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }

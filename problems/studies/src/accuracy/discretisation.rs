@@ -3,7 +3,7 @@
 //! Θ = Σσ_i⁴ is a sum over nodes and grows with their number; what converges is ΣA_iσ_i⁴ → ∫σ⁴.
 
 use crate::accuracy::extent::case;
-use crate::accuracy::objective::{EXPONENT, Method, norm};
+use crate::accuracy::objective::{EXPONENT, norm, objective_of};
 use crate::accuracy::rates::{Extrapolation, extrapolate, observed};
 use crate::scaling::SceneName;
 use nonsmooth::{Accuracy, StateSolver};
@@ -75,7 +75,7 @@ pub fn study(scene: SceneName, meshes: &[usize]) -> Result<MeshStudy, Failure> {
 }
 
 fn measure(scene: SceneName, mesh: usize) -> Result<MeshRow, Failure> {
-    let objective = Method::DESCENT.objective(scene, mesh, norm())?;
+    let objective = objective_of(scene, mesh, norm())?;
     let shape = objective.solver();
     let clock = Instant::now();
     let state = shape.solve(&shape.start(), None, Accuracy::relative(ALGEBRA)?)?;
@@ -90,7 +90,7 @@ fn measure(scene: SceneName, mesh: usize) -> Result<MeshRow, Failure> {
         first += force * x1;
         second += force * (x1 * x1 + x2 * x2);
     }
-    let energy = shape.strain_energy(&state).unwrap_or(f64::NAN);
+    let energy = shape.contact_solver().strain_energy(&state.solution).unwrap_or(f64::NAN);
     let bodies = if problem.scene.upper.is_some() { 2 } else { 1 };
     let case = case(mesh);
     let dofs = 3 * bodies * case.subdomains.pow(3) * (case.ratio() + 1).pow(3);

@@ -5,8 +5,7 @@
 //! min(Θ′−, Θ′+) ≤ ⟨ξ, d⟩ ≤ max(Θ′−, Θ′+)     for any element ξ of the subdifferential of the two pieces that meet
 //! ```
 
-use crate::accuracy::extent::case;
-use crate::accuracy::objective::{Method, Objective, norm};
+use crate::accuracy::objective::{Objective, norm, objective_of};
 use crate::scaling::SceneName;
 use contact::contact_shape::ContactState;
 use contact::equilibrium::ContactStatus;
@@ -125,7 +124,7 @@ struct Change {
 /// # Errors
 /// [`Failure`] from the scene or a solver.
 pub fn of_scene(scene: SceneName, count: usize) -> Result<Vec<KinkRow>, Failure> {
-    let objective = Method::DESCENT.objective_on(scene.scene(case(MESH))?, norm())?;
+    let objective = objective_of(scene, MESH, norm())?;
     let start = crate::accuracy::algebra::bent(&objective);
     let height = start.mean();
     let mut rows = Vec::new();

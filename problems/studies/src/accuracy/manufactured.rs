@@ -8,14 +8,16 @@
 //! the gradients are not better than elsewhere (at 2 × 2 × 2 they are). The stress recovered for pictures is compared where it
 //! is taken: at the centres of the bricks, and as a mean at the nodes.
 
-use contact::body::elasticity::hex8::{self, DOFS, GaussPoint, Nodes};
+use contact::body::elasticity::brick::{self, DOFS, GaussPoint, Nodes};
+use contact::body::elasticity::hex8;
 use contact::body::elasticity::stress::{COMPONENTS, von_mises};
 use contact::body::elasticity::{Formulation, Material};
+use contact::body::local_pattern::LocalPattern;
 use contact::body::mesh::{Block, Grid};
 use contact::equilibrium::SolvedBody;
-use contact::error::{ContactError, SceneError};
+use contact::error::SceneError;
 use contact::fields::BodyFields;
-use contact::tfeti::LocalPattern;
+use contact::linear::FactorizationError;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -85,8 +87,8 @@ fn samples(nodes: &Nodes<f64>) -> Vec<Sample> {
     for (first, u) in GAUSS {
         for (second, v) in GAUSS {
             for (third, w) in GAUSS {
-                let values = hex8::shape_values([first, second, third]);
-                let mut point = hex8::sample(nodes, [first, second, third]);
+                let values = brick::shape_values([first, second, third]);
+                let mut point = brick::sample(nodes, [first, second, third]);
                 point.volume *= u * v * w;
                 let x = std::array::from_fn(|axis| nodes.iter().zip(values).map(|(node, n)| n * node[axis]).sum());
                 samples.push(Sample { values, point, x });
@@ -99,7 +101,7 @@ fn samples(nodes: &Nodes<f64>) -> Vec<Sample> {
 /// Solves on `bricks`³ bricks and integrates the errors.
 ///
 /// # Errors
-/// [`ContactError`] when the stiffness matrix cannot be factored, [`SceneError`] never for the material used here.
+/// [`FactorizationError`] when the stiffness matrix cannot be factored, [`SceneError`] never for the material used here.
 pub fn manufactured_errors(bricks: usize) -> Result<ManufacturedErrors, ManufacturedFailure> {
     let clock = Instant::now();
     let material = Material::new(1.0, 0.3)?;
@@ -112,7 +114,7 @@ pub fn manufactured_errors(bricks: usize) -> Result<ManufacturedErrors, Manufact
         let local: [f64; DOFS] = dofs.map(|dof| u[dof]);
         for sample in samples(&block.brick(brick)) {
             let (exact, slope) = (Wave::displacement(sample.x), Wave::gradient(sample.x));
-            let found = hex8::displacement_gradient(&sample.point, &local);
+            let found = brick::displacement_gradient(&sample.point, &local);
             let difference = std::array::from_fn(|j| std::array::from_fn(|i| found[j][i] - slope[j][i]));
             for (sum, gradient) in energy.iter_mut().zip([difference, slope]) {
                 *sum += sample.point.volume * contraction(&hex8::stress(&gradient, lame), &gradient);
@@ -183,7 +185,7 @@ pub fn manufactured_stress_errors(
         let nodes = fields.block.brick(brick);
         let middle = std::array::from_fn(|axis| nodes.iter().map(|node| node[axis] / 8.0).sum());
         for ((found, exact), (row, column)) in found.iter().zip(exact(middle)).zip(COMPONENTS) {
-            let weight = hex8::volume(&nodes) * if row == column { 1.0 } else { 2.0 };
+            let weight = brick::volume(&nodes) * if row == column { 1.0 } else { 2.0 };
             centre[0] += weight * (found - exact).powi(2);
             centre[1] += weight * exact.powi(2);
         }
@@ -208,7 +210,7 @@ pub enum ManufacturedFailure {
     Scene(#[from] SceneError),
     /// The stiffness matrix could not be factored.
     #[error(transparent)]
-    Factorization(#[from] ContactError),
+    Factorization(#[from] FactorizationError),
 }
 
 fn contraction(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> f64 {
@@ -258,8 +260,8 @@ fn solution(
             }
         }
     }
-    let factor = pattern.symbolic(&[])?.factorize(&values, contact::linear::cholesky::sequential())?;
-    factor.solve_in_place(&mut right, 1, contact::linear::cholesky::sequential());
+    let factor = pattern.symbolic(&[])?.factorize(&values)?;
+    factor.solve_in_place(&mut right);
     let free = held.iter().filter(|held| !**held).count();
     Ok((free, right.iter().zip(&prescribed).map(|(free, prescribed)| free + prescribed).collect()))
 }

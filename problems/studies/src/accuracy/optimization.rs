@@ -5,13 +5,13 @@
 //! leaves out factorisations, one set per evaluation.
 
 use crate::accuracy::extent::{Extent, case};
-use crate::accuracy::objective::{Method, Objective, norm};
+use crate::accuracy::objective::{Objective, norm, objective_of};
 use crate::scaling::SceneName;
 use contact::contact_shape::ContactWarmStart;
 use contact::cost::PressureMeasure;
 use nonsmooth::{
-    Accuracy, AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Cost, NonsmoothObjective, OracleError,
-    Reparametrized, Request, StateSolver, Vector,
+    Accuracy, AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Cost, NonsmoothObjective, OracleError, Request,
+    StateSolver, VariableScaling, Vector,
 };
 use problems::commands::{Failure, first_step, mean_height_coordinates};
 use serde::Serialize;
@@ -129,7 +129,7 @@ pub fn study(scene: SceneName, extent: Extent) -> Result<OptimizationStudy, Fail
     let levels = extent.levels();
     let fine = levels[levels.len() - 1];
     let evaluations = extent.evaluations();
-    let objective = Method::DESCENT.objective(scene, fine, norm())?;
+    let objective = objective_of(scene, fine, norm())?;
     let start = objective.solver().start();
     // The first solve pays for what is kept from solve to solve.
     let before = value(&objective, &start)?;
@@ -143,7 +143,7 @@ pub fn study(scene: SceneName, extent: Extent) -> Result<OptimizationStudy, Fail
     let clock = Instant::now();
     let (mut controls, mut passed) = (start.clone(), Milestone::START);
     for &level in &levels[..levels.len() - 1] {
-        let objective = Method::DESCENT.objective(scene, level, norm())?;
+        let objective = objective_of(scene, level, norm())?;
         let run = minimize(&objective, controls, AccuracyPolicy::ON_DEMAND, evaluations)?;
         let products = run.history.last().map_or(0.0, |milestone| milestone.work);
         passed.evaluations += run.history.len();
@@ -192,25 +192,23 @@ fn minimize(
 ) -> Result<Run, Failure> {
     let clock = Instant::now();
     let first_step = first_step(objective, &start);
-    let config =
-        BundleTrustConfig { max_evaluations, accuracy, first_step: Some(first_step), ..BundleTrustConfig::default() };
+    let config = BundleTrustConfig {
+        max_evaluations,
+        accuracy,
+        first_step: Some(first_step),
+        scaling: VariableScaling::Linear(mean_height_coordinates(&start, first_step)),
+        ..BundleTrustConfig::default()
+    };
     let metered = Metered { objective, products: RefCell::default() };
-    let scaled = Reparametrized::new(&metered, mean_height_coordinates(&start, first_step))?;
-    let set = objective.solver().problem().admissible.polyhedron();
-    let report = BundleTrust::new(config)?
-        .constraints(scaled.transformed_set(set)?)
-        .minimize(&scaled, scaled.transformed(&start))?;
+    let set = objective.solver().problem().admissible.polyhedron().clone();
+    let report = BundleTrust::new(config)?.constraints(set).minimize(&metered, start)?;
     let products = metered.products.borrow();
     let mut best = f64::INFINITY;
     let milestones = report.history.iter().zip(products.iter()).enumerate().map(|(index, (record, &products))| {
         best = best.min(record.center_value);
         Milestone { evaluations: index + 1, work: products as f64, seconds: record.seconds, best }
     });
-    Ok(Run {
-        controls: scaled.original(&report.solution),
-        history: milestones.collect(),
-        seconds: clock.elapsed().as_secs_f64(),
-    })
+    Ok(Run { controls: report.solution, history: milestones.collect(), seconds: clock.elapsed().as_secs_f64() })
 }
 
 fn course(strategy: &'static str, objective: &Objective, run: &Run, passed: Milestone) -> Result<Course, Failure> {
@@ -233,7 +231,7 @@ fn course(strategy: &'static str, objective: &Objective, run: &Run, passed: Mile
 
 /// Norms of several exponents and the peak pressure itself, each with the same number of evaluations.
 fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRow>, Failure> {
-    let judge = Method::DESCENT.objective(scene, mesh, norm())?;
+    let judge = objective_of(scene, mesh, norm())?;
     let row = |measure: String, evaluations: usize, seconds: f64, controls: &Vector| -> Result<PeakRow, Failure> {
         let (peak, norm) = (peak(&judge, controls)?, value(&judge, controls)?);
         Ok(PeakRow { measure, evaluations, seconds, peak, norm })
@@ -241,7 +239,7 @@ fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRo
     let norms = [4.0, 8.0, 16.0].map(|exponent| (format!("Σσ^{exponent}"), PressureMeasure::Norm { exponent }));
     let mut rows = vec![row("nothing (start)".into(), 0, 0.0, &judge.solver().start())?];
     for (measure, kind) in norms.into_iter().chain([("max σ".to_owned(), PressureMeasure::Peak)]) {
-        let objective = Method::DESCENT.objective(scene, mesh, kind)?;
+        let objective = objective_of(scene, mesh, kind)?;
         let run = minimize(&objective, objective.solver().start(), AccuracyPolicy::Tightest, evaluations)?;
         rows.push(row(measure, run.history.len(), run.seconds, &run.controls)?);
     }

@@ -3,7 +3,7 @@
 use crate::accuracy::algebra::bent;
 use crate::accuracy::extent::{Extent, SCENES};
 use crate::accuracy::kink::{self, KinkRow};
-use crate::accuracy::objective::{Method, norm};
+use crate::accuracy::objective::{norm, objective_of};
 use nonsmooth::verify::{Direction, TaylorTest, seeded_direction, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use problems::commands::{Failure, smooth_step};
@@ -41,7 +41,7 @@ const SEED: u64 = 20_231;
 pub fn study(extent: Extent) -> Result<SubgradientStudy, Failure> {
     let (mut taylor, mut kinks) = (Vec::new(), kink::of_toy()?);
     for scene in SCENES {
-        let objective = Method::DESCENT.objective(scene, extent.taylor_mesh(), norm())?;
+        let objective = objective_of(scene, extent.taylor_mesh(), norm())?;
         let control = bent(&objective);
         let direction = seeded_direction(control.len(), SEED);
         let here = objective.solver().solve(&control, None, Accuracy::TIGHTEST)?;

@@ -4,15 +4,15 @@
 //! find the values of the one before it in a cache, so that the share can exceed what memory alone delivers; vectors, rows
 //! and indices are not counted.
 
-use crate::scaling::cases::Variant;
 use crate::scaling::repeat::failure;
 use crate::scaling::threads::{TIMED_THREADS, pool};
 use contact::equilibrium::ContactProblem;
 use contact::linear::cholesky::SymbolicFactor;
-use contact::tfeti::{DualOperator, Preconditioner, TornModel, TornSystem};
+use contact::tfeti::{DualOperator, Preconditioner, PreconditionerKind, RowVector, TornModel, TornSolver, TornSystem};
 use problems::commands::Failure;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
@@ -52,17 +52,19 @@ const LONG_ENOUGH: f64 = 0.3;
 /// # Errors
 /// [`Failure`] from the factorisation.
 pub fn measure(
-    problem: &ContactProblem,
-    model: &TornModel,
-    variant: Variant,
+    problem: &Arc<ContactProblem>,
+    preconditioner: PreconditionerKind,
     controls: &[f64],
 ) -> Result<Vec<Bandwidth>, Failure> {
+    let solver = TornSolver::new(Arc::clone(problem), preconditioner).map_err(failure)?;
+    let model = solver.model();
     let blocks = problem.blocks(controls).map_err(failure)?;
     let system = model.factorize(&blocks).map_err(failure)?;
     let factor_bytes = factor_bytes(model, &system)?;
     let operator = DualOperator::new(model, &system);
-    let preconditioner = Preconditioner::new(&operator, variant.preconditioner().unwrap_or_default(), 1.0);
-    let input: Vec<f64> = (0..model.constraints.row_count()).map(|row| ((row % 17) as f64 - 8.0) / 8.0).collect();
+    let preconditioner = Preconditioner::new(model, &system, preconditioner, 1.0);
+    let mut input = model.constraints.zeros();
+    input.iter_mut().enumerate().for_each(|(row, entry)| *entry = ((row % 17) as f64 - 8.0) / 8.0);
     TIMED_THREADS
         .into_iter()
         .map(|threads| {
@@ -89,12 +91,12 @@ pub fn measure(
 fn factor_bytes(model: &TornModel, system: &TornSystem) -> Result<f64, Failure> {
     let Some(factors) = system.parts.first().and_then(|part| part.factors.as_ref()) else { return Ok(0.0) };
     let symbolic = SymbolicFactor::new(Arc::clone(&model.pattern.pattern), factors.inverse.order().to_vec());
-    let values = symbolic.map_err(failure)?.value_count();
+    let values = symbolic.map_err(|error| failure(error.into()))?.value_count();
     Ok((values * size_of::<f64>() * system.parts.len()) as f64)
 }
 
 /// Median seconds of a call.
-fn seconds_per_call(call: impl Fn() -> Vec<f64>) -> f64 {
+fn seconds_per_call(call: impl Fn() -> RowVector) -> f64 {
     black_box(call());
     let whole = Instant::now();
     let mut seconds = Vec::new();

@@ -1,11 +1,15 @@
 //! Which meshes are measured, with which solvers.
 
 use clap::ValueEnum;
-use contact::error::SceneError;
+use contact::contact_shape::{AnySolver, erase};
+use contact::direct::DirectSolver;
+use contact::equilibrium::ContactProblem;
+use contact::error::{ContactError, SceneError};
 use contact::scene::{self, Scene};
-use contact::tfeti::PreconditionerKind;
+use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::sync::Arc;
 
 /// Bricks and subdomains per edge of each body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -144,6 +148,21 @@ impl SceneName {
 }
 
 impl Variant {
+    /// The solver of a problem.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when a symbolic analysis fails.
+    pub fn solver(self, problem: &Arc<ContactProblem>) -> Result<Box<AnySolver>, ContactError> {
+        let problem = Arc::clone(problem);
+        let Some(preconditioner) = self.preconditioner() else { return DirectSolver::new(problem).map(erase) };
+        let method = match self {
+            Self::AugmentedLagrangian => DualMethod::SuccessiveApproximations,
+            Self::Gmres => DualMethod::Newton(Recycling::Off),
+            _ => DualMethod::Newton(Recycling::Auto),
+        };
+        TotalFeti::new(problem, preconditioner, method).map(erase)
+    }
+
     /// The preconditioner; none for direct condensation.
     pub fn preconditioner(self) -> Option<PreconditionerKind> {
         match self {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cli ─ cases ─┬─ children: one process per case and variant, so that each has its own peak memory
-//!              └─ measure ─ engine, threads, bandwidth, memory ─ Row
+//!              └─ measure ─ timing, threads, bandwidth, memory ─ Row
 //! Rows ─ growth ─ Report ─ table (Markdown) or JSON
 //! ```
 //! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
@@ -12,7 +12,6 @@ mod bandwidth;
 mod cases;
 mod children;
 mod cli;
-mod engine;
 mod growth;
 mod measure;
 mod memory;
@@ -22,6 +21,7 @@ mod row;
 mod solve;
 mod table;
 mod threads;
+mod timing;
 
 pub use bandwidth::Bandwidth;
 pub use cases::{Case, Extent, SceneName, Variant, word};

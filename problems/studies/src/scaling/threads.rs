@@ -1,13 +1,15 @@
 //! The same state and subgradient with one, two and four threads: times, and whether the numbers agree in every bit.
 
 use crate::scaling::cases::Variant;
-use crate::scaling::engine::Engine;
 use crate::scaling::repeat::{TIMED, failure, median};
 use crate::scaling::solve::Sample;
-use contact::equilibrium::ContactProblem;
+use crate::scaling::timing;
+use contact::contact_shape::ContactWarmStart;
+use contact::equilibrium::{ContactProblem, SolverState};
 use problems::commands::Failure;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Thread scaling of one case.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -37,17 +39,19 @@ const COMPARED: usize = 4;
 ///
 /// # Errors
 /// [`Failure::Computation`] from the solver or the system's threads.
-pub fn measure(problem: &ContactProblem, variant: Variant, controls: &[f64]) -> Result<Threads, Failure> {
+pub fn measure(problem: &Arc<ContactProblem>, variant: Variant, controls: &[f64]) -> Result<Threads, Failure> {
     let mut results: Vec<Vec<u64>> = Vec::new();
     let mut samples = Vec::new();
     for threads in TIMED_THREADS.into_iter().chain([COMPARED]) {
         let sample = pool(threads)?.install(|| {
             let mut run = || {
-                let engine = Engine::new(problem, variant)?;
-                let state = engine.solve(problem, controls, None, TIMED)?;
-                let (heights, adjoint) = engine.adjoint(problem, &state, TIMED)?;
-                results.push(state.restart().iter().chain(&heights).map(|value| value.to_bits()).collect());
-                Ok(Sample { state: state.solve, adjoint })
+                let solver = variant.solver(problem)?;
+                let (state, solve) = timing::solve(&*solver, controls, None, TIMED)?;
+                let (heights, adjoint) = timing::adjoint(&*solver, &state, TIMED)?;
+                let (ContactWarmStart::Multipliers(found) | ContactWarmStart::Displacements(found)) =
+                    state.solution.warm_start();
+                results.push(found.iter().chain(&heights).map(|value| value.to_bits()).collect());
+                Ok(Sample { state: solve, adjoint })
             };
             if threads == COMPARED { run() } else { median(run) }
         });

@@ -2,10 +2,13 @@
 
 use crate::stability::record::Path;
 use contact::direct::DirectSolver;
-use contact::equilibrium::{ContactForces, ContactProblem, Diagnosis, Kink, Residuals, StatusCounts, Work};
+use contact::equilibrium::{
+    ContactForces, ContactProblem, ContactSolver, ContactState, Diagnosis, Kink, Residuals, StatusCounts,
+};
 use contact::error::{ContactError, SceneError};
 use contact::scene::Scene;
-use contact::tfeti::{AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornSolver};
+use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
+use std::sync::Arc;
 
 /// What a case is expected to end in.
 #[derive(Debug, Clone)]
@@ -93,23 +96,6 @@ pub struct Found {
 /// A path's report with its state, if it found one.
 pub type Attempt = (Path, Option<Found>);
 
-fn packed_dual(problem: &ContactProblem) -> Vec<f64> {
-    (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect()
-}
-
-fn path(solver: &'static str, work: Work, forces: &ContactForces) -> Path {
-    Path {
-        solver,
-        steps: work.newton_steps,
-        products: work.dual_operator_applications,
-        residuals: Some(forces.residuals),
-        status: Some(forces.counts()),
-        kink: Some(forces.kink),
-        refusal: None,
-        reason: None,
-    }
-}
-
 fn refusal(solver: &'static str, error: &ContactError) -> Attempt {
     let none: (Option<Residuals>, Option<StatusCounts>, Option<Kink>) = (None, None, None);
     let path = Path {
@@ -125,49 +111,69 @@ fn refusal(solver: &'static str, error: &ContactError) -> Attempt {
     (path, None)
 }
 
+/// A state by a solver, and what is asked of it besides.
+fn attempt<S: ContactSolver>(
+    name: &'static str,
+    solver: Result<S, ContactError>,
+    controls: &[f64],
+    tolerance: f64,
+    examine: impl FnOnce(&S, ContactState<S::State>, &mut Path) -> Found,
+) -> Attempt {
+    match solver.and_then(|solver| Ok((solver.solve(controls, None, tolerance)?, solver))) {
+        Ok((state, solver)) => {
+            let work = state.work();
+            let mut path = Path {
+                solver: name,
+                steps: work.newton_steps,
+                products: work.dual_operator_applications,
+                residuals: Some(state.forces.residuals),
+                status: Some(state.forces.counts()),
+                kink: Some(state.forces.kink),
+                refusal: None,
+                reason: None,
+            };
+            let found = examine(&solver, state, &mut path);
+            (path, Some(found))
+        }
+        Err(error) => refusal(name, &error),
+    }
+}
+
+/// Sensitivities of the heights for a dual that is nothing special.
+fn heights<S: ContactSolver>(solver: &S, state: &ContactState<S::State>) -> Result<Vec<f64>, String> {
+    let dual: Vec<f64> = (0..solver.problem().boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
+    let sensitivities = solver.sensitivities(&state.solution, &dual, ADJOINT_TOLERANCE);
+    sensitivities.map(|sensitivities| sensitivities.heights).map_err(|error| error.to_string())
+}
+
+fn torn(problem: &Arc<ContactProblem>, method: DualMethod) -> Result<TotalFeti, ContactError> {
+    TotalFeti::new(Arc::clone(problem), PreconditionerKind::Dirichlet, method)
+}
+
 /// Newton on TFETI.
-pub fn by_tfeti(problem: &ContactProblem, controls: &[f64]) -> Attempt {
-    let attempt = || {
-        let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet)?;
-        let (state, forces, work) = solver.solve(problem, controls, None, TOLERANCE)?;
-        let heights = solver
-            .sensitivities(problem, &state, &packed_dual(problem), ADJOINT_TOLERANCE)
-            .map(|sensitivities| sensitivities.heights)
-            .map_err(|error| error.to_string());
-        Ok((path("tfeti", work, &forces), Some(Found { forces, heights, diagnosis: None })))
-    };
-    attempt().unwrap_or_else(|error| refusal("tfeti", &error))
+pub fn by_tfeti(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
+    let solver = torn(problem, DualMethod::Newton(Recycling::default()));
+    attempt("tfeti", solver, controls, TOLERANCE, |solver, state, _| {
+        let heights = heights(solver, &state);
+        Found { forces: state.forces, heights, diagnosis: None }
+    })
 }
 
 /// Newton on condensed bodies.
-pub fn by_condensation(problem: &ContactProblem, controls: &[f64]) -> Attempt {
-    let attempt = || {
-        let solver = DirectSolver::new(problem)?;
-        let (state, forces, work) = solver.solve(problem, controls, None, TOLERANCE)?;
-        let heights = solver
-            .sensitivities(problem, &state, &packed_dual(problem))
-            .map(|(heights, _)| heights)
-            .map_err(|error| error.to_string());
-        let diagnosis = Some(solver.diagnose(problem, &state).map_err(|error| error.to_string()));
-        Ok((path("direct", work, &forces), Some(Found { forces, heights, diagnosis })))
-    };
-    attempt().unwrap_or_else(|error| refusal("direct", &error))
+pub fn by_condensation(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
+    let solver = DirectSolver::new(Arc::clone(problem));
+    attempt("direct", solver, controls, TOLERANCE, |solver, state, _| {
+        let heights = heights(solver, &state);
+        let diagnosis = Some(solver.diagnose(&state.solution).map_err(|error| error.to_string()));
+        Found { forces: state.forces, heights, diagnosis }
+    })
 }
 
 /// Successive approximations on TFETI.
-pub fn by_successive_approximations(problem: &ContactProblem, controls: &[f64]) -> Attempt {
-    let attempt = || {
-        let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet)?;
-        let settings = AugmentedLagrangianSettings::to(PAPER_TOLERANCE);
-        let mut counts = AugmentedLagrangianCounts::default();
-        let (_, forces, work) = solver.solve_by(problem, controls, |contact| {
-            let (solution, spent) = contact.solve_by_successive_approximations(None, &settings)?;
-            counts = spent;
-            Ok(solution)
-        })?;
-        let mut path = path("successive approximations", work, &forces);
-        path.reason = Some(format!("observed contraction {:.3}", counts.contraction));
-        Ok((path, Some(Found { forces, heights: Ok(Vec::new()), diagnosis: None })))
-    };
-    attempt().unwrap_or_else(|error| refusal("successive approximations", &error))
+pub fn by_successive_approximations(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
+    let solver = torn(problem, DualMethod::SuccessiveApproximations);
+    attempt("successive approximations", solver, controls, PAPER_TOLERANCE, |_, state, path| {
+        path.reason = Some(format!("observed contraction {:.3}", state.contraction.unwrap_or(0.0)));
+        Found { forces: state.forces, heights: Ok(Vec::new()), diagnosis: None }
+    })
 }

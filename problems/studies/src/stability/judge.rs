@@ -6,6 +6,7 @@ use crate::stability::contact::{
 };
 use crate::stability::record::{Outcome, Path, Record};
 use contact::equilibrium::{ContactForces, ContactProblem};
+use std::sync::Arc;
 
 /// Largest certificate of a solved state: relative residuals.
 const CERTIFICATE: f64 = 1e-9;
@@ -32,7 +33,7 @@ fn record(group: &'static str, name: String, case: &ContactCase) -> Record {
     let mut record = Record::plain(group, name, Outcome::Broken, String::new());
     let scene = case.scene.as_ref().map_err(ToString::to_string);
     let problem = scene.and_then(|scene| ContactProblem::new(scene.clone()).map_err(|error| error.to_string()));
-    let problem = match problem {
+    let problem = match problem.map(Arc::new) {
         Ok(problem) => problem,
         Err(reason) => return refused_scene(record, case, reason),
     };

@@ -3,7 +3,7 @@
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
 use crate::stability::scenes::{footed, stacked, with_loads};
-use contact::equilibrium::certificate::WEAKLY_ACTIVE;
+use contact::equilibrium::WEAKLY_ACTIVE;
 use contact::equilibrium::{ContactForces, ContactProblem};
 
 const GROUP: &str = "kinks";

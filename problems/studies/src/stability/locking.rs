@@ -7,12 +7,13 @@
 
 use crate::stability::case::Case;
 use crate::stability::record::{Outcome, Record};
-use contact::body::elasticity::hex8::{DOFS, Nodes, gauss_points};
+use contact::body::elasticity::brick::{DOFS, Nodes, gauss_points};
 use contact::body::elasticity::{Formulation, Material};
+use contact::body::local_pattern::LocalPattern;
 use contact::body::mesh::{Block, Grid};
-use contact::error::{ContactError, SceneError};
+use contact::error::SceneError;
+use contact::linear::FactorizationError;
 use contact::linear::cholesky::SymbolicFactor;
-use contact::tfeti::LocalPattern;
 use std::f64::consts::PI;
 use std::sync::Arc;
 use thiserror::Error;
@@ -32,7 +33,7 @@ pub enum LockingError {
     Material(#[from] SceneError),
     /// The linear system.
     #[error(transparent)]
-    System(#[from] ContactError),
+    System(#[from] FactorizationError),
 }
 
 /// The field, and −Δ of it.

@@ -1,7 +1,7 @@
 //! Stiff and extreme cases: the study behind `docs/stability.md`.
 //!
 //! ```text
-//! cli ─ matrix of cases ─┬─ judge ─ contact: scene → TornSolver, DirectSolver, (successive approximations) → Record
+//! cli ─ matrix of cases ─┬─ judge ─ contact: scene → TotalFeti, DirectSolver, (successive approximations) → Record
 //!                        ├─ units, locking: scenes and fields compared with each other → Record
 //!                        └─ optimizer: bundle method on hostile oracles → Record
 //! Records ─ table (Markdown) or JSON

@@ -13,6 +13,7 @@ use contact::body::elasticity::Material;
 use contact::equilibrium::{ContactForces, ContactProblem};
 use contact::error::SceneError;
 use contact::scene::{CounterSurface, Scene};
+use std::sync::Arc;
 
 const GROUP: &str = "units";
 /// Largest difference of dimensionless results.
@@ -56,7 +57,7 @@ fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
 fn solve(scene: Scene, amplitude: f64, direct: bool) -> Result<(Attempt, f64), SceneError> {
     let controls = wavy(&scene, amplitude);
     let length = scene.start_height;
-    let problem = ContactProblem::new(scene)?;
+    let problem = Arc::new(ContactProblem::new(scene)?);
     let attempt = if direct { by_condensation(&problem, &controls) } else { by_tfeti(&problem, &controls) };
     Ok((attempt, length))
 }

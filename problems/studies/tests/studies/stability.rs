@@ -2,15 +2,21 @@
 
 use contact::body::elasticity::{Formulation, Material};
 use contact::direct::DirectSolver;
-use contact::equilibrium::{ContactForces, ContactProblem};
+use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
 use contact::scene::{CounterSurface, Scene, hertz, signorini};
-use contact::tfeti::{AugmentedLagrangianSettings, PreconditionerKind, TornSolver};
+use contact::tfeti::{AugmentedLagrangianSettings, DualMethod, PreconditionerKind, Recycling, TornSolver, TotalFeti};
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
+use std::sync::Arc;
 use studies::stability::{Counts, Outcome, Report, all, field_error};
+
+fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
+    let method = DualMethod::Newton(Recycling::default());
+    TotalFeti::new(Arc::clone(problem), PreconditionerKind::Dirichlet, method).unwrap()
+}
 
 /// Numbers of cases that are solved, refused, limited and broken, of the groups with these names; all must be as expected.
 fn outcomes(groups: &[&str]) -> [usize; 4] {
@@ -47,9 +53,8 @@ fn patch_test_with_mean_dilatation() {
         scene.lower.material = Material::new(1.1e5, ratio).unwrap().with_formulation(Formulation::MeanDilatation);
         // Free to widen: supports hold only what friction would not.
         scene.lower.supports[0].components = [true, false, false];
-        let problem = ContactProblem::new(scene).unwrap();
-        let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
-        let (_, forces, _) = solver.solve(&problem, &[100.0; 36], None, 0.0).unwrap();
+        let problem = Arc::new(ContactProblem::new(scene).unwrap());
+        let forces = newton(&problem).solve(&[100.0; 36], None, 0.0).unwrap().forces;
         for (force, point) in forces.normal.iter().zip(&problem.boundary.points) {
             let error = (force / point.area / 3000.0 - 1.0).abs();
             assert!(error < 1e-12, "ν = {ratio}: {error:.1e}");
@@ -60,14 +65,14 @@ fn patch_test_with_mean_dilatation() {
 #[test]
 fn contraction_of_both_paths_agrees() {
     for (scene, friction) in [(signorini().unwrap(), 0.9), (hertz().unwrap(), 0.3)] {
-        let problem = ContactProblem::new(Scene { mesh: [4; 3], friction, ..scene }).unwrap();
+        let problem = Arc::new(ContactProblem::new(Scene { mesh: [4; 3], friction, ..scene }).unwrap());
         let controls = vec![0.99 * problem.scene.start_height; 36];
-        let torn = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
-        let direct = DirectSolver::new(&problem).unwrap();
-        let (state, ..) = torn.solve(&problem, &controls, None, 1e-11).unwrap();
-        let estimate = torn.diagnose(&problem, &state).unwrap().contraction;
-        let (state, ..) = direct.solve(&problem, &controls, None, 1e-11).unwrap();
-        let exact = direct.diagnose(&problem, &state).unwrap();
+        let torn = newton(&problem);
+        let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();
+        let state = torn.solve(&controls, None, 1e-11).unwrap();
+        let estimate = torn.diagnose(&state.solution).unwrap().contraction;
+        let state = direct.solve(&controls, None, 1e-11).unwrap();
+        let exact = direct.diagnose(&state.solution).unwrap();
         assert!((estimate - exact.contraction).abs() < 1e-3 * (1.0 + exact.contraction), "{estimate} {exact}");
         assert!(exact.condition.unwrap() >= 1.0);
     }
@@ -75,19 +80,14 @@ fn contraction_of_both_paths_agrees() {
 
 #[test]
 fn accurate_successive_approximations_contract_as_diagnosed() {
-    let problem = ContactProblem::new(Scene { mesh: [4; 3], friction: 0.3, ..signorini().unwrap() }).unwrap();
+    let problem = Arc::new(ContactProblem::new(Scene { mesh: [4; 3], friction: 0.3, ..signorini().unwrap() }).unwrap());
     let controls = vec![100.0; 36];
-    let solver = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
+    let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
     let settings = AugmentedLagrangianSettings { adaptivity: 1e-3, ..AugmentedLagrangianSettings::to(1e-9) };
-    let mut observed = 0.0;
-    let (state, ..) = solver
-        .solve_by(&problem, &controls, |contact| {
-            let (solution, counts) = contact.solve_by_successive_approximations(None, &settings)?;
-            observed = counts.contraction;
-            Ok(solution)
-        })
-        .unwrap();
-    let diagnosed = solver.diagnose(&problem, &state).unwrap().contraction;
+    let (state, .., counts) =
+        solver.solve_by(&controls, |contact| contact.solve_by_successive_approximations(None, &settings)).unwrap();
+    let observed = counts.contraction;
+    let diagnosed = solver.diagnose(&state).unwrap().contraction;
     println!("observed {observed:.4}, diagnosed {diagnosed:.4}");
     assert!((observed / diagnosed - 1.0).abs() < 0.25, "{observed} {diagnosed}");
 }
@@ -153,12 +153,12 @@ fn random_scenes_are_certified_or_refused_with_a_cause() {
         let scene = random_scene(seed, cells, torn, friction, two);
         let controls: Vec<f64> =
             (0..36).map(|index| scene.start_height * (1.0 + 0.01 * number(seed, 100 + index) - 0.01)).collect();
-        let problem = ContactProblem::new(scene).unwrap();
-        let torn = TornSolver::new(&problem, PreconditionerKind::Dirichlet).unwrap();
-        let direct = DirectSolver::new(&problem).unwrap();
+        let problem = Arc::new(ContactProblem::new(scene).unwrap());
+        let torn = newton(&problem);
+        let direct = DirectSolver::new(Arc::clone(&problem)).unwrap();
         let attempts = [
-            torn.solve(&problem, &controls, None, 1e-11).map(|(_, forces, _)| forces),
-            direct.solve(&problem, &controls, None, 1e-11).map(|(_, forces, _)| forces),
+            torn.solve(&controls, None, 1e-11).map(|state| state.forces),
+            direct.solve(&controls, None, 1e-11).map(|state| state.forces),
         ];
         for attempt in &attempts {
             match attempt {

@@ -2,9 +2,10 @@
 
 use crate::error::SceneError;
 
-/// How a trilinear brick sees the change of volume.
+/// Treatment of the volume change in a brick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "FormulationName", transform = crate::schema::names_only))]
 #[non_exhaustive]
 pub enum Formulation {
     /// At every Gauss point. Locks when ν approaches ½.

@@ -1,8 +1,9 @@
 //! Trilinear isotropic elasticity on bricks.
 
+pub mod brick;
 pub mod hex8;
 pub mod stress;
-pub mod traction;
+pub(crate) mod traction;
 
 mod material;
 mod mean_dilatation;

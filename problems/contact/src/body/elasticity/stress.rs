@@ -3,13 +3,13 @@
 //! ```text
 //! standard:         σ = λ tr(ε) I + 2μ ε                          at the point
 //! mean dilatation:  σ = κ θ̄ I + 2μ (ε − ⅓ tr(ε) I),  θ̄ = D(u)/V  over the brick      (mean_dilatation.rs)
-//! σ_vM = √( ½[(σ₁₁ − σ₂₂)² + (σ₂₂ − σ₃₃)² + (σ₃₃ − σ₁₁)²] + 3(σ₁₂² + σ₂₃² + σ₁₃²) )            (von Mises 1913)
+//! σ_vM = √( ½[(σ₁₁ − σ₂₂)² + (σ₂₂ − σ₃₃)² + (σ₃₃ − σ₁₁)²] + 3(σ₁₂² + σ₂₃² + σ₁₃²) )            \[Mises1913\]
 //! ```
-//! At the centre of a trilinear brick the stress converges one order faster than elsewhere (Barlow 1976), so that is where it
+//! At the centre of a trilinear brick the stress converges one order faster than elsewhere \[Barlow1976\], so that is where it
 //! is taken for pictures. Tensors are six numbers in the order 11, 22, 33, 12, 23, 13.
 
-use crate::body::elasticity::hex8::{self, DOFS, GaussPoint, Nodes};
-use crate::body::elasticity::{Formulation, Material, mean_dilatation};
+use crate::body::elasticity::brick::{DOFS, GaussPoint, Nodes, displacement_gradient, gauss_points, sample};
+use crate::body::elasticity::{Formulation, Material, hex8, mean_dilatation};
 
 /// A symmetric tensor as its components 11, 22, 33, 12, 23, 13.
 pub type SymmetricTensor = [f64; 6];
@@ -32,25 +32,23 @@ impl<'a> BrickStress<'a> {
     pub fn new(nodes: &'a Nodes<f64>, material: &Material, u: &'a [f64; DOFS]) -> Self {
         let mean_pressure = match material.formulation() {
             Formulation::Standard => 0.0,
-            Formulation::MeanDilatation => {
-                material.bulk_modulus() * mean_dilatation::mean(&hex8::gauss_points(nodes), u)
-            }
+            Formulation::MeanDilatation => material.bulk_modulus() * mean_dilatation::mean(&gauss_points(nodes), u),
         };
         Self { nodes, u, lame: (hex8::pointwise_lambda(material), material.shear_modulus()), mean_pressure }
     }
 
     /// Stress at the centre, MPa.
     pub fn at_centre(&self) -> SymmetricTensor {
-        self.at(&hex8::sample(self.nodes, [0.0; 3]))
+        self.at(&sample(self.nodes, [0.0; 3]))
     }
 
     /// Stress at the eight Gauss points and their volumes: MPa, mm³. The forces of the brick are the sums Σ V σ ∇N_a over them.
     pub fn at_gauss_points(&self) -> [(SymmetricTensor, GaussPoint<f64>); 8] {
-        hex8::gauss_points(self.nodes).map(|point| (self.at(&point), point))
+        gauss_points(self.nodes).map(|point| (self.at(&point), point))
     }
 
     fn at(&self, point: &GaussPoint<f64>) -> SymmetricTensor {
-        let full = hex8::stress(&hex8::displacement_gradient(point, self.u), self.lame);
+        let full = hex8::stress(&displacement_gradient(point, self.u), self.lame);
         COMPONENTS.map(|(row, column)| full[row][column] + if row == column { self.mean_pressure } else { 0.0 })
     }
 }
@@ -142,7 +140,7 @@ mod tests {
                 (0..DOFS).map(|i| (0..DOFS).map(|j| 0.5 * u[i] * matrix[i][j] * u[j]).sum::<f64>()).sum();
             let mut sum = 0.0;
             for (stress, point) in BrickStress::new(&nodes, &material, &u).at_gauss_points() {
-                let gradient = hex8::displacement_gradient(&point, &u);
+                let gradient = displacement_gradient(&point, &u);
                 let stress = full(&stress);
                 let density: f64 =
                     (0..9).map(|entry| stress[(entry / 3, entry % 3)] * gradient[entry / 3][entry % 3]).sum();

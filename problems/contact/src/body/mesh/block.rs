@@ -4,7 +4,7 @@
 //! x₁ = i·a/n₁,  x₂ = j·b/n₂,  x₃ = lower_ij + (upper_ij − lower_ij)·k/n₃                              method.md section 2
 //! ```
 
-use crate::body::elasticity::hex8::Nodes;
+use crate::body::elasticity::brick::Nodes;
 use crate::error::ContactError;
 
 /// Topology and plan of a block: numbers of bricks and the size of its base.
@@ -16,8 +16,10 @@ pub struct Grid {
     pub size: [f64; 2],
 }
 
-/// A side of a block.
+/// A face of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "FaceName", transform = crate::schema::names_only))]
 pub enum Face {
     /// x₁ = 0.
     X1Min,
@@ -65,7 +67,7 @@ impl Grid {
         (0..self.brick_count()).map(move |brick| [brick / (n2 * n3), brick / n3 % n2, brick % n3])
     }
 
-    /// Indices of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::hex8`].
+    /// Indices of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::brick`].
     pub fn brick_nodes(&self, [i, j, k]: [usize; 3]) -> [usize; 8] {
         std::array::from_fn(|a| self.node([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]))
     }
@@ -131,7 +133,7 @@ impl Block {
         [x1, x2, self.lower[column] + (self.upper[column] - self.lower[column]) * share]
     }
 
-    /// Coordinates of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::hex8`].
+    /// Coordinates of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::brick`].
     pub fn brick(&self, [i, j, k]: [usize; 3]) -> Nodes<f64> {
         std::array::from_fn(|a| self.coordinates([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]))
     }

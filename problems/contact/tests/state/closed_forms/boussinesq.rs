@@ -8,7 +8,6 @@ use contact::body::elasticity::Material;
 use contact::body::mesh::Face;
 use contact::direct::CondensationPattern;
 use contact::equilibrium::ContactProblem;
-use contact::linear::dense::DenseLu;
 use contact::scene::CounterSurface;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
@@ -27,9 +26,9 @@ fn fitted(bricks: usize) -> (f64, f64) {
     let pattern = CondensationPattern::new(&problem.grid, &problem.scene.lower, bricks).unwrap();
     let body = pattern.condense(&problem.lower_block(&[SIDE; 4]).unwrap(), &problem.scene.lower).unwrap();
     // A force on the corner of the quarter is four times as large on the whole block.
-    let mut deflection = vec![0.0; body.schur.nrows()];
-    deflection[2] = 0.25;
-    DenseLu::new(&body.schur).solve_in_place(&mut deflection);
+    let mut force = vec![0.0; 3 * problem.grid.column_count()];
+    force[2] = 0.25;
+    let deflection = body.deflection(&force);
     let (mut rows, mut right) = (Vec::new(), Vec::new());
     for (column, (i, j)) in problem.grid.columns().enumerate() {
         let r = SIDE / bricks as f64 * (i as f64).hypot(j as f64);

@@ -8,6 +8,7 @@ use contact::equilibrium::ContactStatus;
 use contact::scene::{Load, Scene, hertz, signorini};
 use contact::tfeti::TornState;
 use nonsmooth::{Accuracy, Evaluation, ReducedObjective, StateSolver, Vector};
+use std::any::Any;
 use testset::kit::relative_difference;
 
 struct Outcome {
@@ -23,7 +24,8 @@ fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
     let objective = ReducedObjective::new(shape, cost);
     let state = objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
     let evaluation = objective.differentiate(control, &state).unwrap();
-    let displacement = state.torn().map(TornState::displacement).unwrap_or_default().to_vec();
+    let solution: &dyn Any = state.solution.as_ref();
+    let displacement = solution.downcast_ref().map(TornState::displacement).unwrap_or_default().to_vec();
     Outcome { evaluation, status: state.forces.status.clone(), opening: state.forces.opening.clone(), displacement }
 }
 

@@ -1,0 +1,122 @@
+//! What all subdomains of one size share: sparsity, scatter of element matrices, elimination order, fixing nodes.
+
+use crate::body::elasticity::Material;
+use crate::body::elasticity::brick::{DOFS, Nodes};
+use crate::body::elasticity::hex8;
+use crate::body::mesh::Subdomain;
+use crate::linear::FactorizationError;
+use crate::linear::cholesky::SymbolicFactor;
+use crate::linear::ordering::nested_dissection;
+use crate::linear::symmetric::LowerPattern;
+use std::sync::Arc;
+
+/// Pattern and scatter map of a box of bricks.
+#[derive(Debug)]
+pub struct LocalPattern {
+    /// A subdomain of this size at the origin.
+    pub shape: Subdomain,
+    /// Lower triangle of the stiffness matrix.
+    pub pattern: Arc<LowerPattern>,
+    /// Position of the lower entries (300 per brick) in the value array.
+    scatter: Vec<u32>,
+}
+
+impl LocalPattern {
+    /// The pattern of a box of `cells` bricks; `coupled` lists local nodes whose dofs are all coupled with each other in
+    /// addition (the fixing nodes).
+    pub fn new(cells: [usize; 3], coupled: &[usize]) -> Self {
+        let shape = Subdomain { first_cell: [0; 3], cells };
+        let nodes = shape.nodes();
+        let mut columns = vec![Vec::new(); shape.dof_count()];
+        let mut couple = |first: usize, second: usize| {
+            for column in 3 * first..3 * first + 3 {
+                columns[column].extend((3 * second..3 * second + 3).filter(|&row| row >= column));
+            }
+        };
+        for node in 0..shape.node_count() {
+            let position = shape.local_position(node);
+            let range = |axis: usize| position[axis].saturating_sub(1)..(position[axis] + 2).min(nodes[axis]);
+            for i in range(0) {
+                for j in range(1) {
+                    for k in range(2) {
+                        couple(node, shape.local_node([i, j, k]));
+                    }
+                }
+            }
+        }
+        for &first in coupled {
+            for &second in coupled {
+                couple(first, second);
+            }
+        }
+        let pattern = Arc::new(LowerPattern::from_columns(columns));
+        let mut local = Self { shape, pattern, scatter: Vec::new() };
+        local.scatter = local.bricks().flat_map(|brick| local.brick_positions(brick)).collect();
+        local
+    }
+
+    /// Local bricks (i, j, k) in the order of the scatter map.
+    pub fn bricks(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
+        let [n1, n2, n3] = self.shape.cells;
+        (0..n1 * n2 * n3).map(move |brick| [brick / (n2 * n3), brick / n3 % n2, brick % n3])
+    }
+
+    /// Local dofs of a brick in the order of [`hex8`].
+    pub fn brick_dofs(&self, [i, j, k]: [usize; 3]) -> [usize; DOFS] {
+        std::array::from_fn(|dof| {
+            let a = dof / 3;
+            3 * self.shape.local_node([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]) + dof % 3
+        })
+    }
+
+    fn brick_positions(&self, brick: [usize; 3]) -> Vec<u32> {
+        let dofs = self.brick_dofs(brick);
+        let mut positions = Vec::with_capacity(DOFS * (DOFS + 1) / 2);
+        for row in 0..DOFS {
+            for column in 0..=row {
+                let (upper, lower) = (dofs[row].max(dofs[column]), dofs[row].min(dofs[column]));
+                let position = self.pattern.position(upper, lower).expect("invariant: brick dofs are coupled");
+                positions.push(u32::try_from(position).expect("invariant: fewer than 2³² entries"));
+            }
+        }
+        positions
+    }
+
+    /// Values of the stiffness matrix for bricks with coordinates `nodes(local brick)`.
+    pub fn assemble(&self, material: &Material, nodes: impl Fn([usize; 3]) -> Nodes<f64>) -> Vec<f64> {
+        let mut values = vec![0.0; self.pattern.entry_count()];
+        let per_brick = DOFS * (DOFS + 1) / 2;
+        for (brick, positions) in self.bricks().zip(self.scatter.chunks_exact(per_brick)) {
+            let matrix = hex8::stiffness(&nodes(brick), material);
+            let mut position = positions.iter();
+            for (row, entries) in matrix.iter().enumerate() {
+                for (entry, &position) in entries[..=row].iter().zip(position.by_ref().take(row + 1)) {
+                    values[position as usize] += entry;
+                }
+            }
+        }
+        values
+    }
+
+    /// Elimination order by nested dissection, with the dofs of `last` nodes moved to the end.
+    pub fn elimination_order(&self, last: &[usize]) -> Vec<usize> {
+        let nodes = nested_dissection(self.shape.nodes());
+        let kept = nodes.into_iter().filter(|node| !last.contains(node));
+        kept.chain(last.iter().copied()).flat_map(|node| 3 * node..3 * node + 3).collect()
+    }
+
+    /// Symbolic factor for [`Self::elimination_order`].
+    ///
+    /// # Errors
+    /// [`FactorizationError`] when the analysis fails.
+    pub fn symbolic(&self, last: &[usize]) -> Result<Arc<SymbolicFactor>, FactorizationError> {
+        Ok(Arc::new(SymbolicFactor::new(Arc::clone(&self.pattern), self.elimination_order(last))?))
+    }
+}
+
+/// Three corners of a box of `cells` bricks that span a large triangle: enough to hold all rigid motions.
+pub fn fixing_nodes(cells: [usize; 3]) -> [usize; 3] {
+    let shape = Subdomain { first_cell: [0; 3], cells };
+    let [c1, c2, c3] = cells;
+    [shape.local_node([0, 0, 0]), shape.local_node([c1, c2, 0]), shape.local_node([c1, 0, c3])]
+}

@@ -1,0 +1,41 @@
+//! One shape of a problem before a contact solver works on it.
+
+use crate::body::mesh::Block;
+use crate::equilibrium::modes::{Motion, RigidScene};
+use crate::equilibrium::{ContactProblem, Stage};
+use crate::error::ContactError;
+
+/// The undeformed configuration of a shape, seen to have an equilibrium as rigid bodies.
+#[derive(Debug)]
+pub struct Configuration {
+    /// The bodies, lower first.
+    pub blocks: Vec<Block>,
+    /// The scene as the rigid body analysis sees it.
+    pub rigid: RigidScene,
+    /// Motions that nothing holds and that the load does not drive.
+    pub grounded: Vec<Motion>,
+    /// Initial gap per contact node, mm.
+    pub gaps: Vec<f64>,
+}
+
+impl Configuration {
+    /// The configuration of given controls.
+    ///
+    /// # Errors
+    /// [`ContactError::InvertedElement`], [`ContactError::NoEquilibrium`].
+    pub fn new(problem: &ContactProblem, controls: &[f64]) -> Result<Self, ContactError> {
+        Stage::Equilibrium.enter();
+        let blocks = problem.blocks(controls)?;
+        let rigid = problem.rigid_scene(&blocks);
+        let grounded = rigid.analyse(&problem.boundary)?;
+        let gaps = problem.gaps(&blocks[0]);
+        Ok(Self { blocks, rigid, grounded, gaps })
+    }
+
+    /// Force that residuals are relative to, N: the loads, and what a contact stiffness (N/mm) makes of the penetration.
+    /// Zero for bodies at rest.
+    pub fn load(&self, stiffness: f64) -> f64 {
+        let penetration: f64 = self.gaps.iter().map(|gap| (-gap).max(0.0)).sum();
+        self.rigid.total_load() + stiffness * penetration
+    }
+}

@@ -1,0 +1,91 @@
+//! What every contact solver offers: a state, its derivative, what is known about it.
+
+use crate::equilibrium::{
+    ContactProblem, ContactState, ContactWarmStart, Diagnosis, SolvedBody, SolverState, ValueError,
+};
+use crate::error::ContactError;
+use std::fmt;
+
+/// A solver of one contact problem.
+///
+/// A state belongs to the solver that found it: the state of another kind of solver does not compile.
+pub trait ContactSolver: fmt::Debug + Send + Sync {
+    /// What the solver keeps of a solved shape for derivative, diagnosis and displacements.
+    type State: SolverState;
+
+    /// The problem that is solved.
+    fn problem(&self) -> &ContactProblem;
+
+    /// Number of degrees of freedom of all bodies, and number of multipliers.
+    fn sizes(&self) -> [usize; 2];
+
+    /// What this solver did not need for its scene, in words.
+    fn left_out(&self) -> Option<&'static str>;
+
+    /// Solves one shape to a relative residual, from nothing or from a state of a similar shape. A start of another kind of
+    /// solver is not used.
+    ///
+    /// # Errors
+    /// [`ContactError`]: inverted elements, no equilibrium, no convergence.
+    fn solve(
+        &self,
+        controls: &[f64],
+        start: Option<&ContactWarmStart>,
+        tolerance: f64,
+    ) -> Result<ContactState<Self::State>, ContactError>;
+
+    /// Sensitivities of the heights of the contact nodes for a dual j = ∂J/∂λ in packed rows. `tolerance`: relative residual
+    /// of the adjoint, for solvers that iterate.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] from the adjoint, [`ContactError::NotFinite`] when it is singular.
+    fn sensitivities(
+        &self,
+        state: &Self::State,
+        direction: &[f64],
+        tolerance: f64,
+    ) -> Result<Sensitivities, ContactError>;
+
+    /// Contraction and condition at a solved shape.
+    ///
+    /// # Errors
+    /// [`ContactError`] from the linear systems.
+    fn diagnose(&self, state: &Self::State) -> Result<Diagnosis, ContactError>;
+
+    /// All bodies of a solved shape, lower first.
+    ///
+    /// # Errors
+    /// [`ContactError::ForeignState`] for a state of another mesh.
+    fn bodies(&self, state: &Self::State) -> Result<Vec<SolvedBody>, ContactError>;
+
+    /// Strain energy of all bodies, N·mm; none for a solver that keeps no displacements inside the bodies.
+    fn strain_energy(&self, state: &Self::State) -> Option<f64>;
+}
+
+/// Sensitivities of the heights of the contact nodes, and what they cost.
+#[derive(Debug, Clone)]
+pub struct Sensitivities {
+    /// ∂J/∂F per contact node, mm⁻¹ times the unit of J.
+    pub heights: Vec<f64>,
+    /// Products with the dual operator F; 0 for direct condensation.
+    pub applications: usize,
+    /// Seconds of the adjoint system.
+    pub adjoint_seconds: f64,
+    /// Seconds of the element sums.
+    pub shape_seconds: f64,
+    /// What the state's residual does to J.
+    pub value_error: ValueError,
+}
+
+impl Sensitivities {
+    /// Those of bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
+    pub(crate) fn at_rest(contact_nodes: usize) -> Self {
+        Self {
+            heights: vec![0.0; contact_nodes],
+            applications: 0,
+            adjoint_seconds: 0.0,
+            shape_seconds: 0.0,
+            value_error: ValueError::default(),
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Open, stick, slip.
+
+use serde::{Deserialize, Serialize};
+
+/// What a contact node does; method.md (3.2), (3.3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum ContactStatus {
+    /// No contact: λ_N = 0.
+    Open,
+    /// Closed, |λ_T| < 𝓕λ_N, no tangential jump.
+    Stick,
+    /// Closed, |λ_T| = 𝓕λ_N.
+    Slip,
+}
+
+/// Numbers of nodes per status.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct StatusCounts {
+    /// No contact.
+    pub open: usize,
+    /// Closed, no sliding.
+    pub stick: usize,
+    /// Closed, sliding.
+    pub slip: usize,
+}
+
+impl StatusCounts {
+    /// Counts a list of statuses.
+    pub fn of(statuses: &[ContactStatus]) -> Self {
+        let count = |status| statuses.iter().filter(|&&other| other == status).count();
+        Self { open: count(ContactStatus::Open), stick: count(ContactStatus::Stick), slip: count(ContactStatus::Slip) }
+    }
+}

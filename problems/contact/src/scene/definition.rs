@@ -1,0 +1,190 @@
+//! What a scene is made of, and what is allowed.
+
+use crate::body::elasticity::Material;
+use crate::body::mesh::{Face, Grid};
+use crate::error::SceneError;
+use crate::scene::CounterSurface;
+use crate::shape::{ShapeBounds, SplineKind, SplineSurface};
+use serde::{Deserialize, Serialize};
+
+/// Displacement components held at zero on a face of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Support {
+    /// The face.
+    pub face: Face,
+    /// Which of u₁, u₂, u₃ are zero there.
+    pub components: [bool; 3],
+}
+
+/// A constant traction on a face of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Load {
+    /// The face.
+    pub face: Face,
+    /// Traction, MPa.
+    pub traction: [f64; 3],
+}
+
+/// Material, supports and loads of one body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BodyScene {
+    /// Elastic constants.
+    pub material: Material,
+    /// Held faces.
+    pub supports: Vec<Support>,
+    /// Loaded faces.
+    pub loads: Vec<Load>,
+}
+
+impl BodyScene {
+    /// Components held at a node of this body.
+    pub fn held(&self, grid: &Grid, position: [usize; 3]) -> [bool; 3] {
+        let mut held = [false; 3];
+        for support in &self.supports {
+            if grid.is_on(support.face, position) {
+                for (held, component) in held.iter_mut().zip(support.components) {
+                    *held |= component;
+                }
+            }
+        }
+        held
+    }
+}
+
+/// An elastic body above the contact boundary.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct UpperBody {
+    /// Material, supports, loads.
+    pub body: BodyScene,
+    /// Height of its flat top, mm.
+    pub top: f64,
+}
+
+/// A contact problem with an optimizable lower body.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// Name for reports.
+    pub name: String,
+    /// Lengths a, b of the base, mm.
+    pub size: [f64; 2],
+    /// Bricks along x₁, x₂, x₃ of each body.
+    pub mesh: [usize; 3],
+    /// Subdomains along x₁, x₂, x₃ of each body.
+    pub subdomains: [usize; 3],
+    /// The body whose upper surface is optimized.
+    pub lower: BodyScene,
+    /// The elastic body above; none for a rigid obstacle.
+    pub upper: Option<UpperBody>,
+    /// F²: the obstacle, or the lower surface of the upper body.
+    pub counter_surface: CounterSurface,
+    /// Coulomb friction coefficient 𝓕.
+    pub friction: f64,
+    /// Kind of the spline surface.
+    pub surface: SplineKind,
+    /// Control points along x₁, x₂.
+    pub control_points: [usize; 2],
+    /// Constants of the admissible set.
+    pub bounds: ShapeBounds,
+    /// All controls at the start, mm.
+    pub start_height: f64,
+}
+
+impl Scene {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`SceneError`] naming the field, its value and what is allowed.
+    pub fn validate(&self) -> Result<(), SceneError> {
+        for (axis, (&mesh, &subdomains)) in self.mesh.iter().zip(&self.subdomains).enumerate() {
+            if mesh == 0 || mesh > 400 {
+                return Err(SceneError::out_of_range(
+                    format!("mesh (axis {})", axis + 1),
+                    mesh,
+                    "1 … 400 bricks per edge",
+                ));
+            }
+            if subdomains == 0 || !mesh.is_multiple_of(subdomains) {
+                let allowed = format!("a divisor of the {mesh} bricks per edge");
+                return Err(SceneError::out_of_range(format!("subdomains (axis {})", axis + 1), subdomains, allowed));
+            }
+        }
+        for (axis, &length) in self.size.iter().enumerate() {
+            if !(length > 0.0 && length.is_finite()) {
+                return Err(SceneError::out_of_range(
+                    format!("size (axis {})", axis + 1),
+                    length,
+                    "a finite length > 0 mm",
+                ));
+            }
+        }
+        if !(self.friction >= 0.0 && self.friction.is_finite()) {
+            return Err(SceneError::out_of_range("friction", self.friction, "a finite number ≥ 0"));
+        }
+        if !(self.start_height > 0.0 && self.start_height.is_finite()) {
+            return Err(SceneError::out_of_range("start height", self.start_height, "a finite height > 0 mm"));
+        }
+        let [a, b] = self.size;
+        for [x1, x2] in [[0.0, 0.0], [a, 0.0], [0.0, b], [a, b]] {
+            let height = self.counter_surface.height(x1, x2);
+            if !height.is_finite() {
+                let field = format!("counter surface at ({x1}, {x2})");
+                return Err(SceneError::out_of_range(field, height, "finite heights over the whole base"));
+            }
+        }
+        self.spline_surface()?;
+        Self::validate_body("lower body", &self.lower, Face::Top)?;
+        if let Some(upper) = &self.upper {
+            Self::validate_body("upper body", &upper.body, Face::Bottom)?;
+        }
+        Ok(())
+    }
+
+    fn validate_body(name: &str, body: &BodyScene, contact: Face) -> Result<(), SceneError> {
+        for load in &body.loads {
+            if let Some(value) = load.traction.iter().find(|value| !value.is_finite()) {
+                return Err(SceneError::out_of_range(format!("{name}: traction"), value, "finite numbers (MPa)"));
+            }
+            if load.face == contact {
+                return Err(SceneError::out_of_range(
+                    format!("{name}: loaded face"),
+                    format!("{:?}", load.face),
+                    "any face but the contact boundary",
+                ));
+            }
+        }
+        if let Some(support) = body.supports.iter().find(|support| support.face == contact) {
+            return Err(SceneError::out_of_range(
+                format!("{name}: supported face"),
+                format!("{:?}", support.face),
+                "any face but the contact boundary",
+            ));
+        }
+        let vertical = |face: Face| !matches!(face, Face::Bottom | Face::Top);
+        if body.supports.iter().any(|support| support.components[2] && vertical(support.face)) {
+            return Err(SceneError::out_of_range(
+                format!("{name}: support"),
+                "u₃ held on a vertical face",
+                "u₃ held on the face opposite to the contact boundary only (it would hold the contact normal)",
+            ));
+        }
+        Ok(())
+    }
+
+    /// The bodies, lower first, for changes.
+    pub fn bodies_mut(&mut self) -> impl Iterator<Item = &mut BodyScene> {
+        std::iter::once(&mut self.lower).chain(self.upper.as_mut().map(|upper| &mut upper.body))
+    }
+
+    /// The spline surface of the contact boundary.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] when there are too few control points for the degree.
+    pub fn spline_surface(&self) -> Result<SplineSurface, SceneError> {
+        SplineSurface::new(self.surface, self.control_points)
+    }
+
+    /// The grid that both bodies share.
+    pub fn grid(&self) -> Grid {
+        Grid { cells: self.mesh, size: self.size }
+    }
+}

@@ -1,0 +1,120 @@
+//! Total FETI as a contact solver: semismooth Newton, or the paper's successive approximations.
+
+use crate::equilibrium::{
+    ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, SolverState,
+};
+use crate::error::ContactError;
+use crate::tfeti::{
+    AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornSolver,
+    TornState,
+};
+use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
+
+/// How the dual problem is solved. The state is the same, whichever method found it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DualMethod {
+    /// Semismooth Newton.
+    Newton(Recycling),
+    /// Successive approximations of the slip bound, dual QPs by SMALSE-M and MPGP.
+    SuccessiveApproximations,
+}
+
+/// A contact problem torn into subdomains, with the method for its dual problem.
+#[derive(Debug)]
+pub struct TotalFeti {
+    solver: TornSolver,
+    method: DualMethod,
+}
+
+impl TotalFeti {
+    /// Tears the bodies of a problem.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when a symbolic analysis fails.
+    pub fn new(
+        problem: Arc<ContactProblem>,
+        preconditioner: PreconditionerKind,
+        method: DualMethod,
+    ) -> Result<Self, ContactError> {
+        Ok(Self { solver: TornSolver::new(problem, preconditioner)?, method })
+    }
+}
+
+impl SolverState for TornState {
+    fn warm_start(&self) -> ContactWarmStart {
+        ContactWarmStart::Multipliers(self.multipliers().to_vec())
+    }
+}
+
+impl ContactSolver for TotalFeti {
+    type State = TornState;
+
+    fn problem(&self) -> &ContactProblem {
+        self.solver.problem()
+    }
+
+    fn sizes(&self) -> [usize; 2] {
+        [self.solver.model().dof_count, self.solver.model().constraints.row_count()]
+    }
+
+    fn left_out(&self) -> Option<&'static str> {
+        (self.solver.model().constraints.gluing_count == 0).then_some("gluing (one subdomain per body)")
+    }
+
+    fn solve(
+        &self,
+        controls: &[f64],
+        start: Option<&ContactWarmStart>,
+        tolerance: f64,
+    ) -> Result<ContactState<TornState>, ContactError> {
+        let start = match start {
+            Some(ContactWarmStart::Multipliers(multipliers)) => Some(multipliers.as_slice()),
+            _ => None,
+        };
+        let (solution, forces, work, counts) = match self.method {
+            DualMethod::Newton(recycling) => {
+                let settings = NewtonSettings { recycling, ..NewtonSettings::to(tolerance) };
+                let (solution, forces, work) = self.solver.solve_with(controls, start, &settings)?;
+                (solution, forces, work, None)
+            }
+            DualMethod::SuccessiveApproximations => {
+                let settings = AugmentedLagrangianSettings::to(tolerance);
+                let (solution, forces, work, counts) = self
+                    .solver
+                    .solve_by(controls, |contact| contact.solve_by_successive_approximations(start, &settings))?;
+                (solution, forces, work, Some(counts))
+            }
+        };
+        Ok(ContactState {
+            forces,
+            load: solution.load(),
+            contraction: counts.map(|counts| counts.contraction).filter(|f| *f > 0.0),
+            stages: Some(solution.seconds()),
+            work: counts.map_or(work, |counts| counts.added_to(work)),
+            adjoint_applications: AtomicUsize::new(0),
+            solution,
+        })
+    }
+
+    fn sensitivities(
+        &self,
+        state: &TornState,
+        direction: &[f64],
+        tolerance: f64,
+    ) -> Result<Sensitivities, ContactError> {
+        self.solver.sensitivities(state, direction, tolerance)
+    }
+
+    fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {
+        self.solver.diagnose(state)
+    }
+
+    fn bodies(&self, state: &TornState) -> Result<Vec<SolvedBody>, ContactError> {
+        self.solver.bodies(state)
+    }
+
+    fn strain_energy(&self, state: &TornState) -> Option<f64> {
+        Some(self.solver.strain_energy(state))
+    }
+}

@@ -1,0 +1,129 @@
+//! Contraction factor of a torn state by Arnoldi's method on Φ′.
+//!
+//! ```text
+//! dΨ ↦ 𝓕 dλ_N:   λ = Q y + e dΨ,   (Qᵀ F Q + Δ) y − Qᵀ Gᵀ a = −Qᵀ F e dΨ,   G λ = 0          (Tresca: slip bounds given)
+//! ```
+//! Every step is one projected conjugate gradient solve; the radius is that of the Hessenberg matrix, exact (up to the
+//! accuracy of the solves) when there are no more sliding nodes than steps.
+
+use crate::equilibrium::diagnosis::{Diagnosis, spectral_radius};
+use crate::equilibrium::law::Linearization;
+use crate::error::ContactError;
+use crate::linear::pcg::pcg;
+use crate::linear::vector::{add_scaled, dot, norm};
+use crate::tfeti::dual::{ActiveSet, Friction, TornContact};
+
+/// Arnoldi steps.
+const MAX_STEPS: usize = 12;
+/// Relative length of a new basis vector that counts as zero: the space is invariant.
+const INVARIANT: f64 = 1e-4;
+/// Relative reduction of the linear solves: the estimate is meant to two digits.
+const REDUCTION: f64 = 1e-5;
+/// Times its target that the residual of a linear solve may be.
+const MAX_MISS: f64 = 1e3;
+/// Krylov iterations allowed per solve.
+const MAX_KRYLOV: usize = 600;
+
+impl TornContact<'_> {
+    /// Estimates the contraction factor at given derivatives.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] when a linear solve does not reach its tolerance, [`ContactError::Unheld`],
+    /// [`ContactError::NotFinite`].
+    pub fn diagnose(&self, linearizations: &[Linearization]) -> Result<Diagnosis, ContactError> {
+        let sliding: Vec<(usize, usize, [f64; 2])> = self
+            .boundary
+            .points
+            .iter()
+            .zip(linearizations)
+            .filter_map(|(point, linearization)| match linearization {
+                Linearization::Slip { direction, .. } => Some((point.start, point.tangents.len(), *direction)),
+                _ => None,
+            })
+            .collect();
+        let start = (0..sliding.len()).map(|node| 1.0 + 0.5 * (1.7 * node as f64).sin()).collect::<Vec<f64>>();
+        let length = norm(&start);
+        let mut basis = vec![start.into_iter().map(|entry| entry / length).collect::<Vec<f64>>()];
+        let steps = MAX_STEPS.min(sliding.len());
+        let mut hessenberg = vec![0.0; steps * steps];
+        let mut taken = 0;
+        if steps == 0 {
+            return Ok(Diagnosis { contraction: 0.0, condition: None });
+        }
+        let active = self.active_set(linearizations.to_vec(), Friction::Tresca)?;
+        while taken < steps {
+            let mut image = self.bound_change(&active, &sliding, &basis[taken])?;
+            let size = norm(&image);
+            for _pass in 0..2 {
+                for (row, vector) in basis.iter().enumerate() {
+                    let projection = dot(vector, &image);
+                    hessenberg[row * steps + taken] += projection;
+                    add_scaled(&mut image, -projection, vector);
+                }
+            }
+            taken += 1;
+            let rest = norm(&image);
+            if taken == steps || rest.is_nan() || rest <= INVARIANT * size {
+                break;
+            }
+            hessenberg[taken * steps + taken - 1] = rest;
+            basis.push(image.into_iter().map(|entry| entry / rest).collect());
+        }
+        let leading: Vec<f64> = (0..taken * taken).map(|i| hessenberg[i / taken * steps + i % taken]).collect();
+        let contraction = spectral_radius(taken, &leading);
+        if !contraction.is_finite() {
+            return Err(ContactError::NotFinite { what: "contraction factor" });
+        }
+        Ok(Diagnosis { contraction, condition: None })
+    }
+
+    /// Φ′ dΨ over the sliding nodes (scaled rows; all rows of a node share their scale).
+    fn bound_change(
+        &self,
+        active: &ActiveSet<'_>,
+        sliding: &[(usize, usize, [f64; 2])],
+        bounds: &[f64],
+    ) -> Result<Vec<f64>, ContactError> {
+        let rows = &active.rows;
+        let mut driven = self.zeros();
+        for ((start, count, direction), bound) in sliding.iter().zip(bounds) {
+            for tangent in 0..*count {
+                driven.contact_mut()[start + 1 + tangent] = bound * direction[tangent];
+            }
+        }
+        let resultant: Vec<f64> = self.space.resultant(&driven).into_iter().map(|entry| -entry).collect();
+        let mut unknowns = vec![0.0; rows.dimension()];
+        active.enforce(&mut unknowns, &resultant);
+        let mut multipliers = rows.trial(&unknowns);
+        add_scaled(&mut multipliers, 1.0, &driven);
+        let image = self.operator.apply(&multipliers);
+        let mut residual: Vec<f64> = rows.test_transposed(&image).into_iter().map(|entry| -entry).collect();
+        rows.add_compliance(&unknowns, &mut residual, -1.0);
+        active.project(&mut residual);
+        let target = REDUCTION * norm(&residual);
+        let krylov = pcg(
+            &residual,
+            target,
+            MAX_KRYLOV,
+            |v| self.precondition(rows, v, |z| active.project(z)),
+            |z| {
+                let mut product = rows.test_transposed(&self.operator.apply(&rows.trial(z)));
+                rows.add_compliance(z, &mut product, 1.0);
+                active.project(&mut product);
+                product
+            },
+        );
+        if krylov.residual.is_nan() || krylov.residual > MAX_MISS * target {
+            return Err(ContactError::NotConverged {
+                solver: "Tresca problem of the contraction factor",
+                residual: krylov.residual * REDUCTION / target,
+                tolerance: REDUCTION,
+                iterations: krylov.iterations,
+                history: vec![krylov.residual],
+            });
+        }
+        add_scaled(&mut unknowns, 1.0, &krylov.solution);
+        let multipliers = rows.trial(&unknowns);
+        Ok(sliding.iter().map(|(start, ..)| self.boundary.friction * multipliers.contact()[*start]).collect())
+    }
+}

@@ -1,0 +1,202 @@
+//! The active rows of a Newton step: λ = T y, tested with Qᵀ.
+//!
+//! ```text
+//! unknowns y:   λ_E;  per closed node λ_N;  per stick node λ_T;  per slip node λ_p/w
+//! T = Q + 𝓕 e⊗n,    Q: selection with w p on the slip rows,  w = √β;        T = Q where the slip bounds are given (Tresca)
+//! Qᵀ F T y + Δ y − Qᵀ Gᵀ a = r,     Δ = (1 − β)/c on the slip rows, 0 elsewhere
+//! preconditioner:   Qᵀ (B_D S B_Dᵀ) Q + Z,   Z = (1 − β) c on the slip rows
+//! ```
+//! With the slip compliance δ = (1 − β)/(cβ) one has w = (1 + δc)^(−1/2) = √β, so Δ = w²δ, and Z is that spring in series.
+
+use crate::equilibrium::ContactBoundary;
+use crate::equilibrium::law::Linearization;
+use crate::tfeti::torn::RowVector;
+
+/// What bounds the traction of a slip node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Friction {
+    /// The normal force of the node times 𝓕.
+    Coulomb,
+    /// A given bound, which does not change with the unknowns.
+    Tresca,
+}
+
+/// Row structure of one choice of derivatives.
+#[derive(Debug)]
+pub struct ActiveRows<'a> {
+    boundary: &'a ContactBoundary,
+    equality_count: usize,
+    linearizations: Vec<Linearization>,
+    starts: Vec<usize>,
+    dimension: usize,
+    stiffness: f64,
+    /// 𝓕 in T.
+    trial_friction: f64,
+}
+
+impl<'a> ActiveRows<'a> {
+    /// The rows of given derivatives; `stiffness` is c, N/mm.
+    pub fn new(
+        boundary: &'a ContactBoundary,
+        equality_count: usize,
+        linearizations: Vec<Linearization>,
+        stiffness: f64,
+        friction: Friction,
+    ) -> Self {
+        let mut dimension = equality_count;
+        let mut starts = Vec::with_capacity(linearizations.len());
+        for (point, linearization) in boundary.points.iter().zip(&linearizations) {
+            starts.push(dimension);
+            dimension += match linearization {
+                Linearization::Open => 0,
+                Linearization::Stick => point.row_count(),
+                Linearization::Slip { .. } => point.tangents.len(),
+            };
+        }
+        let trial_friction = match friction {
+            Friction::Coulomb => boundary.friction,
+            Friction::Tresca => 0.0,
+        };
+        Self { boundary, equality_count, linearizations, starts, dimension, stiffness, trial_friction }
+    }
+
+    /// Number of unknowns y.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Calls `visit(node's first contact row, its number of rows, its first unknown, derivative)` for every closed node.
+    fn closed_nodes(&self, mut visit: impl FnMut(usize, usize, usize, &Linearization)) {
+        for ((point, linearization), &start) in self.boundary.points.iter().zip(&self.linearizations).zip(&self.starts)
+        {
+            if *linearization != Linearization::Open {
+                visit(point.start, point.row_count(), start, linearization);
+            }
+        }
+    }
+
+    /// T y.
+    pub fn trial(&self, unknowns: &[f64]) -> RowVector {
+        self.expand(unknowns, self.trial_friction)
+    }
+
+    /// Q y.
+    pub fn test(&self, unknowns: &[f64]) -> RowVector {
+        self.expand(unknowns, 0.0)
+    }
+
+    /// Tᵀ r.
+    pub fn trial_transposed(&self, rows: &RowVector) -> Vec<f64> {
+        self.restrict(rows, self.trial_friction)
+    }
+
+    /// Qᵀ r.
+    pub fn test_transposed(&self, rows: &RowVector) -> Vec<f64> {
+        self.restrict(rows, 0.0)
+    }
+
+    /// (Q + friction·e⊗n) y.
+    fn expand(&self, unknowns: &[f64], friction: f64) -> RowVector {
+        let mut result = vec![0.0; self.equality_count + self.boundary.row_count];
+        let (equality, rows) = result.split_at_mut(self.equality_count);
+        equality.copy_from_slice(&unknowns[..self.equality_count]);
+        self.closed_nodes(|row, count, unknown, linearization| match *linearization {
+            Linearization::Slip { direction, ratio } => {
+                rows[row] = unknowns[unknown];
+                for tangent in 1..count {
+                    rows[row + tangent] = friction * unknowns[unknown] * direction[tangent - 1];
+                }
+                if count == 3 {
+                    let along = ratio.sqrt() * unknowns[unknown + 1];
+                    rows[row + 1] -= along * direction[1];
+                    rows[row + 2] += along * direction[0];
+                }
+            }
+            _ => rows[row..row + count].copy_from_slice(&unknowns[unknown..unknown + count]),
+        });
+        RowVector::new(result, self.equality_count)
+    }
+
+    /// (Q + friction·e⊗n)ᵀ r.
+    fn restrict(&self, all: &RowVector, friction: f64) -> Vec<f64> {
+        let (equality, rows) = all.split();
+        let mut reduced = self.with_equality_rows(equality);
+        self.closed_nodes(|row, count, unknown, linearization| match *linearization {
+            Linearization::Slip { direction, ratio } => {
+                let along: f64 = (1..count).map(|tangent| direction[tangent - 1] * rows[row + tangent]).sum();
+                reduced[unknown] = rows[row] + friction * along;
+                if count == 3 {
+                    reduced[unknown + 1] = ratio.sqrt() * (direction[0] * rows[row + 2] - direction[1] * rows[row + 1]);
+                }
+            }
+            _ => reduced[unknown..unknown + count].copy_from_slice(&rows[row..row + count]),
+        });
+        reduced
+    }
+
+    /// The unknowns y that repeat given multipliers: T y has their values on B_E, their normal forces on the closed nodes,
+    /// their tangential forces on the stick nodes, and their part across the slip direction on the slip nodes.
+    pub fn unknowns_of(&self, multipliers: &RowVector) -> Vec<f64> {
+        let (equality, rows) = multipliers.split();
+        let mut unknowns = self.with_equality_rows(equality);
+        self.closed_nodes(|row, count, unknown, linearization| match *linearization {
+            Linearization::Slip { direction, ratio } => {
+                unknowns[unknown] = rows[row];
+                if count == 3 && ratio > 0.0 {
+                    let along = direction[0] * rows[row + 2] - direction[1] * rows[row + 1];
+                    unknowns[unknown + 1] = along / ratio.sqrt();
+                }
+            }
+            _ => unknowns[unknown..unknown + count].copy_from_slice(&rows[row..row + count]),
+        });
+        unknowns
+    }
+
+    /// Unknowns with given values on B_E, zero elsewhere.
+    fn with_equality_rows(&self, equality: &[f64]) -> Vec<f64> {
+        let mut unknowns = vec![0.0; self.dimension];
+        unknowns[..self.equality_count].copy_from_slice(equality);
+        unknowns
+    }
+
+    /// Adds `factor`·D y for a diagonal D that is `value(β)` on the slip rows and 0 elsewhere.
+    fn add_slip_diagonal(&self, reduced: &[f64], result: &mut [f64], factor: f64, value: impl Fn(f64) -> f64) {
+        self.closed_nodes(|_, count, unknown, linearization| {
+            if let (Linearization::Slip { ratio, .. }, 3) = (linearization, count) {
+                result[unknown + 1] += factor * value(*ratio) * reduced[unknown + 1];
+            }
+        });
+    }
+
+    /// result += factor·Δ y.
+    pub fn add_compliance(&self, unknowns: &[f64], result: &mut [f64], factor: f64) {
+        self.add_slip_diagonal(unknowns, result, factor, |ratio| (1.0 - ratio) / self.stiffness);
+    }
+
+    /// result += Z y.
+    pub fn add_spring(&self, unknowns: &[f64], result: &mut [f64]) {
+        self.add_slip_diagonal(unknowns, result, 1.0, |ratio| (1.0 - ratio) * self.stiffness);
+    }
+
+    /// Calls `visit(column of T, column of Q)` for every contact unknown; columns are combinations (row of B, weight).
+    pub fn contact_columns(&self, mut visit: impl FnMut(&[(usize, f64)], &[(usize, f64)])) {
+        self.closed_nodes(|contact_row, count, _, linearization| {
+            let row = self.equality_count + contact_row;
+            match *linearization {
+                Linearization::Slip { direction, ratio } => {
+                    let mut trial = vec![(row, 1.0)];
+                    let tangents =
+                        (1..count).map(|tangent| (row + tangent, self.trial_friction * direction[tangent - 1]));
+                    trial.extend(tangents);
+                    visit(&trial, &[(row, 1.0)]);
+                    if count == 3 {
+                        let weight = ratio.sqrt();
+                        let column = [(row + 1, -weight * direction[1]), (row + 2, weight * direction[0])];
+                        visit(&column, &column);
+                    }
+                }
+                _ => (row..row + count).for_each(|row| visit(&[(row, 1.0)], &[(row, 1.0)])),
+            }
+        });
+    }
+}

@@ -1,0 +1,98 @@
+//! An active set: its rows, and the oblique projector that keeps its directions in equilibrium.
+//!
+//! ```text
+//! P = I − Gqᵀ (G_T Gqᵀ)⁻¹ G_T,   Gq = G Q,  G_T = G T      (the orthogonal projector when T = Q)
+//! ```
+//! One projector serves both sides: it removes the rigid amplitudes on the left and keeps G T y = 0 on the right. The
+//! adjoint system has its transpose.
+
+use crate::error::ContactError;
+use crate::linear::dense::DenseLu;
+use crate::linear::vector::norm;
+use crate::tfeti::dual::active_rows::ActiveRows;
+use crate::tfeti::dual::coarse_space::CoarseSpace;
+
+/// The rows of an active set that holds all rigid motions, with its factored coarse matrix G_T Gqᵀ.
+#[derive(Debug)]
+pub struct ActiveSet<'a> {
+    /// Its rows: unknowns y, trial map T, test map Q.
+    pub rows: ActiveRows<'a>,
+    space: &'a CoarseSpace,
+    coarse: DenseLu,
+}
+
+/// Pivot ratio of a coarse matrix that counts as singular.
+const SINGULAR: f64 = 1e-13;
+
+impl<'a> ActiveSet<'a> {
+    /// Factors the coarse matrix of given rows.
+    ///
+    /// # Errors
+    /// [`ContactError::Unheld`] when the rows leave a rigid motion free.
+    pub fn new(space: &'a CoarseSpace, rows: ActiveRows<'a>) -> Result<Self, ContactError> {
+        let mut matrix = space.fixed_part().clone();
+        rows.contact_columns(|trial, test| {
+            let (trial, test) = (space.combine(trial), space.combine(test));
+            for &(j, right) in &test {
+                for &(i, left) in &trial {
+                    matrix[(i, j)] += left * right;
+                }
+            }
+        });
+        let coarse = DenseLu::new(&matrix);
+        let pivot_ratio = coarse.pivot_ratio();
+        if pivot_ratio < SINGULAR {
+            return Err(ContactError::Unheld { pivot_ratio, resultant: norm(space.resultants()) });
+        }
+        Ok(Self { rows, space, coarse })
+    }
+
+    /// a with Gqᵀ a closest to −r: the rigid amplitudes that a reduced residual r asks for.
+    pub fn amplitudes(&self, residual: &[f64]) -> Vec<f64> {
+        let mut amplitudes = self.space.resultant(&self.rows.trial(residual));
+        self.coarse.solve_in_place(&mut amplitudes);
+        amplitudes.iter_mut().for_each(|entry| *entry = -*entry);
+        amplitudes
+    }
+
+    /// v ← P v.
+    pub fn project(&self, v: &mut [f64]) {
+        let amplitudes = self.amplitudes(v);
+        self.add_rigid(&amplitudes, v);
+    }
+
+    /// v += Gqᵀ a.
+    pub fn add_rigid(&self, amplitudes: &[f64], v: &mut [f64]) {
+        let rigid = self.rows.test_transposed(&self.space.jumps(amplitudes));
+        for (v, rigid) in v.iter_mut().zip(&rigid) {
+            *v += rigid;
+        }
+    }
+
+    /// y += Gqᵀ (G_T Gqᵀ)⁻¹ (target − G T y): the smallest change after which T y has the given resultants.
+    pub fn enforce(&self, y: &mut [f64], target: &[f64]) {
+        let mut defect = self.space.resultant(&self.rows.trial(y));
+        for (defect, target) in defect.iter_mut().zip(target) {
+            *defect = target - *defect;
+        }
+        self.coarse.solve_in_place(&mut defect);
+        self.add_rigid(&defect, y);
+    }
+
+    /// Amplitudes b of the adjoint: −(Gq G_Tᵀ)⁻¹ Gq r.
+    pub fn adjoint_amplitudes(&self, residual: &[f64]) -> Vec<f64> {
+        let mut amplitudes = self.space.resultant(&self.rows.test(residual));
+        self.coarse.solve_transpose_in_place(&mut amplitudes);
+        amplitudes.iter_mut().for_each(|entry| *entry = -*entry);
+        amplitudes
+    }
+
+    /// v ← Pᵀ v.
+    pub fn project_adjoint(&self, v: &mut [f64]) {
+        let amplitudes = self.adjoint_amplitudes(v);
+        let rigid = self.rows.trial_transposed(&self.space.jumps(&amplitudes));
+        for (v, rigid) in v.iter_mut().zip(&rigid) {
+            *v += rigid;
+        }
+    }
+}

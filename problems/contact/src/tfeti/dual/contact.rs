@@ -1,0 +1,148 @@
+//! The contact problem of one shape in the multipliers, whatever method solves it.
+//!
+//! ```text
+//! w = B u − g = d − Fλ + Gᵀa,    d = B K⁺ f − g
+//! residual:  (c w_E,  λ − Π(λ + c w)),     G λ = e in every iterate
+//! ```
+
+use crate::equilibrium::ContactBoundary;
+use crate::equilibrium::certificate::projection_residual;
+use crate::equilibrium::law::Linearization;
+use crate::error::ContactError;
+use crate::linear::vector::{add_scaled, norm};
+use crate::tfeti::dual::active_rows::{ActiveRows, Friction};
+use crate::tfeti::dual::active_set::ActiveSet;
+use crate::tfeti::dual::coarse_space::CoarseSpace;
+use crate::tfeti::dual::iterate::{Iterate, TornSolution};
+use crate::tfeti::dual::operator::{DualOperator, Precision};
+use crate::tfeti::dual::preconditioner::Preconditioner;
+use crate::tfeti::torn::RowVector;
+
+/// Everything that a method works with, for one shape.
+#[derive(Debug)]
+pub struct TornContact<'a> {
+    /// F.
+    pub(crate) operator: DualOperator<'a>,
+    /// G and e.
+    pub(crate) space: &'a CoarseSpace,
+    /// Preconditioner of F.
+    pub(crate) preconditioner: Preconditioner<'a>,
+    /// Contact nodes.
+    pub(crate) boundary: &'a ContactBoundary,
+    /// d.
+    pub(crate) constant: RowVector,
+    /// Initial gaps of the contact nodes, mm.
+    pub(crate) gaps: &'a [f64],
+    /// c, N/mm.
+    pub(crate) stiffness: f64,
+    /// Force that residuals are relative to, N.
+    pub(crate) load: f64,
+    /// Precision of products with search directions.
+    pub(crate) precision: Precision,
+}
+
+impl<'a> TornContact<'a> {
+    /// The problem of a factored shape with initial gaps (mm); `stiffness` is c (N/mm), `load` scales residuals (N).
+    pub fn new(
+        operator: DualOperator<'a>,
+        space: &'a CoarseSpace,
+        preconditioner: Preconditioner<'a>,
+        gaps: &'a [f64],
+        [stiffness, load]: [f64; 2],
+        precision: Precision,
+    ) -> Self {
+        let (boundary, constraints) = (&operator.model.problem.boundary, &operator.model.constraints);
+        let mut constant = operator.gather(&operator.loaded_displacement());
+        let nodes = boundary.points.iter().zip(&constraints.normalisation);
+        for ((point, nu), gap) in nodes.zip(gaps) {
+            constant.contact_mut()[point.start] -= gap / nu;
+        }
+        Self { operator, space, preconditioner, boundary, constant, gaps, stiffness, load, precision }
+    }
+
+    /// The zero vector over all rows.
+    pub(crate) fn zeros(&self) -> RowVector {
+        self.operator.model.constraints.zeros()
+    }
+
+    /// The iterate of given multipliers, their image and amplitudes.
+    pub(crate) fn iterate(&self, multipliers: RowVector, image: RowVector, amplitudes: Vec<f64>) -> Iterate {
+        let mut jumps = self.space.jumps(&amplitudes);
+        for ((jump, d), image) in jumps.iter_mut().zip(self.constant.iter()).zip(image.iter()) {
+            *jump += d - image;
+        }
+        Iterate { multipliers, image, amplitudes, jumps }
+    }
+
+    /// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.
+    pub(crate) fn at_rest(&self) -> TornSolution {
+        let iterate = self.iterate(self.zeros(), self.zeros(), vec![0.0; self.space.resultants().len()]);
+        let residual = self.residual(&iterate);
+        self.solution(iterate, residual, 0)
+    }
+
+    /// What a method returns that ends at an iterate.
+    pub(crate) fn solution(&self, iterate: Iterate, residual: f64, steps: usize) -> TornSolution {
+        let linearizations = self.linearize(&iterate);
+        TornSolution { iterate, linearizations, residual, steps }
+    }
+
+    /// |(c w_E, λ − Π(λ + c w))|₂ over the load.
+    pub(crate) fn residual(&self, iterate: &Iterate) -> f64 {
+        let glued = self.stiffness * norm(iterate.jumps.split().0);
+        glued.hypot(norm(&self.law_residual(iterate))) / self.load
+    }
+
+    /// λ − Π(λ + c w) over the packed contact rows.
+    pub(crate) fn law_residual(&self, iterate: &Iterate) -> Vec<f64> {
+        projection_residual(self.boundary, iterate.multipliers.contact(), iterate.jumps.contact(), self.stiffness)
+    }
+
+    /// The projection arguments x = λ + c w over the packed contact rows.
+    pub(crate) fn arguments(&self, iterate: &Iterate) -> Vec<f64> {
+        let mut arguments = iterate.multipliers.contact().to_vec();
+        add_scaled(&mut arguments, self.stiffness, iterate.jumps.contact());
+        arguments
+    }
+
+    /// The derivative selected at every contact node.
+    pub(crate) fn linearize(&self, iterate: &Iterate) -> Vec<Linearization> {
+        let arguments = self.arguments(iterate);
+        let points = self.boundary.points.iter();
+        let range = points.map(|point| point.start..point.start + point.row_count());
+        range.map(|rows| Linearization::at(&arguments[rows], self.boundary.friction)).collect()
+    }
+
+    /// The rows of given derivatives.
+    pub(crate) fn rows(&self, linearizations: Vec<Linearization>, friction: Friction) -> ActiveRows<'_> {
+        let equality_count = self.operator.model.constraints.equality_count;
+        ActiveRows::new(self.boundary, equality_count, linearizations, self.stiffness, friction)
+    }
+
+    /// The active set of given derivatives.
+    ///
+    /// # Errors
+    /// [`ContactError::Unheld`] when it leaves a rigid motion free.
+    pub(crate) fn active_set(
+        &self,
+        linearizations: Vec<Linearization>,
+        friction: Friction,
+    ) -> Result<ActiveSet<'_>, ContactError> {
+        ActiveSet::new(self.space, self.rows(linearizations, friction))
+    }
+
+    /// d − F λ for an image F λ.
+    pub(crate) fn rest(&self, image: &RowVector) -> RowVector {
+        let mut rest = self.constant.clone();
+        add_scaled(&mut rest, -1.0, image);
+        rest
+    }
+
+    /// (Qᵀ M Q + Z) v, projected as the system that it preconditions.
+    pub(crate) fn precondition(&self, rows: &ActiveRows<'_>, v: &[f64], project: impl Fn(&mut [f64])) -> Vec<f64> {
+        let mut z = rows.test_transposed(&self.preconditioner.apply(&rows.test(v)));
+        rows.add_spring(v, &mut z);
+        project(&mut z);
+        z
+    }
+}

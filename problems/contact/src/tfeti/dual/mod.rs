@@ -1,0 +1,24 @@
+//! The dual problem of one shape: find multipliers λ and rigid amplitudes a.
+//!
+//! ```text
+//! TornSystem ─┬─ operator: F λ ────────────────┐
+//!             ├─ coarse space: G, e, Gᵀ a ─────┼─▶ TornContact: residual of (λ, a), derivatives, active sets
+//!             └─ preconditioner: B_D S B_Dᵀ ───┘
+//! derivatives ─ active rows: T, Q ─ active set: (T, Q) with its projector P
+//! ```
+
+mod active_rows;
+mod active_set;
+mod coarse_space;
+mod contact;
+mod iterate;
+mod operator;
+mod preconditioner;
+
+pub use active_rows::{ActiveRows, Friction};
+pub use active_set::ActiveSet;
+pub use coarse_space::CoarseSpace;
+pub use contact::TornContact;
+pub use iterate::{Iterate, TornSolution};
+pub use operator::{DualOperator, Precision};
+pub use preconditioner::Preconditioner;

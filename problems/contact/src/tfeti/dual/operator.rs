@@ -1,0 +1,130 @@
+//! F = B K⁺ Bᵀ and the products around it; subdomains in parallel, sums in a fixed order.
+
+use crate::linear::vector::add_scaled;
+use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, TornVector};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Precision of the products with F inside Krylov spaces; residuals and certificates are always double.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Precision {
+    /// All products in double precision.
+    Double,
+    /// Subdomain solves of search directions in single precision (1.3 to 1.7 times faster), residuals replaced by double
+    /// products whenever they have fallen by four digits.
+    #[default]
+    Mixed,
+}
+
+/// The dual operator of one shape; counts its applications.
+#[doc(alias = "Delassus")]
+#[derive(Debug)]
+pub struct DualOperator<'a> {
+    /// What does not depend on the shape.
+    pub model: &'a TornModel,
+    /// The factored subdomains.
+    pub system: &'a TornSystem,
+    applications: AtomicUsize,
+}
+
+impl<'a> DualOperator<'a> {
+    /// The operator of a factored system.
+    pub fn new(model: &'a TornModel, system: &'a TornSystem) -> Self {
+        Self { model, system, applications: AtomicUsize::new(0) }
+    }
+
+    /// Products F·x so far, in either precision.
+    pub fn applications(&self) -> usize {
+        self.applications.load(Ordering::Relaxed)
+    }
+
+    /// F λ.
+    pub fn apply(&self, multipliers: &RowVector) -> RowVector {
+        self.applications.fetch_add(1, Ordering::Relaxed);
+        let mut torn = self.scatter(multipliers);
+        self.solve_subdomains(&mut torn);
+        self.gather(&torn)
+    }
+
+    /// F of a search direction, in the precision asked for.
+    pub fn apply_direction(&self, direction: &RowVector, precision: Precision) -> RowVector {
+        match precision {
+            Precision::Double => self.apply(direction),
+            Precision::Mixed => self.apply_single(direction),
+        }
+    }
+
+    /// F λ with the subdomain solves in single precision: relative error near 1e-6, half the memory traffic.
+    fn apply_single(&self, multipliers: &RowVector) -> RowVector {
+        self.applications.fetch_add(1, Ordering::Relaxed);
+        let mut torn = self.scatter(multipliers);
+        self.for_each_subdomain(&mut torn, |factors, part| {
+            // Brought to size one, so that no unit system leaves the range of single precision.
+            let size = part.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
+            if size > 0.0 {
+                let mut single: Vec<f32> = part.iter().map(|&entry| (entry / size) as f32).collect();
+                factors.inverse.solve_in_place_single(&mut single);
+                for (entry, single) in part.iter_mut().zip(single) {
+                    *entry = size * f64::from(single);
+                }
+            }
+        });
+        self.gather(&torn)
+    }
+
+    /// Bᵀ λ.
+    fn scatter(&self, multipliers: &RowVector) -> TornVector {
+        let mut torn = self.model.zeros();
+        self.model.constraints.transposed.multiply(multipliers, &mut torn.0);
+        torn
+    }
+
+    /// B u of a torn displacement, summed over all processes.
+    pub fn gather(&self, torn: &TornVector) -> RowVector {
+        let mut rows = self.model.constraints.zeros();
+        self.model.constraints.rows.multiply(&torn.0, &mut rows);
+        self.model.communication.exchange(&mut rows);
+        rows
+    }
+
+    /// K⁺ on every subdomain, in place.
+    fn solve_subdomains(&self, torn: &mut TornVector) {
+        self.for_each_subdomain(torn, |factors, part| factors.inverse.solve_in_place(part));
+    }
+
+    /// Works on the parts of a torn vector that belong to this process and clears the others.
+    fn for_each_subdomain(&self, torn: &mut TornVector, work: impl Fn(&SubdomainFactors, &mut [f64]) + Sync) {
+        let size = self.model.pattern.pattern.dimension();
+        torn.0.par_chunks_mut(size).zip(&self.system.parts).for_each(|(values, part)| match &part.factors {
+            Some(factors) => work(factors, values),
+            None => values.fill(0.0),
+        });
+    }
+
+    /// K⁺ f.
+    pub fn loaded_displacement(&self) -> TornVector {
+        let mut torn = self.model.zeros();
+        self.for_each_subdomain(&mut torn, |factors, part| {
+            if !factors.loaded_displacement.is_empty() {
+                part.copy_from_slice(&factors.loaded_displacement);
+            }
+        });
+        torn
+    }
+
+    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere, from `loaded` = K⁺ f; method.md (4.2).
+    pub fn displacement(&self, mut loaded: TornVector, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
+        let mut torn = self.scatter(multipliers);
+        self.solve_subdomains(&mut torn);
+        add_scaled(&mut loaded.0, -1.0, &torn.0);
+        let size = self.model.pattern.pattern.dimension();
+        let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).zip(amplitudes.par_chunks(6));
+        parts.filter(|((_, part), _)| part.factors.is_some()).for_each(|((values, part), amplitudes)| {
+            for (mode, amplitude) in part.rigid.modes.iter().zip(amplitudes) {
+                add_scaled(values, *amplitude, mode);
+            }
+        });
+        loaded
+    }
+}

@@ -1,0 +1,100 @@
+//! Newton's method one product with F at a time.
+//!
+//! ```text
+//! repeat:  derivatives D at the iterate;  v = (what the active rows demand at once) + T P M P (reduced residual),  G v = 0
+//!          F v (the only product);  iterate := best combination of all directions so far   ([`Recycled`])
+//! ```
+//! A Newton step with GMRES spends one product on its particular part and starts its Krylov space anew; here the space grows
+//! over the whole solve, derivatives follow every product, and the residual falls at the rate of the linear problem. The
+//! projector of an active set is kept while the set stays (a search direction need not know the last slip direction).
+
+use crate::equilibrium::Stage;
+use crate::equilibrium::law::Linearization;
+use crate::error::ContactError;
+use crate::linear::vector::add_scaled;
+use crate::tfeti::dual::{ActiveSet, Friction, Iterate, Precision, TornContact};
+use crate::tfeti::newton::linear_solve::balancing_amplitudes;
+use crate::tfeti::newton::recycling::{Direction, Recycled};
+use crate::tfeti::newton::settings::NewtonSettings;
+use crate::tfeti::newton::stagnation::stagnates;
+
+/// Residual reduction after which the projector is renewed although the active set has stayed.
+const PROJECTOR_RENEWAL: f64 = 0.01;
+
+/// Residual reduction after which single precision images are replaced.
+const IMAGE_REPLACEMENT: f64 = 1e-4;
+
+/// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
+const MAX_STALLED_PRODUCTS: usize = 10;
+
+impl TornContact<'_> {
+    /// Brings the residual of an iterate down to the tolerance, or as far as it falls; appends to the history.
+    pub(crate) fn descend(
+        &self,
+        iterate: &mut Iterate,
+        directions: &mut Recycled,
+        start: f64,
+        settings: &NewtonSettings,
+        history: &mut Vec<f64>,
+    ) -> Result<f64, ContactError> {
+        let mut residual = directions.combine(self, iterate, start);
+        let mut replaced = residual;
+        while residual > settings.tolerance && directions.len() < 2 * settings.max_krylov {
+            let active = self.held_at(iterate)?;
+            let held = self.linearize(iterate);
+            let renewal = PROJECTOR_RENEWAL * residual;
+            loop {
+                self.extend(iterate, &active, directions);
+                residual = directions.combine(self, iterate, residual);
+                if self.precision == Precision::Mixed
+                    && residual <= settings.tolerance.max(IMAGE_REPLACEMENT * replaced)
+                {
+                    residual = self.replace_image(iterate);
+                    replaced = residual;
+                }
+                history.push(residual);
+                Stage::Contact.reached(history.len() - 1, residual);
+                let done = residual <= settings.tolerance || stagnates(history, MAX_STALLED_PRODUCTS);
+                if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
+                    break;
+                }
+            }
+            if stagnates(history, MAX_STALLED_PRODUCTS) {
+                break;
+            }
+        }
+        Ok(residual)
+    }
+
+    /// Replaces the image of the multipliers by a product in double precision; returns the residual.
+    pub(crate) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
+        let image = self.operator.apply(&iterate.multipliers);
+        *iterate = self.iterate(iterate.multipliers.clone(), image, std::mem::take(&mut iterate.amplitudes));
+        self.residual(iterate)
+    }
+
+    /// One more direction, and the rigid motion that balances the iterate.
+    fn extend(&self, iterate: &Iterate, active: &ActiveSet<'_>, directions: &mut Recycled) {
+        let rows = &active.rows;
+        let current = self.rows(self.linearize(iterate), Friction::Coulomb);
+        let mut direction = current.trial(&current.unknowns_of(&iterate.multipliers));
+        add_scaled(&mut direction, -1.0, &iterate.multipliers);
+        let mut residual = rows.test_transposed(&iterate.jumps);
+        rows.add_compliance(&rows.unknowns_of(&iterate.multipliers), &mut residual, -1.0);
+        let rigid = active.amplitudes(&residual);
+        active.add_rigid(&rigid, &mut residual);
+        directions.push(self, Direction::Rigid { amplitudes: rigid });
+        let mut step = self.precondition(rows, &residual, |z| active.project(z));
+        let defect: Vec<f64> = self.space.resultant(&direction).iter().map(|value| -value).collect();
+        active.enforce(&mut step, &defect);
+        add_scaled(&mut direction, 1.0, &rows.trial(&step));
+        let image = self.operator.apply_direction(&direction, self.precision);
+        let amplitudes = balancing_amplitudes(active, &rows.unknowns_of(&direction), &image);
+        directions.push(self, Direction::Full { multipliers: direction, image, amplitudes });
+    }
+}
+
+/// Whether two lists of derivatives belong to the same statuses.
+fn same_status(first: &[Linearization], second: &[Linearization]) -> bool {
+    first.iter().zip(second).all(|(a, b)| std::mem::discriminant(a) == std::mem::discriminant(b))
+}

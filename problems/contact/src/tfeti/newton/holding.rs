@@ -1,0 +1,65 @@
+//! Active sets that hold every rigid motion.
+//!
+//! ```text
+//! an active set may leave a motion free on the way:   slip → stick, then the open nodes nearest to contact are closed,
+//!                                                     3, 6, 12, …, until G_T Gqᵀ is regular
+//! ```
+//! Only directions of search are affected: the residual, and with it the certificate, knows nothing of the closed nodes.
+
+use crate::equilibrium::law::Linearization;
+use crate::error::ContactError;
+use crate::tfeti::dual::{ActiveSet, Friction, Iterate, TornContact};
+
+/// Nodes closed first when an active set leaves a motion free.
+const FIRST_CLOSED: usize = 3;
+
+impl TornContact<'_> {
+    /// The active set of given derivatives, enlarged until it holds every motion; open nodes of largest `priority` are
+    /// closed first.
+    ///
+    /// # Errors
+    /// [`ContactError::Unheld`] when even all nodes closed leave a motion free.
+    pub(crate) fn held(
+        &self,
+        linearizations: Vec<Linearization>,
+        priority: impl Fn() -> Vec<f64>,
+    ) -> Result<ActiveSet<'_>, ContactError> {
+        let active_set = |linearizations: &[Linearization]| self.active_set(linearizations.to_vec(), Friction::Coulomb);
+        let mut failure = match active_set(&linearizations) {
+            Err(failure) => failure,
+            held => return held,
+        };
+        let mut enlarged = linearizations;
+        let mut changed = false;
+        for linearization in enlarged.iter_mut().filter(|l| matches!(l, Linearization::Slip { .. })) {
+            *linearization = Linearization::Stick;
+            changed = true;
+        }
+        let priority = priority();
+        let mut order: Vec<usize> = (0..enlarged.len()).filter(|&node| enlarged[node] == Linearization::Open).collect();
+        order.sort_by(|&a, &b| priority[b].total_cmp(&priority[a]));
+        let mut closed = 0;
+        loop {
+            if changed {
+                match active_set(&enlarged) {
+                    Err(again) => failure = again,
+                    held => return held,
+                }
+            }
+            if closed == order.len() {
+                return Err(failure);
+            }
+            closed = (2 * closed).max(FIRST_CLOSED).min(order.len());
+            order[..closed].iter().for_each(|&node| enlarged[node] = Linearization::Stick);
+            changed = true;
+        }
+    }
+
+    /// The active set of an iterate.
+    pub(crate) fn held_at(&self, iterate: &Iterate) -> Result<ActiveSet<'_>, ContactError> {
+        self.held(self.linearize(iterate), || {
+            let arguments = self.arguments(iterate);
+            self.boundary.points.iter().map(|point| arguments[point.start]).collect()
+        })
+    }
+}

@@ -1,0 +1,115 @@
+//! Newton's iteration: descent with recycled directions, then steps with a linear solve of their own.
+//!
+//! Every step solves the system of its active set by projected GMRES, as accurately as the outer residual deserves
+//! (Eisenstat–Walker). One product with F gives the particular part, one each Krylov vector; F is linear, so that step
+//! lengths and the new residual are free.
+
+use crate::equilibrium::Stage;
+use crate::error::ContactError;
+use crate::tfeti::dual::{Iterate, Precision, TornContact, TornSolution};
+use crate::tfeti::newton::linear_solve::LinearAccuracy;
+use crate::tfeti::newton::recycling::Recycled;
+use crate::tfeti::newton::settings::NewtonSettings;
+use crate::tfeti::newton::stagnation::{circles, stagnates};
+
+/// First forcing term.
+const FIRST_FORCING: f64 = 0.3;
+/// Forcing term after a shortened step.
+const SHORTENED_FORCING: f64 = 0.01;
+/// Products with F that one run of Newton steps may take.
+const MAX_PRODUCTS: usize = 20_000;
+/// Halvings of a step.
+const MAX_HALVINGS: usize = 6;
+/// Decrease asked of a step of length one.
+const SUFFICIENT_DECREASE: f64 = 1e-4;
+
+impl TornContact<'_> {
+    /// Solves from given multipliers (over all rows) of a similar problem, or from the bonded problem. Where inexact steps do not converge, a
+    /// second run solves every linear system as accurately as rounding allows. The residual that decides, and that certifies
+    /// the state, comes from a fresh product with F.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],
+    /// [`ContactError::NotFinite`], [`ContactError::Unheld`] when an active set leaves a motion free.
+    pub fn solve(&self, start: Option<&[f64]>, settings: &NewtonSettings) -> Result<TornSolution, ContactError> {
+        let mut recycled = settings.recycling.pays(self.space).then(Recycled::default);
+        let mut iterate = self.start(start, recycled.as_mut())?;
+        let mut residual = self.residual(&iterate);
+        let mut history = vec![residual];
+        if let Some(mut recycled) = recycled {
+            residual = self.descend(&mut iterate, &mut recycled, residual, settings, &mut history)?;
+        }
+        if residual > settings.tolerance || self.precision == Precision::Double {
+            let deserved = |target| LinearAccuracy::to(target, settings.max_krylov);
+            iterate = self.newton_steps(iterate, residual, deserved, settings, &mut history)?;
+            residual = self.replace_image(&mut iterate);
+        }
+        if residual.is_nan() || residual > settings.acceptable {
+            let exact = self.bonded(LinearAccuracy::EXACT, None)?;
+            let start = self.residual(&exact);
+            history.push(start);
+            iterate = self.newton_steps(exact, start, |_| LinearAccuracy::EXACT, settings, &mut history)?;
+            residual = self.replace_image(&mut iterate);
+        }
+        if residual.is_nan() || residual > settings.acceptable {
+            return Err(self.not_converged(residual, settings, history));
+        }
+        Ok(self.solution(iterate, residual, history.len() - 1))
+    }
+
+    /// Newton steps until the residual is small, rounding stops them, or they lead nowhere. `accuracy`: of the linear solves,
+    /// for the residual (mm) that the outer residual deserves.
+    fn newton_steps(
+        &self,
+        mut iterate: Iterate,
+        mut residual: f64,
+        accuracy: impl Fn(f64) -> LinearAccuracy,
+        settings: &NewtonSettings,
+        history: &mut Vec<f64>,
+    ) -> Result<Iterate, ContactError> {
+        let first = history.len() - 1;
+        let budget = self.operator.applications() + MAX_PRODUCTS;
+        let mut forcing = FIRST_FORCING;
+        while residual > settings.tolerance && history.len() - first <= settings.max_steps {
+            if (residual <= settings.acceptable && stagnates(history, 1))
+                || circles(&history[first..])
+                || self.operator.applications() > budget
+            {
+                break;
+            }
+            let target = forcing.max(0.3 * settings.tolerance / residual) * residual * self.load / self.stiffness;
+            let active = self.held_at(&iterate)?;
+            let candidate = self.linear_solve(&active, &iterate.multipliers, accuracy(target), None)?;
+            let (next, length) = self.search(iterate, candidate, residual);
+            iterate = next;
+            let previous = residual;
+            residual = self.residual(&iterate);
+            if !residual.is_finite() {
+                return Err(ContactError::NotFinite { what: "contact residual" });
+            }
+            history.push(residual);
+            Stage::Contact.reached(history.len() - 1, residual);
+            forcing = eisenstat_walker(residual, previous, length);
+        }
+        Ok(iterate)
+    }
+
+    /// Halves the step until the residual falls; takes the full step when no length helps (a change of many statuses).
+    fn search(&self, from: Iterate, to: Iterate, residual: f64) -> (Iterate, f64) {
+        let mut length = 1.0;
+        for _halving in 0..MAX_HALVINGS {
+            let trial = if length == 1.0 { to.clone() } else { from.towards(&to, length) };
+            if self.residual(&trial) <= (1.0 - SUFFICIENT_DECREASE * length) * residual {
+                return (trial, length);
+            }
+            length *= 0.5;
+        }
+        (to, 1.0)
+    }
+}
+
+/// Forcing term of the next step.
+fn eisenstat_walker(residual: f64, previous: f64, length: f64) -> f64 {
+    let forcing = FIRST_FORCING.min((0.5 * (residual / previous).powf(1.5)).max(1e-4));
+    if length < 1.0 { forcing.min(SHORTENED_FORCING) } else { forcing }
+}

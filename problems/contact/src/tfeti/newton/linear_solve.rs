@@ -1,0 +1,111 @@
+//! The linear system of one active set: projected GMRES with iterative refinement.
+//!
+//! ```text
+//! Qᵀ F T y + Δ y − QᵀGᵀ a = r,   G T y = e                                                          method.md (4.5)
+//! ```
+
+use crate::error::ContactError;
+use crate::linear::gmres::{PATIENCE, gmres};
+use crate::linear::vector::{add_scaled, norm};
+use crate::tfeti::dual::{ActiveRows, ActiveSet, Iterate, TornContact};
+use crate::tfeti::newton::recycling::{Direction, Recycled};
+use crate::tfeti::torn::RowVector;
+
+/// How accurately a reduced linear system is solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinearAccuracy {
+    /// Norm of the projected residual aimed at, mm.
+    pub target: f64,
+    /// Reduction of its first value that is enough.
+    pub reduction: f64,
+    /// Krylov iterations allowed per cycle.
+    pub max_krylov: usize,
+    /// Krylov iterations in which the residual must halve.
+    pub patience: usize,
+    /// Cycles of iterative refinement: each recomputes the residual.
+    pub cycles: usize,
+}
+
+impl LinearAccuracy {
+    /// The start: one digit.
+    pub const START: Self = Self { target: 0.0, reduction: 0.1, max_krylov: 200, patience: PATIENCE, cycles: 1 };
+    /// All that rounding allows.
+    pub const EXACT: Self = Self { target: 0.0, reduction: 1e-14, max_krylov: 400, patience: 400, cycles: 6 };
+
+    /// One cycle to a given residual.
+    pub fn to(target: f64, max_krylov: usize) -> Self {
+        Self { target, reduction: 0.0, max_krylov, patience: PATIENCE, cycles: 1 }
+    }
+}
+
+/// Share of the residual that a cycle of iterative refinement may leave for another one to follow.
+const MAX_REFINED_SHARE: f64 = 0.5;
+
+impl TornContact<'_> {
+    /// Solves the reduced system of an active set, starting from given multipliers. The directions of its Krylov space join
+    /// `recycled`, where later iterates will use them.
+    pub(crate) fn linear_solve(
+        &self,
+        active: &ActiveSet<'_>,
+        start: &RowVector,
+        accuracy: LinearAccuracy,
+        mut recycled: Option<&mut Recycled>,
+    ) -> Result<Iterate, ContactError> {
+        let rows = &active.rows;
+        let mut unknowns = rows.unknowns_of(start);
+        let (mut first, mut last) = (None, f64::INFINITY);
+        let mut image = self.zeros();
+        for _cycle in 0..accuracy.cycles {
+            active.enforce(&mut unknowns, self.space.resultants());
+            image = self.operator.apply(&rows.trial(&unknowns));
+            let mut projected = self.reduced_residual(rows, &unknowns, &image);
+            active.project(&mut projected);
+            let size = norm(&projected);
+            let target = accuracy.target.max(accuracy.reduction * *first.get_or_insert(size));
+            if size <= target || size > MAX_REFINED_SHARE * last {
+                break;
+            }
+            last = size;
+            let krylov = gmres(
+                &projected,
+                target,
+                accuracy.max_krylov,
+                accuracy.patience,
+                |v| self.precondition(rows, v, |z| active.project(z)),
+                |z| {
+                    let product = self.operator.apply(&rows.trial(z));
+                    let mut reduced = rows.test_transposed(&product);
+                    rows.add_compliance(z, &mut reduced, 1.0);
+                    active.project(&mut reduced);
+                    (reduced, product)
+                },
+            );
+            let directions = krylov.directions.iter().zip(krylov.payloads);
+            for (coefficient, (direction, product)) in krylov.coefficients.iter().zip(directions) {
+                add_scaled(&mut unknowns, *coefficient, direction);
+                add_scaled(&mut image, *coefficient, &product);
+                if let Some(recycled) = recycled.as_deref_mut() {
+                    let amplitudes = balancing_amplitudes(active, direction, &product);
+                    let multipliers = rows.trial(direction);
+                    recycled.push(self, Direction::Full { multipliers, image: product, amplitudes });
+                }
+            }
+        }
+        let amplitudes = active.amplitudes(&self.reduced_residual(rows, &unknowns, &image));
+        Ok(self.iterate(rows.trial(&unknowns), image, amplitudes))
+    }
+
+    /// Qᵀ(d − F T y) − Δ y.
+    fn reduced_residual(&self, rows: &ActiveRows<'_>, unknowns: &[f64], image: &RowVector) -> Vec<f64> {
+        let mut residual = rows.test_transposed(&self.rest(image));
+        rows.add_compliance(unknowns, &mut residual, -1.0);
+        residual
+    }
+}
+
+/// Amplitudes that remove the rigid part of what a direction y with product F T y does to the reduced residual.
+pub fn balancing_amplitudes(active: &ActiveSet<'_>, direction: &[f64], product: &RowVector) -> Vec<f64> {
+    let mut change: Vec<f64> = active.rows.test_transposed(product).into_iter().map(|entry| -entry).collect();
+    active.rows.add_compliance(direction, &mut change, -1.0);
+    active.amplitudes(&change)
+}

@@ -1,0 +1,19 @@
+//! Semismooth Newton for Coulomb friction on the dual problem.
+//!
+//! ```text
+//! start ─▶ iteration ─┬─ descent: one product with F at a time, all directions recycled
+//!                     └─ steps: one linear solve (projected GMRES) per active set, step halving
+//! iterate ─ derivatives ─ holding: an active set that holds every rigid motion
+//! ```
+
+mod descent;
+mod holding;
+mod iteration;
+mod linear_solve;
+mod recycling;
+mod rounding;
+mod settings;
+mod stagnation;
+mod start;
+
+pub use settings::{NewtonSettings, Recycling};

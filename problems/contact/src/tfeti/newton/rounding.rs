@@ -1,0 +1,41 @@
+//! Why an iteration ended above its tolerance: the data in double precision, or the iteration itself.
+//!
+//! ```text
+//! gaps:       ε c max|g| / load                          forces that close the rounding errors of the gaps
+//! stiffness:  |K⁺K x − x|/|x| modulo rigid motions       digits that the factors of a subdomain lose
+//! ```
+
+use crate::error::ContactError;
+use crate::tfeti::dual::TornContact;
+use crate::tfeti::newton::settings::NewtonSettings;
+
+/// Times its rounding floor that a residual is seen to reach.
+const FLOOR_REACHED: f64 = 10.0;
+
+impl TornContact<'_> {
+    /// The error of a run that ended at a residual above what is acceptable.
+    pub(crate) fn not_converged(&self, residual: f64, settings: &NewtonSettings, history: Vec<f64>) -> ContactError {
+        let largest = self.gaps.iter().fold(0.0, |largest: f64, gap| largest.max(gap.abs()));
+        let gaps = f64::EPSILON * self.stiffness * largest / self.load;
+        let parts = self.operator.system.parts.iter().filter_map(|part| part.factors.as_ref());
+        let stiffness = parts.map(|factors| factors.forward_error).fold(0.0, f64::max);
+        let (floor, what) = if gaps > stiffness {
+            (gaps, "gaps (distances or loads of very different size)")
+        } else {
+            (
+                stiffness,
+                "stiffness (bricks of extreme shape or nearly incompressible; direct condensation loses fewer digits)",
+            )
+        };
+        if FLOOR_REACHED * floor > settings.acceptable {
+            return ContactError::BeyondPrecision { what, floor, residual, tolerance: settings.acceptable };
+        }
+        ContactError::NotConverged {
+            solver: "semismooth Newton on TFETI",
+            residual,
+            tolerance: settings.tolerance,
+            iterations: history.len() - 1,
+            history,
+        }
+    }
+}

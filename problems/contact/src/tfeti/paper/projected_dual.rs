@@ -1,0 +1,138 @@
+//! The orthonormalised projected dual operator, as the QP solver sees it.
+//!
+//! ```text
+//! C = L⁻¹G,  LLᵀ = GGᵀ,   Q = CᵀC,   P = I − Q        H = P F P,   preconditioner of H + ρQ:  P M P + Q/ρ
+//! ```
+
+use crate::error::ContactError;
+use crate::linear::dense::DenseCholesky;
+use crate::linear::vector::add_scaled;
+use crate::qp::{LinearEqualities, SymmetricOperator};
+use crate::tfeti::dual::{CoarseSpace, DualOperator, Preconditioner};
+use crate::tfeti::torn::RowVector;
+
+/// Rows C and right side L⁻¹e of the equilibrium of all subdomains.
+#[derive(Debug)]
+pub struct OrthonormalCoarse<'a> {
+    space: &'a CoarseSpace,
+    factor: DenseCholesky,
+    right_side: Vec<f64>,
+}
+
+impl<'a> OrthonormalCoarse<'a> {
+    /// Orthonormalises the rows of G.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when the rows leave a rigid motion free.
+    pub fn new(space: &'a CoarseSpace) -> Result<Self, ContactError> {
+        let factor = DenseCholesky::new(space.gram()).map_err(|error| ContactError::Factorization {
+            what: "coarse matrix of all rows".into(),
+            reason: format!("{}: the rows leave a rigid motion free", error.reason),
+        })?;
+        let mut coarse = Self { space, factor, right_side: Vec::new() };
+        coarse.right_side = coarse.lower_solve(space.resultants().to_vec());
+        Ok(coarse)
+    }
+
+    fn lower_solve(&self, mut v: Vec<f64>) -> Vec<f64> {
+        self.factor.solve_lower_in_place(&mut v);
+        v
+    }
+
+    /// Cᵀ y.
+    fn jumps(&self, y: &[f64]) -> RowVector {
+        let mut amplitudes = y.to_vec();
+        self.factor.solve_upper_in_place(&mut amplitudes);
+        self.space.jumps(&amplitudes)
+    }
+
+    /// Q v.
+    fn rigid_part(&self, v: &[f64]) -> RowVector {
+        self.jumps(&self.apply(v))
+    }
+
+    /// P v.
+    fn projected(&self, v: &[f64]) -> RowVector {
+        difference(v, self.rigid_part(v))
+    }
+}
+
+/// v − removed.
+fn difference(v: &[f64], mut removed: RowVector) -> RowVector {
+    removed.iter_mut().zip(v).for_each(|(removed, v)| *removed = v - *removed);
+    removed
+}
+
+impl LinearEqualities for OrthonormalCoarse<'_> {
+    fn apply(&self, x: &[f64]) -> Vec<f64> {
+        self.lower_solve(self.space.resultant(x))
+    }
+
+    fn apply_transposed(&self, y: &[f64]) -> Vec<f64> {
+        self.jumps(y).into_values()
+    }
+
+    fn right_side(&self) -> &[f64] {
+        &self.right_side
+    }
+}
+
+/// P F P.
+#[derive(Debug)]
+pub struct ProjectedDual<'a> {
+    operator: &'a DualOperator<'a>,
+    coarse: &'a OrthonormalCoarse<'a>,
+}
+
+impl<'a> ProjectedDual<'a> {
+    /// The operator of one shape.
+    pub fn new(operator: &'a DualOperator<'a>, coarse: &'a OrthonormalCoarse<'a>) -> Self {
+        Self { operator, coarse }
+    }
+
+    /// P (d − F λ₀) with λ₀ = Gᵀ(GGᵀ)⁻¹e.
+    pub fn homogenised(&self, constant: &RowVector) -> RowVector {
+        let mut rest = constant.clone();
+        add_scaled(&mut rest, -1.0, &self.operator.apply(&self.coarse.jumps(self.coarse.right_side())));
+        self.coarse.projected(&rest)
+    }
+}
+
+impl SymmetricOperator for ProjectedDual<'_> {
+    fn dimension(&self) -> usize {
+        self.operator.model.constraints.row_count()
+    }
+
+    fn apply(&self, x: &[f64], result: &mut [f64]) {
+        let image = self.operator.apply(&self.coarse.projected(x));
+        result.copy_from_slice(&self.coarse.projected(&image));
+    }
+}
+
+/// P M P + Q/ρ.
+#[derive(Debug)]
+pub struct ProjectedPreconditioner<'a> {
+    preconditioner: &'a Preconditioner<'a>,
+    coarse: &'a OrthonormalCoarse<'a>,
+    rho: f64,
+}
+
+impl<'a> ProjectedPreconditioner<'a> {
+    /// The preconditioner for a penalty ρ.
+    pub fn new(preconditioner: &'a Preconditioner<'a>, coarse: &'a OrthonormalCoarse<'a>, rho: f64) -> Self {
+        Self { preconditioner, coarse, rho }
+    }
+}
+
+impl SymmetricOperator for ProjectedPreconditioner<'_> {
+    fn dimension(&self) -> usize {
+        self.coarse.space.row_count()
+    }
+
+    fn apply(&self, x: &[f64], result: &mut [f64]) {
+        let rigid = self.coarse.rigid_part(x);
+        let elastic = difference(x, rigid.clone());
+        result.copy_from_slice(&self.coarse.projected(&self.preconditioner.apply(&elastic)));
+        add_scaled(result, 1.0 / self.rho, &rigid);
+    }
+}

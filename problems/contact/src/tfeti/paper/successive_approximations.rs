@@ -1,0 +1,340 @@
+//! The paper's path: successive approximations over Tresca problems, each a dual QP for SMALSE-M and MPGP.
+//!
+//! ```text
+//! Ψ ← 𝓕 λ_N(Ψ):   min ½ λᵀ PFP λ − λᵀ P(d − F λ₀)   s.t.  C λ = L⁻¹e,  λ_N ≥ 0,  |λ_T,i| ≤ Ψ_i          method.md (4.1)
+//! λ₀ = Gᵀ(GGᵀ)⁻¹ e,   C = L⁻¹G,   LLᵀ = GGᵀ,   Q = CᵀC,   P = I − Q
+//! ```
+//! The orthonormalised homogenised problem in the unshifted multipliers: P λ₀ = 0, so that the bounds stay where they are.
+//! Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ that it brings about.
+
+use crate::equilibrium::certificate::projection_residual;
+use crate::equilibrium::law::tangential_norm;
+use crate::equilibrium::{Stage, Work};
+use crate::error::ContactError;
+use crate::linear::vector::norm;
+use crate::qp::{
+    Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
+    SmalseSolution, WarmStart,
+};
+use crate::tfeti::dual::{Iterate, TornContact, TornSolution};
+use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
+
+/// When to stop, and how the dual QPs are solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AugmentedLagrangianSettings {
+    /// Relative residual aimed at, measured as Newton's.
+    pub tolerance: f64,
+    /// Accuracy of a Tresca problem relative to the change of the slip bound that it brings about. Default 0.2 (0.1 takes
+    /// some five per cent more products, 0.3 some five per cent fewer).
+    pub adaptivity: f64,
+    /// Fixed point steps allowed. Default 60.
+    pub max_fixed_point_steps: usize,
+    /// Whether the preconditioner is used inside faces. Default true.
+    pub precondition: bool,
+    /// Constants of the dual QP solver.
+    pub qp: SmalseSettings,
+}
+
+impl AugmentedLagrangianSettings {
+    /// Settings for a relative residual.
+    pub fn to(tolerance: f64) -> Self {
+        let tolerance = tolerance.max(TIGHTEST_TOLERANCE);
+        Self {
+            tolerance,
+            adaptivity: 0.2,
+            max_fixed_point_steps: 60,
+            precondition: true,
+            qp: SmalseSettings::default(),
+        }
+    }
+}
+
+/// Work of the paper's path.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AugmentedLagrangianCounts {
+    /// Tresca problems.
+    pub fixed_point_steps: usize,
+    /// Multiplier updates of SMALSE-M.
+    pub outer: usize,
+    /// Conjugate gradient steps.
+    pub cg_steps: usize,
+    /// Expansion steps.
+    pub expansion_steps: usize,
+    /// Proportioning steps.
+    pub proportioning_steps: usize,
+    /// Gradients computed afresh at starts and against drift.
+    pub refreshed_gradients: usize,
+    /// Estimated contraction factor of Ψ ↦ 𝓕λ_N(Ψ); 0 without friction or with fewer than three steps.
+    pub contraction: f64,
+}
+
+impl AugmentedLagrangianCounts {
+    /// These counts in the record that all contact solvers share.
+    pub fn added_to(&self, work: Work) -> Work {
+        Work {
+            newton_steps: 0,
+            fixed_point_steps: self.fixed_point_steps,
+            cg_steps: self.cg_steps,
+            expansion_steps: self.expansion_steps,
+            proportioning_steps: self.proportioning_steps,
+            ..work
+        }
+    }
+}
+
+/// Tightest relative residual that rounding allows to ask for.
+const TIGHTEST_TOLERANCE: f64 = 1e-12;
+/// Mean contraction factor above which a run that has not converged is said not to contract.
+const MAX_CONTRACTION: f64 = 0.9;
+/// Consecutive steps without contraction that end the iteration; the contraction factor is a mean over as many.
+const MAX_GROWING_STEPS: usize = 4;
+/// Relative residual that is accepted when rounding stops all progress.
+const TIGHTEST_ACCEPTABLE: f64 = 1e-9;
+/// Share of the tolerance aimed at: the final amplitudes are found by least squares and may leave a little more.
+const TARGET_SHARE: f64 = 0.5;
+/// Relative change of the slip bound below which rounding decides, and ratios of changes mean nothing.
+const SMALLEST_CHANGE: f64 = 1e-8;
+/// Factor on the tolerance aimed at when the balanced multipliers miss it.
+const TIGHTENING: f64 = 0.2;
+/// Share of the tolerance that the inner solver may leave.
+const INNER_SHARE: f64 = 0.1;
+
+/// The changing part of the fixed point iteration.
+struct FixedPoint {
+    bounds: Vec<f64>,
+    warm: WarmStart,
+    changes: Vec<f64>,
+    counts: AugmentedLagrangianCounts,
+}
+
+impl TornContact<'_> {
+    /// Solves by successive approximations of the slip bound, from given multipliers (over all rows) of a similar problem or from the bonded
+    /// problem.
+    ///
+    /// # Errors
+    /// [`ContactError::NoContraction`] when the fixed point iteration does not contract, [`ContactError::DualProblem`] from
+    /// the dual QP, [`ContactError::NotConverged`], [`ContactError::NoEquilibrium`].
+    pub fn solve_by_successive_approximations(
+        &self,
+        start: Option<&[f64]>,
+        settings: &AugmentedLagrangianSettings,
+    ) -> Result<(TornSolution, AugmentedLagrangianCounts), ContactError> {
+        let acceptable = settings.tolerance.max(TIGHTEST_ACCEPTABLE);
+        let coarse = OrthonormalCoarse::new(self.space)?;
+        let dual = ProjectedDual::new(&self.operator, &coarse);
+        let linear = dual.homogenised(&self.constant);
+        let mut state = self.first(&self.start(start, None)?, &coarse);
+        let mut history = Vec::new();
+        let mut aimed = *settings;
+        let (iterate, residual) = loop {
+            self.approximate(&coarse, &dual, &linear, &aimed, &mut state, &mut history)?;
+            let iterate = self.balanced(&self.operator.model.constraints.row_vector(&state.warm.x)?, &state.bounds)?;
+            let residual = self.residual(&iterate);
+            let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= TIGHTEST_TOLERANCE;
+            if residual.is_nan() || residual <= acceptable || spent {
+                break (iterate, residual);
+            }
+            // Balancing the multipliers has cost more than the share kept for it.
+            aimed.tolerance = (TIGHTENING * aimed.tolerance).max(TIGHTEST_TOLERANCE);
+        };
+        if residual.is_nan() || residual > acceptable {
+            let factor = overall_contraction(&state.changes);
+            if factor > MAX_CONTRACTION {
+                return Err(ContactError::NoContraction { factor, history: state.changes });
+            }
+            return Err(ContactError::NotConverged {
+                solver: "successive approximations",
+                residual,
+                tolerance: settings.tolerance,
+                iterations: history.len(),
+                history,
+            });
+        }
+        Ok((self.solution(iterate, residual, state.counts.fixed_point_steps), state.counts))
+    }
+
+    /// Tresca problems until their residual is below a share of the tolerance aimed at, or the steps are spent.
+    fn approximate(
+        &self,
+        coarse: &OrthonormalCoarse<'_>,
+        dual: &ProjectedDual<'_>,
+        linear: &[f64],
+        settings: &AugmentedLagrangianSettings,
+        state: &mut FixedPoint,
+        history: &mut Vec<f64>,
+    ) -> Result<(), ContactError> {
+        loop {
+            let solution = self.tresca(coarse, dual, linear, settings, state)?;
+            let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
+            history.push(residual);
+            Stage::Contact.reached(history.len(), residual);
+            let exhausted = !solution.converged && residual <= settings.tolerance.max(TIGHTEST_ACCEPTABLE);
+            let target = TARGET_SHARE * settings.tolerance;
+            self.count(&mut state.counts, &solution);
+            self.advance(state, solution)?;
+            let spent = history.len() >= settings.max_fixed_point_steps;
+            if residual <= target || exhausted || spent || !self.boundary.has_friction() {
+                return Ok(());
+            }
+        }
+    }
+
+    /// The first slip bounds and multipliers: those of an iterate. Where the QP's gradient is −w, Cᵀμ is its rigid part.
+    fn first(&self, iterate: &Iterate, coarse: &OrthonormalCoarse<'_>) -> FixedPoint {
+        let multipliers = coarse.apply(&iterate.jumps).into_iter().map(|entry| -entry).collect();
+        let warm = WarmStart { x: iterate.multipliers.to_vec(), multipliers, ..WarmStart::default() };
+        let bounds = self.slip_bounds(iterate.multipliers.contact());
+        FixedPoint { bounds, warm, changes: Vec::new(), counts: AugmentedLagrangianCounts::default() }
+    }
+
+    /// λ_N ≥ 0, |λ_T| ≤ Ψ.
+    fn feasible_set(&self, bounds: &[f64]) -> Result<SeparableSet, ContactError> {
+        let equality = self.operator.model.constraints.equality_count;
+        let mut blocks = Vec::with_capacity(2 * bounds.len());
+        for (point, &radius) in self.boundary.points.iter().zip(bounds) {
+            let index = equality + point.start;
+            blocks.push(Block::HalfLine { index, bound: 0.0 });
+            if !point.tangents.is_empty() {
+                blocks.push(Block::Disc { first: index + 1, size: point.tangents.len(), centre: [0.0; 2], radius });
+            }
+        }
+        Ok(SeparableSet::new(self.operator.model.constraints.row_count(), blocks)?)
+    }
+
+    /// Solves the Tresca problem of the current slip bounds as far as they deserve.
+    fn tresca(
+        &self,
+        coarse: &OrthonormalCoarse<'_>,
+        dual: &ProjectedDual<'_>,
+        linear: &[f64],
+        settings: &AugmentedLagrangianSettings,
+        state: &FixedPoint,
+    ) -> Result<SmalseSolution, ContactError> {
+        let set = self.feasible_set(&state.bounds)?;
+        let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: Some(coarse) };
+        let mut solver = Smalse { program, preconditioner: None, settings: settings.qp };
+        let norm_h = solver.norm(&state.warm)?;
+        let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
+        let penalty = settings.qp.penalty * norm_h;
+        let preconditioner = ProjectedPreconditioner::new(&self.preconditioner, coarse, penalty);
+        if settings.precondition {
+            solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
+        }
+        let floor = INNER_SHARE * settings.tolerance * self.load / self.stiffness;
+        let solution = solver.run(&warm, floor, &mut |progress| {
+            let error = self.stiffness * progress.reduced_gradient + progress.infeasibility;
+            let residual = self.coulomb_residual(progress.x, progress.gradient, progress.infeasibility);
+            let change = difference(&self.slip_bounds(self.split(progress.x).1), &state.bounds);
+            let deserved = (settings.adaptivity * change).max(2.0 * floor * self.stiffness);
+            residual <= TARGET_SHARE * settings.tolerance || (self.boundary.has_friction() && error <= deserved)
+        })?;
+        Ok(solution)
+    }
+
+    /// The rows of B_E and the packed contact rows of a vector of the QP solver.
+    fn split<'v>(&self, all: &'v [f64]) -> (&'v [f64], &'v [f64]) {
+        all.split_at(self.operator.model.constraints.equality_count)
+    }
+
+    /// The relative residual, as Newton measures it, for the jumps that the multipliers of the equalities imply.
+    fn coulomb_residual(&self, multipliers: &[f64], gradient: &[f64], infeasibility: f64) -> f64 {
+        let (glued, opening) = self.split(gradient);
+        let jumps: Vec<f64> = opening.iter().map(|entry| -entry).collect();
+        let law = projection_residual(self.boundary, self.split(multipliers).1, &jumps, self.stiffness);
+        (self.stiffness * norm(glued)).hypot(norm(&law)).hypot(infeasibility) / self.load
+    }
+
+    fn count(&self, counts: &mut AugmentedLagrangianCounts, solution: &SmalseSolution) {
+        counts.fixed_point_steps += 1;
+        counts.outer += solution.outer;
+        counts.cg_steps += solution.counts.cg_steps;
+        counts.expansion_steps += solution.counts.expansion_steps;
+        counts.proportioning_steps += solution.counts.proportioning_steps;
+        counts.refreshed_gradients += solution.counts.refreshed_gradients;
+    }
+
+    /// Ψ ← 𝓕λ_N; sliding tractions keep to the circle. Watches the contraction.
+    fn advance(&self, state: &mut FixedPoint, solution: SmalseSolution) -> Result<(), ContactError> {
+        let equality = self.operator.model.constraints.equality_count;
+        let bounds = self.slip_bounds(self.split(&solution.warm.x).1);
+        let change = difference(&bounds, &state.bounds);
+        if !change.is_finite() {
+            return Err(ContactError::NotFinite { what: "slip bound" });
+        }
+        state.warm = solution.warm;
+        for ((point, &new), &old) in self.boundary.points.iter().zip(&bounds).zip(&state.bounds) {
+            let range = equality + point.start..equality + point.start + point.row_count();
+            let rows = &mut state.warm.x[range];
+            if old > 0.0 && tangential_norm(rows) >= old * (1.0 - 1e-9) {
+                rows[1..].iter_mut().for_each(|entry| *entry *= new / old);
+            }
+        }
+        state.warm.image = None;
+        state.bounds = bounds;
+        state.changes.push(change / norm(&state.bounds).max(f64::MIN_POSITIVE));
+        state.counts.contraction = contraction(&state.changes);
+        if diverges(&state.changes) {
+            return Err(ContactError::NoContraction {
+                factor: state.counts.contraction,
+                history: state.changes.clone(),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// |a − b|₂.
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
+
+/// Geometric mean of the last ratios of changes; the first change measures the start and does not count.
+fn contraction(changes: &[f64]) -> f64 {
+    let pairs = changes.windows(2).skip(1).filter(|pair| pair[1] > SMALLEST_CHANGE);
+    let ratios: Vec<f64> = pairs.map(|pair| pair[1] / pair[0]).collect();
+    let recent = &ratios[ratios.len().saturating_sub(MAX_GROWING_STEPS)..];
+    if recent.is_empty() {
+        return 0.0;
+    }
+    (recent.iter().map(|ratio| ratio.ln()).sum::<f64>() / recent.len() as f64).exp()
+}
+
+/// Geometric mean of the ratios in the second half of the changes: what remains of an iteration that oscillates.
+fn overall_contraction(changes: &[f64]) -> f64 {
+    let half = &changes[changes.len() / 2..];
+    match (half.first(), half.last()) {
+        (Some(&first), Some(&last)) if half.len() > MAX_GROWING_STEPS && last > SMALLEST_CHANGE => {
+            (last / first).powf(1.0 / (half.len() - 1) as f64)
+        }
+        _ => 0.0,
+    }
+}
+
+/// Whether the last changes do not fall although they are far above rounding.
+fn diverges(changes: &[f64]) -> bool {
+    let recent = &changes[changes.len().saturating_sub(MAX_GROWING_STEPS + 1)..];
+    recent.len() > MAX_GROWING_STEPS && recent.windows(2).all(|pair| pair[1] >= pair[0] && pair[1] > SMALLEST_CHANGE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contraction_is_the_rate_of_the_changes() {
+        let changes: Vec<f64> = (0..6).map(|step| 0.3 * 0.1_f64.powi(step)).collect();
+        assert!((contraction(&changes) - 0.1).abs() < 1e-12);
+        assert!(!diverges(&changes));
+        assert_eq!(contraction(&changes[..2]), 0.0);
+        assert!((overall_contraction(&[1.0, 0.9, 0.7, 1.0, 0.7, 1.0, 0.7, 1.0, 0.7, 1.0]) - 1.0).abs() < 0.2);
+    }
+
+    #[test]
+    fn a_growing_or_circling_slip_bound_is_diagnosed() {
+        let growing: Vec<f64> = (0..6).map(|step| 0.01 * 1.2_f64.powi(step)).collect();
+        assert!(diverges(&growing) && (contraction(&growing) - 1.2).abs() < 1e-12);
+        assert!(diverges(&[0.5; 5]) && !diverges(&[0.5; 4]));
+        // At the level of rounding nothing falls any more, and nothing is wrong.
+        assert!(!diverges(&[1e-14; 9]));
+    }
+}

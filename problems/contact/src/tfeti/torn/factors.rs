@@ -1,0 +1,155 @@
+//! Matrices of one subdomain: stiffness, generalised inverse, rigid modes, interior factor.
+//!
+//! ```text
+//! K⁺ = (K + ρ N Nᵀ)⁻¹,  N = orthonormal basis of R restricted to three fixing nodes:   K K⁺ K = K
+//! ```
+//! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
+
+use crate::body::elasticity::Material;
+use crate::body::elasticity::brick::Nodes;
+use crate::body::local_pattern::{LocalPattern, fixing_nodes};
+use crate::error::ContactError;
+use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
+use crate::linear::symmetric::Submatrix;
+use crate::linear::vector::{add_scaled, dot};
+use crate::tfeti::torn::rigid_modes::{orthonormal_modes, orthonormalise};
+use std::sync::Arc;
+
+/// Interior dofs of a class of subdomains and the analysis of their matrix.
+#[derive(Debug)]
+pub struct InteriorClass {
+    /// The principal submatrix of the interior dofs.
+    pub submatrix: Submatrix,
+    /// Its symbolic factor; none if there are no interior dofs.
+    pub symbolic: Option<Arc<SymbolicFactor>>,
+}
+
+/// What every process knows of a subdomain: its rigid motions and their loads.
+#[derive(Debug)]
+pub struct SubdomainRigid {
+    /// Orthonormal rigid modes, six columns.
+    pub modes: Vec<Vec<f64>>,
+    /// Resultants Rᵀ f of the loads along them.
+    pub resultants: Vec<f64>,
+}
+
+impl SubdomainRigid {
+    /// From the coordinates of the nodes and the nodal loads.
+    pub fn new(coordinates: &[[f64; 3]], load: &[f64]) -> Self {
+        let modes = orthonormal_modes(coordinates);
+        let resultants = modes.iter().map(|mode| dot(mode, load)).collect();
+        Self { modes, resultants }
+    }
+}
+
+/// The matrices of one subdomain, on the process that works on it.
+#[derive(Debug)]
+pub struct SubdomainFactors {
+    /// Values of the stiffness matrix K over [`LocalPattern::pattern`].
+    pub stiffness: Vec<f64>,
+    /// Factor of K + ρNNᵀ.
+    pub inverse: NumericFactor,
+    /// K⁺ times the load; empty for an unloaded subdomain.
+    pub loaded_displacement: Vec<f64>,
+    /// Factor of the interior matrix, if the preconditioner needs it.
+    pub interior: Option<NumericFactor>,
+    /// |K⁺K x − x|/|x| modulo rigid motions for a probe x: the digits that the condition of K takes.
+    pub forward_error: f64,
+}
+
+/// Largest relative residual of K K⁺ K x = K x accepted at factor time.
+const GENERALISED_INVERSE: f64 = 1e-8;
+
+impl SubdomainFactors {
+    /// Assembles and factors one subdomain.
+    ///
+    /// `modes`: its rigid modes; `brick`: nodes of a local brick; `load`: consistent nodal loads; `interior`: class to factor
+    /// for the Dirichlet preconditioner.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when a matrix is not positive definite or K K⁺ K = K fails.
+    pub fn new(
+        pattern: &LocalPattern,
+        symbolic: &Arc<SymbolicFactor>,
+        material: &Material,
+        modes: &[Vec<f64>],
+        brick: impl Fn([usize; 3]) -> Nodes<f64>,
+        load: &[f64],
+        interior: Option<&InteriorClass>,
+    ) -> Result<Self, ContactError> {
+        let stiffness = pattern.assemble(material, brick);
+        let regularised = regularise(pattern, &stiffness, modes);
+        let inverse = symbolic.factorize(&regularised)?;
+        let forward_error = check_generalised_inverse(pattern, &stiffness, &inverse, modes)?;
+        let interior = match interior.and_then(|class| class.symbolic.as_ref().map(|symbolic| (class, symbolic))) {
+            Some((class, symbolic)) => Some(symbolic.factorize(&class.submatrix.gather(&stiffness))?),
+            None => None,
+        };
+        let mut loaded_displacement = Vec::new();
+        if load.iter().any(|&force| force != 0.0) {
+            loaded_displacement = load.to_vec();
+            inverse.solve_in_place(&mut loaded_displacement);
+        }
+        Ok(Self { stiffness, inverse, loaded_displacement, interior, forward_error })
+    }
+
+    /// Number of numeric factorisations this subdomain took.
+    pub fn factorizations(&self) -> usize {
+        1 + usize::from(self.interior.is_some())
+    }
+}
+
+/// Values of K + ρNNᵀ.
+fn regularise(pattern: &LocalPattern, stiffness: &[f64], modes: &[Vec<f64>]) -> Vec<f64> {
+    let dofs: Vec<usize> = fixing_nodes(pattern.shape.cells).iter().flat_map(|node| 3 * node..3 * node + 3).collect();
+    let mut restricted: Vec<Vec<f64>> = modes.iter().map(|mode| dofs.iter().map(|&dof| mode[dof]).collect()).collect();
+    orthonormalise(&mut restricted);
+    let starts = pattern.pattern.starts();
+    let dimension = pattern.pattern.dimension();
+    let rho = (0..dimension).map(|column| stiffness[starts[column]]).sum::<f64>() / dimension as f64;
+    let mut values = stiffness.to_vec();
+    for (first, &row) in dofs.iter().enumerate() {
+        for (second, &column) in dofs.iter().enumerate() {
+            if row >= column {
+                let product: f64 = restricted.iter().map(|mode| mode[first] * mode[second]).sum();
+                let position = pattern.pattern.position(row, column).expect("invariant: fixing nodes are coupled");
+                values[position] += rho * product;
+            }
+        }
+    }
+    values
+}
+
+/// Probes K K⁺ K x = K x with one fixed vector; returns the forward error of K⁺.
+fn check_generalised_inverse(
+    pattern: &LocalPattern,
+    stiffness: &[f64],
+    inverse: &NumericFactor,
+    modes: &[Vec<f64>],
+) -> Result<f64, ContactError> {
+    let dimension = pattern.pattern.dimension();
+    let probe: Vec<f64> = (0..dimension).map(|index| (1.7 * index as f64 + 0.3).sin()).collect();
+    let (mut image, mut again) = (vec![0.0; dimension], vec![0.0; dimension]);
+    pattern.pattern.multiply(stiffness, &probe, &mut image);
+    let mut solution = image.clone();
+    inverse.solve_in_place(&mut solution);
+    pattern.pattern.multiply(stiffness, &solution, &mut again);
+    for (again, image) in again.iter_mut().zip(&image) {
+        *again -= image;
+    }
+    let error = (dot(&again, &again) / dot(&image, &image)).sqrt();
+    if error.is_nan() || error > GENERALISED_INVERSE {
+        return Err(ContactError::Factorization {
+            what: "generalised inverse of a subdomain".into(),
+            reason: format!("|K K⁺ K x − K x|/|K x| = {error:.2e}, allowed: {GENERALISED_INVERSE:.0e}"),
+        });
+    }
+    for (solution, probe) in solution.iter_mut().zip(&probe) {
+        *solution -= probe;
+    }
+    for mode in modes {
+        let amplitude = dot(mode, &solution);
+        add_scaled(&mut solution, -amplitude, mode);
+    }
+    Ok((dot(&solution, &solution) / dot(&probe, &probe)).sqrt())
+}

@@ -1,0 +1,278 @@
+//! The torn scene: what is fixed for a run, and the factored system of one shape.
+
+use crate::body::elasticity::traction::face_weights;
+use crate::body::local_pattern::{LocalPattern, fixing_nodes};
+use crate::body::mesh::{Block, Subdomain, Tearing};
+use crate::body::shape_load::loaded_faces;
+use crate::equilibrium::modes::motions;
+use crate::equilibrium::{Configuration, ContactProblem};
+use crate::error::ContactError;
+use crate::linear::cholesky::SymbolicFactor;
+use crate::linear::ordering::nested_dissection;
+use crate::linear::symmetric::Submatrix;
+use crate::linear::vector::dot;
+use crate::scene::BodyScene;
+use crate::tfeti::torn::communication::Communication;
+use crate::tfeti::torn::constraints::{BodyRows, Constraints};
+use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors, SubdomainRigid};
+use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
+use crate::tfeti::torn::vectors::TornVector;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::{Arc, OnceLock};
+
+/// One subdomain in the torn scene.
+#[derive(Debug)]
+pub struct TornSubdomain {
+    /// 0 for the lower, 1 for the upper body.
+    pub body: usize,
+    /// Its place in the block.
+    pub place: Subdomain,
+    /// Its first torn dof.
+    pub first_dof: usize,
+    interior: Option<Arc<InteriorClass>>,
+}
+
+/// Everything that does not depend on the shape: tearing, rows, patterns, and the factors of bodies that keep their shape.
+#[derive(Debug)]
+pub struct TornModel {
+    /// The problem that was torn.
+    pub problem: Arc<ContactProblem>,
+    /// All subdomains, lower body first.
+    pub subdomains: Vec<TornSubdomain>,
+    /// Rows of B.
+    pub constraints: Constraints,
+    /// Pattern shared by all subdomains.
+    pub pattern: LocalPattern,
+    symbolic: Arc<SymbolicFactor>,
+    fixed: OnceLock<Vec<TornPart>>,
+    /// The process this model lives in.
+    pub communication: Arc<dyn Communication>,
+    /// Number of torn dofs.
+    pub dof_count: usize,
+}
+
+/// One subdomain of one shape.
+#[derive(Debug, Clone)]
+pub struct TornPart {
+    /// Rigid motions, known to every process.
+    pub rigid: Arc<SubdomainRigid>,
+    /// Factors, on the process that works on the subdomain.
+    pub factors: Option<Arc<SubdomainFactors>>,
+}
+
+/// The factored subdomains of one shape.
+#[derive(Debug)]
+pub struct TornSystem {
+    /// All subdomains, lower body first.
+    pub parts: Vec<TornPart>,
+    /// Numeric factorisations done for this shape.
+    pub factorizations: usize,
+}
+
+impl TornModel {
+    /// Tears the bodies of a problem and builds its rows.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when a symbolic analysis fails.
+    pub fn new(
+        problem: Arc<ContactProblem>,
+        preconditioner: PreconditionerKind,
+        communication: Arc<dyn Communication>,
+    ) -> Result<Self, ContactError> {
+        let tearing = Tearing::new(&problem.grid, problem.scene.subdomains);
+        let size = tearing.subdomains[0].dof_count();
+        let per_body = tearing.subdomains.len();
+        let offsets: Vec<usize> = (0..per_body * problem.bodies().count()).map(|index| index * size).collect();
+        let dof_count = offsets.len() * size;
+        let rows: Vec<BodyRows<'_>> = problem
+            .bodies()
+            .zip(offsets.chunks_exact(per_body))
+            .map(|(scene, offsets)| BodyRows { grid: &problem.grid, tearing: &tearing, scene, offsets })
+            .collect();
+        let constraints = Constraints::new(&problem.scene, &rows, &problem.boundary, dof_count);
+        let cells = tearing.subdomains[0].cells;
+        let fixing = fixing_nodes(cells);
+        let pattern = LocalPattern::new(cells, &fixing);
+        let symbolic = pattern.symbolic(&fixing)?;
+        let mut classes = HashMap::new();
+        let mut subdomains = Vec::with_capacity(offsets.len());
+        for (index, &first_dof) in offsets.iter().enumerate() {
+            let interior = match preconditioner {
+                PreconditionerKind::Dirichlet => {
+                    Some(interior_class(&mut classes, &pattern, &constraints, first_dof..first_dof + size)?)
+                }
+                PreconditionerKind::Lumped | PreconditionerKind::None => None,
+            };
+            let place = tearing.subdomains[index % per_body].clone();
+            subdomains.push(TornSubdomain { body: index / per_body, place, first_dof, interior });
+        }
+        Ok(Self {
+            problem,
+            subdomains,
+            constraints,
+            pattern,
+            symbolic,
+            fixed: OnceLock::new(),
+            communication,
+            dof_count,
+        })
+    }
+
+    /// Factors the subdomains of the given blocks (lower, then upper). The upper body keeps its shape: it is factored at the
+    /// first call and shared afterwards.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] from a subdomain.
+    pub fn factorize(&self, blocks: &[Block]) -> Result<TornSystem, ContactError> {
+        let count = |parts: &[TornPart]| {
+            parts.iter().flat_map(|part| &part.factors).map(|factors| factors.factorizations()).sum::<usize>()
+        };
+        let mut parts = self.factorize_body(0, &self.problem.scene.lower, &blocks[0])?;
+        let mut factorizations = count(&parts);
+        if let (Some(upper), Some(block)) = (&self.problem.scene.upper, blocks.get(1)) {
+            if self.fixed.get().is_none() {
+                let upper = self.factorize_body(1, &upper.body, block)?;
+                factorizations += count(&upper);
+                // Another thread may have been first; its factors are the same.
+                let _ = self.fixed.set(upper);
+            }
+            parts.extend(self.fixed.get().into_iter().flatten().cloned());
+        }
+        Ok(TornSystem { parts, factorizations })
+    }
+
+    fn factorize_body(&self, body: usize, scene: &BodyScene, block: &Block) -> Result<Vec<TornPart>, ContactError> {
+        let owned = self.communication.owned(self.subdomains.len());
+        self.subdomains
+            .par_iter()
+            .enumerate()
+            .filter(|(_, subdomain)| subdomain.body == body)
+            .map(|(index, subdomain)| {
+                let place = &subdomain.place;
+                let coordinates: Vec<[f64; 3]> =
+                    (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect();
+                let load = loads(scene, place, block);
+                let rigid = Arc::new(SubdomainRigid::new(&coordinates, &load));
+                if !owned.contains(&index) {
+                    return Ok(TornPart { rigid, factors: None });
+                }
+                let factors = SubdomainFactors::new(
+                    &self.pattern,
+                    &self.symbolic,
+                    &scene.material,
+                    &rigid.modes,
+                    |local| block.brick(std::array::from_fn(|axis| local[axis] + place.first_cell[axis])),
+                    &load,
+                    subdomain.interior.as_deref(),
+                )?;
+                Ok(TornPart { rigid, factors: Some(Arc::new(factors)) })
+            })
+            .collect()
+    }
+
+    /// Interior dofs of a subdomain: those without rows.
+    pub fn interior(&self, subdomain: usize) -> Option<&Submatrix> {
+        self.subdomains[subdomain].interior.as_ref().map(|class| &class.submatrix)
+    }
+
+    /// The zero vector over torn dofs.
+    pub fn zeros(&self) -> TornVector {
+        TornVector(vec![0.0; self.dof_count])
+    }
+
+    /// Coarse amplitudes of the motions that nothing holds: Rᵀ of their displacement on every subdomain.
+    pub fn grounded_amplitudes(&self, system: &TornSystem, configuration: &Configuration) -> Vec<Vec<f64>> {
+        let Configuration { blocks, rigid, grounded, .. } = configuration;
+        let amplitudes = |motion: &Vec<f64>| {
+            let mut amplitudes = Vec::with_capacity(6 * self.subdomains.len());
+            for (subdomain, part) in self.subdomains.iter().zip(&system.parts) {
+                let coefficients = &motion[6 * subdomain.body..6 * subdomain.body + 6];
+                let place = &subdomain.place;
+                let mut displacement = Vec::with_capacity(place.dof_count());
+                for node in 0..place.node_count() {
+                    let point = blocks[subdomain.body].coordinates(place.block_position(node));
+                    let basis = motions(point, rigid.centre, rigid.length);
+                    for component in 0..3 {
+                        displacement.push(basis.iter().zip(coefficients).map(|(b, c)| b[component] * c).sum::<f64>());
+                    }
+                }
+                amplitudes.extend(part.rigid.modes.iter().map(|mode| dot(mode, &displacement)));
+            }
+            amplitudes
+        };
+        grounded.iter().map(amplitudes).collect()
+    }
+
+    /// Mean over the contact nodes of the stiffness diagonals of the bodies in series, N/mm.
+    pub fn contact_stiffness(&self, system: &TornSystem) -> f64 {
+        let size = self.pattern.pattern.dimension();
+        let starts = self.pattern.pattern.starts();
+        let points = &self.problem.boundary.points;
+        let mut diagonals = vec![0.0; 2 * points.len()];
+        for (point, diagonal) in points.iter().zip(diagonals.chunks_exact_mut(2)) {
+            for (dof, _) in self.constraints.rows.row(self.constraints.equality_count + point.start) {
+                let subdomain = dof / size;
+                if let Some(factors) = &system.parts[subdomain].factors {
+                    diagonal[self.subdomains[subdomain].body] += factors.stiffness[starts[dof % size]];
+                }
+            }
+        }
+        self.communication.sum(&mut diagonals);
+        let series = |diagonal: &[f64]| match self.problem.scene.upper {
+            Some(_) => 1.0 / (1.0 / diagonal[0] + 1.0 / diagonal[1]),
+            None => diagonal[0],
+        };
+        diagonals.chunks_exact(2).map(series).sum::<f64>() / points.len() as f64
+    }
+}
+
+/// Consistent nodal loads of a subdomain.
+fn loads(body: &BodyScene, place: &Subdomain, block: &Block) -> Vec<f64> {
+    let mut load = vec![0.0; place.dof_count()];
+    for scene_load in &body.loads {
+        for face in loaded_faces(&block.grid, scene_load.face, Some(place)) {
+            let weights = face_weights(&face.map(|node| block.coordinates(node)));
+            for (node, weight) in face.into_iter().zip(weights) {
+                let local: [usize; 3] = std::array::from_fn(|a| node[a] - place.first_cell[a]);
+                let first = 3 * place.local_node(local);
+                for (component, traction) in scene_load.traction.iter().enumerate() {
+                    load[first + component] += weight * traction;
+                }
+            }
+        }
+    }
+    load
+}
+
+/// The interior class of one subdomain, shared among subdomains with the same interior dofs.
+fn interior_class(
+    classes: &mut HashMap<Vec<bool>, Arc<InteriorClass>>,
+    pattern: &LocalPattern,
+    constraints: &Constraints,
+    dofs: std::ops::Range<usize>,
+) -> Result<Arc<InteriorClass>, ContactError> {
+    let marked: Vec<bool> = dofs.map(|dof| constraints.transposed.row(dof).next().is_none()).collect();
+    if let Some(class) = classes.get(&marked) {
+        return Ok(Arc::clone(class));
+    }
+    let submatrix = Submatrix::new(&pattern.pattern, &marked);
+    let mut new_index = vec![usize::MAX; marked.len()];
+    for (new, &old) in submatrix.kept.iter().enumerate() {
+        new_index[old] = new;
+    }
+    let order: Vec<usize> = nested_dissection(pattern.shape.nodes())
+        .into_iter()
+        .flat_map(|node| 3 * node..3 * node + 3)
+        .filter(|&dof| marked[dof])
+        .map(|dof| new_index[dof])
+        .collect();
+    let symbolic = if order.is_empty() {
+        None
+    } else {
+        Some(Arc::new(SymbolicFactor::new(Arc::clone(&submatrix.pattern), order)?))
+    };
+    let class = Arc::new(InteriorClass { submatrix, symbolic });
+    classes.insert(marked, Arc::clone(&class));
+    Ok(class)
+}

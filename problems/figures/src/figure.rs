@@ -1,0 +1,30 @@
+//! A finished figure.
+
+use super::canvas::Canvas;
+
+/// A figure.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Figure {
+    /// Name of the figure, for files; without an ending.
+    pub name: String,
+    /// What is seen.
+    pub title: String,
+    /// The figure as SVG text.
+    pub svg: String,
+}
+
+impl Figure {
+    pub(super) fn new(name: &str, title: &str, canvas: Canvas) -> Self {
+        Self { name: name.to_owned(), title: title.to_owned(), svg: canvas.finish(title) }
+    }
+
+    /// The figure as a PNG file with `scale` pixels per point of the SVG; 2 suits screens, 4 suits print.
+    ///
+    /// # Errors
+    /// [`FigureError::Scale`](super::FigureError::Scale) for a factor that gives no pixel or more than 100 million,
+    /// [`FigureError::Drawing`](super::FigureError::Drawing) if the SVG text was changed into something that is none.
+    #[cfg(feature = "png")]
+    pub fn png(&self, scale: f64) -> Result<Vec<u8>, super::error::FigureError> {
+        super::png::png(&self.svg, scale)
+    }
+}

@@ -1,0 +1,98 @@
+//! Marks of curves and paths, and the legend that explains them.
+
+use super::canvas::{Canvas, LABEL, Place, Stroke, escaped, text_width};
+use super::colours::CURVES;
+
+/// Half the size of a mark, points.
+const MARK: f64 = 3.2;
+/// Length of the lines in a legend, points.
+const LINE: f64 = 22.0;
+/// Distance of the names in a legend from its left side, points.
+const INDENT: f64 = 29.0;
+/// Height of a row of a legend, points.
+const ROW: f64 = 20.0;
+
+/// What stands before a name in a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Sign<'a> {
+    /// The mark of a kind, with the kind's number.
+    Mark(&'a str, usize),
+    /// The point of a series, with the number of the series.
+    Point(usize),
+    Cross,
+    Line(Stroke<'a>),
+}
+
+/// Kinds of steps in the order in which they appear, with their numbers.
+pub(super) fn kinds<'a>(all: impl Iterator<Item = &'a str>) -> Vec<(&'a str, usize)> {
+    let mut kinds: Vec<(&str, usize)> = Vec::new();
+    for kind in all {
+        match kinds.iter_mut().find(|(known, _)| *known == kind) {
+            Some((_, count)) => *count += 1,
+            None => kinds.push((kind, 1)),
+        }
+    }
+    kinds
+}
+
+/// A row of the legend for every kind.
+pub(super) fn rows<'a>(kinds: &[(&'a str, usize)]) -> Vec<(Sign<'a>, String)> {
+    let row =
+        |(index, &(kind, count)): (usize, &(&'a str, usize))| (Sign::Mark(kind, index), format!("{kind} ({count})"));
+    kinds.iter().enumerate().map(row).collect()
+}
+
+/// Width of a legend with some space at its right, points.
+pub(super) fn legend_width(rows: &[(Sign, String)]) -> f64 {
+    rows.iter().fold(0.0_f64, |width, (_, name)| width.max(text_width(name, LABEL))) + INDENT + 15.0
+}
+
+/// A legend whose first row lies at a height.
+pub(super) fn legend(canvas: &mut Canvas, [x, mut y]: Place, rows: &[(Sign, String)]) {
+    for (sign, name) in rows {
+        let middle = [x + 0.5 * LINE, y];
+        match sign {
+            Sign::Mark(kind, index) => mark(canvas, &format!("legend {kind}"), *index, middle),
+            Sign::Point(index) => point(canvas, "legend", *index, middle),
+            Sign::Cross => cross(canvas, middle),
+            Sign::Line(stroke) => canvas.line(&[[x, y], [x + LINE, y]], *stroke),
+        }
+        canvas.text([x + INDENT, y + 0.34 * LABEL], LABEL, name);
+        y += ROW;
+    }
+}
+
+/// The mark of a step; shape and colour are those of its kind.
+pub(super) fn step(canvas: &mut Canvas, kinds: &[(&str, usize)], kind: &str, at: Place) {
+    mark(canvas, kind, kinds.iter().position(|(known, _)| *known == kind).unwrap_or(0), at);
+}
+
+fn mark(canvas: &mut Canvas, class: &str, index: usize, [x, y]: Place) {
+    // Blue is the line's colour.
+    let colour = CURVES[1 + index % (CURVES.len() - 1)];
+    let r = MARK;
+    let shape = match index % 4 {
+        0 => format!("M{x:.1} {:.1}l{r} {r} -{r} {r} -{r} -{r}z", y - r),
+        1 => format!("M{:.1} {y:.1}a{r} {r} 0 1 0 {d} 0a{r} {r} 0 1 0 -{d} 0z", x - r, d = 2.0 * r),
+        2 => format!("M{:.1} {:.1}h{d}v{d}h-{d}z", x - 0.9 * r, y - 0.9 * r, d = 1.8 * r),
+        _ => format!("M{x:.1} {:.1}l{r} {d} -{d} 0z", y - r, d = 2.0 * r),
+    };
+    let class = escaped(class).replace('"', "&quot;");
+    canvas.raw(&format!(
+        "<path class=\"{class}\" d=\"{shape}\" fill=\"{colour}\" stroke=\"#ffffff\" stroke-width=\"0.6\"/>\n"
+    ));
+}
+
+/// A point of a series.
+pub(super) fn point(canvas: &mut Canvas, class: &str, index: usize, [x, y]: Place) {
+    let colour = CURVES[index % CURVES.len()];
+    canvas.raw(&format!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.8\" fill=\"{colour}\"/>\n"));
+}
+
+/// A cross seen on every colour.
+pub(super) fn cross(canvas: &mut Canvas, [x, y]: Place) {
+    for (colour, width) in [("#ffffff", 4.0), ("#000000", 1.6)] {
+        canvas.line(&[[x - 6.0, y - 6.0], [x + 6.0, y + 6.0]], Stroke::solid(colour, width));
+        canvas.line(&[[x - 6.0, y + 6.0], [x + 6.0, y - 6.0]], Stroke::solid(colour, width));
+    }
+}

@@ -1,0 +1,155 @@
+//! Every kind of figure as SVG and, with the feature `png`, as PNG: titles hold signs that XML reserves, and superscripts.
+
+use figures::{
+    Convergence, Figure, Landscape, LogPlot, Map, MapPanel, Series, SolidBlock, SolidPanel, Solids, Step, SurfacePanel,
+    Surfaces, Visit,
+};
+
+fn title() -> String {
+    "p < 10^{−3} & \"Θ\" \u{1}".into()
+}
+
+fn axes() -> [String; 2] {
+    ["x₁ < 1".into(), "x₂ (mm^{2})".into()]
+}
+
+fn plots() -> [Figure; 3] {
+    let step = |kind: &str, value: f64| Step { kind: kind.into(), value: Some(value), best: value };
+    let convergence = Convergence {
+        name: "convergence".into(),
+        title: title(),
+        quantity: "Θ".into(),
+        unit: "MPa^{4}".into(),
+        steps: vec![step("a \"start\"", 9e16), step("<serious>", 2e16), step("null", 1e15), step("refined", 1e14)],
+        reference: Some(("bound & floor".into(), 1e13)),
+    };
+    let points = vec![(1.0, 1e-3), (10.0, 1e-4), (100.0, 1e-6)];
+    let plot = LogPlot {
+        name: "rates".into(),
+        title: title(),
+        x: "n".into(),
+        y: "error".into(),
+        series: vec![Series { name: "a < b".into(), points, joined: true }],
+        guides: vec![("slope −1".into(), 1e-3, -1.0)],
+    };
+    let visit = |kind: &str, place| Visit { kind: kind.into(), place };
+    let landscape = Landscape {
+        name: "landscape".into(),
+        title: title(),
+        quantity: "q".into(),
+        axes: axes(),
+        counts: [3, 2],
+        origin: [0.0; 2],
+        size: [2.0, 1.0],
+        values: vec![0.0, 1.0, 2.0, 3.0, 5.0, 8.0],
+        lines: Some(("kink".into(), vec![[[1.0, 0.0], [1.0, 1.0]]])),
+        path: vec![visit("start", [0.0, 1.0]), visit("null", [2.0, 0.5])],
+        goal: Some(("minimiser".into(), [0.0, 0.0])),
+    };
+    [convergence.figure(), plot.figure(), landscape.figure()].map(|figure| figure.expect("numbers"))
+}
+
+fn maps() -> [Figure; 3] {
+    let panel = |caption: &str, origin: f64| MapPanel {
+        caption: caption.into(),
+        counts: [3, 2],
+        origin: [origin; 2],
+        size: [100.0, 50.0],
+        values: vec![0.0, 1.0, 2.0, -3.0, 5.0, 8.0],
+    };
+    let map = Map {
+        name: "pressure".into(),
+        title: title(),
+        quantity: "pressure".into(),
+        unit: "MPa".into(),
+        axes: axes(),
+        panels: vec![panel("a > b", 0.0), panel("c", 7.0)],
+    };
+    let corner = |node: u8| [f64::from(node >> 2 & 1), f64::from(node >> 1 & 1), f64::from(node & 1)];
+    let block =
+        SolidBlock { nodes: [2; 3], points: (0..8).map(corner).collect(), values: (0..8).map(f64::from).collect() };
+    let solids = Solids {
+        name: "von_mises".into(),
+        title: title(),
+        quantity: "stress".into(),
+        unit: "MPa".into(),
+        axes: ["x₁".into(), "x₂".into(), "x₃".into()],
+        note: "displacements × 20 & more".into(),
+        panels: vec![SolidPanel { caption: "<c>".into(), blocks: vec![block] }],
+    };
+    let heights = vec![45.0, 45.0, 47.0, 45.0, 44.0, 45.0];
+    let surfaces = Surfaces {
+        name: "surface".into(),
+        title: title(),
+        quantity: "height".into(),
+        unit: "mm".into(),
+        panels: vec![SurfacePanel { caption: "c".into(), counts: [3, 2], size: [100.0, 50.0], heights }],
+    };
+    [map.figure(), solids.figure(), surfaces.figure()].map(|figure| figure.expect("numbers"))
+}
+
+#[test]
+fn every_figure_is_well_formed_and_all_of_its_text_lies_inside() {
+    for figure in plots().into_iter().chain(maps()) {
+        let document =
+            roxmltree::Document::parse(&figure.svg).unwrap_or_else(|error| panic!("{}: {error}", figure.name));
+        let number =
+            |node: &roxmltree::Node, name: &str| node.attribute(name).and_then(|text| text.parse::<f64>().ok());
+        let root = document.root_element();
+        let size = ["width", "height"].map(|side| number(&root, side).expect("a size"));
+        let texts: Vec<_> = document.descendants().filter(|node| node.has_tag_name("text")).collect();
+        assert!(texts.len() > 5, "{}", figure.name);
+        for text in texts {
+            let place = ["x", "y"].map(|axis| number(&text, axis).expect("a place"));
+            assert!((0..2).all(|axis| (0.0..=size[axis]).contains(&place[axis])), "{}: {place:?}", figure.name);
+        }
+        assert!(figure.svg.contains("<title>p &lt; 10^{−3} &amp; \"Θ\"  </title>"), "{}", figure.name);
+        assert!(!figure.svg.contains("NaN") && figure.svg.contains("10<tspan dy="), "{}", figure.name);
+    }
+}
+
+#[test]
+fn axes_have_their_ticks_where_the_numbers_are() {
+    let [_, plot, _] = plots();
+    let document = roxmltree::Document::parse(&plot.svg).expect("XML");
+    let number = |node: &roxmltree::Node, name: &str| node.attribute(name).and_then(|text| text.parse::<f64>().ok());
+    let label = |exponent: &str, anchor: &str| {
+        let mut texts = document.descendants().filter(|node| node.attribute("text-anchor") == Some(anchor));
+        let written =
+            |node: &roxmltree::Node| node.descendants().filter_map(|part| part.text()).any(|text| text == exponent);
+        texts.find(written).expect("a label")
+    };
+    let points: Vec<_> = document.descendants().filter(|node| node.attribute("class") == Some("point")).collect();
+    for (point, exponent) in points.iter().zip(["0", "1", "2"]) {
+        assert_eq!(number(point, "cx"), number(&label(exponent, "middle"), "x"));
+    }
+    // A label stands in the middle of its height.
+    let heights = [number(&points[0], "cy"), number(&label("−3", "end"), "y")].map(|height| height.expect("a height"));
+    assert!((heights[1] - heights[0] - 4.2).abs() < 0.11, "{heights:?}");
+}
+
+#[cfg(feature = "png")]
+#[test]
+fn png_files_have_the_size_asked_for() {
+    for figure in plots().into_iter().chain(maps()) {
+        let picture = figure.png(2.0).expect("a picture");
+        assert!(picture.starts_with(b"\x89PNG\r\n\x1a\n") && picture.len() > 5000, "{}", figure.name);
+        let document = roxmltree::Document::parse(&figure.svg).expect("XML");
+        for (at, side) in [(16, "width"), (20, "height")] {
+            let points: f64 = document.root_element().attribute(side).expect("a size").parse().expect("a number");
+            let pixels = u32::from_be_bytes(picture[at..at + 4].try_into().expect("four bytes"));
+            assert_eq!(f64::from(pixels), 2.0 * points, "{}: {side}", figure.name);
+        }
+    }
+}
+
+#[cfg(feature = "png")]
+#[test]
+fn png_is_refused_for_impossible_scales_and_text_that_is_no_svg() {
+    let [mut figure, ..] = plots();
+    for scale in [0.0, -1.0, f64::NAN, 1e4, f64::INFINITY] {
+        assert!(matches!(figure.png(scale), Err(figures::FigureError::Scale { .. })), "{scale}");
+    }
+    figure.svg.truncate(100);
+    assert!(matches!(figure.png(1.0), Err(figures::FigureError::Drawing(_))));
+}

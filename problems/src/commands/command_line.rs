@@ -1,0 +1,110 @@
+//! The command line of the contact binaries: parse, compute, print.
+
+use crate::commands::arguments::{Arguments, Command};
+use crate::commands::contact_objective::objective;
+use crate::commands::failure::{Failure, finish};
+use crate::commands::folder::json;
+use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
+use crate::commands::session::Session;
+use crate::commands::{compare, evaluate, optimize, recheck, verify};
+use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
+use contact::equilibrium::STAGE_TARGET;
+use scene_file::{SceneFile, schema};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Instant;
+use tracing_subscriber::filter::{LevelFilter, Targets};
+use tracing_subscriber::fmt::layer as log;
+use tracing_subscriber::layer::{Layer, SubscriberExt};
+use tracing_subscriber::util::SubscriberInitExt;
+
+/// Arguments of the binary that takes any scene.
+#[derive(Debug, Parser)]
+#[command(name = "contact3d", version, about, allow_negative_numbers = true)]
+struct AnyScene {
+    /// Scene file (docs/scenes.md; examples in problems/scenes).
+    #[arg(value_name = "SCENE.toml")]
+    scene: Option<PathBuf>,
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+/// Runs the binary of this name on its own scene, the text of a scene file.
+pub fn run(binary: &'static str, scene: &str) -> ExitCode {
+    let parsed = Arguments::from_arg_matches(&Arguments::command().name(binary).get_matches());
+    let arguments = parsed.unwrap_or_else(|error| error.exit());
+    finish(execute(|| Ok((SceneFile::parse(scene, binary)?, None)), &arguments))
+}
+
+/// Runs the binary that takes any scene.
+pub fn run_any() -> ExitCode {
+    let AnyScene { scene, arguments } = AnyScene::parse();
+    let missing = || Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into());
+    if arguments.resume.is_some() && scene.is_some() {
+        let words = "SCENE.toml and --resume together: a resumed run has its scene in its folder";
+        return finish(Err(Failure::Input(words.into())));
+    }
+    let open = || {
+        let scene = scene.ok_or_else(missing)?;
+        // A command in the place of the scene means that the scene was forgotten.
+        let command = scene.to_str().is_some_and(|word| Command::from_str(word, true).is_ok());
+        if command && !scene.exists() { Err(missing()) } else { Ok((SceneFile::read(&scene)?, Some(scene))) }
+    };
+    finish(execute(open, &arguments))
+}
+
+/// Computes what the arguments ask for, on the scene that `open` reads unless a run is resumed. The text belongs on stdout.
+pub fn execute(
+    open: impl FnOnce() -> Result<(SceneFile, Option<PathBuf>), Failure>,
+    arguments: &Arguments,
+) -> Result<String, Failure> {
+    if arguments.print_schema {
+        return json(schema());
+    }
+    arguments.check()?;
+    let status = listen()?;
+    let (file, path) = match &arguments.resume {
+        Some(folder) => RunFolder::scene(folder, arguments.command == Command::Compare)?,
+        None => open()?,
+    };
+    let loaded = LoadedScene::new(arguments.apply(file), path)?;
+    if arguments.print_scene {
+        return Ok(loaded.file.print()?);
+    }
+    if let Some(threads) = arguments.threads {
+        // A second call in one process keeps the first pool; results do not depend on it.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    }
+    let session = Session { arguments, clock: Instant::now(), status };
+    let result = match arguments.command {
+        Command::Optimize => optimize::run(&loaded, &session),
+        Command::Compare => compare::run(&loaded, &session),
+        Command::Evaluate => evaluate::run(&objective(&loaded.case)?, &loaded, arguments),
+        Command::Verify => verify::run(&objective(&loaded.case)?, &loaded.case, arguments),
+        Command::Recheck => recheck::run(&loaded.case, arguments),
+    };
+    session.status.clear();
+    result
+}
+
+/// Listens to the events of the solvers: for a log on stderr if the environment variable RUST_LOG asks for it, else for a status
+/// line if stderr is a terminal.
+fn listen() -> Result<StatusLine, Failure> {
+    // A program that has its own subscriber keeps it.
+    let Ok(filter) = std::env::var("RUST_LOG") else {
+        let status = StatusLine::of_stderr();
+        if status.is_visible() {
+            let line = status.clone();
+            let layer = StageLayer(move |stage| line.stage(stage));
+            let stages = Targets::new().with_target(STAGE_TARGET, LevelFilter::TRACE);
+            let _ = tracing_subscriber::registry().with(layer.with_filter(stages)).try_init();
+        }
+        return Ok(status);
+    };
+    let allowed = "allowed are error, warn, info, debug, trace, off, each alone or for a part as in contact=debug, joined by commas";
+    let targets: Targets =
+        filter.parse().map_err(|error| Failure::Input(format!("RUST_LOG = {filter}: {error}; {allowed}")))?;
+    let _ = tracing_subscriber::registry().with(log().with_writer(std::io::stderr).with_filter(targets)).try_init();
+    Ok(StatusLine::hidden())
+}

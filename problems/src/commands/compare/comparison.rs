@@ -1,0 +1,199 @@
+//! The comparison of optimizations with and without friction: table, conclusion, JSON.
+
+use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::optimize::summary::{Ending, ending};
+use crate::commands::solved_shape::SolvedShape;
+use serde::Serialize;
+use std::fmt;
+
+/// Relative loss of the objective up to which leaving friction out counts as cheap.
+const MAX_NEGLIGIBLE_LOSS: f64 = 0.02;
+/// Relative difference of the objective up to which two shapes count as equally good.
+const MAX_EQUAL_DIFFERENCE: f64 = 1e-4;
+
+/// Two optimizations, and their shapes solved in both models. The pairs hold the case with friction first, then that without.
+pub struct Comparison<'a> {
+    /// The optimizations, on their last mesh.
+    pub runs: [&'a MeshRun; 2],
+    /// Start and optimum of each, in its own model.
+    pub own: [&'a [SolvedShape; 2]; 2],
+    /// The shape found without friction, solved with friction; the shape found with friction, solved without.
+    pub crossed: [SolvedShape; 2],
+}
+
+/// One shape in both models.
+#[derive(Debug, Serialize)]
+pub struct Row {
+    /// The name of the shape.
+    pub shape: &'static str,
+    /// Θ with friction.
+    pub objective_with_friction: f64,
+    /// Largest pressure with friction, MPa.
+    pub peak_pressure_with_friction: f64,
+    /// Θ without friction.
+    pub objective_without_friction: f64,
+    /// Largest pressure without friction, MPa.
+    pub peak_pressure_without_friction: f64,
+}
+
+/// The keys of the JSON of `compare`.
+#[derive(Serialize)]
+struct ComparisonJson<'a> {
+    friction: f64,
+    shapes: [Row; 3],
+    loss_without_friction_in_the_model: f64,
+    surface_difference: SurfaceDifference,
+    evaluations: [usize; 2],
+    terminations: [Ending<'a>; 2],
+    controls_with_friction: &'a [f64],
+    controls_without_friction: &'a [f64],
+    conclusion: Vec<String>,
+}
+
+/// How far two surfaces are apart, mm.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct SurfaceDifference {
+    /// Difference of the mean heights.
+    pub mean: f64,
+    /// Root mean square of the rest.
+    pub shape: f64,
+    /// Root mean square by which the surface found with friction departs from a plane of its mean height.
+    pub variation: f64,
+}
+
+impl Comparison<'_> {
+    fn friction(&self) -> f64 {
+        self.runs[0].objective.solver().problem().scene.friction
+    }
+
+    /// The start and both optima, in both models.
+    pub fn rows(&self) -> [Row; 3] {
+        let row = |shape, with: &SolvedShape, without: &SolvedShape| Row {
+            shape,
+            objective_with_friction: with.value,
+            peak_pressure_with_friction: with.peak_pressure,
+            objective_without_friction: without.value,
+            peak_pressure_without_friction: without.peak_pressure,
+        };
+        let [with, without] = self.own;
+        [
+            row("start", &with[0], &without[0]),
+            row("optimized with friction", &with[1], &self.crossed[1]),
+            row("optimized without friction", &self.crossed[0], &without[1]),
+        ]
+    }
+
+    /// Θ of the shape found without friction over that of the shape found with friction, both with friction.
+    pub fn loss(&self) -> f64 {
+        self.crossed[0].value / self.own[0][1].value
+    }
+
+    /// The distance of the two optimized surfaces over the nodes of the contact boundary.
+    pub fn surface_difference(&self) -> SurfaceDifference {
+        let map = &self.runs[0].objective.solver().problem().height_map;
+        let [with, without] = self.own.map(|shapes| map.heights(shapes[1].controls.as_slice()));
+        let differences: Vec<f64> = without.iter().zip(&with).map(|(a, b)| a - b).collect();
+        let (mean, shape) = mean_and_deviation(&differences);
+        SurfaceDifference { mean, shape, variation: mean_and_deviation(&with).1 }
+    }
+
+    /// The conclusion: sentences that the numbers decide.
+    pub fn conclusion(&self) -> Vec<String> {
+        let (loss, difference) = (self.loss(), self.surface_difference());
+        let peaks = [self.own[0][1].peak_pressure, self.crossed[0].peak_pressure];
+        let mut sentences = vec![format!(
+            "With friction {}, the shape optimized without friction has {loss:.4} times the objective of the shape optimized \
+             with friction (peak pressure {:.1} against {:.1} MPa).",
+            self.friction(),
+            peaks[1],
+            peaks[0]
+        )];
+        sentences.push(if !loss.is_finite() || loss <= 0.0 {
+            "There is no contact pressure to compare.".into()
+        } else if (loss - 1.0).abs() <= MAX_EQUAL_DIFFERENCE {
+            "In these runs, both shapes are as good as each other with friction.".into()
+        } else if loss > 1.0 + MAX_NEGLIGIBLE_LOSS {
+            format!("In these runs, leaving friction out of the optimization costs {:.1} %: it is no approximation of the optimum with \
+                 friction.", 100.0 * (loss - 1.0))
+        } else if loss >= 1.0 {
+            format!("In these runs, leaving friction out of the optimization costs only {:.2} %.", 100.0 * (loss - 1.0))
+        } else {
+            format!(
+                "The run with friction stopped {:.2} % above the other shape: a better shape than its own exists, and it may be \
+                 continued from there (--start-controls).",
+                100.0 * (1.0 / loss - 1.0)
+            )
+        });
+        sentences.push(format!(
+            "The two surfaces differ by {:.3} mm (root mean square over the contact nodes, without {:.3} mm in the mean height); \
+             the surface optimized with friction departs from flat by {:.3} mm.",
+            difference.shape,
+            difference.mean.abs(),
+            difference.variation
+        ));
+        for (run, name) in self.runs.into_iter().zip(["with", "without"]) {
+            if !run.report.termination.is_confirmed() {
+                sentences.push(format!(
+                    "The run {name} friction ended without a proof of optimality ({}): read the comparison as one of the best \
+                     shapes found in {} evaluations.",
+                    run.report.termination, run.report.counts.evaluations
+                ));
+            }
+        }
+        sentences
+    }
+
+    /// The JSON.
+    pub fn summary(&self) -> impl Serialize {
+        ComparisonJson {
+            friction: self.friction(),
+            shapes: self.rows(),
+            loss_without_friction_in_the_model: self.loss(),
+            surface_difference: self.surface_difference(),
+            evaluations: self.runs.map(|run| run.report.counts.evaluations),
+            terminations: self.runs.map(|run| ending(&run.report)),
+            controls_with_friction: self.runs[0].report.solution.as_slice(),
+            controls_without_friction: self.runs[1].report.solution.as_slice(),
+            conclusion: self.conclusion(),
+        }
+    }
+}
+
+/// Mean, and root mean square of the rest.
+fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (mean, (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt())
+}
+
+impl fmt::Display for Comparison<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let friction = self.friction();
+        writeln!(f, "comparison:  friction {friction} against none")?;
+        let (with, without) = (format!("friction {friction}"), "no friction");
+        writeln!(f, "{:<28}{with:>28}{without:>28}", "")?;
+        writeln!(f, "{:<28}{:>16}{:>12}{:>16}{:>12}", "shape", "objective", "peak, MPa", "objective", "peak, MPa")?;
+        for row in self.rows() {
+            writeln!(
+                f,
+                "{:<28}{:>16.6e}{:>12.1}{:>16.6e}{:>12.1}",
+                row.shape,
+                row.objective_with_friction,
+                row.peak_pressure_with_friction,
+                row.objective_without_friction,
+                row.peak_pressure_without_friction
+            )?;
+        }
+        self.conclusion().iter().try_for_each(|sentence| writeln!(f, "{sentence}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_shift_is_mean_and_a_wave_is_shape() {
+        let (mean, deviation) = super::mean_and_deviation(&[3.0, 5.0, 3.0, 5.0]);
+        assert_eq!((mean, deviation), (4.0, 1.0));
+        assert_eq!(super::mean_and_deviation(&[]), (0.0, 0.0));
+    }
+}

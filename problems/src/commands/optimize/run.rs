@@ -1,0 +1,158 @@
+//! An optimization from its beginning to its end: on one mesh or on growing ones, kept on disk if asked for.
+
+use crate::commands::contact_objective::{ContactObjective, objective};
+use crate::commands::controls;
+use crate::commands::failure::Failure;
+use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::long_run::{RunFolder, interrupted, watch_interrupts};
+use crate::commands::optimize::mesh_run::{MeshRun, first_step, run_on_mesh};
+use crate::commands::optimize::stages::{MeshStage, stages};
+use crate::commands::session::Session;
+use contact::error::SceneError;
+use nonsmooth::{StateSolver, Termination, Vector};
+use std::path::Path;
+
+/// First step on every mesh but the first, in first steps of the first mesh. The gap at a coarse optimum says nothing about the
+/// changes that the finer mesh asks for, since the bodies have followed the surface; steps from a fourteenth to a third of the
+/// first were measured to do about equally well (docs/long_runs.md).
+const LATER_FIRST_STEP: f64 = 0.2;
+
+/// An optimization that has ended.
+pub struct OptimizationRun {
+    /// The runs on its meshes, in order; at least one.
+    pub mesh_runs: Vec<MeshRun>,
+    /// Number of meshes asked for.
+    pub meshes: usize,
+    /// The folder in which it is kept.
+    pub folder: Option<RunFolder>,
+}
+
+impl OptimizationRun {
+    /// Whether the time limit or an interruption ended it.
+    pub fn was_cut_short(&self) -> bool {
+        self.mesh_runs.last().is_some_and(ran_out_of_time)
+    }
+
+    /// Whether it ended at a limit or by an interruption, so that more evaluations may improve it.
+    pub fn can_continue(&self) -> bool {
+        let limits = [Termination::EvaluationLimit, Termination::TimeLimit, Termination::StoppedByObserver];
+        let limited = |run: &MeshRun| limits.contains(&run.report.termination);
+        self.mesh_runs.len() < self.meshes || self.mesh_runs.last().is_some_and(limited)
+    }
+}
+
+/// Whether no other mesh may be begun after this run.
+fn ran_out_of_time(run: &MeshRun) -> bool {
+    matches!(run.report.termination, Termination::TimeLimit) || interrupted()
+}
+
+/// Optimizes a scene, on its meshes in turn, from controls that are given, or else named by the command line or the scene. A
+/// run that its folder holds is continued if the command line asks for that.
+///
+/// # Errors
+/// [`Failure`] with its exit status.
+pub fn optimize(
+    loaded: &LoadedScene,
+    given: Option<&Vector>,
+    session: &Session<'_>,
+) -> Result<OptimizationRun, Failure> {
+    let stages = stages(&loaded.case);
+    let folder = open_folder(loaded, 1, session)?;
+    let first = objective(&stages[0].case)?;
+    if let Some(folder) = folder.as_ref().filter(|folder| folder.is_resumed()) {
+        check_limit(folder, &stages)?;
+    }
+    let mut controls = initial_controls(&first, loaded, given, folder.as_ref(), session)?;
+    watch_interrupts();
+    let optimizer = &loaded.case.optimizer;
+    let mut step = optimizer.first_step.unwrap_or_else(|| first_step(&first, &controls));
+    let (mut mesh_runs, mut first) = (Vec::new(), Some(first));
+    for stage in &stages {
+        let objective = first.take().map_or_else(|| objective(&stage.case), Ok)?;
+        let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
+        let start = (controls, step);
+        let run = run_on_mesh(objective, stage, start, optimizer.time_limit.map(left), folder.as_ref(), &session.status)?;
+        if mesh_runs.is_empty() {
+            step *= LATER_FIRST_STEP;
+        }
+        controls = run.report.solution.clone();
+        let ended = ran_out_of_time(&run);
+        mesh_runs.push(run);
+        if ended {
+            break;
+        }
+    }
+    Ok(OptimizationRun { mesh_runs, meshes: stages.len(), folder })
+}
+
+/// The folder of a run if one is asked for, with room for the files of so many optimizations.
+///
+/// # Errors
+/// As [`RunFolder::open`].
+pub fn open_folder(
+    loaded: &LoadedScene,
+    optimizations: u64,
+    session: &Session<'_>,
+) -> Result<Option<RunFolder>, SceneError> {
+    let Some(path) = loaded.case.output.folder.as_deref() else { return Ok(None) };
+    let resumed = session.arguments.resume.is_some() && RunFolder::is_one(Path::new(path));
+    RunFolder::open(path, optimizations * room(&stages(&loaded.case)), resumed).map(Some)
+}
+
+/// The controls that a run starts from: those in the folder of a run that is continued, else those given, else those that the
+/// command line or the scene names. The folder keeps them.
+///
+/// # Errors
+/// [`Failure::Input`] for controls outside the admissible set; any [`Failure`] of the folder.
+pub fn initial_controls(
+    objective: &ContactObjective,
+    loaded: &LoadedScene,
+    given: Option<&Vector>,
+    folder: Option<&RunFolder>,
+    session: &Session<'_>,
+) -> Result<Vector, Failure> {
+    let shape = objective.solver();
+    if let Some(folder) = folder.filter(|folder| folder.is_resumed()) {
+        let controls = folder.resume(loaded, shape.control_dimension())?;
+        shape.problem().admissible.check(&controls)?;
+        return Ok(controls);
+    }
+    let load = || controls::load(shape, &loaded.case, session.arguments.start_controls.as_deref());
+    let controls = given.cloned().map_or_else(load, Ok)?;
+    if let Some(folder) = folder {
+        folder.begin(loaded, controls.as_slice())?;
+    }
+    Ok(controls)
+}
+
+/// Refuses fewer evaluations than a run that is continued has made already, since its report would become worse.
+///
+/// # Errors
+/// [`Failure::Input`] naming `--max-evaluations`; any [`Failure`] of the folder.
+pub fn check_limit(folder: &RunFolder, stages: &[MeshStage]) -> Result<(), Failure> {
+    for stage in stages {
+        let (held, limit) = (folder.evaluations(stage.name.as_deref())?, stage.case.optimizer.max_evaluations);
+        if held > limit {
+            let allowed = format!("at least the {held} evaluations that the folder holds");
+            return Err(SceneError::out_of_range("--max-evaluations", limit, allowed).into());
+        }
+    }
+    Ok(())
+}
+
+/// Bytes of a number in the restart data.
+const NUMBER_BYTES: u64 = 24;
+
+/// Bytes per torn node of the fields of one state (some 260 bytes per brick were written at 35³).
+const FIELD_BYTES: u64 = 300;
+
+/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states, and
+/// the rest.
+fn room(stages: &[MeshStage]) -> u64 {
+    let nodes = stages.iter().map(|stage| {
+        let scene = &stage.case.scene;
+        let torn = scene.mesh.iter().zip(&scene.subdomains).map(|(cells, count)| (cells + count) as u64);
+        torn.product::<u64>() * if scene.upper.is_some() { 2 } else { 1 }
+    });
+    (3 * 3 * NUMBER_BYTES + 2 * FIELD_BYTES) * nodes.max().unwrap_or(0) + (4 << 20)
+}

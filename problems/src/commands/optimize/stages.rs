@@ -1,0 +1,52 @@
+//! The growing meshes of a coarse-to-fine optimization.
+
+use scene_file::{Case, default_subdomains};
+
+/// One mesh of an optimization.
+#[derive(Debug, Clone)]
+pub struct MeshStage {
+    /// Name of the folder of its journal; none for a run on a single mesh.
+    pub name: Option<String>,
+    /// The case on this mesh.
+    pub case: Case,
+}
+
+/// The meshes of a case, in order; a case without continuation has one. The axis with most bricks gets the number asked for, the
+/// others keep their proportion to it.
+pub fn stages(case: &Case) -> Vec<MeshStage> {
+    let meshes = &case.optimizer.continuation;
+    if meshes.is_empty() {
+        return vec![MeshStage { name: None, case: case.clone() }];
+    }
+    let longest = case.scene.mesh.iter().copied().max().unwrap_or(1);
+    let stage = |&bricks: &usize| {
+        let mut case = case.clone();
+        let scaled = |count: usize| ((count * bricks) as f64 / longest as f64).round().max(1.0) as usize;
+        case.scene.mesh = case.scene.mesh.map(scaled);
+        let fits = case.scene.mesh.iter().zip(&case.scene.subdomains).all(|(mesh, count)| mesh.is_multiple_of(*count));
+        if !fits {
+            case.scene.subdomains = case.scene.mesh.map(default_subdomains);
+        }
+        MeshStage { name: Some(format!("stage_{bricks}")), case }
+    };
+    meshes.iter().map(stage).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene_file::SceneFile;
+    use std::path::Path;
+
+    #[test]
+    fn meshes_keep_their_proportions() {
+        let text = include_str!("../../../scenes/thin_layer.toml");
+        let file = SceneFile::parse(text, "thin_layer.toml").expect("an example");
+        let mut case = Case::new(&file, Path::new("")).expect("an example");
+        assert!(stages(&case).len() == 1 && stages(&case)[0].name.is_none());
+        case.optimizer.continuation = vec![6, 12, 25];
+        let meshes: Vec<_> =
+            stages(&case).iter().map(|stage| (stage.case.scene.mesh, stage.case.scene.subdomains)).collect();
+        assert_eq!(meshes, [([6, 6, 2], [2, 2, 1]), ([12, 12, 4], [2, 2, 1]), ([25, 25, 8], [5, 5, 2])]);
+    }
+}

@@ -1,0 +1,172 @@
+//! The report of an optimization as text and as JSON.
+
+use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::solved_shape::SolvedShape;
+use contact::equilibrium::{Kink, Residuals};
+use nonsmooth::{Report, Termination, Vector};
+use serde::Serialize;
+
+/// The keys of the JSON of `optimize`.
+#[derive(Debug, Serialize)]
+struct OptimizationJson<'a> {
+    objective_start: f64,
+    objective: f64,
+    controls: &'a [f64],
+    evaluations: usize,
+    serious_steps: usize,
+    null_steps: usize,
+    termination: Ending<'a>,
+    certificate: Option<CertificateJson>,
+    largest_constraint_violation: f64,
+    history: Vec<Option<f64>>,
+    seconds: f64,
+    /// Number of evaluations of an earlier part of the run, which were answered from its journal.
+    resumed_evaluations: usize,
+    peak_pressure: [f64; 2],
+    /// Certificates of the contact states at the start and at the end.
+    residuals: [Residuals; 2],
+    /// Distances of these states to the nearest kink.
+    kinks: [Kink; 2],
+    /// One entry per mesh of a coarse-to-fine optimization.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    stages: Vec<MeshRunJson<'a>>,
+    warnings: &'a [String],
+    left_out: Vec<&'static str>,
+}
+
+/// How a run ended.
+#[derive(Debug, Serialize)]
+pub struct Ending<'a> {
+    reason: &'a Termination,
+    text: String,
+    confirmed: bool,
+}
+
+/// The certificate without its cuts, which go to a file.
+#[derive(Debug, Serialize)]
+struct CertificateJson {
+    aggregate_norm: f64,
+    aggregate_error: f64,
+    predicted_decrease: f64,
+    active_cuts: usize,
+    active_radius: f64,
+    active_rows: usize,
+    active_bounds: usize,
+    noise: f64,
+}
+
+/// One mesh of a coarse-to-fine optimization.
+#[derive(Debug, Serialize)]
+struct MeshRunJson<'a> {
+    mesh: [usize; 3],
+    objective_start: f64,
+    objective: f64,
+    evaluations: usize,
+    seconds: f64,
+    termination: Ending<'a>,
+}
+
+fn stages(runs: &[MeshRun]) -> Vec<MeshRunJson<'_>> {
+    runs.iter()
+        .filter(|run| run.name.is_some())
+        .map(|run| MeshRunJson {
+            mesh: run.objective.solver().problem().scene.mesh,
+            objective_start: run.report.start_value,
+            objective: run.report.value,
+            evaluations: run.report.counts.evaluations,
+            seconds: run.report.seconds,
+            termination: ending(&run.report),
+        })
+        .collect()
+}
+
+/// How a run ended.
+pub fn ending(report: &Report) -> Ending<'_> {
+    let termination = &report.termination;
+    Ending { reason: termination, text: termination.to_string(), confirmed: termination.is_confirmed() }
+}
+
+/// One line per mesh; nothing for a run on a single mesh.
+pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
+    let mut text = String::new();
+    for run in runs.iter().filter(|run| run.name.is_some()) {
+        let [n1, n2, n3] = run.objective.solver().problem().scene.mesh;
+        let report = &run.report;
+        text += &format!(
+            "stage {n1}x{n2}x{n3}: {:.6e} -> {:.6e} in {} evaluations, {:.1} s; {}\n",
+            report.start_value, report.value, report.counts.evaluations, report.seconds, report.termination
+        );
+    }
+    if runs.len() < meshes {
+        text += &format!("stages:      {} of {meshes} begun\n", runs.len());
+    }
+    text
+}
+
+/// The JSON of an optimization: the run on its last mesh, and an entry for every mesh if there are several.
+pub fn summary<'a>(last: &'a MeshRun, runs: &'a [MeshRun], shapes: &[SolvedShape; 2]) -> impl Serialize + use<'a> {
+    let MeshRun { report, objective, replayed, .. } = last;
+    let active = |multipliers: &Vector| multipliers.iter().filter(|multiplier| **multiplier != 0.0).count();
+    OptimizationJson {
+        objective_start: shapes[0].value,
+        objective: report.value,
+        controls: report.solution.as_slice(),
+        evaluations: report.counts.evaluations,
+        serious_steps: report.counts.serious,
+        null_steps: report.counts.null,
+        termination: ending(report),
+        certificate: report.certificate.as_ref().map(|certificate| CertificateJson {
+            aggregate_norm: certificate.aggregate_norm,
+            aggregate_error: certificate.aggregate_error,
+            predicted_decrease: certificate.predicted_decrease,
+            active_cuts: certificate.active_cuts().count(),
+            active_radius: certificate.active_radius,
+            active_rows: active(&certificate.row_multipliers),
+            active_bounds: active(&certificate.bound_multipliers),
+            noise: certificate.noise,
+        }),
+        largest_constraint_violation: report.largest_violation,
+        history: report.history.iter().map(|record| record.value).collect(),
+        seconds: report.seconds,
+        resumed_evaluations: *replayed,
+        peak_pressure: shapes.each_ref().map(|shape| shape.peak_pressure),
+        residuals: shapes.each_ref().map(|shape| shape.state.forces.residuals),
+        kinks: shapes.each_ref().map(|shape| shape.state.forces.kink),
+        stages: stages(runs),
+        warnings: &report.warnings,
+        left_out: objective.solver().left_out(),
+    }
+}
+
+/// The one-page report.
+pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2]) -> String {
+    let MeshRun { report, objective, .. } = last;
+    let at_solution = &shapes[1].state.forces;
+    let scene = &objective.solver().problem().scene;
+    let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
+    format!(
+        "{}: {} of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}\n\
+         reduction:   {:.4} times, peak pressure {:.1} -> {:.1} MPa\n{report}\
+         state:       relative residuals at the solution: {}\n\
+         \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
+         active:      {}\n\
+         left out:    {}\n",
+        scene.name,
+        bodies,
+        scene.mesh[0],
+        scene.mesh[1],
+        scene.mesh[2],
+        scene.subdomains[0],
+        scene.subdomains[1],
+        scene.subdomains[2],
+        scene.friction,
+        shapes[0].value / report.value,
+        shapes[0].peak_pressure,
+        shapes[1].peak_pressure,
+        at_solution.residuals,
+        at_solution.kink.smallest_margin,
+        at_solution.kink.weakly_active,
+        last.active_constraints(),
+        objective.solver().left_out().join("; "),
+    )
+}

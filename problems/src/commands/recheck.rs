@@ -1,0 +1,130 @@
+//! `recheck`: norm and error of a certificate computed again from the files that an optimization has left.
+
+use crate::commands::arguments::Arguments;
+use crate::commands::controls;
+use crate::commands::failure::Failure;
+use crate::commands::folder::json;
+use crate::commands::optimize::stages::{MeshStage, stages};
+use contact::equilibrium::ContactProblem;
+use contact::error::SceneError;
+use nonsmooth::{Certificate, CertificateCheck, Journal};
+use scene_file::Case;
+use serde::Serialize;
+use std::fmt;
+use std::path::Path;
+
+/// Largest difference of the norm, in norms of the subgradients behind it, and of the error, in values of Θ, that counts as
+/// rounding.
+const MAX_ROUNDING: f64 = 1e-8;
+
+/// A number of the certificate, and the same number computed again.
+#[derive(Debug, Serialize)]
+struct Number {
+    recorded: f64,
+    recomputed: f64,
+    /// Largest difference that counts as rounding.
+    rounding: f64,
+    agrees: bool,
+}
+
+impl Number {
+    fn new(recorded: f64, recomputed: f64, rounding: f64) -> Self {
+        Self { recorded, recomputed, rounding, agrees: (recorded - recomputed).abs() <= rounding }
+    }
+}
+
+/// The keys of the JSON of `recheck`.
+#[derive(Debug, Serialize)]
+struct RecheckJson {
+    aggregate_norm: Number,
+    aggregate_error: Number,
+    /// Whether the multipliers are those of a convex combination and of closed sides of the admissible set, and whether the
+    /// point lies in that set.
+    multipliers_and_point_admissible: bool,
+    multiplier_defect: f64,
+    open_side_multiplier: f64,
+    violation: f64,
+    /// Whether the point of the certificate is that of controls.json.
+    point_equals_controls: bool,
+    agrees: bool,
+}
+
+/// The command.
+pub fn run(case: &Case, arguments: &Arguments) -> Result<String, Failure> {
+    let folder = arguments.certified.as_deref().unwrap_or(Path::new(""));
+    let certificate = read(&folder.join("certificate.json"))?;
+    let controls = controls::read(&folder.join("controls.json"), certificate.point.len())?;
+    let Some(MeshStage { case, .. }) = last_stage(case, folder) else {
+        return Err(Failure::computation("no mesh was begun"));
+    };
+    let problem = ContactProblem::new(case.scene)?;
+    let check = certificate.recheck(problem.admissible.polyhedron()).map_err(|error| {
+        Failure::Computation(format!("{}: the certificate is not one of this scene: {error}", folder.display()))
+    })?;
+    let result = RecheckJson::new(&certificate, &check, certificate.point == controls);
+    let text = arguments.printed(result.to_string(), json(&result)?);
+    if result.agrees {
+        return Ok(text);
+    }
+    let reason =
+        format!("{}: the certificate does not agree with its cuts, its multipliers and the scene", folder.display());
+    Err(Failure::Incomplete { text, reason, status: 1 })
+}
+
+/// The last mesh that the run in a folder has begun.
+fn last_stage(case: &Case, folder: &Path) -> Option<MeshStage> {
+    let begun = |stage: &MeshStage| stage.name.as_ref().is_none_or(|name| Journal::exists(&folder.join(name)));
+    stages(case).into_iter().rev().find(begun)
+}
+
+fn read(file: &Path) -> Result<Certificate, Failure> {
+    let path = file.display().to_string();
+    let refused = |reason: String| SceneError::File { path: path.clone(), reason };
+    let text = std::fs::read_to_string(file).map_err(|error| refused(error.to_string()))?;
+    let certificate: Option<Certificate> = serde_json::from_str(&text)
+        .map_err(|error| refused(format!("{error}; expected the certificate that an optimization writes")))?;
+    let none = || Failure::Computation(format!("{path}: the run solved no subproblem and has no certificate"));
+    certificate.ok_or_else(none)
+}
+
+impl RecheckJson {
+    fn new(certificate: &Certificate, check: &CertificateCheck, point_equals_controls: bool) -> Self {
+        let slopes = certificate.cuts.iter().map(|cut| cut.multiplier * certificate.norm.dual_length(&cut.subgradient));
+        let [norm_rounding, error_rounding] =
+            [slopes.sum(), certificate.value.abs()].map(|scale: f64| MAX_ROUNDING * scale);
+        let aggregate_norm = Number::new(certificate.aggregate_norm, check.aggregate_norm, norm_rounding);
+        let aggregate_error = Number::new(certificate.aggregate_error, check.aggregate_error, error_rounding);
+        let admissible = check.proves(f64::INFINITY, f64::INFINITY);
+        Self {
+            agrees: aggregate_norm.agrees && aggregate_error.agrees && admissible && point_equals_controls,
+            aggregate_norm,
+            aggregate_error,
+            multipliers_and_point_admissible: admissible,
+            multiplier_defect: check.multiplier_defect,
+            open_side_multiplier: check.open_side_multiplier,
+            violation: check.violation,
+            point_equals_controls,
+        }
+    }
+}
+
+impl fmt::Display for RecheckJson {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = |agrees: bool| if agrees { "agrees" } else { "does NOT agree" };
+        writeln!(f, "{:<20}{:>16}{:>16}", "", "recorded", "recomputed")?;
+        for (name, number) in [("aggregate norm", &self.aggregate_norm), ("aggregate error", &self.aggregate_error)] {
+            let Number { recorded, recomputed, rounding, agrees } = number;
+            let agrees = verdict(*agrees);
+            writeln!(f, "{name:<20}{recorded:>16.8e}{recomputed:>16.8e}  {agrees} (rounding: {rounding:.1e})")?;
+        }
+        let admissible = if self.multipliers_and_point_admissible { "admissible" } else { "NOT admissible" };
+        writeln!(
+            f,
+            "multipliers, point  {admissible}: defect {:.1e}, at open sides {:.1e}; violation {:.1e}",
+            self.multiplier_defect, self.open_side_multiplier, self.violation
+        )?;
+        let equal = if self.point_equals_controls { "equals" } else { "does NOT equal" };
+        writeln!(f, "point               {equal} controls.json")?;
+        writeln!(f, "certificate         {}", verdict(self.agrees))
+    }
+}

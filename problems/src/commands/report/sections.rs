@@ -1,0 +1,137 @@
+//! Sections that the report pages of several commands share.
+
+use crate::commands::contact_objective::ContactObjective;
+use crate::commands::solved_shape::SolvedShape;
+use figures::Figure;
+use figures::page::{Block, Section};
+use nonsmooth::{Certificate, Report};
+
+/// The pictures of a page.
+pub fn pictures(figures: &[Figure]) -> Section {
+    let block = |figure: &Figure| Block::Figure { svg: figure.svg.clone(), caption: figure.title.clone() };
+    Section::new("Pictures", figures.iter().map(block).collect())
+}
+
+/// Contact states side by side: the parts of the objective, and residuals that say how far the numbers can be trusted.
+pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> Section {
+    let areas: f64 = objective.solver().problem().boundary.points.iter().map(|point| point.area).sum();
+    let row = |name: &str, cell: &dyn Fn(&SolvedShape) -> String| -> Vec<String> {
+        std::iter::once(name.to_owned()).chain(shapes.iter().map(|(_, shape)| cell(shape))).collect()
+    };
+    let force = |shape: &SolvedShape| shape.state.forces.total_normal_force();
+    let bound = |shape: &SolvedShape| objective.cost().lower_bound(force(shape));
+    let rows = vec![
+        row("objective Θ", &|shape| format!("{:.10e}", shape.value)),
+        row("least value for this total force", &|shape| format!("{:.4e}", bound(shape))),
+        row("Θ over that", &|shape| format!("{:.3}", shape.value / bound(shape))),
+        row("peak pressure, MPa", &|shape| format!("{:.2}", shape.peak_pressure)),
+        row("mean pressure, MPa", &|shape| format!("{:.2}", force(shape) / areas)),
+        row("total normal force, N", &|shape| format!("{:.8e}", force(shape))),
+        row("nodes open / stick / slip", &|shape| {
+            let counts = shape.state.forces.counts();
+            format!("{} / {} / {}", counts.open, counts.stick, counts.slip)
+        }),
+        row("relative residual: equilibrium", &|shape| format!("{:.1e}", shape.state.forces.residuals.equilibrium)),
+        row("complementarity", &|shape| format!("{:.1e}", shape.state.forces.residuals.complementarity)),
+        row("friction cone", &|shape| format!("{:.1e}", shape.state.forces.residuals.friction_cone)),
+        row("dissipation", &|shape| format!("{:.1e}", shape.state.forces.residuals.dissipation)),
+        row("Newton", &|shape| format!("{:.1e}", shape.state.forces.residuals.newton)),
+        row("relative distance to the nearest kink", &|shape| {
+            format!("{:.1e}", shape.state.forces.kink.smallest_margin)
+        }),
+        row("weakly active nodes", &|shape| shape.state.forces.kink.weakly_active.to_string()),
+    ];
+    let head = std::iter::once("").chain(shapes.iter().map(|(label, _)| *label));
+    let words = "Residuals are relative to the load. No shape that carries the same total force over the same contact nodes \
+                 can be below the least value.";
+    Section::new("States", vec![Block::table(head, rows), Block::Text(words.into())])
+}
+
+/// The course of the optimization.
+pub fn course(report: &Report, active: &str) -> Section {
+    let counts = &report.counts;
+    let first = report.history.first().map_or(0.0, |record| record.seconds);
+    let slowest = report.history.windows(2).map(|pair| pair[1].seconds - pair[0].seconds).fold(first, f64::max);
+    let rows = vec![
+        vec!["evaluations".to_owned(), counts.evaluations.to_string()],
+        vec![
+            "serious / null / refined / failed".into(),
+            format!("{} / {} / {} / {}", counts.serious, counts.null, counts.refined, counts.failed),
+        ],
+        vec!["restarts".into(), counts.restarts.to_string()],
+        vec!["subproblems (by the fallback solver)".into(), format!("{} ({})", counts.qp_solves, counts.qp_fallbacks)],
+        vec!["seconds".into(), format!("{:.2}", report.seconds)],
+        vec![
+            "seconds per evaluation: mean / longest".into(),
+            format!("{:.3} / {slowest:.3}", report.seconds / counts.evaluations.max(1) as f64),
+        ],
+        vec!["largest relative violation of the constraints".into(), format!("{:.1e}", report.largest_violation)],
+        vec!["constraints attained at the end".into(), active.to_owned()],
+    ];
+    let end = format!("The run ended: {}. {}.", report.termination, sentence(report.termination.advice()));
+    Section::new("Course of the optimization", vec![Block::Text(end), Block::table(["quantity", "value"], rows)])
+}
+
+/// The certificate of stationarity.
+pub fn certificate(certificate: Option<&Certificate>) -> Section {
+    let Some(certificate) = certificate else {
+        return Section::new("Certificate", vec![Block::Text("No subproblem was solved, so there is none.".into())]);
+    };
+    let rows = vec![
+        vec!["norm of the aggregate subgradient".to_owned(), format!("{:.3e}", certificate.aggregate_norm)],
+        vec!["aggregate error".into(), format!("{:.3e}", certificate.aggregate_error)],
+        vec!["predicted decrease".into(), format!("{:.3e}", certificate.predicted_decrease)],
+        vec![
+            "predicted decrease over Θ".into(),
+            format!("{:.1e}", certificate.predicted_decrease / certificate.value.abs()),
+        ],
+        vec![
+            "active cuts".into(),
+            format!("{} within {:.2e}", certificate.active_cuts().count(), certificate.active_radius),
+        ],
+        vec!["curvature added".into(), format!("{:.3e}", certificate.convexification)],
+        vec!["noise".into(), format!("{:.1e}", certificate.noise)],
+    ];
+    let words = "At a stationary point the aggregate subgradient and the aggregate error vanish; the predicted decrease is what \
+                 the model still hopes for. certificate.json holds all cuts and multipliers, from which \
+                 the command recheck computes norm and error again.";
+    Section::new("Certificate", vec![Block::table(["quantity", "value"], rows), Block::Text(words.into())])
+}
+
+/// The scene, the versions of the program, and what the scene did not need.
+pub fn origin(scene: &str, left_out: &[&str], warnings: &[String]) -> Section {
+    let build = if cfg!(debug_assertions) { "with debug assertions" } else { "optimized" };
+    let versions = vec![
+        vec!["nonsmooth".to_owned(), nonsmooth::VERSION.to_owned()],
+        vec!["problems".into(), env!("CARGO_PKG_VERSION").to_owned()],
+        vec!["build".into(), format!("{build}, {} {}", std::env::consts::ARCH, std::env::consts::OS)],
+        vec!["threads".into(), rayon::current_num_threads().to_string()],
+        vec![
+            "command".into(),
+            std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" "),
+        ],
+    ];
+    let mut blocks = vec![Block::table(["", ""], versions)];
+    if !left_out.is_empty() {
+        blocks.push(Block::Text(format!("Left out, because this scene does not need it: {}.", left_out.join("; "))));
+    }
+    if !warnings.is_empty() {
+        blocks.push(Block::Text("Warnings:".into()));
+        blocks.push(Block::List(warnings.to_vec()));
+    }
+    blocks
+        .push(Block::Listing { title: "The scene, complete, with all options put in".into(), text: scene.to_owned() });
+    Section::new("Scene and versions", blocks)
+}
+
+/// The files beside the page.
+pub fn files(files: &[(String, &str)]) -> Section {
+    let rows = files.iter().map(|(name, what)| vec![name.clone(), (*what).to_owned()]);
+    Section::new("Files", vec![Block::table(["file", "holds"], rows)])
+}
+
+/// A text that begins with a capital letter.
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,99 @@
+//! What an answer of the oracle does to the run: serious or null, weight, bundle, center, noise.
+
+use super::config::Convexity;
+use super::cut::Cut;
+use super::proposers::proposal::Proposal;
+use super::proposers::proposer::{Comparison, Trial};
+use super::run::Run;
+use crate::report::StepKind;
+use crate::{Accuracy, Answer, Evaluation, NonsmoothObjective, Vector};
+
+/// Only steps shorter than this share of the length scale tell noise from slope.
+const NOISE_STEP: f64 = 1e-4;
+/// A change of Θ beyond this many times the steepest slope along the step is noise.
+const STEEPNESS_MARGIN: f64 = 4.0;
+/// Times the promised errors and rounding that a change must exceed to be noise.
+const NOISE_MARGIN: f64 = 8.0;
+/// Cuts in the bundle beyond the number of variables, unless `bundle_size` is set.
+const EXTRA_CUTS: usize = 15;
+/// Largest number of cuts, unless `bundle_size` is set.
+const MAX_CUTS: usize = 150;
+
+impl<O: NonsmoothObjective> Run<'_, '_, O> {
+    /// Serious or null: updates weight, bundle and center.
+    pub(super) fn accept_or_reject(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<O::WarmStart>) {
+        let accurate = matches!(answer, Answer::Accurate(_));
+        let evaluation = answer.into_evaluation();
+        let value = evaluation.value;
+        let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
+        let serious = accurate && comparison.is_serious(&self.method.config);
+        self.state.failures = 0;
+        if accurate {
+            self.watch_noise(&proposal, &evaluation);
+        }
+        let trial = Trial { proposal: &proposal, comparison, accurate, serious };
+        self.proposers.learn(&mut self.state, &self.method.config, &trial);
+        let kind = if serious {
+            if -comparison.change > self.tolerance() {
+                self.state.restarts = 0;
+            }
+            self.state.counts.serious += 1;
+            StepKind::Serious
+        } else {
+            self.state.counts.null += 1;
+            if accurate { StepKind::Null } else { StepKind::NoDescent }
+        };
+        self.add_cut(proposal.trial.clone(), &evaluation, !accurate);
+        if serious {
+            self.move_center(proposal.trial.clone(), evaluation, accuracy);
+        }
+        self.record(kind, &proposal, accuracy, Some(value), None);
+    }
+
+    /// Values that jump although the points almost coincide, and cuts above the values of a convex function, are noise.
+    fn watch_noise(&mut self, proposal: &Proposal, evaluation: &Evaluation<O::WarmStart>) {
+        let state = &mut self.state;
+        let change = evaluation.value - state.center_value;
+        let promised = evaluation.error_bound + state.center_error_bound() + state.rounding();
+        if proposal.step_length <= NOISE_STEP * state.length_scale() {
+            let slopes = state.bundle.cuts().iter().map(|cut| state.norm.dual_length(&cut.subgradient));
+            let steepest = slopes.fold(state.norm.dual_length(&evaluation.subgradient), f64::max);
+            if change.abs() > STEEPNESS_MARGIN * steepest * proposal.step_length + NOISE_MARGIN * promised {
+                state.noise = state.noise.max(change.abs());
+            }
+        }
+        if self.method.config.convexity == Convexity::Convex {
+            let error = evaluation.subgradient.dot(&proposal.step) - change;
+            if error < -NOISE_MARGIN * promised {
+                state.noise = state.noise.max(-error);
+            }
+        }
+    }
+
+    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>, certified: bool) {
+        let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + EXTRA_CUTS).min(MAX_CUTS));
+        let state = &mut self.state;
+        state.bundle.make_room(size, state.center_id);
+        state.bundle.push(Cut {
+            id: state.next_id,
+            point,
+            value: evaluation.value,
+            subgradient: evaluation.subgradient.clone(),
+            error_bound: evaluation.error_bound,
+            certified,
+            multiplier: 0.0,
+            idle: 0,
+        });
+        state.next_id += 1;
+        self.forget_model();
+    }
+
+    /// Makes the newest cut the center.
+    pub(super) fn move_center(&mut self, point: Vector, evaluation: Evaluation<O::WarmStart>, accuracy: Accuracy) {
+        self.state.center = point;
+        self.state.center_value = evaluation.value;
+        self.state.center_id = self.state.next_id - 1;
+        self.state.center_accuracy = accuracy.tolerance();
+        self.warm_start = Some(evaluation.warm_start);
+    }
+}

@@ -1,0 +1,128 @@
+//! The curved model proposes while its record of predictions is clearly better than that of the plain cuts, so that kinks turn
+//! it off; failures double the pause before it is used again.
+
+pub(crate) mod config;
+mod model;
+mod pieces;
+
+use super::pause::Pause;
+use super::proposal::{Proposal, SubproblemError};
+use super::proposer::{Comparison, Position, Proposer, Trial};
+use super::subproblem;
+use crate::Vector;
+use crate::bundle::config::BundleTrustConfig;
+use crate::bundle::state::State;
+use crate::qp::Metric;
+use crate::report::Origin;
+use config::CurvedModelConfig;
+use model::CurvedModel;
+
+/// The curved model, and the right to use it.
+#[derive(Debug)]
+pub(crate) struct Curved {
+    settings: CurvedModelConfig,
+    /// Weight added to the matrix B.
+    weight: f64,
+    /// Running mean of the log ratio of the prediction errors.
+    score: f64,
+    nulls: usize,
+    pause: Pause,
+    /// The model at the center, which predicts every trial point, whoever proposes it.
+    model: CurvedModel,
+}
+
+impl Curved {
+    pub(crate) fn new(settings: CurvedModelConfig, weight: f64) -> Self {
+        Self { settings, weight, score: 0.0, nulls: 0, pause: Pause::default(), model: CurvedModel::default() }
+    }
+
+    /// The step of least model value and penalty among those found with the multipliers of the solve before.
+    fn step(&self, at: &mut Position<'_>) -> Result<Vector, SubproblemError> {
+        let (state, model) = (at.state, &self.model);
+        let mut multipliers = model.first_multipliers(state);
+        let mut best: Option<(f64, Vector)> = None;
+        for _ in 0..self.settings.multiplier_rounds {
+            let mut metric = model.matrix(state.center.len(), &multipliers);
+            state.norm.add_to(&mut metric, self.weight);
+            let solution = match subproblem::solve(at.solver, at.set, state, Metric::Dense(&metric), model.cuts()) {
+                Ok(solution) => solution,
+                // A later round only refines what an earlier one has found.
+                Err(_) if best.is_some() => break,
+                Err(error) => return Err(error.into()),
+            };
+            let total = model.change(&solution.step) + 0.5 * self.weight * state.norm.squared(&solution.step);
+            if best.as_ref().is_none_or(|(least, _)| total < *least) {
+                best = Some((total, solution.step));
+            }
+            multipliers = solution.cut_multipliers;
+        }
+        best.map(|(_, step)| step).ok_or(SubproblemError::Unusable)
+    }
+
+    /// Judges both predictions by what happened.
+    fn compare(&mut self, change: f64, plain: f64, curved: f64) {
+        let floor = self.settings.error_floor * (change.abs() + plain.abs());
+        // Models that agree say nothing about each other.
+        if floor > 0.0 && plain != curved {
+            let gain = (((change - plain).abs() + floor) / ((change - curved).abs() + floor)).ln();
+            let largest = self.settings.max_log_ratio;
+            self.score += self.settings.newest_share * (gain.clamp(-largest, largest) - self.score);
+        }
+    }
+
+    /// The weight comes down to what the observed change asks for.
+    fn after_serious(&mut self, state: &State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+        self.nulls = 0;
+        self.pause.succeed();
+        let (u, comparison) = (self.weight, &trial.comparison);
+        if comparison.change <= config.good_fraction * comparison.model_change {
+            let next = missing_weight(comparison, trial.proposal.step_length).max(u / config.weight_decrease).min(u);
+            self.weight = next.max(state.first_weight / config.weight_range);
+        }
+    }
+
+    /// The weight goes up at once, as the next matrix B knows the new point already.
+    fn after_null(&mut self, state: &State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+        self.nulls += 1;
+        if self.nulls >= self.settings.max_null_steps {
+            self.nulls = 0;
+            self.pause.fail(self.settings.max_pause);
+        }
+        let u = self.weight;
+        let range = (LEAST_INCREASE.min(config.weight_increase) * u, config.weight_increase * u);
+        let next = missing_weight(&trial.comparison, trial.proposal.step_length).clamp(range.0, range.1);
+        self.weight = next.min(state.first_weight * config.weight_range);
+    }
+}
+
+/// Factor by which the weight beside B rises at least after a null step, unless `weight_increase` is smaller.
+const LEAST_INCREASE: f64 = 2.0;
+
+/// The weight beside B that the observed change asks for.
+fn missing_weight(comparison: &Comparison, step_length: f64) -> f64 {
+    2.0 * (comparison.change - comparison.model_change) / (step_length * step_length)
+}
+
+impl Proposer for Curved {
+    fn propose(&mut self, at: &mut Position<'_>, proposed: &[Proposal]) -> Result<Option<Proposal>, SubproblemError> {
+        self.model = CurvedModel::new(at.state, at.model.cuts(), &self.settings);
+        let may_propose = self.pause.pass() && self.score > self.settings.trust;
+        let Some(plain) = proposed.first().filter(|_| may_propose) else { return Ok(None) };
+        let step = self.step(at)?;
+        let change = |step: &Vector| self.model.change(step);
+        let better = plain.replaced((step, self.weight, Origin::CurvedModel), (at.set, at.state), change)?;
+        Ok(Some(better).filter(|better| better.predicted_decrease > at.small))
+    }
+
+    fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+        if trial.accurate {
+            let curved = self.model.change(&trial.proposal.step);
+            self.compare(trial.comparison.change, trial.proposal.cut_change, curved);
+        }
+        match (trial.proposal.origin, trial.serious) {
+            (Origin::CurvedModel, true) => self.after_serious(state, config, trial),
+            (Origin::CurvedModel, false) => self.after_null(state, config, trial),
+            _ => {}
+        }
+    }
+}

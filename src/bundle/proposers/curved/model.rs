@@ -1,0 +1,82 @@
+//! A second model with curvature, rebuilt from the bundle at every step.
+//!
+//! ```text
+//! q(d) = max_i { ⟨h_i + B_i p_i, d⟩ − (a_i − ½ p_iᵀB_i p_i)₊ + ½ dᵀB_i d }      over the center and the cuts that contradict it
+//! min over d   max_i { slope_i·d − offset_i } + ½ dᵀ(Σ λ_i B_i + w W) d       λ: multipliers of the solve before, a few times
+//! ```
+//! Every piece has its own curvature B_i (pieces.rs); with the multipliers the subproblem has the Hessian of the Lagrangian of
+//! the epigraph problem, as in sequential quadratic programming for minimax.
+//! References: \[LuksanVlcek1998\] (cuts transported by their own curvature), symmetric rank one from below.
+
+use super::config::CurvedModelConfig;
+use super::pieces::Curvature;
+use crate::bundle::proposers::subproblem::Cuts;
+use crate::bundle::state::State;
+use crate::{Matrix, Vector};
+
+/// Slopes, offsets and curvatures of the pieces.
+#[derive(Debug, Default)]
+pub(super) struct CurvedModel {
+    pieces: Vec<Curvature>,
+    slopes: Vec<Vector>,
+    offsets: Vec<f64>,
+    ids: Vec<u64>,
+}
+
+impl CurvedModel {
+    /// The model q at the center, from the bundle and its plain model.
+    pub(super) fn new(state: &State, plain: Cuts<'_>, settings: &CurvedModelConfig) -> Self {
+        let mut model = Self::default();
+        let Some(center) = state.bundle.cut(state.center_id) else { return model };
+        let curvature = |cut, same_piece| Curvature::around(cut, state, (same_piece, settings.least_cosine));
+        let around = curvature(center, settings.same_piece_at_center);
+        for ((cut, slope), &offset) in state.bundle.cuts().iter().zip(plain.slopes).zip(plain.offsets) {
+            let p = &state.center - &cut.point;
+            let half = 0.5 * around.along(&p);
+            let error = center.linearization_error(&cut.point, cut.value);
+            let is_center = cut.id == center.id;
+            let contradicts = error - half > settings.contradiction * (half + error.abs());
+            if !is_center && !cut.certified && !contradicts {
+                continue;
+            }
+            let piece = if is_center { around.clone() } else { curvature(cut, settings.same_piece) };
+            model.slopes.push(slope + piece.apply(&p));
+            model.offsets.push((offset - 0.5 * piece.along(&p)).max(0.0));
+            model.ids.push(cut.id);
+            model.pieces.push(piece);
+        }
+        model
+    }
+
+    /// The pieces without their curvature.
+    pub(super) fn cuts(&self) -> Cuts<'_> {
+        Cuts { slopes: &self.slopes, offsets: &self.offsets, ids: &self.ids }
+    }
+
+    /// Σ λ_i B_i.
+    pub(super) fn matrix(&self, dimension: usize, multipliers: &[f64]) -> Matrix {
+        let mut sum = Matrix::zeros(dimension, dimension);
+        for (piece, &multiplier) in self.pieces.iter().zip(multipliers).filter(|(_, l)| **l > 0.0) {
+            piece.add_to(&mut sum, multiplier);
+        }
+        // Rounding makes the sum of rank-one updates unsymmetric.
+        (&sum + sum.transpose()) * 0.5
+    }
+
+    /// Predicted change of Θ.
+    pub(super) fn change(&self, d: &Vector) -> f64 {
+        let values = self.slopes.iter().zip(&self.offsets).zip(&self.pieces);
+        values.map(|((h, a), b)| h.dot(d) - a + 0.5 * b.along(d)).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Multipliers of the plain subproblem; what its other cuts carry goes to the center, which stands for them here.
+    pub(super) fn first_multipliers(&self, state: &State) -> Vec<f64> {
+        let of = |id: &u64| state.bundle.cut(*id).map_or(0.0, |cut| cut.multiplier);
+        let mut multipliers: Vec<f64> = self.ids.iter().map(of).collect();
+        let rest = 1.0 - multipliers.iter().sum::<f64>();
+        if let Some(center) = self.ids.iter().position(|id| *id == state.center_id) {
+            multipliers[center] += rest.max(0.0);
+        }
+        multipliers
+    }
+}

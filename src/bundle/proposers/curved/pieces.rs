@@ -1,0 +1,85 @@
+//! Curvature of the smooth piece that a cut touches, from the other cuts of that piece.
+//!
+//! ```text
+//! B_i:  per other cut j, farthest first, s = y_j − y_i, z = g_j − g_i:
+//!       same piece:   cut B down to sᵀBs ≤ sᵀz, then B += r rᵀ/⟨r, s⟩, r = z − B s
+//!       other piece:  cut B down to sᵀBs ≤ 2 min(E_ij, E_ji), so that the piece stays below Θ at y_j
+//! ```
+//! B_i starts from zero and stays positive semidefinite; on a quadratic it is the multisecant matrix. A pair lies on one
+//! piece if its two linearization errors agree: both are ½ sᵀBs on a quadratic, and a kink in between drives them apart.
+
+use crate::bundle::cut::Cut;
+use crate::bundle::state::State;
+use crate::{Matrix, Vector};
+
+/// A symmetric matrix Σ c v vᵀ.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Curvature {
+    terms: Vec<(f64, Vector)>,
+}
+
+impl Curvature {
+    /// The curvature around a cut; errors of a pair agree if the smaller is at least `same_piece` times the larger, and r and s
+    /// of a rank-one update have at least the cosine given.
+    pub(super) fn around(base: &Cut, state: &State, (same_piece, least_cosine): (f64, f64)) -> Self {
+        let mut curvature = Self::default();
+        // The value of a certified cut says nothing about curvature.
+        if base.certified {
+            return curvature;
+        }
+        let distance = |cut: &Cut| state.norm.squared_distance(&base.point, &cut.point);
+        let mut cuts: Vec<(f64, &Cut)> = state.bundle.cuts().iter().map(|cut| (distance(cut), cut)).collect();
+        cuts.retain(|(distance, cut)| cut.id != base.id && *distance > 0.0 && !cut.certified);
+        cuts.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.id.cmp(&b.1.id)));
+        for (_, cut) in cuts {
+            let errors =
+                [base.linearization_error(&cut.point, cut.value), cut.linearization_error(&base.point, base.value)];
+            let (low, high) = (errors[0].min(errors[1]), errors[0].max(errors[1]));
+            // What the oracle leaves open must not pass for curvature.
+            let open = base.error_bound + cut.error_bound;
+            let one_piece = low >= same_piece * high && high > 0.0 && open <= (1.0 - same_piece) * high;
+            if !one_piece && curvature.terms.is_empty() {
+                continue;
+            }
+            let s = &cut.point - &base.point;
+            let z = &cut.subgradient - &base.subgradient;
+            curvature.cut_down(&s, if one_piece { z.dot(&s) } else { 2.0 * (low + open).max(0.0) });
+            let r = &z - curvature.apply(&s);
+            let along = r.dot(&s);
+            if one_piece && along > least_cosine * state.norm.dual_length(&r) * state.norm.length(&s) {
+                curvature.terms.push((1.0 / along, r));
+            }
+        }
+        curvature
+    }
+
+    /// B s.
+    pub(super) fn apply(&self, s: &Vector) -> Vector {
+        let mut product = Vector::zeros(s.len());
+        for (factor, v) in &self.terms {
+            product.axpy(factor * v.dot(s), v, 1.0);
+        }
+        product
+    }
+
+    /// sᵀB s.
+    pub(super) fn along(&self, s: &Vector) -> f64 {
+        s.dot(&self.apply(s))
+    }
+
+    /// Adds `share` · B to a dense matrix.
+    pub(super) fn add_to(&self, matrix: &mut Matrix, share: f64) {
+        for (factor, v) in &self.terms {
+            matrix.ger(share * factor, v, v, 1.0);
+        }
+    }
+
+    /// Lowers sᵀB s to the limit.
+    fn cut_down(&mut self, s: &Vector, limit: f64) {
+        let bent = self.apply(s);
+        let along = s.dot(&bent);
+        if along > limit {
+            self.terms.push(((limit / along - 1.0) / along, bent));
+        }
+    }
+}

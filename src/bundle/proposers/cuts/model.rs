@@ -1,0 +1,123 @@
+//! The convexified cutting-plane model around the center.
+//!
+//! ```text
+//! m(d) = max_i { ⟨h_i, d⟩ − a_i },   h_i = g_i − 2c W p_i,   a_i = max(e_i + c‖p_i‖², |e_i|),   p_i = x̂ − y_i
+//! c = max( quantile of −E_ij/‖y_i − y_j‖² over concave pairs,  −e_i/‖p_i‖² )
+//! ```
+//! c = 0 as long as no pair of cuts proves Θ nonconvex: then this is the plain model of a convex function.
+//! References: \[SchrammZowe1992\] (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
+
+use crate::Vector;
+use crate::bundle::config::{BundleTrustConfig, Convexity};
+use crate::bundle::proposers::subproblem::Cuts;
+use crate::bundle::state::State;
+
+/// Slopes and offsets of the model, in the order of the cuts.
+#[derive(Debug, Clone)]
+pub(crate) struct Model {
+    slopes: Vec<Vector>,
+    offsets: Vec<f64>,
+    ids: Vec<u64>,
+    /// The curvature c added to make the model convex.
+    pub convexification: f64,
+    /// θ_i ≤ 1: share of the cut itself in what the subproblem sees; the rest is the center's cut.
+    shares: Vec<f64>,
+    /// Position of the center's cut.
+    center: Option<usize>,
+}
+
+/// A cut this much steeper than the median drowns the others in rounding and is mixed with the center's cut.
+const MAX_RELATIVE_SLOPE: f64 = 1e7;
+/// Pairs of cuts closer than this share of the length scale prove nothing about curvature.
+const LEAST_PAIR_DISTANCE: f64 = 1e-6;
+/// Linearization errors below this share of the size of Θ prove nothing about curvature.
+const LEAST_PAIR_ERROR: f64 = 1e-9;
+/// The same for the errors at the center, as a share of the one of pairs.
+const CENTER_SHARE: f64 = 0.1;
+
+impl Model {
+    /// Builds the model at the center.
+    pub(crate) fn new(state: &mut State, config: &BundleTrustConfig) -> Self {
+        state.bundle.compare_pairs(&state.norm);
+        let errors: Vec<f64> = state.errors_at_center();
+        let distances: Vec<f64> =
+            state.bundle.cuts().iter().map(|cut| state.norm.squared_distance(&state.center, &cut.point)).collect();
+        let c = match config.convexity {
+            Convexity::Unknown => convexification(state, config, &errors, &distances),
+            Convexity::Convex => 0.0,
+        };
+        let center = state.bundle.cuts().iter().position(|cut| cut.id == state.center_id);
+        let mut model =
+            Self { slopes: vec![], offsets: vec![], ids: vec![], convexification: c, shares: vec![], center };
+        for (cut, (&error, &distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(&distances)) {
+            // A value that may be too high by its promised error must not put the cut above Θ.
+            let promised = if cut.id == state.center_id { 0.0 } else { cut.excess() + state.center_error_bound() };
+            let offset = (error + c * distance).max(error.abs()) + promised;
+            let tilt = state.norm.lower_index(&(&state.center - &cut.point));
+            model.slopes.push(if c > 0.0 { &cut.subgradient - tilt * (2.0 * c) } else { cut.subgradient.clone() });
+            model.offsets.push(offset);
+            model.ids.push(cut.id);
+        }
+        state.nonconvex |= c > 0.0;
+        model.soften(state);
+        model
+    }
+
+    /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut: still below the model, and with the same
+    /// intersection with the center's cut.
+    fn soften(&mut self, state: &State) {
+        self.shares = vec![1.0; self.slopes.len()];
+        let Some(center) = self.center else { return };
+        let norms: Vec<f64> = self.slopes.iter().map(|slope| state.norm.dual_length(slope)).collect();
+        let mut sorted = norms.clone();
+        sorted.sort_by(f64::total_cmp);
+        let limit = MAX_RELATIVE_SLOPE * sorted[sorted.len() / 2].max(norms[center]);
+        let base = self.slopes[center].clone();
+        for (i, norm) in norms.iter().enumerate().filter(|(_, norm)| **norm > limit && limit > 0.0) {
+            let share = limit / norm;
+            self.slopes[i] = &self.slopes[i] * share + &base * (1.0 - share);
+            self.offsets[i] = share * self.offsets[i] + (1.0 - share) * self.offsets[center];
+            self.shares[i] = share;
+        }
+    }
+
+    /// The cuts as the subproblem sees them.
+    pub(crate) fn cuts(&self) -> Cuts<'_> {
+        Cuts { slopes: &self.slopes, offsets: &self.offsets, ids: &self.ids }
+    }
+
+    /// Multipliers of the cuts themselves from those of the subproblem.
+    pub(crate) fn distribute(&self, multipliers: &mut [f64]) {
+        let Some(center) = self.center else { return };
+        let mut moved = 0.0;
+        for (multiplier, share) in multipliers.iter_mut().zip(&self.shares) {
+            moved += *multiplier * (1.0 - share);
+            *multiplier *= share;
+        }
+        multipliers[center] += moved;
+    }
+}
+
+/// The curvature c that the bundle proves to be necessary.
+fn convexification(state: &State, config: &BundleTrustConfig, errors: &[f64], distances: &[f64]) -> f64 {
+    let resolution = LEAST_PAIR_DISTANCE * state.length_scale();
+    let value_resolution = LEAST_PAIR_ERROR * state.value_scale(config);
+    let curvatures = state.bundle.proven_curvatures(resolution, value_resolution);
+    let pairs = quantile(&curvatures, config.curvature_quantile);
+    let mut at_center = 0.0_f64;
+    for (cut, (error, distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(distances)) {
+        let allowance = cut.excess() + state.center_error_bound();
+        if *error < -CENTER_SHARE * value_resolution - allowance && *distance > 0.0 {
+            at_center = at_center.max(-error / distance);
+        }
+    }
+    pairs.max(at_center)
+}
+
+/// Linear interpolation in an ascending list; 0 for an empty one.
+fn quantile(ascending: &[f64], share: f64) -> f64 {
+    let Some(last) = ascending.len().checked_sub(1) else { return 0.0 };
+    let position = share * last as f64;
+    let (below, above) = (position.floor() as usize, position.ceil() as usize);
+    ascending[below] + (ascending[above] - ascending[below]) * (position - below as f64)
+}

@@ -1,0 +1,65 @@
+//! The next weight of the plain cuts.
+//!
+//! ```text
+//! u_int = 2u(1 − (Θ(y) − Θ(x̂))/v)                 minimiser of the parabola through both values and the slope v
+//! serious:  u ← max(u_int, u/8)   if the weight is not fresh and Θ(y) − Θ(x̂) ≤ m_R v;   u/2 after three in a row
+//! null:     u ← min(u_int, 10u)   if the new error exceeds max(ε_v, 2|v|) after three in a row
+//! ```
+//! v = −predicted decrease. Reference: \[Kiwiel1990\] (proximity control); SS/NS tests: \[SchrammZowe1992\].
+
+use crate::BundleTrustConfig;
+use crate::bundle::proposers::proposer::{Comparison, Trial};
+use crate::bundle::state::State;
+
+/// A linearization error below minus this share of the size of Θ is no rounding: Θ bends down.
+const CONCAVITY: f64 = 1e-10;
+
+/// Weight after a serious step; call before the center moves.
+pub(super) fn after_serious(state: &mut State, config: &BundleTrustConfig, comparison: &Comparison) {
+    let u = state.weight;
+    let mut changed = false;
+    if state.streak > 0 && comparison.change <= config.good_fraction * comparison.model_change {
+        let next = interpolated_weight(comparison, u).max(u / config.weight_decrease).min(u);
+        changed = state.set_weight(next, config);
+    } else if state.streak > 2 {
+        changed = state.set_weight(u / 2.0, config);
+    }
+    state.streak = if changed { 1 } else { (state.streak + 1).max(1) };
+    state.variation = state.variation.map(|variation| variation.max(-2.0 * comparison.model_change));
+}
+
+/// Weight after a null step.
+pub(super) fn after_null(state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+    let comparison = &trial.comparison;
+    let u = state.weight;
+    let seen = trial.proposal.aggregate_norm + trial.proposal.cut_error;
+    let variation = state.variation.map_or(seen, |variation| variation.min(seen));
+    state.variation = Some(variation);
+    let interpolated = interpolated_weight(comparison, u);
+    if is_concave_ray(state, config, comparison) {
+        let factor = (interpolated / u).clamp(2.0, config.weight_increase);
+        state.set_weight(u * factor, config);
+        state.streak = -1;
+    } else if error(comparison) > variation.max(-2.0 * comparison.model_change) && state.streak < -3 {
+        let changed = state.set_weight(interpolated.min(config.weight_increase * u).max(u), config);
+        state.streak = if changed { -1 } else { (state.streak - 1).min(-1) };
+    } else {
+        state.streak = (state.streak - 1).min(-1);
+    }
+}
+
+fn interpolated_weight(comparison: &Comparison, weight: f64) -> f64 {
+    2.0 * weight * (1.0 - comparison.change / comparison.model_change)
+}
+
+/// The new cut's linearization error at the old center.
+fn error(comparison: &Comparison) -> f64 {
+    comparison.slope - comparison.change
+}
+
+/// Test NS(iii) failing: Θ bends down along the step, and the new cut, made convex, would not improve the model.
+fn is_concave_ray(state: &State, config: &BundleTrustConfig, comparison: &Comparison) -> bool {
+    let error = error(comparison);
+    let bent = error < -CONCAVITY * state.value_scale(config) - state.noise;
+    bent && comparison.slope - error.abs() < 0.5 * comparison.model_change
+}

@@ -1,0 +1,55 @@
+//! The proposers of a run.
+
+use super::curved::Curved;
+use super::cuts::PlainCuts;
+use super::exploration::Exploration;
+use super::proposal::{Proposal, SubproblemError};
+use super::proposer::{Position, Proposer, Trial};
+use crate::bundle::config::BundleTrustConfig;
+use crate::bundle::state::State;
+
+/// The plain cuts and their rivals, in the order in which they are asked.
+pub(crate) struct Proposers {
+    cuts: PlainCuts,
+    rivals: Vec<Box<dyn Proposer>>,
+}
+
+impl Proposers {
+    /// Those that the settings ask for; `weight` is the first weight of the run.
+    pub(crate) fn new(config: &BundleTrustConfig, dimension: usize, weight: f64) -> Self {
+        let mut rivals: Vec<Box<dyn Proposer>> = vec![];
+        if let Some(settings) = config.curved_model.filter(|settings| dimension <= settings.max_dimension) {
+            rivals.push(Box::new(Curved::new(settings, weight)));
+        }
+        if let Some(settings) = config.exploration.filter(|settings| dimension <= settings.max_dimension) {
+            rivals.push(Box::new(Exploration::new(settings, weight)));
+        }
+        Self { cuts: PlainCuts, rivals }
+    }
+
+    /// What the plain cuts propose.
+    pub(crate) fn plain(&mut self, position: &mut Position<'_>) -> Result<Proposal, SubproblemError> {
+        self.cuts.propose(position, &[])?.ok_or(SubproblemError::Unusable)
+    }
+
+    /// The proposal worth an evaluation: that of the cuts, unless a rival has a better one.
+    pub(crate) fn choose(&mut self, position: &mut Position<'_>, plain: Proposal) -> Proposal {
+        let mut proposed = vec![plain.clone()];
+        for rival in &mut self.rivals {
+            if let Ok(Some(better)) = rival.propose(position, &proposed) {
+                proposed.push(better);
+            }
+        }
+        let mut chosen = proposed.pop().unwrap_or(plain);
+        chosen.cut_change = position.model.cuts().change(&chosen.step);
+        chosen
+    }
+
+    /// Tells all of them what came of a trial point.
+    pub(crate) fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+        for rival in &mut self.rivals {
+            rival.learn(state, config, trial);
+        }
+        self.cuts.learn(state, config, trial);
+    }
+}

@@ -1,0 +1,102 @@
+//! A trial point, and how it is made admissible.
+
+use crate::bundle::state::State;
+use crate::qp::{QpError, project};
+use crate::report::Origin;
+use crate::{Polyhedron, Vector};
+
+/// A trial point and what the model says about it.
+#[derive(Debug, Clone)]
+pub(crate) struct Proposal {
+    pub trial: Vector,
+    /// d = trial − x̂, shortened if the subproblem's solution left the set.
+    pub step: Vector,
+    /// ‖d‖ in the run's norm.
+    pub step_length: f64,
+    /// −v ≥ 0: the decrease that the proposer's model predicts.
+    pub predicted_decrease: f64,
+    /// The change that the plain cuts predict at the trial point.
+    pub cut_change: f64,
+    /// ‖z̃‖*.
+    pub aggregate_norm: f64,
+    /// ẽ.
+    pub aggregate_error: f64,
+    /// The part Σ λ_i a_i of ẽ.
+    pub cut_error: f64,
+    pub cut_multipliers: Vec<f64>,
+    pub row_multipliers: Vector,
+    pub bound_multipliers: Vector,
+    pub convexification: f64,
+    /// u of this subproblem.
+    pub weight: f64,
+    /// Relative violation of the set at the trial point.
+    pub violation: f64,
+    /// Who proposes it.
+    pub origin: Origin,
+}
+
+/// Trial points violate the set by at most this much, relative to each side.
+pub(crate) const FEASIBILITY: f64 = 1e-12;
+/// A relative violation below this is rounding that a projection removes; a larger one shortens the step.
+const LARGEST_PROJECTED_VIOLATION: f64 = 1e-6;
+/// A step is shortened to no less than this share.
+const SHORTEST_SHARE: f64 = 1e-3;
+
+/// Why there is no trial point.
+#[derive(Debug, Clone, thiserror::Error)]
+pub(crate) enum SubproblemError {
+    #[error("the quadratic program was not solved: {0}")]
+    Qp(#[from] QpError),
+    #[error("its solution violates the constraints by {violation:.1e} and cannot be repaired")]
+    Infeasible { violation: f64 },
+    #[error("its solution is not finite or contradicts itself")]
+    Unusable,
+}
+
+impl Proposal {
+    /// Another step with its weight, made admissible. Multipliers and certificate quantities stay those of the plain cuts; the
+    /// predicted decrease is `−change(step)` and must be positive.
+    pub(crate) fn replaced(
+        &self,
+        (step, weight, origin): (Vector, f64, Origin),
+        (set, state): (&Polyhedron, &State),
+        change: impl Fn(&Vector) -> f64,
+    ) -> Result<Self, SubproblemError> {
+        let trial = &state.center + &step;
+        let mut other = Self { trial, step, weight, origin, violation: 0.0, ..self.clone() }.admissible(set, state)?;
+        other.predicted_decrease = -change(&other.step);
+        if other.predicted_decrease > 0.0 && other.step_length.is_finite() {
+            Ok(other)
+        } else {
+            Err(SubproblemError::Unusable)
+        }
+    }
+
+    /// Clips to the box; where a row is still violated, projects or moves back towards the center, which is admissible.
+    pub(crate) fn admissible(mut self, set: &Polyhedron, state: &State) -> Result<Self, SubproblemError> {
+        let violation = |x: &Vector| set.violation_near(x, &state.center);
+        let allowed = FEASIBILITY.max(violation(&state.center));
+        self.trial = set.clamp_to_box(&self.trial);
+        self.violation = violation(&self.trial);
+        if self.violation > allowed
+            && self.violation < LARGEST_PROJECTED_VIOLATION
+            && let Ok(projected) = project(set, &self.trial)
+            && violation(&projected) < self.violation
+        {
+            self.violation = violation(&projected);
+            self.trial = projected;
+        }
+        let mut factor = 1.0;
+        while self.violation > allowed {
+            factor *= if factor > 0.99 { 1.0 - (2.0 * self.violation).clamp(1e-10, 0.3) } else { 0.7 };
+            if factor < SHORTEST_SHARE {
+                return Err(SubproblemError::Infeasible { violation: self.violation });
+            }
+            self.trial = set.clamp_to_box(&(&state.center + &self.step * factor));
+            self.violation = violation(&self.trial);
+        }
+        self.step = &self.trial - &state.center;
+        self.step_length = state.norm.length(&self.step);
+        Ok(self)
+    }
+}

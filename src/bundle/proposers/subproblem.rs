@@ -1,0 +1,60 @@
+//! The quadratic program around the center that every proposer solves, with its own metric and cuts.
+//!
+//! ```text
+//! min over (d, v)  v + ½ dᵀHd,   ⟨h_i, d⟩ − a_i ≤ v,   x̂ + d ∈ U
+//! ```
+
+use super::proposal::FEASIBILITY;
+use crate::bundle::state::State;
+use crate::qp::{EpigraphQp, EpigraphQpSolver, Metric, QpError, QpSolution};
+use crate::{Polyhedron, Vector};
+
+/// Slopes h_i, offsets a_i and identities of cuts.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cuts<'a> {
+    pub slopes: &'a [Vector],
+    pub offsets: &'a [f64],
+    pub ids: &'a [u64],
+}
+
+impl Cuts<'_> {
+    /// max_i ⟨h_i, d⟩ − a_i.
+    pub(crate) fn change(&self, d: &Vector) -> f64 {
+        self.slopes.iter().zip(self.offsets).map(|(h, a)| h.dot(d) - a).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// Solves the quadratic program with the metric H.
+pub(crate) fn solve(
+    solver: &mut EpigraphQpSolver,
+    set: &Polyhedron,
+    state: &State,
+    metric: Metric<'_>,
+    cuts: Cuts<'_>,
+) -> Result<QpSolution, QpError> {
+    let at_center = set.rows() * &state.center;
+    let terms = set.rows().abs() * state.center.abs();
+    solver.solve(&EpigraphQp {
+        metric,
+        slopes: cuts.slopes,
+        offsets: cuts.offsets,
+        cut_ids: cuts.ids,
+        rows: set.rows(),
+        row_lower: &slack(set.row_lower(), &at_center, &terms, f64::min),
+        row_upper: &slack(set.row_upper(), &at_center, &terms, f64::max),
+        lower: &(set.lower() - &state.center),
+        upper: &(set.upper() - &state.center),
+    })
+}
+
+/// Sides of the rows as seen from the center; what is rounding of the center counts as zero, so that d = 0 is admissible.
+fn slack(side: &Vector, at_center: &Vector, terms: &Vector, outward: fn(f64, f64) -> f64) -> Vector {
+    Vector::from_fn(side.len(), |i, _| {
+        let slack = side[i] - at_center[i];
+        if slack.is_finite() && slack.abs() <= FEASIBILITY * terms[i].max(side[i].abs()) {
+            0.0
+        } else {
+            outward(slack, 0.0)
+        }
+    })
+}

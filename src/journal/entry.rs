@@ -1,0 +1,66 @@
+//! One line of a journal: an evaluation as it was asked for and answered.
+
+use super::exact;
+use crate::Request;
+use serde::{Deserialize, Serialize};
+
+/// One evaluation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Entry {
+    /// Number of the evaluation, from 1.
+    pub evaluation: usize,
+    /// The point that was asked for.
+    #[serde(with = "exact")]
+    pub point: Vec<f64>,
+    /// Relative accuracy that was asked for.
+    #[serde(with = "exact")]
+    pub accuracy: f64,
+    /// Descent target of the request.
+    #[serde(with = "exact")]
+    pub target: Option<f64>,
+    /// Number of the evaluation whose restart data the request carried.
+    pub restarted_from: Option<usize>,
+    /// Seconds of computation since the start of the run, earlier invocations included.
+    pub seconds: f64,
+    /// What came of it.
+    pub answer: RecordedAnswer,
+}
+
+/// What came of an evaluation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum RecordedAnswer {
+    /// Value and subgradient; the fields are those of [`Evaluation`](crate::Evaluation).
+    Evaluated {
+        /// Θ(point), or a lower bound of it.
+        #[serde(with = "exact")]
+        value: f64,
+        /// One subgradient.
+        #[serde(with = "exact")]
+        subgradient: Vec<f64>,
+        /// Promised error of the value.
+        #[serde(with = "exact")]
+        error_bound: f64,
+        /// Whether the answer was [`NoDescent`](crate::Answer::NoDescent).
+        no_descent: bool,
+        /// Whether there were restart data, which then have a file of their own.
+        restart_data: bool,
+    },
+    /// The text of the [`OracleError`](crate::OracleError).
+    Failed(String),
+}
+
+impl Entry {
+    /// Whether the request is the recorded one, bit by bit; `restarted_from`: as in the entry.
+    pub(super) fn answers<W>(&self, request: &Request<'_, W>, restarted_from: Option<usize>) -> bool {
+        let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+        self.point.len() == request.point.len()
+            && self.point.iter().zip(request.point.iter()).all(|(a, b)| same(*a, *b))
+            && same(self.accuracy, request.accuracy.tolerance())
+            && self.target.map(f64::to_bits) == request.descent_target.map(f64::to_bits)
+            && self.restarted_from == restarted_from
+    }
+}

@@ -1,0 +1,69 @@
+//! Who proposes trial points is named in every record, counted, and can be switched off.
+
+use crate::common::{crescent, v};
+use nonsmooth::{
+    BundleTrust, BundleTrustConfig, CurvedModelConfig, ExplorationConfig, Origin, Report, StepKind, Termination, Vector,
+};
+
+fn run(config: BundleTrustConfig) -> Report {
+    // The valley of a steep quadratic with a kink beside it: the curved model earns its trust here.
+    let theta = nonsmooth::FnObjective::new(3, |x: &Vector| {
+        let bend = x[1] - x[0] * x[0];
+        let value = 50.0 * bend * bend + (1.0 - x[0]).powi(2) + x[2].abs();
+        let gradient = vec![-200.0 * bend * x[0] - 2.0 * (1.0 - x[0]), 100.0 * bend, x[2].signum()];
+        (value, Vector::from_vec(gradient))
+    });
+    BundleTrust::new(config).unwrap().minimize(&theta, v(&[-1.2, 1.0, 0.7])).unwrap()
+}
+
+fn named(report: &Report, origin: Origin) -> usize {
+    report.history.iter().filter(|record| record.origin == origin).count()
+}
+
+#[test]
+fn every_record_names_its_origin_and_the_counts_agree() {
+    let report = run(BundleTrustConfig::default());
+    let trials = report.counts.trials;
+    assert_eq!(trials.cuts, named(&report, Origin::Cuts));
+    assert_eq!(trials.curved_model, named(&report, Origin::CurvedModel));
+    assert_eq!(trials.exploration, named(&report, Origin::Exploration));
+    assert!(trials.curved_model > 0, "{report}");
+    assert!(report.history.iter().all(|record| (record.kind == StepKind::Start) == (record.origin == Origin::Given)));
+    assert_eq!(trials.cuts + trials.curved_model + trials.exploration, report.counts.evaluations - 1);
+}
+
+#[test]
+fn what_is_switched_off_proposes_nothing() {
+    let plain = run(BundleTrustConfig { curved_model: None, exploration: None, ..BundleTrustConfig::default() });
+    assert_eq!((plain.counts.trials.curved_model, plain.counts.trials.exploration), (0, 0));
+    assert!(plain.counts.trials.cuts > 0);
+    // The largest number of variables is a setting: below the three of this problem it switches both off.
+    let curved_model = Some(CurvedModelConfig { max_dimension: 2, ..CurvedModelConfig::default() });
+    let exploration = Some(ExplorationConfig { max_dimension: 2, ..ExplorationConfig::default() });
+    let small = run(BundleTrustConfig { curved_model, exploration, ..BundleTrustConfig::default() });
+    let values = |report: &Report| report.history.iter().map(|record| record.value).collect::<Vec<_>>();
+    assert_eq!(values(&plain), values(&small));
+}
+
+#[test]
+fn settings_are_checked_and_survive_json() {
+    let wrong = CurvedModelConfig { newest_share: 0.0, ..CurvedModelConfig::default() };
+    let config = BundleTrustConfig { curved_model: Some(wrong), ..BundleTrustConfig::default() };
+    assert!(config.validate().unwrap_err().to_string().contains("curved_model.newest_share"));
+    let wrong = ExplorationConfig { min_gain: f64::NAN, ..ExplorationConfig::default() };
+    let config = BundleTrustConfig { exploration: Some(wrong), ..BundleTrustConfig::default() };
+    assert!(config.validate().unwrap_err().to_string().contains("exploration.min_gain"));
+    let text = r#"{"exploration": null, "curved_model": {"trust": 2.0}}"#;
+    let config: BundleTrustConfig = serde_json::from_str(text).unwrap();
+    assert_eq!(config.exploration, None);
+    assert_eq!(config.curved_model, Some(CurvedModelConfig { trust: 2.0, ..CurvedModelConfig::default() }));
+}
+
+#[test]
+fn a_report_of_a_run_that_has_not_ended_says_so() {
+    let theta = crescent();
+    let mut method = BundleTrust::new(BundleTrustConfig::default()).unwrap();
+    let mut run = method.start(&theta, v(&[-1.2, 1.0])).unwrap();
+    assert!(run.step().is_continue());
+    assert_eq!(run.finish().termination, Termination::Unfinished);
+}
