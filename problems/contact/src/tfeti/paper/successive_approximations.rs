@@ -108,8 +108,8 @@ struct FixedPoint {
 }
 
 impl TornContact<'_> {
-    /// Solves by successive approximations of the slip bound, from given multipliers (over all rows) of a similar problem or from the bonded
-    /// problem.
+    /// Solves by successive approximations of the slip bound, from given multipliers (over all rows) of a similar problem or
+    /// from the bonded problem.
     ///
     /// # Errors
     /// [`ContactError::NoContraction`] when the fixed point iteration does not contract, [`ContactError::DualProblem`] from
