@@ -259,7 +259,7 @@ fn nothing_is_said_unless_asked_for() {
         code == Some(0) && text.matches("evaluation done").count() == 3 && !text.contains("contact state"),
         "{text}"
     );
-    assert!(logged("problems=debug").1.contains("contact state"));
+    assert!(logged("contact=debug").1.contains("contact state"));
     let (code, text) = logged("problems=loud");
     assert!(code == Some(2) && text.contains("RUST_LOG"), "{text}");
 }
