@@ -4,7 +4,7 @@
 use std::fmt;
 
 /// Target of the events: entering a stage has the level debug, a step of an iteration the level trace.
-pub const TARGET: &str = "problems::stage";
+pub const TARGET: &str = "contact::stage";
 
 /// A stage of a state or of its subgradient, in the order in which they come.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
