@@ -3,8 +3,8 @@
 //! Signorini at the flat start on 12³ bricks in 2³ subdomains and on 24³ bricks in 4³. The last column relates each time to
 //! that of one product with F.
 
-use contact::equilibrium::ContactProblem;
 use contact::contact_shape::{ContactShape, SolverKind};
+use contact::equilibrium::ContactProblem;
 use contact::scene::{Scene, signorini};
 use contact::tfeti::{DualOperator, PreconditionerKind, TornSolver};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};

@@ -237,12 +237,12 @@ fn nothing_is_said_unless_asked_for() {
         let output = command(&arguments).env("RUST_LOG", level).output().unwrap();
         (output.status.code(), kit::errors(&output))
     };
-    let (code, text) = logged("problems=info");
+    let (code, text) = logged("info");
     assert!(
         code == Some(0) && text.matches("evaluation done").count() == 3 && !text.contains("contact state"),
         "{text}"
     );
-    assert!(logged("problems=debug").1.contains("contact state"));
+    assert!(logged("debug").1.contains("contact state"));
     let (code, text) = logged("problems=loud");
     assert!(code == Some(2) && text.contains("RUST_LOG"), "{text}");
 }

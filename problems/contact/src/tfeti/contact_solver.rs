@@ -4,10 +4,7 @@ use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, SolverState,
 };
 use crate::error::ContactError;
-use crate::tfeti::{
-    AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornSolver,
-    TornState,
-};
+use crate::tfeti::{AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornSolver, TornState};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 

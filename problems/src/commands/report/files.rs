@@ -3,7 +3,7 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::ContactObjective;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{PICTURE_ENDINGS, Folder, json};
+use crate::commands::folder::{Folder, PICTURE_ENDINGS, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::{COMPARED, RunFolder};
 use crate::commands::optimize::mesh_run::MeshRun;

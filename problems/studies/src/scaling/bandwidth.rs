@@ -12,7 +12,6 @@ use contact::tfeti::{DualOperator, Preconditioner, PreconditionerKind, RowVector
 use problems::commands::Failure;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Instant;
