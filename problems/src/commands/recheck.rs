@@ -73,7 +73,7 @@ pub fn run(case: &Case, arguments: &Arguments) -> Result<String, Failure> {
 
 /// The last mesh that the run in a folder has begun.
 fn last_stage(case: &Case, folder: &Path) -> Option<MeshStage> {
-    let begun = |stage: &MeshStage| stage.name.as_ref().is_none_or(|name| Journal::exists(&folder.join(name)));
+    let begun = |stage: &MeshStage| stage.name.as_ref().is_none_or(|name| Journal::exists(folder.join(name)));
     stages(case).into_iter().rev().find(begun)
 }
 

@@ -29,7 +29,7 @@ pub struct Descent {
 ///
 /// # Errors
 /// [`Failure`] of the command.
-fn run(scene: SceneName, options: &[&str]) -> Result<Value, Failure> {
+pub fn run(scene: SceneName, options: &[&str]) -> Result<Value, Failure> {
     let (name, text) = match scene {
         SceneName::Signorini => ("signorini.toml", include_str!("../../scenes/signorini.toml")),
         SceneName::Hertz => ("hertz.toml", include_str!("../../scenes/hertz.toml")),

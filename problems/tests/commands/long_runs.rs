@@ -237,7 +237,7 @@ fn nothing_is_said_unless_asked_for() {
         let output = command(&arguments).env("RUST_LOG", level).output().unwrap();
         (output.status.code(), kit::errors(&output))
     };
-    let (code, text) = logged("problems=info");
+    let (code, text) = logged("info");
     assert!(
         code == Some(0) && text.matches("evaluation done").count() == 3 && !text.contains("contact state"),
         "{text}"

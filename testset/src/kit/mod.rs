@@ -6,8 +6,10 @@
 mod documented_commands;
 mod numbers;
 pub mod pages;
+mod pins;
 mod program;
 
 pub use documented_commands::run_commands;
 pub use numbers::{Random, jitter, jitters, numbers, relative_difference, wavy};
+pub use pins::check_pins;
 pub use program::{command, errors, json, parsed, read_json, refused, run, scratch, text};

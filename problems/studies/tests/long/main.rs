@@ -4,4 +4,5 @@
 
 mod accuracy;
 mod headline;
+mod pins;
 mod stability;
