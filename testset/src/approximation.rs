@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::dual::Dual;
-use crate::functions::Function;
+use crate::dual::Function;
 
 /// Σ |x₁ exp(−x₂ t) cos(x₃ t + x₄) + x₅ exp(−x₆ t) − y(t)| over t = 0, 0.1, …, 5.
 pub fn el_attar(x: &[Dual]) -> Dual {

@@ -14,6 +14,9 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+/// A function of the variables that is differentiated as it is evaluated.
+pub type Function = std::sync::Arc<dyn Fn(&[Dual]) -> Dual + Send + Sync>;
+
 /// A value with its gradient and the first-order distance to the nearest kink passed on the way.
 #[derive(Clone, Debug)]
 pub struct Dual {

@@ -1,13 +1,9 @@
 //! From a name of the table to its function.
 
-use std::sync::Arc;
-
-use crate::dual::Dual;
+use crate::dual::{Dual, Function};
 use crate::table::Record;
 use crate::{approximation, geometry, minimax, penalty, scalable};
-
-/// A function of the variables, differentiated on the way.
-pub type Function = Arc<dyn Fn(&[Dual]) -> Dual + Send + Sync>;
+use std::sync::Arc;
 
 /// The function of a record, `None` for an unknown name.
 pub fn function(record: &Record) -> Option<Function> {

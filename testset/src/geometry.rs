@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::dual::Dual;
-use crate::functions::Function;
+use crate::dual::Function;
 
 /// The smallest of the three distances of three points, with a minus; each point stays in a pentagon.
 pub fn pentagon(x: &[Dual]) -> Dual {

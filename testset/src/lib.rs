@@ -22,7 +22,7 @@ mod penalty;
 mod scalable;
 mod table;
 
-use functions::Function;
+use dual::Function;
 
 /// With or without linear constraints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

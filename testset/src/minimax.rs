@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::dual::Dual;
-use crate::functions::Function;
+use crate::dual::Function;
 
 /// 100 (x₂ − x₁²)² + (1 − x₁)², the smooth control case.
 pub fn rosenbrock(x: &[Dual]) -> Dual {

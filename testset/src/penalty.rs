@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::dual::Dual;
-use crate::functions::Function;
+use crate::dual::Function;
 use crate::table::Record;
 
 /// f + ρ max(0, c₁, c₂, …) as the maximum of f and all f + ρ cᵢ.
