@@ -11,5 +11,5 @@ mod program;
 
 pub use documented_commands::run_commands;
 pub use numbers::{Random, jitter, jitters, numbers, relative_difference, wavy};
-pub use pins::check_pins;
+pub use pins::{check_pins, rounds_alike};
 pub use program::{command, errors, json, parsed, read_json, refused, run, scratch, text};

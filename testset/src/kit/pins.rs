@@ -12,13 +12,15 @@ const OTHER_PROCESSOR: f64 = 1e-8;
 /// Entries of a history that are compared there.
 const COMMON_HISTORY: usize = 15;
 
+/// Whether the dense kernels round as on the processor that wrote the pins and the tables of the pages.
 #[cfg(target_arch = "x86_64")]
-fn rounds_alike() -> bool {
+pub fn rounds_alike() -> bool {
     std::arch::is_x86_feature_detected!("avx512f")
 }
 
+/// Whether the dense kernels round as on the processor that wrote the pins and the tables of the pages.
 #[cfg(not(target_arch = "x86_64"))]
-fn rounds_alike() -> bool {
+pub fn rounds_alike() -> bool {
     false
 }
 
