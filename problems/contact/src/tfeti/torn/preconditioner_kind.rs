@@ -1,15 +1,15 @@
 //! Which preconditioner: known to the torn bodies, since it decides what is factored.
 
-/// Preconditioner of the dual operator.
+/// Which preconditioner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "PreconditionerName", transform = crate::schema::names_only))]
 #[non_exhaustive]
 pub enum PreconditionerKind {
-    /// Schur complements of the subdomains: fewest products with F.
+    /// Schur complements: fewest products with F.
     #[default]
     Dirichlet,
-    /// Stiffness of the subdomain boundaries: no interior factorisation.
+    /// Boundary stiffness: no interior factorisation.
     Lumped,
     /// The identity, scaled.
     None,
