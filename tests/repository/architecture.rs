@@ -54,7 +54,10 @@ fn functions(text: &str) -> Vec<(usize, usize)> {
         let code = line.trim_start();
         let indent = line.len() - code.len();
         let heads = ["fn ", "pub fn ", "pub(crate) fn ", "pub(super) fn ", "const fn ", "pub const fn "];
-        if heads.iter().any(|head| code.starts_with(head)) && !line.ends_with(';') {
+        // A declaration without a body ends its signature with a semicolon.
+        let signature = lines[start..].iter().find(|line| line.ends_with(['{', '}', ';']));
+        let has_body = signature.is_some_and(|line| !line.ends_with(';'));
+        if heads.iter().any(|head| code.starts_with(head)) && has_body {
             let closing = format!("{}}}", " ".repeat(indent));
             let end = lines[start..]
                 .iter()

