@@ -1,22 +1,24 @@
 //! Contraction and condition of a condensed state, from its assembled matrices.
 //!
 //! ```text
-//! Tresca matrix·du = e dΨ on the slip rows,   dλ = ∓S du,   Φ′ = 𝓕 ∂λ_N/∂Ψ over the sliding nodes
+//! Tresca matrix·(dλ, da) = e dΨ on the slip rows,   Φ′ = 𝓕 ∂λ_N/∂Ψ over the sliding nodes
 //! ```
 
-use crate::direct::newton::CondensedContact;
+use crate::direct::compliant_contact::CompliantContact;
+use crate::direct::newton::SPRINGS;
 use crate::equilibrium::diagnosis::{Diagnosis, spectral_radius};
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
-use crate::linear::dense::{DenseLu, multiply, spectral_condition};
+use crate::linear::dense::{DenseLu, spectral_condition};
 
-impl CondensedContact<'_> {
+impl CompliantContact {
     /// Contraction factor and condition at given derivatives.
     ///
     /// # Errors
     /// [`ContactError::NotFinite`] when eigenvalues or singular values cannot be found.
-    pub fn diagnose(&self, linearizations: &[Linearization]) -> Result<Diagnosis, ContactError> {
-        let condition = spectral_condition(&self.newton_matrix(linearizations, self.boundary.friction))
+    pub(super) fn diagnose(&self, linearizations: &[Linearization]) -> Result<Diagnosis, ContactError> {
+        let newton = self.active_system(linearizations, 0.0, self.problem.boundary.friction);
+        let condition = spectral_condition(&newton.matrix)
             .ok_or(ContactError::NotFinite { what: "condition number of Newton's matrix" })?;
         let contraction = self.contraction(linearizations);
         if !contraction.is_finite() {
@@ -26,31 +28,32 @@ impl CondensedContact<'_> {
     }
 
     /// Spectral radius of Φ′.
-    fn contraction(&self, linearizations: &[Linearization]) -> f64 {
-        let sliding: Vec<(usize, [f64; 2])> = linearizations
-            .iter()
-            .enumerate()
-            .filter_map(|(index, linearization)| match linearization {
-                Linearization::Slip { direction, .. } => Some((index, *direction)),
-                _ => None,
-            })
-            .collect();
+    pub(super) fn contraction(&self, linearizations: &[Linearization]) -> f64 {
+        let boundary = &self.problem.boundary;
+        let mut tresca = self.active_system(linearizations, 0.0, 0.0);
+        let size = tresca.rows.len();
+        for motion in size..tresca.matrix.nrows() {
+            tresca.matrix[(motion, motion)] = SPRINGS[0];
+        }
+        let mut sliding: Vec<(usize, [f64; 2], usize)> = Vec::new();
+        let mut first = 0;
+        for (node, linearization) in boundary.points.iter().zip(linearizations) {
+            if let Linearization::Slip { direction, .. } = linearization {
+                sliding.push((first, *direction, node.tangents.len()));
+            }
+            first += if *linearization == Linearization::Open { 0 } else { node.row_count() };
+        }
         if sliding.is_empty() {
             return 0.0;
         }
-        let factors = DenseLu::new(&self.newton_matrix(linearizations, 0.0));
+        let factors = DenseLu::new(&tresca.matrix);
         let mut map = vec![0.0; sliding.len() * sliding.len()];
-        for (column, (index, direction)) in sliding.iter().enumerate() {
-            let mut change = vec![0.0; self.size() * self.bodies.len()];
-            let rows = Self::rows_of(*index, &self.boundary.points[*index]);
-            for ((dof, _), entry) in rows.skip(1).zip(direction) {
-                let equation = if self.held[0][dof] { self.size() + dof } else { dof };
-                change[equation] = *entry;
-            }
+        for (column, (first, direction, tangents)) in sliding.iter().enumerate() {
+            let mut change = vec![0.0; tresca.matrix.nrows()];
+            change[first + 1..first + 1 + tangents].copy_from_slice(&direction[..*tangents]);
             factors.solve_in_place(&mut change);
-            let product = multiply(&self.bodies[0].schur, &change[..self.size()]);
-            for (row, (node, _)) in sliding.iter().enumerate() {
-                map[row * sliding.len() + column] = -self.boundary.friction * product[3 * node + 2];
+            for (row, (normal, ..)) in sliding.iter().enumerate() {
+                map[row * sliding.len() + column] = boundary.friction * change[*normal];
             }
         }
         spectral_radius(sliding.len(), &map)

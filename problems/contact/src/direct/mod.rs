@@ -1,17 +1,20 @@
-//! Direct condensation onto the contact nodes: an independent path, used as a cross-check.
+//! Direct condensation onto the contact nodes: an independent path, and the one that finds loosely held equilibria.
 //!
 //! ```text
 //! S u_c = f_c − λ,   S = K_cc − K_ci K_ii⁻¹ K_ic,   f_c = f_c − K_ci K_ii⁻¹ f_i            (per body, whole and untorn)
 //! ```
-//! Nothing of the total FETI path is used: neither rows, nor rigid modes, nor Krylov methods.
+//! Nothing of the total FETI path is used: neither rows, nor coarse space, nor Krylov methods.
 
 mod adjoint;
+mod compliant_body;
+mod compliant_contact;
 mod condensation;
 mod diagnosis;
-mod error_estimate;
 mod newton;
 mod recovery;
 mod solver;
 
+pub use compliant_body::CompliantBody;
+pub use compliant_contact::CompliantContact;
 pub use condensation::{CondensationPattern, CondensedBody};
 pub use solver::{DirectSolver, DirectState};

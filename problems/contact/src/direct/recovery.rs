@@ -1,7 +1,6 @@
 //! Displacements inside the condensed bodies.
 
 use crate::body::mesh::Block;
-use crate::direct::newton::CondensedContact;
 use crate::direct::solver::{DirectSolver, DirectState};
 use crate::equilibrium::SolvedBody;
 use crate::error::ContactError;
@@ -15,14 +14,14 @@ impl DirectSolver {
         let (problem, solution) = (&self.problem, &state.solution.displacement);
         let size = 3 * problem.boundary.points.len();
         let expected = size * self.held.len();
-        if expected != solution.len() || state.system.block.grid != problem.grid {
+        if expected != solution.len() || state.block.grid != problem.grid {
             return Err(ContactError::ForeignState { what: "contact dofs", expected, found: solution.len() });
         }
-        let blocks: Vec<Block> = std::iter::once(state.system.block.clone()).chain(problem.upper_block()?).collect();
+        let blocks: Vec<Block> = std::iter::once(state.block.clone()).chain(problem.upper_block()?).collect();
         let parts = blocks.into_iter().zip(solution.chunks_exact(size)).enumerate();
         Ok(parts
             .map(|(body, (block, contact))| {
-                let u = self.extend(state, body, contact, &state.solution.forces, true);
+                let u = state.extend(body, contact, &state.solution.forces, true);
                 SolvedBody {
                     displacement: u.chunks_exact(3).map(|u| [u[0], u[1], u[2]]).collect(),
                     gluing_defect: 0.0,
@@ -32,29 +31,13 @@ impl DirectSolver {
             })
             .collect())
     }
+}
 
+impl DirectState {
     /// Displacements of a whole body from those of its contact nodes and packed multipliers, which push the lower body (0)
     /// down and the upper one (1) up; with or without its loads.
-    pub(super) fn extend(
-        &self,
-        state: &DirectState,
-        body: usize,
-        contact: &[f64],
-        multipliers: &[f64],
-        loaded: bool,
-    ) -> Vec<f64> {
-        let (sign, condensed) = match (body, &state.system.upper) {
-            (1, Some(upper)) => (1.0, upper.as_ref()),
-            _ => (-1.0, &state.system.lower),
-        };
-        let mut forces = vec![0.0; contact.len()];
-        for (index, point) in self.problem.boundary.points.iter().enumerate() {
-            for (dof, row) in CondensedContact::rows_of(index, point) {
-                if !self.held[body][dof] {
-                    forces[dof] = sign * multipliers[row];
-                }
-            }
-        }
-        condensed.extend(contact, &forces, loaded)
+    pub(super) fn extend(&self, body: usize, contact: &[f64], multipliers: &[f64], loaded: bool) -> Vec<f64> {
+        let body = &self.contact.bodies[body];
+        body.condensed.extend(contact, &body.contact_forces(multipliers), loaded)
     }
 }

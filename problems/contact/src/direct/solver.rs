@@ -2,15 +2,18 @@
 
 use crate::body::mesh::{Block, Subdomain};
 use crate::body::shape_sensitivity::column_sensitivities;
+use crate::direct::compliant_body::CompliantBody;
+use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
-use crate::direct::newton::{CondensedContact, CondensedSolution};
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
+use crate::equilibrium::modes::RigidScene;
 use crate::equilibrium::{
     Configuration, ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Kink,
-    Residuals, Sensitivities, SolvedBody, SolverState, Stage, ValueError, Work, modes,
+    Residuals, Sensitivities, SolvedBody, SolverState, Stage, ValueError, Work,
 };
 use crate::error::ContactError;
+use crate::linear::vector::norm;
 use crate::scene::BodyScene;
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
@@ -22,28 +25,32 @@ pub struct DirectSolver {
     pub(super) problem: Arc<ContactProblem>,
     lower: CondensationPattern,
     upper: Option<CondensationPattern>,
-    fixed: OnceLock<Arc<CondensedBody>>,
+    fixed: OnceLock<Arc<CompliantBody>>,
     /// Held contact dofs, per body.
     pub(super) held: Vec<Vec<bool>>,
-}
-
-/// The condensed bodies of one shape.
-#[derive(Debug)]
-pub(super) struct CondensedSystem {
-    pub(super) block: Block,
-    pub(super) lower: CondensedBody,
-    pub(super) upper: Option<Arc<CondensedBody>>,
-    grounded: Vec<Vec<f64>>,
-    gaps: Vec<f64>,
-    stiffness: f64,
-    load: f64,
 }
 
 /// A solved shape with all that its coderivative needs.
 #[derive(Debug)]
 pub struct DirectState {
-    pub(super) system: CondensedSystem,
+    pub(super) block: Block,
+    pub(super) contact: CompliantContact,
     pub(super) solution: CondensedSolution,
+    /// Force that residuals are relative to, N; zero for bodies at rest.
+    load: f64,
+}
+
+/// The solution in physical units.
+#[derive(Debug)]
+pub(super) struct CondensedSolution {
+    /// Forces and amplitudes, dimensionless.
+    pub(super) unknowns: Vec<f64>,
+    /// Contact displacements of all bodies, mm.
+    pub(super) displacement: Vec<f64>,
+    /// Packed multipliers, N.
+    pub(super) forces: Vec<f64>,
+    /// Derivatives selected.
+    pub(super) linearizations: Vec<Linearization>,
 }
 
 impl DirectSolver {
@@ -65,42 +72,75 @@ impl DirectSolver {
         Ok(Self { problem, lower, upper, fixed: OnceLock::new(), held })
     }
 
-    /// Condenses all bodies of a shape; also the number of factorisations done.
-    fn condense(&self, configuration: &mut Configuration) -> Result<(CondensedSystem, usize), ContactError> {
+    /// The contact problem in the forces of given controls: what the state is computed from, for other methods to solve.
+    ///
+    /// # Errors
+    /// [`ContactError`]: inverted elements, no equilibrium of rigid bodies, a failing factorisation.
+    pub fn contact(&self, controls: &[f64]) -> Result<CompliantContact, ContactError> {
+        Ok(self.condense(Configuration::new(&self.problem, controls)?)?.0)
+    }
+
+    /// Condenses all bodies of a shape; also its lower block, the load (zero for bodies at rest) and the number of
+    /// factorisations done.
+    fn condense(&self, configuration: Configuration) -> Result<(CompliantContact, Block, f64, usize), ContactError> {
         Stage::Factorization.enter();
-        let rigid = &configuration.rigid;
-        let grounded = configuration.grounded.iter().map(|motion| contact_motion(rigid, motion)).collect();
         let lower = self.lower.condense(&configuration.blocks[0], &self.problem.scene.lower)?;
-        let (upper, factorizations) = self.upper_body(&configuration.blocks)?;
-        let stiffness = contact_stiffness(&lower, upper.as_deref());
-        let load = configuration.load(stiffness);
-        let gaps = std::mem::take(&mut configuration.gaps);
-        let block = configuration.blocks.swap_remove(0);
-        Ok((CondensedSystem { block, lower, upper, grounded, gaps, stiffness, load }, 1 + factorizations))
+        let lower = Arc::new(self.compliant(lower, &configuration.rigid, 0));
+        let (upper, factorizations) = self.upper_body(&configuration)?;
+        let load = configuration.load(contact_stiffness(&lower, upper.as_deref()));
+        let bodies = std::iter::once(lower).chain(upper).collect();
+        let unit = if load > 0.0 { load } else { 1.0 };
+        let contact = CompliantContact::new(Arc::clone(&self.problem), bodies, &configuration.gaps, unit);
+        let mut blocks = configuration.blocks;
+        Ok((contact, blocks.swap_remove(0), load, 1 + factorizations))
+    }
+
+    fn compliant(&self, condensed: CondensedBody, rigid: &RigidScene, body: usize) -> CompliantBody {
+        let sign = if body == 0 { 1.0 } else { -1.0 };
+        CompliantBody::new(condensed, rigid.own_motions(body), &self.problem.boundary, &self.held[body], sign)
     }
 
     /// The upper body, which keeps its shape: it is factored at the first call and shared afterwards. Also the number of
     /// factorisations done.
-    fn upper_body(&self, blocks: &[Block]) -> Result<(Option<Arc<CondensedBody>>, usize), ContactError> {
+    fn upper_body(&self, configuration: &Configuration) -> Result<(Option<Arc<CompliantBody>>, usize), ContactError> {
         let (Some(pattern), Some(scene)) = (&self.upper, &self.problem.scene.upper) else { return Ok((None, 0)) };
         if let Some(body) = self.fixed.get() {
             return Ok((Some(Arc::clone(body)), 0));
         }
-        let body = Arc::new(pattern.condense(&blocks[1], &scene.body)?);
+        let condensed = pattern.condense(&configuration.blocks[1], &scene.body)?;
+        // Its motions refer to a point of its own: the bits must not depend on which shape came first.
+        let centre = [configuration.rigid.centre[0], configuration.rigid.centre[1], scene.top];
+        let length = centre[0].max(centre[1]);
+        let rigid = RigidScene { centre, length, ..configuration.rigid.clone() };
+        let body = Arc::new(self.compliant(condensed, &rigid, 1));
         // Another thread may have been first; its factor is the same.
         Ok((Some(Arc::clone(self.fixed.get_or_init(|| body))), 1))
     }
 
-    fn contact<'a>(&'a self, state: &'a CondensedSystem) -> CondensedContact<'a> {
-        CondensedContact {
-            bodies: std::iter::once(&state.lower).chain(state.upper.as_deref()).collect(),
-            boundary: &self.problem.boundary,
-            held: &self.held,
-            gaps: &state.gaps,
-            stiffness: state.stiffness,
-            load: state.load,
-            grounded: &state.grounded,
+    /// The equilibrium of a condensed shape.
+    fn equilibrium(
+        contact: &CompliantContact,
+        start: Option<&[f64]>,
+        tolerance: f64,
+    ) -> Result<(CondensedSolution, usize), ContactError> {
+        let size: usize = contact.bodies.iter().map(|body| body.free.len()).sum();
+        let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
+        let reached = contact.equilibrium(start.as_deref(), tolerance);
+        if !reached.solved {
+            return Err(ContactError::NotConverged {
+                solver: "semismooth Newton on condensed bodies, with continuation in the contact compliance",
+                residual: norm(&contact.residual(&reached.unknowns, 0.0).0),
+                tolerance,
+                iterations: reached.history.len(),
+                history: reached.history,
+            });
         }
+        let (forces, displacement) = contact.dimensional(&reached.unknowns);
+        let linearizations = reached.linearizations;
+        Ok((
+            CondensedSolution { unknowns: reached.unknowns, displacement, forces, linearizations },
+            reached.history.len(),
+        ))
     }
 }
 
@@ -129,18 +169,17 @@ impl ContactSolver for DirectSolver {
             Some(ContactWarmStart::Displacements(displacements)) => Some(displacements.as_slice()),
             _ => None,
         };
-        let (system, factorizations) = self.condense(&mut Configuration::new(&self.problem, controls)?)?;
+        let (contact, block, load, factorizations) = self.condense(Configuration::new(&self.problem, controls)?)?;
         Stage::Contact.enter();
-        let contact = self.contact(&system);
-        let solution = if system.load > 0.0 { contact.solve(start, tolerance)? } else { contact.at_rest() };
-        let work = Work { newton_steps: solution.steps, factorizations, ..Work::default() };
-        let state = DirectState { system, solution };
+        let (solution, newton_steps) =
+            if load > 0.0 { Self::equilibrium(&contact, start, tolerance)? } else { (contact.at_rest(), 0) };
+        let state = DirectState { block, contact, solution, load };
         Ok(ContactState {
-            forces: state.forces(&self.problem),
-            load: state.system.load,
+            forces: state.forces(),
+            load,
             contraction: None,
             stages: None,
-            work,
+            work: Work { newton_steps, factorizations, ..Work::default() },
             adjoint_applications: AtomicUsize::new(0),
             solution: state,
         })
@@ -152,21 +191,19 @@ impl ContactSolver for DirectSolver {
         direction: &[f64],
         _tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
-        if state.system.load == 0.0 {
+        if state.load == 0.0 {
             return Ok(Sensitivities::at_rest(self.problem.grid.column_count()));
         }
         let clock = Instant::now();
         Stage::Adjoint.enter();
-        let contact = self.contact(&state.system);
-        let (p, eta) = contact.adjoint(&state.solution.linearizations, direction);
-        let terms = contact.weighted_residuals(&state.solution, &p, &eta, direction);
-        let value_error = ValueError::from_terms(&terms, direction, &state.solution.forces);
-        let size = contact.size();
-        let u = self.extend(state, 0, &state.solution.displacement[..size], &state.solution.forces, true);
-        let p = self.extend(state, 0, &p[..size], &eta, false);
+        let solution = &state.solution;
+        let adjoint = state.contact.adjoint(&solution.unknowns, &solution.linearizations, direction);
+        let value_error = ValueError::from_terms(&adjoint.error_terms, direction, &solution.forces);
+        let u = state.extend(0, &solution.displacement[..adjoint.displacements[0].len()], &solution.forces, true);
+        let p = state.extend(0, &adjoint.displacements[0], &adjoint.multipliers, false);
         let adjoint_seconds = clock.elapsed().as_secs_f64();
         Stage::ShapeDerivative.enter();
-        let heights = self.height_sensitivities(state, &u, &p, &eta);
+        let heights = self.height_sensitivities(state, &u, &p, &adjoint.multipliers);
         if heights.iter().any(|height| !height.is_finite()) {
             return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
         }
@@ -175,10 +212,10 @@ impl ContactSolver for DirectSolver {
     }
 
     fn diagnose(&self, state: &DirectState) -> Result<Diagnosis, ContactError> {
-        if state.system.load == 0.0 {
+        if state.load == 0.0 {
             return Ok(Diagnosis { contraction: 0.0, condition: None });
         }
-        self.contact(&state.system).diagnose(&state.solution.linearizations)
+        state.contact.diagnose(&state.solution.linearizations)
     }
 
     fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
@@ -196,7 +233,7 @@ impl DirectSolver {
         let (grid, lower) = (&self.problem.grid, &self.problem.scene.lower);
         let whole = Subdomain { first_cell: [0; 3], cells: grid.cells };
         let mut heights = vec![0.0; grid.column_count()];
-        for (column, value) in column_sensitivities(&state.system.block, &whole, &lower.material, &lower.loads, u, p) {
+        for (column, value) in column_sensitivities(&state.block, &whole, &lower.material, &lower.loads, u, p) {
             heights[column] += value;
         }
         // The gap F² − F_α falls as the surface rises.
@@ -213,30 +250,45 @@ impl SolverState for DirectState {
     }
 }
 
+impl CompliantContact {
+    /// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.
+    fn at_rest(&self) -> CondensedSolution {
+        let unknowns = vec![0.0; self.row_count() + self.resultant.len()];
+        let linearizations = self.linearize(&self.residual(&unknowns, 0.0).1);
+        let (forces, displacement) = self.dimensional(&unknowns);
+        CondensedSolution { unknowns, displacement, forces, linearizations }
+    }
+}
+
 impl DirectState {
-    fn forces(&self, problem: &ContactProblem) -> ContactForces {
-        let (solution, boundary, stiffness) = (&self.solution, &problem.boundary, self.system.stiffness);
+    fn forces(&self) -> ContactForces {
+        let (contact, solution) = (&self.contact, &self.solution);
+        let boundary = &contact.problem.boundary;
+        let (residual, arguments) = contact.residual(&solution.unknowns, 0.0);
         let status = boundary.points.iter().zip(&solution.linearizations);
         let status = status.map(|(point, linearization)| linearization.status(point)).collect();
-        let arguments: Vec<f64> =
-            solution.forces.iter().zip(&solution.jumps).map(|(force, jump)| force + stiffness * jump).collect();
-        let law = law_residuals(boundary, &solution.forces, &solution.jumps, stiffness, self.system.load);
-        // Equilibrium holds through the equations φ₁ + φ₂ = 0, whose residual is part of Newton's.
-        let residuals = Residuals { equilibrium: solution.residual, newton: solution.residual, ..law };
+        let length = contact.unit * contact.load;
+        let jumps: Vec<f64> = contact.jumps(&solution.unknowns, 0.0).iter().map(|jump| jump * length).collect();
+        let imbalance = contact.bodies.iter().map(|body| body.imbalance(&solution.forces)).fold(0.0, f64::hypot);
+        let residuals = Residuals {
+            equilibrium: imbalance / contact.load,
+            newton: norm(&residual),
+            ..law_residuals(boundary, &solution.forces, &jumps, 1.0 / contact.unit, contact.load)
+        };
         let mut forces = solution.forces.clone();
         for (point, linearization) in boundary.points.iter().zip(&solution.linearizations) {
             if *linearization == Linearization::Open {
                 forces[point.start..point.start + point.row_count()].fill(0.0);
             }
         }
-        ContactForces::unpack(boundary, &forces, &solution.jumps, status, residuals, Kink::of(boundary, &arguments))
+        ContactForces::unpack(boundary, &forces, &jumps, status, residuals, Kink::of(boundary, &arguments))
     }
 }
 
 /// Mean normal stiffness of the contact nodes, bodies in series, N/mm.
-fn contact_stiffness(lower: &CondensedBody, upper: Option<&CondensedBody>) -> f64 {
-    let count = lower.schur.nrows() / 3;
-    let diagonal = |body: &CondensedBody, node: usize| body.schur[(3 * node + 2, 3 * node + 2)];
+fn contact_stiffness(lower: &CompliantBody, upper: Option<&CompliantBody>) -> f64 {
+    let count = lower.condensed.schur.nrows() / 3;
+    let diagonal = |body: &CompliantBody, node: usize| body.condensed.schur[(3 * node + 2, 3 * node + 2)];
     let sum: f64 = (0..count)
         .map(|node| match upper {
             Some(upper) => 1.0 / (1.0 / diagonal(lower, node) + 1.0 / diagonal(upper, node)),
@@ -244,22 +296,4 @@ fn contact_stiffness(lower: &CondensedBody, upper: Option<&CondensedBody>) -> f6
         })
         .sum();
     sum / count as f64
-}
-
-/// A motion of the scene on the contact dofs of all bodies, normalised.
-fn contact_motion(rigid: &modes::RigidScene, motion: &modes::Motion) -> Vec<f64> {
-    let mut values = Vec::with_capacity(3 * rigid.bodies * rigid.contact.len());
-    for (body, coefficients) in motion.chunks_exact(modes::MOTIONS).enumerate() {
-        for points in &rigid.contact {
-            let basis = modes::motions(points[body], rigid.centre, rigid.length);
-            for component in 0..3 {
-                values.push(basis.iter().zip(coefficients).map(|(b, c)| b[component] * c).sum());
-            }
-        }
-    }
-    let length = crate::linear::vector::norm(&values);
-    if length > 0.0 {
-        values.iter_mut().for_each(|value| *value /= length);
-    }
-    values
 }

@@ -26,6 +26,12 @@ impl ContactPoint {
     pub fn row_count(&self) -> usize {
         1 + self.tangents.len()
     }
+
+    /// (packed row, contact dof) of the rows of this node, whose position among the nodes is `index`.
+    pub fn rows_of(&self, index: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let components = std::iter::once(2).chain(self.tangents.iter().copied());
+        components.enumerate().map(move |(offset, component)| (self.start + offset, 3 * index + component))
+    }
 }
 
 /// All contact nodes of a scene.

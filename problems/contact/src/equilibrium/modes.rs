@@ -73,6 +73,22 @@ impl RigidScene {
         kernel(self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0)), self.bodies)
     }
 
+    /// Contact displacements (three components per node) of the motions that the supports of one body leave free.
+    pub fn own_motions(&self, body: usize) -> Vec<Vec<f64>> {
+        let held = self.held.iter().filter(|(holder, ..)| *holder == body);
+        let own = Self { bodies: 1, held: Vec::new(), loads: Vec::new(), contact: Vec::new(), ..*self };
+        let free = kernel(held.map(|&(_, point, component)| own.row(0, point, component, 1.0)), 1);
+        let displacement = |motion: &DVector<f64>, point: [f64; 3], component: usize| {
+            let basis = motions(point, self.centre, self.length);
+            basis.iter().zip(motion.iter()).map(|(b, c)| b[component] * c).sum()
+        };
+        let contact = |motion| {
+            let points = self.contact.iter().map(|points| points[body]);
+            points.flat_map(|point| (0..3).map(move |component| displacement(motion, point, component))).collect()
+        };
+        free.iter().map(contact).collect()
+    }
+
     /// Checks that contact within its friction cone can carry the load; returns the motions that nothing holds, which are
     /// to be grounded.
     ///

@@ -86,6 +86,23 @@ impl DenseLu {
         }
     }
 
+    /// A⁻¹.
+    pub fn inverse(&self) -> Mat<f64> {
+        let size = self.factors.nrows();
+        let mut inverse = Mat::<f64>::identity(size, size);
+        let scratch = lu::solve::solve_in_place_scratch::<usize, f64>(size, size, SEQUENTIAL);
+        lu::solve::solve_in_place_with_conj(
+            self.factors.as_ref(),
+            self.factors.as_ref(),
+            self.permutation.as_ref(),
+            Conj::No,
+            inverse.as_mut(),
+            SEQUENTIAL,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+        inverse
+    }
+
     /// Solves Aᵀ x = b in place.
     pub fn solve_transpose_in_place(&self, b: &mut [f64]) {
         let size = b.len();

@@ -1,0 +1,178 @@
+//! The contact problem of condensed bodies in contact forces and rigid motions.
+//!
+//! ```text
+//! w(λ, a) = d − C λ + R a,   Rᵀ λ = e,   λ = Π(λ + w)          C in units of its mean normal diagonal, forces in units of the load
+//! ```
+//! C is the sum of the bodies' compliances over the packed rows, R a the jumps of their free rigid motions. Motions that no
+//! contact node feels are left out: no force depends on them.
+
+use crate::direct::compliant_body::CompliantBody;
+use crate::equilibrium::ContactProblem;
+use crate::equilibrium::law::{self, Linearization};
+use crate::linear::dense::multiply;
+use crate::linear::vector::{add_scaled, dot};
+use faer::Mat;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+/// Relative singular value of R up to which a motion counts as untouched by contact.
+const UNTOUCHED: f64 = 1e-10;
+
+/// The contact problem in forces and rigid motions, dimensionless. Its unknowns are one vector: the packed forces λ over the
+/// load, then the amplitudes a of the rigid motions that contact feels.
+#[derive(Debug)]
+pub struct CompliantContact {
+    /// The discrete problem: contact nodes, friction, layout of the packed rows.
+    pub problem: Arc<ContactProblem>,
+    /// C, symmetric, rows × rows.
+    pub compliance: Mat<f64>,
+    /// d: jumps less gaps under the loads alone, per row.
+    pub constant: Vec<f64>,
+    /// R: jumps of the rigid motions, rows × motions, with orthonormal columns.
+    pub motions: Mat<f64>,
+    /// e: what contact must carry along the motions.
+    pub resultant: Vec<f64>,
+    /// Unit of forces, N.
+    pub load: f64,
+    /// Unit of compliances, mm/N.
+    pub unit: f64,
+    pub(super) bodies: Vec<Arc<CompliantBody>>,
+    /// From the amplitudes of R to those of the bodies' own motions.
+    basis: DMatrix<f64>,
+    /// From the bodies' own amplitudes to those of R.
+    inverse_basis: DMatrix<f64>,
+}
+
+impl CompliantContact {
+    /// The problem of some bodies with given initial gaps, mm; `load`: unit of forces, N.
+    pub fn new(problem: Arc<ContactProblem>, bodies: Vec<Arc<CompliantBody>>, gaps: &[f64], load: f64) -> Self {
+        let boundary = &problem.boundary;
+        let rows = boundary.row_count;
+        let mut compliance = Mat::<f64>::zeros(rows, rows);
+        let mut constant = vec![0.0; rows];
+        for (point, gap) in boundary.points.iter().zip(gaps) {
+            constant[point.start] = -gap;
+        }
+        for body in &bodies {
+            for &(column, other) in &body.rows {
+                for &(row, dof) in &body.rows {
+                    compliance[(row, column)] += body.compliance[(dof, other)];
+                }
+            }
+            for &(row, dof) in &body.rows {
+                constant[row] += body.sign * body.free[dof];
+            }
+        }
+        let normals = boundary.points.iter().map(|point| compliance[(point.start, point.start)]);
+        let unit = normals.sum::<f64>() / boundary.points.len() as f64;
+        for column in 0..rows {
+            compliance.col_as_slice_mut(column).iter_mut().for_each(|c| *c /= unit);
+        }
+        constant.iter_mut().for_each(|d| *d /= unit * load);
+        let [motions, basis, inverse_basis] = touched_motions(&bodies, rows);
+        let own: Vec<f64> = bodies.iter().flat_map(|body| body.resultants()).collect();
+        let resultant = (basis.transpose() * DVector::from_vec(own) / load).iter().copied().collect();
+        let motions = Mat::from_fn(rows, motions.ncols(), |i, k| motions[(i, k)]);
+        Self { problem, compliance, constant, motions, resultant, load, unit, bodies, basis, inverse_basis }
+    }
+
+    /// Number of packed rows.
+    pub fn row_count(&self) -> usize {
+        self.constant.len()
+    }
+
+    /// w = d − (C + δ) λ + R a.
+    pub fn jumps(&self, unknowns: &[f64], delta: f64) -> Vec<f64> {
+        let (forces, amplitudes) = unknowns.split_at(self.row_count());
+        let product = multiply(&self.compliance, forces);
+        let rigid = multiply(&self.motions, amplitudes);
+        (0..self.row_count()).map(|i| self.constant[i] - product[i] - delta * forces[i] + rigid[i]).collect()
+    }
+
+    /// (λ − Π(x), Rᵀλ − e) and x = λ + w/(1 + δ).
+    pub fn residual(&self, unknowns: &[f64], delta: f64) -> (Vec<f64>, Vec<f64>) {
+        let boundary = &self.problem.boundary;
+        let forces = &unknowns[..self.row_count()];
+        let jumps = self.jumps(unknowns, delta);
+        let arguments: Vec<f64> = forces.iter().zip(&jumps).map(|(force, jump)| force + jump / (1.0 + delta)).collect();
+        let mut residual = vec![0.0; self.row_count()];
+        for node in &boundary.points {
+            let range = node.start..node.start + node.row_count();
+            law::project(&arguments[range.clone()], boundary.friction, &mut residual[range]);
+        }
+        residual.iter_mut().zip(forces).for_each(|(projected, force)| *projected = force - *projected);
+        for (column, load) in self.resultant.iter().enumerate() {
+            residual.push(dot(self.motions.col_as_slice(column), forces) - load);
+        }
+        (residual, arguments)
+    }
+
+    /// Derivatives of Π selected at given arguments x.
+    pub fn linearize(&self, arguments: &[f64]) -> Vec<Linearization> {
+        let boundary = &self.problem.boundary;
+        let at = |start: usize, count: usize| Linearization::at(&arguments[start..start + count], boundary.friction);
+        boundary.points.iter().map(|node| at(node.start, node.row_count())).collect()
+    }
+
+    /// Amplitudes of the bodies' own motions, in mm for dimensionless amplitudes times `unit`.
+    pub(super) fn own_amplitudes(&self, amplitudes: &[f64], unit: f64) -> Vec<Vec<f64>> {
+        let scaled = DVector::from_iterator(amplitudes.len(), amplitudes.iter().map(|a| a * unit));
+        let own = &self.basis * scaled;
+        let mut own = own.iter().copied();
+        self.bodies.iter().map(|body| own.by_ref().take(body.motions.len()).collect()).collect()
+    }
+
+    /// Forces, N, and contact displacements of all bodies, mm, of given unknowns.
+    pub fn dimensional(&self, unknowns: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (forces, amplitudes) = unknowns.split_at(self.row_count());
+        let forces: Vec<f64> = forces.iter().map(|force| force * self.load).collect();
+        let own = self.own_amplitudes(amplitudes, self.unit * self.load);
+        let parts = self.bodies.iter().zip(&own);
+        let displacements = parts.flat_map(|(body, own)| body.displacement(&forces, own, true)).collect();
+        (forces, displacements)
+    }
+
+    /// Unknowns near given contact displacements of all bodies of a similar shape, mm.
+    pub fn unknowns_near(&self, displacements: &[f64]) -> Vec<f64> {
+        let mut forces = vec![0.0; self.row_count()];
+        let mut own = Vec::new();
+        let mut first = 0;
+        for body in &self.bodies {
+            let u = &displacements[first..first + body.condensed.load.len()];
+            first += u.len();
+            own.extend(body.motions.iter().map(|motion| dot(motion, u) / (self.unit * self.load)));
+            let mut reaction = body.condensed.load.clone();
+            add_scaled(&mut reaction, -1.0, &multiply(&body.condensed.schur, u));
+            for &(row, dof) in &body.rows {
+                forces[row] = body.sign * reaction[dof] / self.load;
+            }
+        }
+        let amplitudes = &self.inverse_basis * DVector::from_vec(own);
+        forces.extend(amplitudes.iter());
+        forces
+    }
+}
+
+/// R with orthonormal columns, the map from its amplitudes to those of the bodies' own motions, and the map back. Singular
+/// values come from the triangular factor, which keeps the small ones.
+fn touched_motions(bodies: &[Arc<CompliantBody>], rows: usize) -> [DMatrix<f64>; 3] {
+    let columns = bodies.iter().map(|body| body.motions.len()).sum();
+    let mut motions = DMatrix::<f64>::zeros(rows, columns);
+    let own = bodies.iter().flat_map(|body| body.motions.iter().map(move |motion| (body, motion)));
+    for (column, (body, motion)) in own.enumerate() {
+        for &(row, dof) in &body.rows {
+            motions[(row, column)] = body.sign * motion[dof];
+        }
+    }
+    let none = || [DMatrix::zeros(rows, 0), DMatrix::zeros(columns, 0), DMatrix::zeros(0, columns)];
+    if columns == 0 {
+        return none();
+    }
+    let decomposition = motions.clone().qr().r().svd(false, true);
+    let values = &decomposition.singular_values;
+    let Some(right) = &decomposition.v_t else { return none() };
+    let touched: Vec<usize> = (0..values.len()).filter(|&k| values[k] > UNTOUCHED * values.max()).collect();
+    let basis = DMatrix::from_fn(columns, touched.len(), |i, k| right[(touched[k], i)] / values[touched[k]]);
+    let inverse = DMatrix::from_fn(touched.len(), columns, |k, i| right[(touched[k], i)] * values[touched[k]]);
+    [motions * &basis, basis, inverse]
+}
