@@ -1,63 +1,258 @@
-//! A contact solver whose kind is chosen when the program runs. Where the kind is known, [`ContactSolver`] is used directly.
+//! A contact solver whose kind is chosen when the program runs, and the choice between total FETI and direct condensation.
+//!
+//! `auto` takes total FETI first, for at most as many products with F as a state by direct condensation costs, and direct
+//! condensation where total FETI finds no state. It begins with direct condensation where total FETI is known to be slow:
+//! nearly incompressible bodies, bricks of extreme shape, a shape similar to one that needed it. Sizes and counted work alone
+//! decide, so that a resumed run repeats the choice. Where bodies are too large to be condensed, total FETI is alone.
 
-use crate::direct::DirectSolver;
+use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{
-    AnyState, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody,
+    ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, Sensitivities, SolvedBody,
     SolverState,
 };
 use crate::error::ContactError;
+use crate::memory;
+use crate::scene::Scene;
 use crate::solver_kind::SolverKind;
-use crate::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
-use std::any::Any;
-use std::sync::Arc;
+use crate::tfeti::{DualMethod, PreconditionerKind, Recycling, TornState, TotalFeti};
+use crate::work_estimate::WorkEstimate;
+use std::sync::{Arc, OnceLock};
+
+/// Estimated bytes up to which bodies are condensed without being asked for. A constant: what the machine has free must not
+/// change a result.
+const MAX_CONDENSED_BYTES: f64 = 4e9;
+/// Products with F that total FETI is always allowed: states of the smallest scenes take some tens.
+const MIN_PRODUCTS: usize = 100;
+/// Poisson's ratio from which total FETI takes hundreds of products and more.
+const NEARLY_INCOMPRESSIBLE: f64 = 0.499;
+/// Longest over shortest edge of a brick from which total FETI takes hundreds of products and more.
+const EXTREME_BRICK: f64 = 30.0;
 
 /// A contact solver of any kind.
-pub type AnySolver = dyn ContactSolver<State = AnyState>;
+#[derive(Debug)]
+pub enum AnySolver {
+    /// Total FETI.
+    Torn(TotalFeti),
+    /// Direct condensation.
+    Direct(DirectSolver),
+    /// Whichever of the two finds a state.
+    Auto(AutoSolver),
+}
 
-/// The solver of a kind; `preconditioner` is for total FETI.
-///
-/// # Errors
-/// [`ContactError::Factorization`] when a symbolic analysis fails.
-pub fn any_solver(
+/// Total FETI and direct condensation, each prepared when it is needed.
+#[derive(Debug)]
+pub struct AutoSolver {
     problem: Arc<ContactProblem>,
-    kind: SolverKind,
     preconditioner: PreconditionerKind,
-) -> Result<Box<AnySolver>, ContactError> {
-    let torn = |problem, method| TotalFeti::new(problem, preconditioner, method).map(erase);
-    match kind {
-        SolverKind::Newton => torn(problem, DualMethod::Newton(Recycling::default())),
-        SolverKind::AugmentedLagrangian => torn(problem, DualMethod::SuccessiveApproximations),
-        SolverKind::Direct => DirectSolver::new(problem).map(erase),
+    torn: OnceLock<TotalFeti>,
+    direct: OnceLock<DirectSolver>,
+    /// Why direct condensation comes first, if it does.
+    direct_first: Option<String>,
+    /// Products with F that total FETI may take before direct condensation; none where the bodies are too large for it.
+    max_products: Option<usize>,
+}
+
+/// What a solver of any kind keeps of a solved shape.
+#[derive(Debug)]
+pub enum AnyState {
+    /// By total FETI.
+    Torn(Box<TornState>),
+    /// By direct condensation.
+    Direct(Box<DirectState>),
+}
+
+impl SolverState for AnyState {
+    fn warm_start(&self) -> ContactWarmStart {
+        match self {
+            Self::Torn(state) => state.warm_start(),
+            Self::Direct(state) => state.warm_start(),
+        }
     }
 }
 
-/// Forgets the kind of a solver.
-pub fn erase<S: ContactSolver + 'static>(solver: S) -> Box<AnySolver> {
-    Box::new(Erased(solver))
+impl From<TornState> for AnyState {
+    fn from(state: TornState) -> Self {
+        Self::Torn(Box::new(state))
+    }
 }
 
-/// A solver that looks whether a state is its own.
-#[derive(Debug)]
-struct Erased<S>(S);
-
-fn own<S: SolverState>(state: &AnyState) -> Result<&S, ContactError> {
-    let state: &dyn Any = state.as_ref();
-    state.downcast_ref().ok_or(ContactError::OtherSolver)
+impl From<DirectState> for AnyState {
+    fn from(state: DirectState) -> Self {
+        Self::Direct(Box::new(state))
+    }
 }
 
-impl<S: ContactSolver> ContactSolver for Erased<S> {
+impl AnySolver {
+    /// The solver of a kind; `preconditioner` is for total FETI.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when a symbolic analysis fails.
+    pub fn new(
+        problem: Arc<ContactProblem>,
+        kind: SolverKind,
+        preconditioner: PreconditionerKind,
+    ) -> Result<Self, ContactError> {
+        let torn = |problem, method| TotalFeti::new(problem, preconditioner, method).map(Self::Torn);
+        match kind {
+            SolverKind::Auto => AutoSolver::new(problem, preconditioner).map(Self::Auto),
+            SolverKind::Newton => torn(problem, DualMethod::Newton(Recycling::default())),
+            SolverKind::AugmentedLagrangian => torn(problem, DualMethod::SuccessiveApproximations),
+            SolverKind::Direct => DirectSolver::new(problem).map(Self::Direct),
+        }
+    }
+
+    fn torn(&self) -> Result<&TotalFeti, ContactError> {
+        match self {
+            Self::Torn(solver) => Ok(solver),
+            Self::Direct(_) => Err(ContactError::OtherSolver),
+            Self::Auto(solver) => solver.torn(),
+        }
+    }
+
+    fn direct(&self) -> Result<&DirectSolver, ContactError> {
+        match self {
+            Self::Torn(_) => Err(ContactError::OtherSolver),
+            Self::Direct(solver) => Ok(solver),
+            Self::Auto(solver) => solver.direct(),
+        }
+    }
+}
+
+/// What a cell holds, built at the first call.
+fn prepared<T>(cell: &OnceLock<T>, build: impl FnOnce() -> Result<T, ContactError>) -> Result<&T, ContactError> {
+    if let Some(value) = cell.get() {
+        return Ok(value);
+    }
+    let value = build()?;
+    // Another thread may have been first; its value is the same.
+    Ok(cell.get_or_init(|| value))
+}
+
+impl AutoSolver {
+    /// Prepares the solver that comes first.
+    fn new(problem: Arc<ContactProblem>, preconditioner: PreconditionerKind) -> Result<Self, ContactError> {
+        let scene = &problem.scene;
+        let condensable = memory::estimate(scene, SolverKind::Direct, preconditioner) <= MAX_CONDENSED_BYTES;
+        let max_products =
+            condensable.then(|| WorkEstimate::of(scene).products_per_condensed_state().max(MIN_PRODUCTS));
+        let direct_first = if condensable { slow_for_total_feti(scene) } else { None };
+        let (torn, direct) = (OnceLock::new(), OnceLock::new());
+        let solver = Self { problem, preconditioner, torn, direct, direct_first, max_products };
+        match solver.direct_first {
+            Some(_) => solver.direct().map(|_| ())?,
+            None => solver.torn().map(|_| ())?,
+        }
+        Ok(solver)
+    }
+
+    fn torn(&self) -> Result<&TotalFeti, ContactError> {
+        let method = DualMethod::Newton(Recycling::default());
+        prepared(&self.torn, || TotalFeti::new(Arc::clone(&self.problem), self.preconditioner, method))
+    }
+
+    fn direct(&self) -> Result<&DirectSolver, ContactError> {
+        prepared(&self.direct, || DirectSolver::new(Arc::clone(&self.problem)))
+    }
+
+    /// The state by the solver that comes first for this start, else by the other.
+    fn solve(
+        &self,
+        controls: &[f64],
+        start: Option<&ContactWarmStart>,
+        tolerance: f64,
+    ) -> Result<ContactState<AnyState>, ContactError> {
+        let similar = matches!(start, Some(ContactWarmStart::Displacements(_)));
+        let reason = if similar { Some("a similar shape needed it".to_owned()) } else { self.direct_first.clone() };
+        let Some(reason) = reason else { return self.torn_then_direct(controls, start, tolerance) };
+        match self.direct()?.solve(controls, start, tolerance) {
+            Ok(state) => Ok(ContactState { reason: Some(reason), ..state.map(AnyState::from) }),
+            Err(error) if error.is_about_the_problem() => Err(error),
+            Err(error) => match self.torn()?.attempt(controls, None, tolerance, self.max_products) {
+                Ok(state) => {
+                    let reason = Some(format!("direct condensation failed: {error}"));
+                    Ok(ContactState { reason, ..state.map(AnyState::from) })
+                }
+                Err(failed) => Err(unsolved(failed, error)),
+            },
+        }
+    }
+
+    fn torn_then_direct(
+        &self,
+        controls: &[f64],
+        start: Option<&ContactWarmStart>,
+        tolerance: f64,
+    ) -> Result<ContactState<AnyState>, ContactError> {
+        let failed = match self.torn()?.attempt(controls, start, tolerance, self.max_products) {
+            Ok(state) => return Ok(state.map(AnyState::from)),
+            Err(failed) if self.max_products.is_none() || failed.error.is_about_the_problem() => {
+                return Err(failed.error);
+            }
+            Err(failed) => failed,
+        };
+        match self.direct()?.solve(controls, None, tolerance) {
+            Ok(state) => {
+                let (work, error) = (state.work.after(failed.work), failed.error);
+                let reason = Some(format!("total FETI failed: {error}"));
+                Ok(ContactState { work, reason, ..state.map(AnyState::from) })
+            }
+            Err(error) => Err(unsolved(failed, error)),
+        }
+    }
+}
+
+/// Why total FETI would be slow for a scene, if it would.
+fn slow_for_total_feti(scene: &Scene) -> Option<String> {
+    let bodies = std::iter::once(&scene.lower).chain(scene.upper.as_ref().map(|upper| &upper.body));
+    let ratio = bodies.map(|body| body.material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
+    if ratio >= NEARLY_INCOMPRESSIBLE {
+        return Some(format!("Poisson's ratio {ratio} is nearly incompressible"));
+    }
+    let edges = [
+        scene.size[0] / scene.mesh[0] as f64,
+        scene.size[1] / scene.mesh[1] as f64,
+        scene.start_height / scene.mesh[2] as f64,
+    ];
+    let aspect = edges.iter().fold(0.0, |a: f64, b| a.max(*b)) / edges.iter().copied().fold(f64::INFINITY, f64::min);
+    (aspect >= EXTREME_BRICK).then(|| format!("bricks have edges 1 : {aspect:.0}"))
+}
+
+fn unsolved(torn: Failed, direct: ContactError) -> ContactError {
+    let products = torn.work.dual_operator_applications;
+    ContactError::Unsolved { torn: Box::new(torn.error), products, direct: Box::new(direct) }
+}
+
+impl ContactSolver for AnySolver {
     type State = AnyState;
 
     fn problem(&self) -> &ContactProblem {
-        self.0.problem()
+        match self {
+            Self::Torn(solver) => solver.problem(),
+            Self::Direct(solver) => solver.problem(),
+            Self::Auto(solver) => &solver.problem,
+        }
     }
 
     fn sizes(&self) -> [usize; 2] {
-        self.0.sizes()
+        match self {
+            Self::Torn(solver) => solver.sizes(),
+            Self::Direct(solver) => solver.sizes(),
+            Self::Auto(solver) => solver
+                .torn
+                .get()
+                .map_or_else(|| solver.direct.get().map_or([0; 2], ContactSolver::sizes), ContactSolver::sizes),
+        }
     }
 
     fn left_out(&self) -> Option<&'static str> {
-        self.0.left_out()
+        match self {
+            Self::Torn(solver) => solver.left_out(),
+            Self::Direct(solver) => solver.left_out(),
+            Self::Auto(solver) => match &solver.direct_first {
+                Some(_) => solver.direct.get()?.left_out(),
+                None => solver.torn.get()?.left_out(),
+            },
+        }
     }
 
     fn solve(
@@ -66,7 +261,11 @@ impl<S: ContactSolver> ContactSolver for Erased<S> {
         start: Option<&ContactWarmStart>,
         tolerance: f64,
     ) -> Result<ContactState<AnyState>, ContactError> {
-        Ok(self.0.solve(controls, start, tolerance)?.map(|solution| Box::new(solution) as AnyState))
+        match self {
+            Self::Torn(solver) => Ok(solver.solve(controls, start, tolerance)?.map(AnyState::from)),
+            Self::Direct(solver) => Ok(solver.solve(controls, start, tolerance)?.map(AnyState::from)),
+            Self::Auto(solver) => solver.solve(controls, start, tolerance),
+        }
     }
 
     fn sensitivities(
@@ -75,18 +274,30 @@ impl<S: ContactSolver> ContactSolver for Erased<S> {
         direction: &[f64],
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
-        self.0.sensitivities(own(state)?, direction, tolerance)
+        match state {
+            AnyState::Torn(state) => self.torn()?.sensitivities(state, direction, tolerance),
+            AnyState::Direct(state) => self.direct()?.sensitivities(state, direction, tolerance),
+        }
     }
 
     fn diagnose(&self, state: &AnyState) -> Result<Diagnosis, ContactError> {
-        self.0.diagnose(own(state)?)
+        match state {
+            AnyState::Torn(state) => self.torn()?.diagnose(state),
+            AnyState::Direct(state) => self.direct()?.diagnose(state),
+        }
     }
 
     fn bodies(&self, state: &AnyState) -> Result<Vec<SolvedBody>, ContactError> {
-        self.0.bodies(own(state)?)
+        match state {
+            AnyState::Torn(state) => self.torn()?.bodies(state),
+            AnyState::Direct(state) => self.direct()?.bodies(state),
+        }
     }
 
     fn strain_energy(&self, state: &AnyState) -> Option<f64> {
-        self.0.strain_energy(own(state).ok()?)
+        match state {
+            AnyState::Torn(state) => self.torn().ok()?.strain_energy(state),
+            AnyState::Direct(state) => self.direct().ok()?.strain_energy(state),
+        }
     }
 }

@@ -16,14 +16,17 @@ use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Ve
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-pub use crate::any_solver::{AnySolver, any_solver, erase};
-pub use crate::equilibrium::{ContactState, ContactWarmStart};
+pub use crate::any_solver::{AnySolver, AnyState, AutoSolver};
+pub use crate::equilibrium::ContactWarmStart;
 pub use crate::solver_kind::SolverKind;
+
+/// A solved shape; by default by a solver whose kind was chosen when the program ran.
+pub type ContactState<S = AnyState> = crate::equilibrium::ContactState<S>;
 
 /// The control-to-state map of a scene by a contact solver; by default of a kind that is chosen when the program runs.
 #[derive(Debug)]
-pub struct ContactShape<S: ContactSolver + ?Sized = AnySolver> {
-    solver: Box<S>,
+pub struct ContactShape<S: ContactSolver = AnySolver> {
+    solver: S,
 }
 
 /// Relative residual of the state per relative accuracy asked of Θ: a safety factor, since single pressures are less accurate
@@ -57,15 +60,15 @@ impl ContactShape {
         scene.validate()?;
         memory::check(&scene, kind, preconditioner)?;
         let problem = Arc::new(ContactProblem::new(scene)?);
-        let solver = any_solver(problem, kind, preconditioner)
+        let solver = AnySolver::new(problem, kind, preconditioner)
             .map_err(|error| SceneError::out_of_range("mesh", error, "a size that can be factored"))?;
         Ok(Self { solver })
     }
 }
 
-impl<S: ContactSolver + ?Sized> ContactShape<S> {
+impl<S: ContactSolver> ContactShape<S> {
     /// The map by a given solver.
-    pub fn by(solver: Box<S>) -> Self {
+    pub fn by(solver: S) -> Self {
         Self { solver }
     }
 
@@ -170,7 +173,7 @@ impl<S: ContactSolver + ?Sized> ContactShape<S> {
     }
 }
 
-impl<S: ContactSolver + ?Sized> StateSolver for ContactShape<S> {
+impl<S: ContactSolver> StateSolver for ContactShape<S> {
     type State = ContactState<S::State>;
     type WarmStart = ContactWarmStart;
 
@@ -207,7 +210,7 @@ impl<S: ContactSolver + ?Sized> StateSolver for ContactShape<S> {
     }
 }
 
-impl<S: ContactSolver + ?Sized> Coderivative for ContactShape<S> {
+impl<S: ContactSolver> Coderivative for ContactShape<S> {
     fn coderivative(&self, control: &Vector, state: &Self::State, direction: &Vector) -> Result<Vector, OracleError> {
         Ok(self.pull_back(control, state, direction)?.0)
     }
@@ -230,6 +233,7 @@ fn oracle(error: ContactError) -> OracleError {
         ContactError::NotConverged { solver, residual, iterations, .. } => {
             OracleError::NotConverged { solver, residual, iterations }
         }
+        ContactError::Unsolved { direct, .. } => oracle(*direct),
         ContactError::NotFinite { what } => OracleError::NotFinite { what },
         other => OracleError::Failed(Box::new(other)),
     }

@@ -159,6 +159,26 @@ pub enum ContactError {
         /// Relative residual after every iteration.
         history: Vec<f64>,
     },
+    /// The forces found do not satisfy the equations, recomputed from them.
+    #[error("the forces found are no state: relative residuals {residuals}; allowed: at most {allowed:.1e}")]
+    Inaccurate {
+        /// All residuals, in words.
+        residuals: String,
+        /// The largest of them.
+        largest: f64,
+        /// Largest residual of a state.
+        allowed: f64,
+    },
+    /// Every solver was tried.
+    #[error("no state found. Total FETI ({products} products with F): {torn}. Direct condensation: {direct}")]
+    Unsolved {
+        /// Why total FETI found none.
+        torn: Box<ContactError>,
+        /// Products with the dual operator that it took.
+        products: usize,
+        /// Why direct condensation found none.
+        direct: Box<ContactError>,
+    },
     /// The data do not determine the answer to the accuracy asked for in double precision.
     #[error(
         "beyond double precision: rounding of the {what}: relative residuals below {floor:.1e} mean nothing \
@@ -217,6 +237,11 @@ impl From<FactorizationError> for ContactError {
 }
 
 impl ContactError {
+    /// Whether every solver would say the same: the scene or the shape is at fault.
+    pub fn is_about_the_problem(&self) -> bool {
+        matches!(self, Self::InvertedElement { .. } | Self::NoEquilibrium { .. })
+    }
+
     /// The kind of the error: the name of its variant.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -225,6 +250,8 @@ impl ContactError {
             Self::Unheld { .. } => "Unheld",
             Self::Factorization { .. } => "Factorization",
             Self::NotConverged { .. } => "NotConverged",
+            Self::Inaccurate { .. } => "Inaccurate",
+            Self::Unsolved { .. } => "Unsolved",
             Self::BeyondPrecision { .. } => "BeyondPrecision",
             Self::ForeignState { .. } => "ForeignState",
             Self::OtherSolver => "OtherSolver",

@@ -67,3 +67,6 @@ pub mod shape;
 mod solver_kind;
 pub mod tfeti;
 pub mod vtk;
+mod work_estimate;
+
+pub use work_estimate::WorkEstimate;

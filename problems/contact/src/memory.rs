@@ -1,13 +1,10 @@
 //! Memory that a scene needs, estimated before any work, against what the machine has.
-//!
-//! ```text
-//! sparse factor of n dofs of a box in nested dissection:   values ≈ 268 000·(n/1536)^1.48     (measured from 7³ to 10³ nodes)
-//! ```
 
 use crate::error::SceneError;
 use crate::scene::Scene;
 use crate::solver_kind::SolverKind;
 use crate::tfeti::PreconditionerKind;
+use crate::work_estimate::factor_values;
 
 /// Bytes of one number.
 const NUMBER: f64 = 8.0;
@@ -22,21 +19,17 @@ const STIFFNESS_PER_DOF: f64 = 41.0;
 /// Share of the available memory that may be used.
 const USABLE: f64 = 0.9;
 
-/// Values of the Cholesky factor of a box with `dofs` dofs.
-fn factor_values(dofs: f64) -> f64 {
-    268_000.0 * (dofs / 1536.0).powf(1.48)
-}
-
 /// Estimated bytes for a scene.
-fn estimate(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind) -> f64 {
+pub(crate) fn estimate(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind) -> f64 {
     let bodies = if scene.upper.is_some() { 2.0 } else { 1.0 };
     let nodes = |cells: [f64; 3]| cells.iter().map(|cells| cells + 1.0).product::<f64>();
     let mesh = scene.mesh.map(|cells| cells as f64);
     let contact = 3.0 * (mesh[0] + 1.0) * (mesh[1] + 1.0);
     if kind == SolverKind::Direct {
-        // Factor with the contact dofs last (some 1.3 times the fill), Schur complements, the dense Newton matrix and its LU.
+        // Factor with the contact dofs last (some 1.3 times the fill), Schur complements and compliances, the Newton matrix and
+        // its LU.
         let dofs = 3.0 * nodes(mesh);
-        let dense = bodies * 2.0 * contact * contact + 2.0 * (bodies * contact).powi(2);
+        let dense = (bodies * 2.0 + 3.0) * contact * contact;
         return NUMBER * (bodies * (1.3 * factor_values(dofs) + STIFFNESS_PER_DOF * dofs) + dense);
     }
     let pieces: f64 = bodies * scene.subdomains.iter().product::<usize>() as f64;

@@ -6,8 +6,10 @@
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "SolverName", transform = crate::schema::names_only))]
 #[non_exhaustive]
 pub enum SolverKind {
-    /// Semismooth Newton on total FETI.
+    /// Total FETI first wherever it is sound, direct condensation where sizes or a stall ask for it.
     #[default]
+    Auto,
+    /// Semismooth Newton on total FETI.
     Newton,
     /// Semismooth Newton on directly condensed bodies.
     Direct,

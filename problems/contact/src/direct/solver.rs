@@ -13,8 +13,10 @@ use crate::equilibrium::{
     Residuals, Sensitivities, SolvedBody, SolverState, Stage, ValueError, Work,
 };
 use crate::error::ContactError;
+use crate::linear::dense::multiply;
 use crate::linear::vector::norm;
 use crate::scene::BodyScene;
+use crate::solver_kind::SolverKind;
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -52,6 +54,9 @@ pub(super) struct CondensedSolution {
     /// Derivatives selected.
     pub(super) linearizations: Vec<Linearization>,
 }
+
+/// Times its rounding floor that a residual is seen to reach.
+const FLOOR_REACHED: f64 = 100.0;
 
 impl DirectSolver {
     /// Analyses the bodies of a problem.
@@ -127,9 +132,16 @@ impl DirectSolver {
         let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
         let reached = contact.equilibrium(start.as_deref(), tolerance);
         if !reached.solved {
+            let residual = norm(&contact.residual(&reached.unknowns, 0.0).0);
+            let floor = contact.rounding(&reached.unknowns);
+            // A state that has not come down to the floor says nothing about rounding.
+            if residual <= FLOOR_REACHED * floor {
+                let what = "displacements (bodies, gaps or loads of very different size)";
+                return Err(ContactError::BeyondPrecision { what, floor, residual, tolerance });
+            }
             return Err(ContactError::NotConverged {
                 solver: "semismooth Newton on condensed bodies, with continuation in the contact compliance",
-                residual: norm(&contact.residual(&reached.unknowns, 0.0).0),
+                residual,
                 tolerance,
                 iterations: reached.history.len(),
                 history: reached.history,
@@ -174,9 +186,13 @@ impl ContactSolver for DirectSolver {
         let (solution, newton_steps) =
             if load > 0.0 { Self::equilibrium(&contact, start, tolerance)? } else { (contact.at_rest(), 0) };
         let state = DirectState { block, contact, solution, load };
+        let forces = state.forces();
+        forces.residuals.check(tolerance)?;
         Ok(ContactState {
-            forces: state.forces(),
+            forces,
             load,
+            solver: SolverKind::Direct,
+            reason: None,
             contraction: None,
             stages: None,
             work: Work { newton_steps, factorizations, ..Work::default() },
@@ -251,6 +267,12 @@ impl SolverState for DirectState {
 }
 
 impl CompliantContact {
+    /// Relative residual that the rounding of d and R a causes.
+    fn rounding(&self, unknowns: &[f64]) -> f64 {
+        let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        f64::EPSILON * largest(&self.constant).max(largest(&multiply(&self.motions, &unknowns[self.row_count()..])))
+    }
+
     /// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.
     fn at_rest(&self) -> CondensedSolution {
         let unknowns = vec![0.0; self.row_count() + self.resultant.len()];

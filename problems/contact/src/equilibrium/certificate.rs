@@ -2,8 +2,12 @@
 
 use crate::equilibrium::ContactBoundary;
 use crate::equilibrium::law::{self, tangential_norm};
+use crate::error::ContactError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+
+/// Largest residual of a state that any solver returns, unless a coarser one is asked for.
+pub const MAX_RESIDUAL: f64 = 1e-8;
 
 /// Relative residuals of (3.1)–(3.3), recomputed from the final state; dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -28,6 +32,18 @@ impl Residuals {
             0.0,
             |largest: f64, value| if value.is_nan() || largest.is_nan() { f64::NAN } else { largest.max(value) },
         )
+    }
+
+    /// Refuses a state whose residuals are above what is allowed, or above [`MAX_RESIDUAL`] where less is asked for.
+    ///
+    /// # Errors
+    /// [`ContactError::Inaccurate`] with the residuals.
+    pub fn check(&self, allowed: f64) -> Result<(), ContactError> {
+        let allowed = allowed.max(MAX_RESIDUAL);
+        if self.largest() <= allowed {
+            return Ok(());
+        }
+        Err(ContactError::Inaccurate { residuals: self.to_string(), largest: self.largest(), allowed })
     }
 }
 

@@ -16,13 +16,14 @@ mod status;
 mod value_error;
 
 pub use boundary::{ContactBoundary, ContactPoint};
-pub use certificate::{Kink, Residuals, WEAKLY_ACTIVE};
+pub use certificate::{Kink, MAX_RESIDUAL, Residuals, WEAKLY_ACTIVE};
 pub use configuration::Configuration;
 pub use contact_solver::{ContactSolver, Sensitivities};
 pub use diagnosis::Diagnosis;
 pub use problem::ContactProblem;
 pub use solved_body::SolvedBody;
 pub use stage::{Stage, TARGET as STAGE_TARGET};
-pub use state::{AnyState, ContactForces, ContactState, ContactWarmStart, SolverState, StageSeconds, Work};
+pub(crate) use state::Failed;
+pub use state::{ContactForces, ContactState, ContactWarmStart, SolverState, StageSeconds, Work};
 pub use status::{ContactStatus, StatusCounts};
 pub use value_error::ValueError;

@@ -1,8 +1,9 @@
 //! A solved shape: contact forces, status, certificates, work.
 
 use crate::equilibrium::{ContactBoundary, ContactStatus, Kink, Residuals, StatusCounts};
+use crate::error::ContactError;
+use crate::solver_kind::SolverKind;
 use serde::{Deserialize, Serialize};
-use std::any::Any;
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -27,6 +28,36 @@ pub struct Work {
     pub factorizations: usize,
 }
 
+impl Work {
+    /// This work and that of an attempt before it.
+    #[must_use]
+    pub fn after(self, other: Self) -> Self {
+        Self {
+            newton_steps: self.newton_steps + other.newton_steps,
+            fixed_point_steps: self.fixed_point_steps + other.fixed_point_steps,
+            cg_steps: self.cg_steps + other.cg_steps,
+            expansion_steps: self.expansion_steps + other.expansion_steps,
+            proportioning_steps: self.proportioning_steps + other.proportioning_steps,
+            dual_operator_applications: self.dual_operator_applications + other.dual_operator_applications,
+            adjoint_applications: self.adjoint_applications + other.adjoint_applications,
+            factorizations: self.factorizations + other.factorizations,
+        }
+    }
+}
+
+/// A solver's failure, and the work that it cost.
+#[derive(Debug)]
+pub(crate) struct Failed {
+    pub(crate) error: ContactError,
+    pub(crate) work: Work,
+}
+
+impl From<ContactError> for Failed {
+    fn from(error: ContactError) -> Self {
+        Self { error, work: Work::default() }
+    }
+}
+
 /// Wall-clock seconds of the stages of one state.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct StageSeconds {
@@ -43,18 +74,9 @@ pub struct StageSeconds {
 }
 
 /// What a solver keeps of a solved shape.
-pub trait SolverState: Any + fmt::Debug + Send + Sync {
+pub trait SolverState: fmt::Debug + Send + Sync {
     /// What a similar shape can be solved from.
     fn warm_start(&self) -> ContactWarmStart;
-}
-
-/// What a solver of any kind keeps of a solved shape.
-pub type AnyState = Box<dyn SolverState>;
-
-impl SolverState for AnyState {
-    fn warm_start(&self) -> ContactWarmStart {
-        self.as_ref().warm_start()
-    }
 }
 
 /// What restarts a solve nearby.
@@ -69,13 +91,17 @@ pub enum ContactWarmStart {
 
 /// A solved shape; `S` is what its solver keeps ([`ContactSolver::State`](crate::equilibrium::ContactSolver::State)).
 #[derive(Debug)]
-pub struct ContactState<S = AnyState> {
+pub struct ContactState<S> {
     /// Forces, status, certificates.
     pub forces: ContactForces,
     /// What derivative, diagnosis and displacements are computed from.
     pub solution: S,
     /// Force that residuals are relative to, N.
     pub load: f64,
+    /// The solver that found it.
+    pub solver: SolverKind,
+    /// Why that solver, where another would have been the first choice.
+    pub reason: Option<String>,
     /// Contraction factor observed by the successive approximations, where that method found the state and took enough steps.
     pub contraction: Option<f64>,
     /// Seconds of the stages, where the solver takes them.
@@ -97,8 +123,9 @@ impl<S> ContactState<S> {
 
     /// The same shape with another form of the solver's own part.
     pub(crate) fn map<T>(self, change: impl FnOnce(S) -> T) -> ContactState<T> {
-        let Self { forces, solution, load, contraction, stages, work, adjoint_applications } = self;
-        ContactState { forces, solution: change(solution), load, contraction, stages, work, adjoint_applications }
+        let Self { forces, solution, load, solver, reason, contraction, stages, work, adjoint_applications } = self;
+        let solution = change(solution);
+        ContactState { forces, solution, load, solver, reason, contraction, stages, work, adjoint_applications }
     }
 }
 

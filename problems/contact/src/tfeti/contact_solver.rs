@@ -1,9 +1,12 @@
 //! Total FETI as a contact solver: semismooth Newton, or the paper's successive approximations.
 
 use crate::equilibrium::{
-    ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, SolverState,
+    ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, Sensitivities, SolvedBody,
+    SolverState,
 };
 use crate::error::ContactError;
+use crate::solver_kind::SolverKind;
+use crate::tfeti::dual::TornContact;
 use crate::tfeti::{AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornSolver, TornState};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
@@ -36,6 +39,47 @@ impl TotalFeti {
     ) -> Result<Self, ContactError> {
         Ok(Self { solver: TornSolver::new(problem, preconditioner)?, method })
     }
+
+    /// Solves one shape with at most so many products with F in Newton's method; a failure says what work it cost.
+    pub(crate) fn attempt(
+        &self,
+        controls: &[f64],
+        start: Option<&ContactWarmStart>,
+        tolerance: f64,
+        max_products: Option<usize>,
+    ) -> Result<ContactState<TornState>, Failed> {
+        let start = match start {
+            Some(ContactWarmStart::Multipliers(multipliers)) => Some(multipliers.as_slice()),
+            _ => None,
+        };
+        let (solution, forces, work, solver, counts) = match self.method {
+            DualMethod::Newton(recycling) => {
+                let settings = NewtonSettings::to(tolerance);
+                let max_products = max_products.unwrap_or(settings.max_products);
+                let settings = NewtonSettings { recycling, max_products, ..settings };
+                let method = |contact: &TornContact<'_>| Ok((contact.solve(start, &settings)?, ()));
+                let (solution, forces, work, ()) = self.solver.attempt(controls, tolerance, method)?;
+                (solution, forces, work, SolverKind::Newton, None)
+            }
+            DualMethod::SuccessiveApproximations => {
+                let settings = AugmentedLagrangianSettings::to(tolerance);
+                let method = |contact: &TornContact<'_>| contact.solve_by_successive_approximations(start, &settings);
+                let (solution, forces, work, counts) = self.solver.attempt(controls, tolerance, method)?;
+                (solution, forces, work, SolverKind::AugmentedLagrangian, Some(counts))
+            }
+        };
+        Ok(ContactState {
+            forces,
+            load: solution.load(),
+            solver,
+            reason: None,
+            contraction: counts.map(|counts| counts.contraction).filter(|f| *f > 0.0),
+            stages: Some(solution.seconds()),
+            work: counts.map_or(work, |counts| counts.added_to(work)),
+            adjoint_applications: AtomicUsize::new(0),
+            solution,
+        })
+    }
 }
 
 impl SolverState for TornState {
@@ -65,33 +109,7 @@ impl ContactSolver for TotalFeti {
         start: Option<&ContactWarmStart>,
         tolerance: f64,
     ) -> Result<ContactState<TornState>, ContactError> {
-        let start = match start {
-            Some(ContactWarmStart::Multipliers(multipliers)) => Some(multipliers.as_slice()),
-            _ => None,
-        };
-        let (solution, forces, work, counts) = match self.method {
-            DualMethod::Newton(recycling) => {
-                let settings = NewtonSettings { recycling, ..NewtonSettings::to(tolerance) };
-                let (solution, forces, work) = self.solver.solve_with(controls, start, &settings)?;
-                (solution, forces, work, None)
-            }
-            DualMethod::SuccessiveApproximations => {
-                let settings = AugmentedLagrangianSettings::to(tolerance);
-                let (solution, forces, work, counts) = self
-                    .solver
-                    .solve_by(controls, |contact| contact.solve_by_successive_approximations(start, &settings))?;
-                (solution, forces, work, Some(counts))
-            }
-        };
-        Ok(ContactState {
-            forces,
-            load: solution.load(),
-            contraction: counts.map(|counts| counts.contraction).filter(|f| *f > 0.0),
-            stages: Some(solution.seconds()),
-            work: counts.map_or(work, |counts| counts.added_to(work)),
-            adjoint_applications: AtomicUsize::new(0),
-            solution,
-        })
+        self.attempt(controls, start, tolerance, None).map_err(|failed| failed.error)
     }
 
     fn sensitivities(

@@ -4,7 +4,7 @@ use crate::body::mesh::Block;
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::{self, Linearization};
 use crate::equilibrium::{
-    Configuration, ContactForces, ContactProblem, Diagnosis, Kink, Residuals, Sensitivities, SolvedBody, Stage,
+    Configuration, ContactForces, ContactProblem, Diagnosis, Failed, Kink, Residuals, Sensitivities, SolvedBody, Stage,
     StageSeconds, ValueError, Work,
 };
 use crate::error::ContactError;
@@ -121,7 +121,8 @@ impl TornSolver {
         start: Option<&[f64]>,
         settings: &NewtonSettings,
     ) -> Result<(TornState, ContactForces, Work), ContactError> {
-        let (state, forces, work, ()) = self.solve_by(controls, |contact| Ok((contact.solve(start, settings)?, ())))?;
+        let (state, forces, work, ()) =
+            self.solve_by(controls, settings.tolerance, |contact| Ok((contact.solve(start, settings)?, ())))?;
         Ok((state, forces, work))
     }
 
@@ -129,12 +130,24 @@ impl TornSolver {
     /// (its default for bodies at rest, where there is nothing to solve).
     ///
     /// # Errors
-    /// [`ContactError`]: inverted elements, no equilibrium, and what the method returns.
+    /// [`ContactError`]: inverted elements, no equilibrium, what the method returns, and [`ContactError::Inaccurate`] when the
+    /// residuals of its state are above 1e-8 and above `allowed`.
     pub fn solve_by<T: Default>(
         &self,
         controls: &[f64],
+        allowed: f64,
         method: impl FnOnce(&TornContact<'_>) -> Result<(TornSolution, T), ContactError>,
     ) -> Result<(TornState, ContactForces, Work, T), ContactError> {
+        self.attempt(controls, allowed, method).map_err(|failed| failed.error)
+    }
+
+    /// As [`TornSolver::solve_by`]; a failure says what work it cost.
+    pub(crate) fn attempt<T: Default>(
+        &self,
+        controls: &[f64],
+        allowed: f64,
+        method: impl FnOnce(&TornContact<'_>) -> Result<(TornSolution, T), ContactError>,
+    ) -> Result<(TornState, ContactForces, Work, T), Failed> {
         let mut clock = Clock::start();
         let mut seconds = StageSeconds::default();
         let configuration = Configuration::new(self.problem(), controls)?;
@@ -151,19 +164,22 @@ impl TornSolver {
         Stage::Contact.enter();
         let scales = [stiffness, if load > 0.0 { load } else { 1.0 }];
         let contact = self.contact(&system, &space, &configuration.gaps, scales);
-        let (solution, returned) = if load > 0.0 { method(&contact)? } else { (contact.at_rest(), T::default()) };
+        let work = |newton_steps| Work {
+            newton_steps,
+            dual_operator_applications: contact.operator.applications(),
+            factorizations: system.factorizations,
+            ..Work::default()
+        };
+        let solved = if load > 0.0 { method(&contact) } else { Ok((contact.at_rest(), T::default())) };
+        let (solution, returned) = solved.map_err(|error| Failed { error, work: work(0) })?;
         seconds.newton = clock.lap();
         Stage::Recovery.enter();
         let (operator, iterate) = (&contact.operator, &solution.iterate);
         let loaded = operator.loaded_displacement();
         let displacement = operator.displacement(loaded, &iterate.multipliers, &iterate.amplitudes);
         let forces = forces(&contact, &solution);
-        let work = Work {
-            newton_steps: solution.steps,
-            dual_operator_applications: operator.applications(),
-            factorizations: system.factorizations,
-            ..Work::default()
-        };
+        let work = work(solution.steps);
+        forces.residuals.check(allowed).map_err(|error| Failed { error, work })?;
         seconds.recovery = clock.lap();
         let Configuration { blocks, gaps, .. } = configuration;
         let state = TornState { blocks, space, solution, displacement, gaps, stiffness, load, system, seconds };

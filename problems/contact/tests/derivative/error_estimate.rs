@@ -1,9 +1,9 @@
 //! The error that a state reports bounds the true error of Θ, over random scenes, solvers and tolerances.
 
-use contact::contact_shape::{AnySolver, ContactShape, erase};
+use contact::contact_shape::{AnySolver, ContactShape};
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::direct::DirectSolver;
-use contact::equilibrium::{ContactProblem, ValueError};
+use contact::equilibrium::{ContactProblem, ContactSolver, ValueError};
 use contact::scene::{Scene, hertz, signorini};
 use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
 use nonsmooth::{Accuracy, Cost, ReducedObjective, StateSolver, Vector};
@@ -17,9 +17,9 @@ type Solver = Option<(PreconditionerKind, DualMethod)>;
 
 fn objective(scene: &Scene, solver: Solver) -> Objective {
     let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
-    let solver: Box<AnySolver> = match solver {
-        Some((preconditioner, method)) => erase(TotalFeti::new(problem, preconditioner, method).unwrap()),
-        None => erase(DirectSolver::new(problem).unwrap()),
+    let solver = match solver {
+        Some((preconditioner, method)) => AnySolver::Torn(TotalFeti::new(problem, preconditioner, method).unwrap()),
+        None => AnySolver::Direct(DirectSolver::new(problem).unwrap()),
     };
     let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &solver.problem().boundary).unwrap();
     ReducedObjective::new(ContactShape::by(solver), cost)

@@ -37,7 +37,7 @@ fn paper(
 ) -> Result<Paper, ContactError> {
     let controls = controls(solver.problem());
     let (state, forces, work, counts) =
-        solver.solve_by(&controls, |contact| contact.solve_by_successive_approximations(start, settings))?;
+        solver.solve_by(&controls, 0.0, |contact| contact.solve_by_successive_approximations(start, settings))?;
     Ok(Paper { state, forces, work, counts })
 }
 

@@ -1,7 +1,7 @@
 //! Which meshes are measured, with which solvers.
 
 use clap::ValueEnum;
-use contact::contact_shape::{AnySolver, erase};
+use contact::contact_shape::AnySolver;
 use contact::direct::DirectSolver;
 use contact::equilibrium::ContactProblem;
 use contact::error::{ContactError, SceneError};
@@ -152,15 +152,17 @@ impl Variant {
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
-    pub fn solver(self, problem: &Arc<ContactProblem>) -> Result<Box<AnySolver>, ContactError> {
+    pub fn solver(self, problem: &Arc<ContactProblem>) -> Result<AnySolver, ContactError> {
         let problem = Arc::clone(problem);
-        let Some(preconditioner) = self.preconditioner() else { return DirectSolver::new(problem).map(erase) };
+        let Some(preconditioner) = self.preconditioner() else {
+            return DirectSolver::new(problem).map(AnySolver::Direct);
+        };
         let method = match self {
             Self::AugmentedLagrangian => DualMethod::SuccessiveApproximations,
             Self::Gmres => DualMethod::Newton(Recycling::Off),
             _ => DualMethod::Newton(Recycling::Auto),
         };
-        TotalFeti::new(problem, preconditioner, method).map(erase)
+        TotalFeti::new(problem, preconditioner, method).map(AnySolver::Torn)
     }
 
     /// The preconditioner; none for direct condensation.

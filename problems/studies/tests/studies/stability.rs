@@ -85,7 +85,7 @@ fn accurate_successive_approximations_contract_as_diagnosed() {
     let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
     let settings = AugmentedLagrangianSettings { adaptivity: 1e-3, ..AugmentedLagrangianSettings::to(1e-9) };
     let (state, .., counts) =
-        solver.solve_by(&controls, |contact| contact.solve_by_successive_approximations(None, &settings)).unwrap();
+        solver.solve_by(&controls, 0.0, |contact| contact.solve_by_successive_approximations(None, &settings)).unwrap();
     let observed = counts.contraction;
     let diagnosed = solver.diagnose(&state).unwrap().contraction;
     println!("observed {observed:.4}, diagnosed {diagnosed:.4}");

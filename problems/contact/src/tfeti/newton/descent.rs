@@ -39,7 +39,10 @@ impl TornContact<'_> {
     ) -> Result<f64, ContactError> {
         let mut residual = directions.combine(self, iterate, start);
         let mut replaced = residual;
-        while residual > settings.tolerance && directions.len() < 2 * settings.max_krylov {
+        while residual > settings.tolerance
+            && directions.len() < 2 * settings.max_krylov
+            && self.products_left(settings) > 0
+        {
             let active = self.held_at(iterate)?;
             let held = self.linearize(iterate);
             let renewal = PROJECTOR_RENEWAL * residual;
@@ -54,7 +57,9 @@ impl TornContact<'_> {
                 }
                 history.push(residual);
                 Stage::Contact.reached(history.len() - 1, residual);
-                let done = residual <= settings.tolerance || stagnates(history, MAX_STALLED_PRODUCTS);
+                let done = residual <= settings.tolerance
+                    || stagnates(history, MAX_STALLED_PRODUCTS)
+                    || self.products_left(settings) == 0;
                 if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
                     break;
                 }

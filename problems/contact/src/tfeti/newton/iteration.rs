@@ -16,8 +16,6 @@ use crate::tfeti::newton::stagnation::{circles, stagnates};
 const FIRST_FORCING: f64 = 0.3;
 /// Forcing term after a shortened step.
 const SHORTENED_FORCING: f64 = 0.01;
-/// Products with F that one run of Newton steps may take.
-const MAX_PRODUCTS: usize = 20_000;
 /// Halvings of a step.
 const MAX_HALVINGS: usize = 6;
 /// Decrease asked of a step of length one.
@@ -40,11 +38,11 @@ impl TornContact<'_> {
             residual = self.descend(&mut iterate, &mut recycled, residual, settings, &mut history)?;
         }
         if residual > settings.tolerance || self.precision == Precision::Double {
-            let deserved = |target| LinearAccuracy::to(target, settings.max_krylov);
+            let deserved = |target| LinearAccuracy::to(target, settings.max_krylov.min(self.products_left(settings)));
             iterate = self.newton_steps(iterate, residual, deserved, settings, &mut history)?;
             residual = self.replace_image(&mut iterate);
         }
-        if residual.is_nan() || residual > settings.acceptable {
+        if (residual.is_nan() || residual > settings.acceptable) && self.products_left(settings) > 0 {
             let exact = self.bonded(LinearAccuracy::EXACT, None)?;
             let start = self.residual(&exact);
             history.push(start);
@@ -55,6 +53,11 @@ impl TornContact<'_> {
             return Err(self.not_converged(residual, settings, history));
         }
         Ok(self.solution(iterate, residual, history.len() - 1))
+    }
+
+    /// Products with F that the settings still allow.
+    pub(crate) fn products_left(&self, settings: &NewtonSettings) -> usize {
+        settings.max_products.saturating_sub(self.operator.applications())
     }
 
     /// Newton steps until the residual is small, rounding stops them, or they lead nowhere. `accuracy`: of the linear solves,
@@ -68,12 +71,11 @@ impl TornContact<'_> {
         history: &mut Vec<f64>,
     ) -> Result<Iterate, ContactError> {
         let first = history.len() - 1;
-        let budget = self.operator.applications() + MAX_PRODUCTS;
         let mut forcing = FIRST_FORCING;
         while residual > settings.tolerance && history.len() - first <= settings.max_steps {
             if (residual <= settings.acceptable && stagnates(history, 1))
                 || circles(&history[first..])
-                || self.operator.applications() > budget
+                || self.products_left(settings) == 0
             {
                 break;
             }

@@ -27,7 +27,8 @@ impl TornContact<'_> {
                 "stiffness (bricks of extreme shape or nearly incompressible; direct condensation loses fewer digits)",
             )
         };
-        if FLOOR_REACHED * floor > settings.acceptable {
+        // A diverged iterate says nothing about rounding: the residual must have come down to the floor.
+        if residual <= FLOOR_REACHED * floor {
             return ContactError::BeyondPrecision { what, floor, residual, tolerance: settings.acceptable };
         }
         ContactError::NotConverged {

@@ -13,6 +13,8 @@ pub struct NewtonSettings {
     pub max_steps: usize,
     /// Krylov iterations allowed per Newton step.
     pub max_krylov: usize,
+    /// Products with F allowed in all.
+    pub max_products: usize,
     /// Whether dual directions are kept over a whole solve.
     pub recycling: Recycling,
 }
@@ -23,6 +25,9 @@ const TIGHTEST_TOLERANCE: f64 = 2e-13;
 /// Tightest relative residual that is insisted on.
 const TIGHTEST_ACCEPTABLE: f64 = 1e-9;
 
+/// Products with F allowed where nothing is known of another path.
+const MAX_PRODUCTS: usize = 20_000;
+
 impl NewtonSettings {
     /// Settings for a relative residual; 0 asks for all that rounding allows.
     pub fn to(tolerance: f64) -> Self {
@@ -31,6 +36,7 @@ impl NewtonSettings {
             acceptable: tolerance.max(TIGHTEST_ACCEPTABLE),
             max_steps: 60,
             max_krylov: 400,
+            max_products: MAX_PRODUCTS,
             recycling: Recycling::default(),
         }
     }

@@ -2,13 +2,11 @@
 
 use contact::body::elasticity::Material;
 use contact::body::mesh::Face;
-use contact::contact_shape::{ContactShape, ContactWarmStart, SolverKind};
+use contact::contact_shape::{AnyState, ContactShape, ContactWarmStart, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
 use contact::scene::{Load, Scene, hertz, signorini};
-use contact::tfeti::TornState;
 use nonsmooth::{Accuracy, Evaluation, ReducedObjective, StateSolver, Vector};
-use std::any::Any;
 use testset::kit::relative_difference;
 
 struct Outcome {
@@ -24,8 +22,10 @@ fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
     let objective = ReducedObjective::new(shape, cost);
     let state = objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
     let evaluation = objective.differentiate(control, &state).unwrap();
-    let solution: &dyn Any = state.solution.as_ref();
-    let displacement = solution.downcast_ref().map(TornState::displacement).unwrap_or_default().to_vec();
+    let displacement = match &state.solution {
+        AnyState::Torn(state) => state.displacement().to_vec(),
+        AnyState::Direct(_) => Vec::new(),
+    };
     Outcome { evaluation, status: state.forces.status.clone(), opening: state.forces.opening.clone(), displacement }
 }
 
