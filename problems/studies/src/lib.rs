@@ -3,5 +3,6 @@
 
 pub mod accuracy;
 pub mod headline;
+mod markdown;
 pub mod scaling;
 pub mod stability;

@@ -5,8 +5,7 @@ use crate::accuracy::{Extent, Part, Report, algebra, discretisation, manufacture
 use crate::accuracy::{pictures, subgradient, tables};
 use crate::scaling::SceneName;
 use clap::Parser;
-use problems::commands::{Failure, Folder, json};
-use std::io::Write;
+use problems::commands::{Failure, Folder, finish, json};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -51,18 +50,7 @@ impl Arguments {
 
 /// Runs the binary.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
-    match execute(&arguments) {
-        Ok(text) => {
-            // A reader that closes the pipe early has seen what it wanted.
-            let _ = std::io::stdout().write_all(text.as_bytes());
-            ExitCode::SUCCESS
-        }
-        Err(failure) => {
-            eprintln!("error: {failure}");
-            failure.exit_code()
-        }
-    }
+    finish(execute(&Arguments::parse()))
 }
 
 /// Measures, writes the folder, and returns what belongs on stdout.
@@ -82,13 +70,12 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
 
 fn measure(arguments: &Arguments) -> Result<Report, Failure> {
     let (clock, extent) = (Instant::now(), arguments.extent());
-    let machine_threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let machine_threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut report = Report { machine_threads, ..Report::default() };
     let progress = |what: &str| eprintln!("{:>7.1} s  {what}", clock.elapsed().as_secs_f64());
     if arguments.wants(Part::Discretisation) {
         for &bricks in extent.meshes().iter().filter(|bricks| **bricks <= LARGEST_SMOOTH) {
-            let errors = manufactured_errors(bricks).map_err(|error| Failure::Computation(error.to_string()))?;
-            report.smooth.push(errors);
+            report.smooth.push(manufactured_errors(bricks)?);
         }
         for scene in SCENES {
             report.discretisation.push(discretisation::study(scene, extent.meshes())?);

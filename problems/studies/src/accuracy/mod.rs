@@ -29,9 +29,7 @@ pub use cli::{Arguments, run};
 pub use discretisation::{MeshRow, MeshStudy, QUANTITIES};
 pub use extent::{Extent, Part};
 pub use kink::KinkRow;
-pub use manufactured::{
-    ManufacturedErrors, ManufacturedFailure, StressErrors, manufactured_errors, manufactured_stress_errors,
-};
+pub use manufactured::{ManufacturedErrors, StressErrors, manufactured_errors, manufactured_stress_errors};
 pub use optimization::{Course, Milestone, OptimizationStudy, PeakRow};
 pub use rates::{Extrapolation, extrapolate};
 pub use report::Report;

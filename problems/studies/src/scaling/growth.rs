@@ -1,12 +1,11 @@
 //! How counts and times grow with the number of subdomains at fixed H/h.
 
 use crate::scaling::cases::{RATIO, SceneName, Variant};
-use crate::scaling::row::Row;
-use crate::scaling::solve::Start;
-use serde::{Deserialize, Serialize};
+use crate::scaling::rows::{Row, Start};
+use serde::Serialize;
 
 /// Growth of one solver at H/h = 7.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Growth {
     /// The scene.
     pub scene: SceneName,
@@ -23,7 +22,7 @@ pub struct Growth {
 }
 
 /// Products with F of a cold state, relative to s = 3.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct CountGrowth {
     /// Relative residual of the states.
     pub tolerance: f64,

@@ -1,6 +1,7 @@
-//! A case: its place in the matrix and how it is run.
+//! A case: its place in the matrix and how it is run; all cases.
 
 use crate::stability::record::Record;
+use crate::stability::{contacts, friction, geometry, kinks, loads, locking, materials, optimizer, tearing, units};
 use std::time::Instant;
 
 /// One line of the matrix.
@@ -38,4 +39,21 @@ impl Case {
         let record = (self.run)();
         Record { seconds: clock.elapsed().as_secs_f64(), ..record }
     }
+}
+
+/// The whole matrix, in the order of the page.
+pub fn all() -> Vec<Case> {
+    let groups = [
+        materials::cases(),
+        locking::cases(),
+        geometry::cases(),
+        friction::cases(),
+        contacts::cases(),
+        loads::cases(),
+        kinks::cases(),
+        units::cases(),
+        tearing::cases(),
+        optimizer::cases(),
+    ];
+    groups.into_iter().flatten().collect()
 }

@@ -22,7 +22,6 @@ mod kinks;
 mod loads;
 mod locking;
 mod materials;
-mod matrix;
 mod optimizer;
 mod oracle;
 mod record;
@@ -31,8 +30,7 @@ mod table;
 mod tearing;
 mod units;
 
-pub use case::Case;
+pub use case::{Case, all};
 pub use cli::{Arguments, run};
-pub use locking::{LockingError, field_error};
-pub use matrix::all;
+pub use locking::field_error;
 pub use record::{Counts, Outcome, Path, Record, Report};
