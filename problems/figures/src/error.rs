@@ -62,9 +62,9 @@ pub(super) fn finite(
     values: impl IntoIterator<Item = f64>,
 ) -> Result<(), FigureError> {
     // Differences of two numbers, and their multiples by a few, have to be finite as well.
-    const LARGEST: f64 = 1e300;
+    const MAX_MODULUS: f64 = 1e300;
     for (index, value) in values.into_iter().enumerate() {
-        if value.is_nan() || value.abs() > LARGEST {
+        if value.is_nan() || value.abs() > MAX_MODULUS {
             let allowed = "numbers of modulus up to 1e300";
             return Err(FigureError::Number { figure: figure.to_owned(), what, index, value, allowed });
         }

@@ -65,8 +65,8 @@ pub struct MapPanel {
 const SIDE: f64 = 280.0;
 /// Room at the left for labels and title of the vertical axis, points.
 const ROOM_LEFT: f64 = 52.0;
-/// Ratios of the sides of a panel beyond which lengths are no longer drawn to scale.
-const SLIMMEST: f64 = 0.25;
+/// Least ratio of the sides of a panel; slimmer ones are not drawn to scale.
+const MIN_SIDE_RATIO: f64 = 0.25;
 
 impl Map {
     /// Draws it.
@@ -115,7 +115,7 @@ impl Map {
 
 /// Sides in points.
 fn sides([first, second]: [f64; 2]) -> [f64; 2] {
-    let ratio = (second / first).clamp(SLIMMEST, 1.0 / SLIMMEST);
+    let ratio = (second / first).clamp(MIN_SIDE_RATIO, 1.0 / MIN_SIDE_RATIO);
     if ratio > 1.0 { [SIDE / ratio, SIDE] } else { [SIDE, SIDE * ratio] }
 }
 

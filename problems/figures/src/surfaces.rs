@@ -56,11 +56,11 @@ pub struct SurfacePanel {
 }
 
 /// Differences of the heights are drawn at most as large as this share of the longest side.
-const TALLEST: f64 = 0.3;
+const MAX_SHOWN_HEIGHT: f64 = 0.3;
 /// What is drawn below the lowest height, as a share of the longest side.
-const FOOT: f64 = 0.06;
+const FOOT_HEIGHT: f64 = 0.06;
 /// Differences relative to the heights that are no longer magnified: the colour scale does not show them either.
-const LEVEL: f64 = 1e-6;
+const MIN_MAGNIFIED_DIFFERENCE: f64 = 1e-6;
 
 /// What is taken off all heights, and what they are multiplied by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,9 +85,9 @@ impl Surfaces {
         let scale = ColourScale::new(&self.quantity, &self.unit, heights());
         let (low, high) = extent(heights()).unwrap_or((0.0, 0.0));
         let longest = self.panels.iter().flat_map(|panel| panel.size).fold(0.0, f64::max);
-        let level = high - low <= LEVEL * low.abs().max(high.abs());
-        let times = if level { 1.0 } else { nice_below(TALLEST * longest / (high - low)) };
-        let magnified = Magnified { less: low, times, foot: -FOOT * longest };
+        let level = high - low <= MIN_MAGNIFIED_DIFFERENCE * low.abs().max(high.abs());
+        let times = if level { 1.0 } else { nice_below(MAX_SHOWN_HEIGHT * longest / (high - low)) };
+        let magnified = Magnified { less: low, times, foot: -FOOT_HEIGHT * longest };
         let space = if self.unit.is_empty() { "" } else { " " };
         let times = number(times);
         let panels = self.panels.iter().map(|panel| {
