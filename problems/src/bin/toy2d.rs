@@ -38,7 +38,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let folder = Folder::prepare(arguments.out.as_deref())?;
+    let folder = arguments.out.as_deref().map(|path| Folder::with_room(path, 1)).transpose()?;
     let starts = match arguments.start {
         Some(start) => vec![start],
         None => toy::random_starts(arguments.seed, arguments.starts as usize),

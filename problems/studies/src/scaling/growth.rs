@@ -2,6 +2,7 @@
 
 use crate::scaling::cases::{RATIO, SceneName, Variant};
 use crate::scaling::rows::{Row, Start};
+use clap::ValueEnum;
 use serde::Serialize;
 
 /// Growth of one solver at H/h = 7.
@@ -36,21 +37,13 @@ const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
 const REFERENCE: usize = 3;
 
 impl Growth {
-    /// Growth per scene and variant, where at least two rows have H/h = 7.
+    /// Growth per variant, where at least two rows have H/h = 7.
     pub fn of(rows: &[Row]) -> Vec<Self> {
-        let mut growth = Vec::new();
-        let fixed: Vec<&Row> = rows.iter().filter(|row| row.case.ratio() == RATIO).collect();
-        for (index, row) in fixed.iter().enumerate() {
-            let alike = |other: &&&Row| other.scene == row.scene && other.variant == row.variant;
-            if fixed[..index].iter().any(|other| alike(&other)) {
-                continue;
-            }
-            let series: Vec<&Row> = fixed.iter().filter(alike).copied().collect();
-            if series.len() > 1 {
-                growth.push(Self::of_series(&series));
-            }
-        }
-        growth
+        let series = |variant: &Variant| -> Vec<&Row> {
+            rows.iter().filter(|row| row.variant == *variant && row.case.ratio() == RATIO).collect()
+        };
+        let all = Variant::value_variants().iter().map(series);
+        all.filter(|series| series.len() > 1).map(|series| Self::of_series(&series)).collect()
     }
 
     fn of_series(series: &[&Row]) -> Self {

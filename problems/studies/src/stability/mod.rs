@@ -18,7 +18,6 @@ mod contacts;
 mod friction;
 mod geometry;
 mod judge;
-mod kinks;
 mod loads;
 mod locking;
 mod materials;

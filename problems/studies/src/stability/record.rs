@@ -68,8 +68,8 @@ pub struct Record {
 
 impl Record {
     /// A record without solver paths.
-    pub fn plain(group: &'static str, name: String, outcome: Outcome, remark: String) -> Self {
-        Self { group, name, outcome, remark, ..Self::default() }
+    pub fn plain(outcome: Outcome, remark: String) -> Self {
+        Self { outcome, remark, ..Self::default() }
     }
 
     /// Largest certificate over TFETI and direct condensation (the successive approximations are asked for less).

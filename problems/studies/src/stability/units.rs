@@ -108,7 +108,7 @@ fn compare(record: &mut Record, scene: &Scene, s: f64, amplitude: f64) -> Result
 
 fn case(name: &'static str, scene: Result<Scene, SceneError>, s: f64, amplitude: f64) -> Case {
     Case::new(GROUP, name, move || {
-        let mut record = Record::plain(GROUP, name.into(), Outcome::Broken, String::new());
+        let mut record = Record::default();
         let result = match &scene {
             Ok(scene) => compare(&mut record, scene, s, amplitude).map_err(|error| error.to_string()),
             Err(error) => Err(error.to_string()),
