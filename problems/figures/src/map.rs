@@ -2,10 +2,10 @@
 
 use super::canvas::{Canvas, LABEL, TITLE, text_width};
 use super::chart::{Frame, Parts, ROOM_BELOW};
-use super::error::{FigureError, area, cells, count, finite, some};
+use super::error::{FigureError, finite, grid, some};
 use super::figure::Figure;
 use super::levels::{ColourScale, Lattice, fill};
-use super::scale::{Axis, number};
+use super::scale::{Axis, behind, number};
 
 /// Values over the plane: one or more panels with one colour scale; the largest value of every panel is marked.
 ///
@@ -121,11 +121,8 @@ fn sides([first, second]: [f64; 2]) -> [f64; 2] {
 
 impl MapPanel {
     fn check(&self, figure: &str) -> Result<(), FigureError> {
-        cells(figure, &self.counts)?;
-        count(figure, "values of a panel", self.counts[0].saturating_mul(self.counts[1]), self.values.len())?;
-        finite(figure, "value", self.values.iter().copied())?;
-        finite(figure, "origin", self.origin)?;
-        area(figure, self.size)
+        grid(figure, self.counts, self.size, ["value", "values of a panel"], &self.values)?;
+        finite(figure, "origin", self.origin)
     }
 
     /// Indices of the first node with the largest value, and a text about it.
@@ -140,8 +137,7 @@ impl MapPanel {
         let [x, y] = std::array::from_fn(|axis| {
             number(self.origin[axis] + self.size[axis] * place[axis] as f64 / (self.counts[axis] - 1) as f64)
         });
-        let space = if unit.is_empty() { "" } else { " " };
-        (place, format!("largest {}{space}{unit} at ({x}, {y})", number(self.values[best])))
+        (place, format!("largest {}{} at ({x}, {y})", number(self.values[best]), behind(unit)))
     }
 
     fn draw(&self, canvas: &mut Canvas, frame: Frame, scale: &ColourScale, map: &Map, labelled: bool) {

@@ -133,6 +133,11 @@ pub(super) fn number(value: f64) -> String {
     signed(format!("{digits}·10^{{{exponent}}}"))
 }
 
+/// A space and the unit, as they stand behind a number; nothing without a unit.
+pub(super) fn behind(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
 /// The largest of 1, 2, 5 times a power of ten that is not above a number > 0, such as a magnification; rounding of the number is
 /// allowed for.
 ///

@@ -1,9 +1,9 @@
 //! One run of the engine on the toy with every point that it evaluated; values and kinks over the admissible box for pictures.
 
-use super::{LOWER, SURFACE, ToyObjective, UPPER, admissible_set, toy_objective};
+use super::{LOWER, SURFACE, UPPER, admissible_set, toy_objective};
 use nonsmooth::{
-    Accuracy, Answer, BundleTrust, BundleTrustConfig, Cost, NonsmoothObjective, OptimizeError, OracleError, Report,
-    Request, StateSolver, Vector,
+    Accuracy, BundleTrust, BundleTrustConfig, Cost, Evaluation, FnObjective, NonsmoothObjective, OptimizeError,
+    OracleError, Report, Request, StateSolver, Vector,
 };
 use std::cell::RefCell;
 
@@ -19,35 +19,23 @@ pub struct ToyTrace {
     pub points: Vec<[f64; 2]>,
 }
 
-/// An objective that keeps the points at which it is evaluated.
-struct Recorded {
-    inner: ToyObjective,
-    points: RefCell<Vec<[f64; 2]>>,
-}
-
-impl NonsmoothObjective for Recorded {
-    type WarmStart = <ToyObjective as NonsmoothObjective>::WarmStart;
-
-    fn dimension(&self) -> usize {
-        self.inner.dimension()
-    }
-
-    fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {
-        self.points.borrow_mut().push([request.point[0], request.point[1]]);
-        self.inner.evaluate(request)
-    }
-}
-
 /// Runs the engine from a start.
 ///
 /// # Errors
 /// [`OptimizeError`] if the start is not finite.
 pub fn trace(start: [f64; 2]) -> Result<ToyTrace, OptimizeError> {
-    let recorded = Recorded { inner: toy_objective(), points: RefCell::default() };
+    let (objective, points) = (toy_objective(), RefCell::new(Vec::new()));
+    let recorded = FnObjective::new(2, |control: &Vector| {
+        points.borrow_mut().push([control[0], control[1]]);
+        let answer =
+            objective.evaluate(&Request::tight(control)).expect("invariant: the engine asks at finite controls");
+        let Evaluation { value, subgradient, .. } = answer.into_evaluation();
+        (value, subgradient)
+    });
     let config = BundleTrustConfig { tolerance: TOLERANCE, ..BundleTrustConfig::default() };
     let mut method = BundleTrust::new(config)?.constraints(admissible_set());
     let report = method.minimize(&recorded, Vector::from_row_slice(&start))?;
-    Ok(ToyTrace { report, points: recorded.points.into_inner() })
+    Ok(ToyTrace { report, points: points.into_inner() })
 }
 
 /// Controls at equal distances in the admissible box, `cells` + 1 along each axis, with Θ there; the second control runs fastest.

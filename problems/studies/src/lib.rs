@@ -4,5 +4,6 @@
 pub mod accuracy;
 pub mod headline;
 mod markdown;
+mod rates;
 pub mod scaling;
 pub mod stability;

@@ -2,9 +2,9 @@
 
 use crate::accuracy::discretisation::QUANTITIES;
 use crate::accuracy::optimization::TARGETS;
-use crate::accuracy::rates::observed;
 use crate::accuracy::{AlgebraStudy, ManufacturedErrors, MeshStudy, OptimizationStudy, Report, SubgradientStudy};
 use crate::markdown::{or_dash, seconds, section, yes_or_no};
+use crate::rates::observed;
 use crate::scaling::word;
 
 /// All tables.

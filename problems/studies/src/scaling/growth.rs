@@ -1,5 +1,6 @@
 //! How counts and times grow with the number of subdomains at fixed H/h.
 
+use crate::rates::exponent;
 use crate::scaling::cases::{RATIO, SceneName, Variant};
 use crate::scaling::rows::{Row, Start};
 use clap::ValueEnum;
@@ -71,27 +72,4 @@ fn count_growth(series: &[&Row], tolerance: f64) -> CountGrowth {
         counts.iter().filter(|(s, _)| *s > REFERENCE).map(|(s, count)| (*s, count / reference - 1.0)).collect()
     });
     CountGrowth { tolerance, growth }
-}
-
-/// Least-squares slope of log y over log x; none for fewer than two points.
-fn exponent(points: impl Iterator<Item = [f64; 2]>) -> Option<f64> {
-    let logs: Vec<[f64; 2]> = points.map(|point| point.map(f64::ln)).collect();
-    let count = logs.len() as f64;
-    let mean = |axis: usize| logs.iter().map(|log| log[axis]).sum::<f64>() / count;
-    let (x, y) = (mean(0), mean(1));
-    let variance: f64 = logs.iter().map(|log| (log[0] - x).powi(2)).sum();
-    let covariance: f64 = logs.iter().map(|log| (log[0] - x) * (log[1] - y)).sum();
-    (logs.len() > 1 && variance > 0.0).then(|| covariance / variance)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::exponent;
-
-    #[test]
-    fn a_power_law_gives_its_exponent() {
-        let points = [1.0_f64, 3.0, 10.0, 50.0].map(|x| [x, 7.0 * x.powf(1.25)]);
-        assert!((exponent(points.into_iter()).expect("four points") - 1.25).abs() < 1e-12);
-        assert_eq!(exponent([[2.0, 3.0]].into_iter()), None);
-    }
 }

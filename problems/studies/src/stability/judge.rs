@@ -205,12 +205,7 @@ pub fn force_difference(first: &ContactForces, second: &ContactForces) -> f64 {
     let all = |forces: &ContactForces| -> Vec<f64> {
         forces.normal.iter().chain(forces.tangential.iter().flatten()).copied().collect()
     };
-    relative_difference(&all(first), &all(second))
-}
-
-/// |a − b|∞/|b|∞; 0 if both vanish.
-pub fn relative_difference(a: &[f64], b: &[f64]) -> f64 {
-    difference_over(a, b, 0.0)
+    difference_over(&all(first), &all(second), 0.0)
 }
 
 /// |a − b|∞ over the larger of |a|∞, |b|∞ and a floor; 0 if all vanish, NaN if a number is not finite.
