@@ -127,12 +127,8 @@ impl MapPanel {
 
     /// Indices of the first node with the largest value, and a text about it.
     fn largest(&self, unit: &str) -> ([usize; 2], String) {
-        let mut best = 0;
-        for (node, value) in self.values.iter().enumerate() {
-            if *value > self.values[best] {
-                best = node;
-            }
-        }
+        let larger = |best, node| if self.values[node] > self.values[best] { node } else { best };
+        let best = (0..self.values.len()).fold(0, larger);
         let place = [best / self.counts[1], best % self.counts[1]];
         let [x, y] = std::array::from_fn(|axis| {
             number(self.origin[axis] + self.size[axis] * place[axis] as f64 / (self.counts[axis] - 1) as f64)

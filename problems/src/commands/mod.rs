@@ -17,7 +17,6 @@ pub mod long_run;
 mod optimize;
 mod recheck;
 mod report;
-mod session;
 mod verify;
 
 pub use arguments::Arguments;

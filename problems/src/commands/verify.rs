@@ -94,28 +94,15 @@ fn smooth_step(
 ) -> Result<f64, Failure> {
     let height = control.iter().map(|height| height.abs()).sum::<f64>() / control.len() as f64;
     let mut step = MAX_RELATIVE_STEP * height;
+    let stays = |step: f64| -> Result<bool, Failure> {
+        let state = objective.solver().solve(&(control + direction * step), None, Accuracy::TIGHTEST)?;
+        Ok(state.forces.status == status)
+    };
     for _shortening in 0..MAX_SHORTENINGS {
-        if same_piece(objective, control, direction, step, status)? {
+        if stays(step)? && stays(-step)? {
             break;
         }
         step *= STEP_RATIO;
     }
     Ok(step)
-}
-
-/// Whether all contact nodes keep their status over a step along the direction and over one against it.
-fn same_piece(
-    objective: &ContactObjective,
-    control: &Vector,
-    direction: &Vector,
-    step: f64,
-    status: &[ContactStatus],
-) -> Result<bool, Failure> {
-    for sign in [1.0, -1.0] {
-        let state = objective.solver().solve(&(control + direction * (sign * step)), None, Accuracy::TIGHTEST)?;
-        if state.forces.status != status {
-            return Ok(false);
-        }
-    }
-    Ok(true)
 }

@@ -104,7 +104,7 @@ impl<'a> ReportFolder<'a> {
         page.sections.push(sections::origin(&scene, &left_out, warnings));
         page.sections.push(sections::files(&self.files));
         page.sections.retain(|section| !section.blocks.is_empty());
-        self.folder.write("report.html", &page.html())
+        self.folder.write("report.html", page.html())
     }
 }
 
