@@ -6,7 +6,7 @@ use super::colours::CURVES;
 use super::error::{FigureError, finite, some};
 use super::figure::Figure;
 use super::marks::{self, Sign, kinds, legend_width, rows};
-use super::scale::Axis;
+use super::scale::{Axis, extent};
 
 /// Values over the number of the evaluation.
 ///
@@ -102,9 +102,8 @@ impl Convergence {
         let reference = self.reference.iter().map(|(_, value)| *value);
         let values: Vec<f64> =
             self.steps.iter().flat_map(|step| step.value.into_iter().chain([step.best])).chain(reference).collect();
-        let lowest = values.iter().fold(f64::INFINITY, |lowest, value| lowest.min(*value));
-        let highest = values.iter().fold(f64::NEG_INFINITY, |highest, value| highest.max(*value));
-        if lowest > 0.0 && highest / lowest >= LOGARITHMIC_FROM {
+        let logarithmic = |(low, high): (f64, f64)| low > 0.0 && high / low >= LOGARITHMIC_FROM;
+        if extent(values.iter().copied()).is_some_and(logarithmic) {
             Axis::logarithmic(&self.quantity, &self.unit, values, 0.05, 8)
         } else {
             Axis::linear(&self.quantity, &self.unit, values, 0.05, 8)

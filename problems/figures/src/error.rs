@@ -55,6 +55,20 @@ pub enum FigureError {
     Drawing(String),
 }
 
+/// Checks that every number of a list is allowed.
+fn all(
+    figure: &str,
+    what: &'static str,
+    values: impl IntoIterator<Item = f64>,
+    allowed: &'static str,
+    valid: impl Fn(f64) -> bool,
+) -> Result<(), FigureError> {
+    match values.into_iter().enumerate().find(|(_, value)| !valid(*value)) {
+        None => Ok(()),
+        Some((index, value)) => Err(FigureError::Number { figure: figure.to_owned(), what, index, value, allowed }),
+    }
+}
+
 /// Checks that every number of a list can be drawn.
 pub(super) fn finite(
     figure: &str,
@@ -62,14 +76,8 @@ pub(super) fn finite(
     values: impl IntoIterator<Item = f64>,
 ) -> Result<(), FigureError> {
     // Differences of two numbers, and their multiples by a few, have to be finite as well.
-    const LARGEST: f64 = 1e300;
-    for (index, value) in values.into_iter().enumerate() {
-        if value.is_nan() || value.abs() > LARGEST {
-            let allowed = "numbers of modulus up to 1e300";
-            return Err(FigureError::Number { figure: figure.to_owned(), what, index, value, allowed });
-        }
-    }
-    Ok(())
+    const MAX_MODULUS: f64 = 1e300;
+    all(figure, what, values, "numbers of modulus up to 1e300", |value| value.abs() <= MAX_MODULUS)
 }
 
 /// Checks a count.
@@ -90,23 +98,21 @@ pub(super) fn some(figure: &str, what: &'static str, found: usize) -> Result<(),
 
 /// Checks that a grid has cells along every axis.
 pub(super) fn cells(figure: &str, nodes: &[usize]) -> Result<(), FigureError> {
-    match nodes.iter().position(|nodes| *nodes < 2) {
-        None => Ok(()),
-        Some(index) => {
-            let (what, value, allowed) = ("number of nodes along axis", nodes[index] as f64, "numbers from 2");
-            Err(FigureError::Number { figure: figure.to_owned(), what, index, value, allowed })
-        }
-    }
+    let nodes = nodes.iter().map(|nodes| *nodes as f64);
+    all(figure, "number of nodes along axis", nodes, "numbers from 2", |nodes| nodes >= 2.0)
 }
 
-/// Checks that a rectangle has an area.
-pub(super) fn area(figure: &str, size: [f64; 2]) -> Result<(), FigureError> {
+/// Checks a grid over a rectangle: cells along both axes, an area, a finite value per node; `what` names a value and all values.
+pub(super) fn grid(
+    figure: &str,
+    counts: [usize; 2],
+    size: [f64; 2],
+    what: [&'static str; 2],
+    values: &[f64],
+) -> Result<(), FigureError> {
+    cells(figure, &counts)?;
+    count(figure, what[1], counts[0].saturating_mul(counts[1]), values.len())?;
+    finite(figure, what[0], values.iter().copied())?;
     finite(figure, "side", size)?;
-    match size.iter().position(|side| *side <= 0.0) {
-        None => Ok(()),
-        Some(index) => {
-            let (what, value, allowed) = ("side", size[index], "numbers > 0");
-            Err(FigureError::Number { figure: figure.to_owned(), what, index, value, allowed })
-        }
-    }
+    all(figure, "side", size, "numbers > 0", |side| side > 0.0)
 }

@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, INK, Stroke, TITLE, text_width};
 use super::chart::{Frame, Parts, ROOM_BELOW};
 use super::colours::CURVES;
-use super::error::{FigureError, area, cells, count, finite, some};
+use super::error::{FigureError, finite, grid};
 use super::figure::Figure;
 use super::levels::{ColourScale, Lattice, contour, fill};
 use super::marks::{self, Sign, kinds, legend_width, rows};
@@ -101,16 +101,12 @@ impl Landscape {
 
     fn check(&self) -> Result<(), FigureError> {
         let figure = &self.name;
-        cells(figure, &self.counts)?;
-        some(figure, "values", self.values.len())?;
-        count(figure, "values", self.counts[0].saturating_mul(self.counts[1]), self.values.len())?;
-        finite(figure, "value", self.values.iter().copied())?;
+        grid(figure, self.counts, self.size, ["value", "values"], &self.values)?;
         finite(figure, "origin", self.origin)?;
         finite(figure, "coordinate of the path", self.path.iter().flat_map(|visit| visit.place))?;
         finite(figure, "coordinate of the goal", self.goal.iter().flat_map(|goal| goal.1))?;
         let lines = self.lines.iter().flat_map(|lines| lines.1.iter().flatten().flatten().copied());
-        finite(figure, "coordinate of a line", lines)?;
-        area(figure, self.size)
+        finite(figure, "coordinate of a line", lines)
     }
 
     /// Levels, contour lines and axes.

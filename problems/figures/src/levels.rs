@@ -81,9 +81,8 @@ impl ColourScale {
 /// Values filled with the colours of a scale; `place` maps (i, j), also between nodes, to the drawing.
 pub(super) fn fill(canvas: &mut Canvas, lattice: Lattice, scale: &ColourScale, place: impl Fn([f64; 2]) -> Place) {
     let shares: Vec<f64> = lattice.values.iter().map(|value| scale.axis.share(*value).unwrap_or(0.0)).collect();
-    let lowest = shares.iter().fold(f64::INFINITY, |lowest, share| lowest.min(*share));
-    let highest = shares.iter().fold(f64::NEG_INFINITY, |highest, share| highest.max(*share));
-    let shares = Lattice { counts: lattice.counts, values: &[] }.with(&shares);
+    let (lowest, highest) = extent(shares.iter().copied()).unwrap_or((f64::INFINITY, f64::NEG_INFINITY));
+    let shares = Lattice { counts: lattice.counts, values: &shares };
     let all = [f64::NEG_INFINITY].into_iter().chain(scale.levels().iter().copied());
     for (step, level) in all.enumerate() {
         let next = scale.levels().get(step).copied().unwrap_or(f64::INFINITY);
@@ -143,11 +142,7 @@ fn between(a: Corner, b: Corner, level: f64) -> [f64; 2] {
     std::array::from_fn(|axis| a.0[axis] + share * (b.0[axis] - a.0[axis]))
 }
 
-impl<'a> Lattice<'a> {
-    fn with(self, values: &'a [f64]) -> Self {
-        Self { counts: self.counts, values }
-    }
-
+impl Lattice<'_> {
     fn at(&self, i: usize, j: usize) -> f64 {
         self.values[i * self.counts[1] + j]
     }

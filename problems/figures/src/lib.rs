@@ -35,5 +35,6 @@ pub use figure::Figure;
 pub use landscape::{Landscape, Visit};
 pub use log_plot::{LogPlot, Series};
 pub use map::{Map, MapPanel};
+pub use scale::nice_below;
 pub use solid::{SolidBlock, SolidPanel, Solids};
 pub use surfaces::{SurfacePanel, Surfaces};

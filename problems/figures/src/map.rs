@@ -2,10 +2,10 @@
 
 use super::canvas::{Canvas, LABEL, TITLE, text_width};
 use super::chart::{Frame, Parts, ROOM_BELOW};
-use super::error::{FigureError, area, cells, count, finite, some};
+use super::error::{FigureError, finite, grid, some};
 use super::figure::Figure;
 use super::levels::{ColourScale, Lattice, fill};
-use super::scale::{Axis, number};
+use super::scale::{Axis, behind, number};
 
 /// Values over the plane: one or more panels with one colour scale; the largest value of every panel is marked.
 ///
@@ -65,8 +65,8 @@ pub struct MapPanel {
 const SIDE: f64 = 280.0;
 /// Room at the left for labels and title of the vertical axis, points.
 const ROOM_LEFT: f64 = 52.0;
-/// Ratios of the sides of a panel beyond which lengths are no longer drawn to scale.
-const SLIMMEST: f64 = 0.25;
+/// Least ratio of the sides of a panel; slimmer ones are not drawn to scale.
+const MIN_SIDE_RATIO: f64 = 0.25;
 
 impl Map {
     /// Draws it.
@@ -115,33 +115,25 @@ impl Map {
 
 /// Sides in points.
 fn sides([first, second]: [f64; 2]) -> [f64; 2] {
-    let ratio = (second / first).clamp(SLIMMEST, 1.0 / SLIMMEST);
+    let ratio = (second / first).clamp(MIN_SIDE_RATIO, 1.0 / MIN_SIDE_RATIO);
     if ratio > 1.0 { [SIDE / ratio, SIDE] } else { [SIDE, SIDE * ratio] }
 }
 
 impl MapPanel {
     fn check(&self, figure: &str) -> Result<(), FigureError> {
-        cells(figure, &self.counts)?;
-        count(figure, "values of a panel", self.counts[0].saturating_mul(self.counts[1]), self.values.len())?;
-        finite(figure, "value", self.values.iter().copied())?;
-        finite(figure, "origin", self.origin)?;
-        area(figure, self.size)
+        grid(figure, self.counts, self.size, ["value", "values of a panel"], &self.values)?;
+        finite(figure, "origin", self.origin)
     }
 
     /// Indices of the first node with the largest value, and a text about it.
     fn largest(&self, unit: &str) -> ([usize; 2], String) {
-        let mut best = 0;
-        for (node, value) in self.values.iter().enumerate() {
-            if *value > self.values[best] {
-                best = node;
-            }
-        }
+        let larger = |best, node| if self.values[node] > self.values[best] { node } else { best };
+        let best = (0..self.values.len()).fold(0, larger);
         let place = [best / self.counts[1], best % self.counts[1]];
         let [x, y] = std::array::from_fn(|axis| {
             number(self.origin[axis] + self.size[axis] * place[axis] as f64 / (self.counts[axis] - 1) as f64)
         });
-        let space = if unit.is_empty() { "" } else { " " };
-        (place, format!("largest {}{space}{unit} at ({x}, {y})", number(self.values[best])))
+        (place, format!("largest {}{} at ({x}, {y})", number(self.values[best]), behind(unit)))
     }
 
     fn draw(&self, canvas: &mut Canvas, frame: Frame, scale: &ColourScale, map: &Map, labelled: bool) {

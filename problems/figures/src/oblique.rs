@@ -14,9 +14,9 @@ use super::levels::{ColourScale, Lattice, fill};
 use super::scale::extent;
 
 /// Most quads of a panel between which mesh lines are drawn.
-pub(super) const MOST_MESHED: usize = 1500;
+pub(super) const MAX_MESHED_QUADS: usize = 1500;
 /// Most quads that are drawn one over the other with more than one colour each.
-const MOST_BANDED: usize = 400;
+const MAX_BANDED_QUADS: usize = 400;
 /// Colour of sheets without values.
 const PLAIN: &str = "#e6e6e6";
 /// Mesh lines.
@@ -90,7 +90,7 @@ pub(super) fn paint(canvas: &mut Canvas, view: &View, bodies: &[Vec<Sheet>], sca
     bodies.sort_by(|a, b| a.0.total_cmp(&b.0));
     let sheets = || bodies.iter().flat_map(|(_, sheets)| sheets.iter());
     let quads: usize = sheets().map(Seen::turned).sum();
-    let meshed = quads < MOST_MESHED;
+    let meshed = quads < MAX_MESHED_QUADS;
     if sheets().all(|seen| seen.turned() == 0 || seen.turned() == seen.cells().count()) {
         for seen in sheets().filter(|seen| seen.turned() > 0) {
             seen.fill(canvas, scale);
@@ -108,7 +108,7 @@ pub(super) fn paint(canvas: &mut Canvas, view: &View, bodies: &[Vec<Sheet>], sca
         })
         .collect();
     ordered.sort_by(|a, b| a.0.total_cmp(&b.0));
-    if quads < MOST_BANDED {
+    if quads < MAX_BANDED_QUADS {
         for (_, seen, cell) in ordered {
             seen.fill_cell(canvas, scale, cell);
             canvas.outline(&seen.corners(cell), Stroke::solid(MESH, MESH_WIDTH));

@@ -11,7 +11,7 @@ const SIDE: f64 = 300.0;
 /// Length of an arrow of the axes, points.
 const ARROW: f64 = 30.0;
 /// Least height of the colour bar, so that its labels have room.
-const LEAST_HEIGHT: f64 = 130.0;
+const MIN_BAR_HEIGHT: f64 = 130.0;
 const MARGIN: f64 = 16.0;
 
 /// All of a figure but the values of its panels.
@@ -53,7 +53,7 @@ impl Row<'_> {
             return Err(FigureError::Number { figure: self.name.to_owned(), what, index: 0, value, allowed });
         }
         let size = extents.map(|extent| points * extent);
-        let (top, height) = (76.0, size[1].max(LEAST_HEIGHT));
+        let (top, height) = (76.0, size[1].max(MIN_BAR_HEIGHT));
         let mut left = MARGIN;
         let lefts: Vec<f64> = self
             .panels

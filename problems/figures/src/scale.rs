@@ -3,7 +3,7 @@
 //! A power of ten is taken out of the labels when the largest number is ≥ 10⁵ or < 10⁻²: `Θ (10^{18} MPa^{4})`, ticks 0, 1, 2.
 
 /// Smallest range of a linear axis relative to the largest number; beyond, labels would differ in rounding errors only.
-const SMALLEST_RANGE: f64 = 1e-6;
+const MIN_RELATIVE_RANGE: f64 = 1e-6;
 
 /// A tick: its place on the axis as a share 0 … 1, and its label.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +34,7 @@ impl Axis {
         let power = if (-2..5).contains(&power) { 0 } else { power };
         let factor = 10.0_f64.powi(power);
         let (mut low, mut high, magnitude) = (low / factor, high / factor, magnitude / factor);
-        if high - low <= SMALLEST_RANGE * magnitude {
+        if high - low <= MIN_RELATIVE_RANGE * magnitude {
             let half = if magnitude > 0.0 { 0.05 * magnitude } else { 1.0 };
             (low, high) = (low - half, high + half);
         }
@@ -133,8 +133,18 @@ pub(super) fn number(value: f64) -> String {
     signed(format!("{digits}·10^{{{exponent}}}"))
 }
 
-/// A length between half and once the given one with one digit: 1, 2 or 5 times a power of ten.
-pub(super) fn nice_below(length: f64) -> f64 {
+/// A space and the unit, as they stand behind a number; nothing without a unit.
+pub(super) fn behind(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is not above a number > 0, such as a magnification; rounding of the number is
+/// allowed for.
+///
+/// ```
+/// assert_eq!([0.07, 1.0, 1.9, 99.0].map(figures::nice_below), [0.05, 1.0, 1.0, 50.0]);
+/// ```
+pub fn nice_below(length: f64) -> f64 {
     let power = 10.0_f64.powi(power_of(length));
     let digit = [5.0, 2.0].into_iter().find(|digit| digit * power <= length * (1.0 + 1e-9)).unwrap_or(1.0);
     digit * power

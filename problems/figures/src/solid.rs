@@ -5,7 +5,7 @@ use super::figure::Figure;
 use super::levels::ColourScale;
 use super::oblique::Sheet;
 use super::panels::{Panel, Row};
-use super::scale::number;
+use super::scale::{behind, number};
 
 /// Blocks seen from the front, the right and above: one or more panels with one colour scale and one scale of lengths.
 ///
@@ -86,12 +86,11 @@ impl Solids {
         let blocks = || self.panels.iter().flat_map(|panel| panel.blocks.iter());
         let scale =
             ColourScale::new(&self.quantity, &self.unit, blocks().flat_map(|block| block.values.iter().copied()));
-        let space = if self.unit.is_empty() { "" } else { " " };
         let panels = self.panels.iter().map(|panel| {
             let values = panel.blocks.iter().flat_map(|block| block.values.iter().copied());
             let largest = number(values.fold(f64::NEG_INFINITY, f64::max));
             Panel {
-                captions: [panel.caption.clone(), format!("largest {largest}{space}{}", self.unit)],
+                captions: [panel.caption.clone(), format!("largest {largest}{}", behind(&self.unit))],
                 bodies: panel.blocks.iter().map(SolidBlock::sheets).collect(),
                 front: Vec::new(),
             }

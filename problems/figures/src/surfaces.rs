@@ -1,11 +1,11 @@
 //! Heights over rectangles as surfaces in space side by side, on one colour scale.
 
-use super::error::{FigureError, area, cells, count, finite, some};
+use super::error::{FigureError, grid, some};
 use super::figure::Figure;
 use super::levels::ColourScale;
 use super::oblique::{Point, Sheet};
 use super::panels::{Panel, Row};
-use super::scale::{extent, nice_below, number};
+use super::scale::{behind, extent, nice_below, number};
 
 /// Heights over rectangles, seen from the front, the right and above; magnified so that small differences are seen.
 ///
@@ -56,11 +56,11 @@ pub struct SurfacePanel {
 }
 
 /// Differences of the heights are drawn at most as large as this share of the longest side.
-const TALLEST: f64 = 0.3;
+const MAX_SHOWN_HEIGHT: f64 = 0.3;
 /// What is drawn below the lowest height, as a share of the longest side.
-const FOOT: f64 = 0.06;
+const FOOT_HEIGHT: f64 = 0.06;
 /// Differences relative to the heights that are no longer magnified: the colour scale does not show them either.
-const LEVEL: f64 = 1e-6;
+const MIN_MAGNIFIED_DIFFERENCE: f64 = 1e-6;
 
 /// What is taken off all heights, and what they are multiplied by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,22 +79,21 @@ impl Surfaces {
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         for panel in &self.panels {
-            panel.check(&self.name)?;
+            grid(&self.name, panel.counts, panel.size, ["height", "heights of a panel"], &panel.heights)?;
         }
         let heights = || self.panels.iter().flat_map(|panel| panel.heights.iter().copied());
         let scale = ColourScale::new(&self.quantity, &self.unit, heights());
         let (low, high) = extent(heights()).unwrap_or((0.0, 0.0));
         let longest = self.panels.iter().flat_map(|panel| panel.size).fold(0.0, f64::max);
-        let level = high - low <= LEVEL * low.abs().max(high.abs());
-        let times = if level { 1.0 } else { nice_below(TALLEST * longest / (high - low)) };
-        let magnified = Magnified { less: low, times, foot: -FOOT * longest };
-        let space = if self.unit.is_empty() { "" } else { " " };
-        let times = number(times);
+        let level = high - low <= MIN_MAGNIFIED_DIFFERENCE * low.abs().max(high.abs());
+        let times = if level { 1.0 } else { nice_below(MAX_SHOWN_HEIGHT * longest / (high - low)) };
+        let magnified = Magnified { less: low, times, foot: -FOOT_HEIGHT * longest };
+        let (times, unit) = (number(times), behind(&self.unit));
         let panels = self.panels.iter().map(|panel| {
             let [low, high] =
                 extent(panel.heights.iter().copied()).map_or([0.0; 2], |(low, high)| [low, high]).map(number);
             Panel {
-                captions: [panel.caption.clone(), format!("{low} to {high}{space}{}", self.unit)],
+                captions: [panel.caption.clone(), format!("{low} to {high}{unit}")],
                 bodies: vec![vec![panel.top(magnified)]],
                 front: panel.walls(magnified),
             }
@@ -103,7 +102,7 @@ impl Surfaces {
             let side = self.panels[0].size[index];
             let name = ["x₁", "x₂"][index];
             let same = self.panels.iter().all(|panel| panel.size[index] == side);
-            if same { format!("{name} ({}{space}{})", number(side), self.unit) } else { name.to_owned() }
+            if same { format!("{name} ({}{unit})", number(side)) } else { name.to_owned() }
         };
         Row {
             name: &self.name,
@@ -118,13 +117,6 @@ impl Surfaces {
 }
 
 impl SurfacePanel {
-    fn check(&self, figure: &str) -> Result<(), FigureError> {
-        cells(figure, &self.counts)?;
-        count(figure, "heights of a panel", self.counts[0].saturating_mul(self.counts[1]), self.heights.len())?;
-        finite(figure, "height", self.heights.iter().copied())?;
-        area(figure, self.size)
-    }
-
     fn point(&self, magnified: Magnified, [i, j]: [usize; 2]) -> Point {
         let place = [i, j];
         let [x, y] = [0, 1].map(|axis| self.size[axis] * place[axis] as f64 / (self.counts[axis] - 1) as f64);

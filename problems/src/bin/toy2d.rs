@@ -4,9 +4,7 @@ use clap::Parser;
 use figures::{self, Convergence, Step, Visit};
 use nonsmooth::IterationRecord;
 use problems::commands::{Failure, Folder, finish};
-use problems::toy::{self, landscape::Landscape};
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use problems::toy;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -27,9 +25,6 @@ struct Arguments {
     /// Print one JSON object instead of the page
     #[arg(long)]
     json: bool,
-    /// Also write the landscape of the objective as comma-separated values
-    #[arg(long, value_name = "FILE.csv")]
-    landscape: Option<PathBuf>,
     /// Folder for pictures of the landscape with the points of the first run, and of its course
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -43,10 +38,7 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<String, Failure> {
-    if let Some(file) = &arguments.landscape {
-        write_landscape(file, arguments.cells as usize)?;
-    }
-    let folder = Folder::prepare(arguments.out.as_deref())?;
+    let folder = arguments.out.as_deref().map(|path| Folder::with_room(path, 1)).transpose()?;
     let starts = match arguments.start {
         Some(start) => vec![start],
         None => toy::random_starts(arguments.seed, arguments.starts as usize),
@@ -66,16 +58,8 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
     Err(Failure::Incomplete { text, reason, status: 1 })
 }
 
-fn write_landscape(file: &PathBuf, cells: usize) -> Result<(), Failure> {
-    let refused = |error: io::Error| Failure::Input(format!("--landscape {}: {error}", file.display()));
-    let landscape = Landscape::new(&toy::toy_objective(), cells)?;
-    let mut writer = BufWriter::new(File::create(file).map_err(refused)?);
-    landscape.write_csv(&mut writer).and_then(|()| writer.flush()).map_err(refused)
-}
-
 /// Landscape with kinks and the points of a run, and the course of that run.
 fn pictures(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failure> {
-    let landscape = Landscape::new(&toy::toy_objective(), cells)?;
     let trace = toy::trace(start)?;
     let history = &trace.report.history;
     let visit = |(record, &place): (&IterationRecord, &[f64; 2])| Visit { kind: record.kind.to_string(), place };
@@ -87,7 +71,7 @@ fn pictures(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failur
         counts: [cells + 1; 2],
         origin: [toy::LOWER; 2],
         size: [toy::UPPER - toy::LOWER; 2],
-        values: landscape.points.iter().map(|point| point.value).collect(),
+        values: toy::landscape(cells)?.into_iter().map(|(_, value)| value).collect(),
         lines: Some(("kink of a node".into(), toy::kink_lines())),
         path: history.iter().zip(&trace.points).map(visit).collect(),
         goal: Some(("minimiser".into(), toy::MINIMISER)),

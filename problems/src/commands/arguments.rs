@@ -139,11 +139,10 @@ impl Arguments {
             }
         }
         self.check_resume()?;
-        if self.max_evaluations == Some(0) {
-            return Err(SceneError::out_of_range("--max-evaluations", 0, "a number ≥ 1").into());
-        }
-        if self.threads == Some(0) {
-            return Err(SceneError::out_of_range("--threads", 0, "a number ≥ 1").into());
+        for (option, count) in [("--max-evaluations", self.max_evaluations), ("--threads", self.threads)] {
+            if count == Some(0) {
+                return Err(SceneError::out_of_range(option, 0, "a number ≥ 1").into());
+            }
         }
         if self.exponent.is_some() && self.objective == Some(MeasureName::PeakPressure) {
             return refused("--exponent", "with --objective pressure-norm only");

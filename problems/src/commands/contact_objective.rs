@@ -1,9 +1,9 @@
-//! The objective Θ of a contact problem.
+//! The objective Θ of a contact problem, and shapes with their contact states.
 
 use crate::commands::failure::Failure;
-use contact::contact_shape::ContactShape;
+use contact::contact_shape::{ContactShape, ContactState};
 use contact::cost::PressureCost;
-use nonsmooth::ReducedObjective;
+use nonsmooth::{Accuracy, Cost, ReducedObjective, StateSolver, Vector};
 use scene_file::Case;
 
 /// Θ of a scene: the pressure measure of the contact state that the control heights lead to.
@@ -17,4 +17,30 @@ pub fn objective(case: &Case) -> Result<ContactObjective, Failure> {
     let shape = ContactShape::with_preconditioner(case.scene.clone(), case.solver, case.preconditioner)?;
     let cost = PressureCost::new(case.measure, &shape.problem().boundary)?;
     Ok(ReducedObjective::new(shape, cost))
+}
+
+/// A shape, its state as accurate as rounding allows, and the objective there.
+#[derive(Debug)]
+pub struct SolvedShape {
+    /// Control heights, mm.
+    pub controls: Vector,
+    /// The contact state.
+    pub state: ContactState,
+    /// Θ.
+    pub value: f64,
+    /// Largest contact pressure, MPa.
+    pub peak_pressure: f64,
+}
+
+impl SolvedShape {
+    /// Solves the contact problem of a shape.
+    ///
+    /// # Errors
+    /// [`Failure`] of the contact solver.
+    pub fn at(objective: &ContactObjective, controls: &Vector) -> Result<Self, Failure> {
+        let state = objective.solver().solve(controls, None, Accuracy::TIGHTEST)?;
+        let value = objective.cost().value(controls, &state);
+        let peak_pressure = objective.cost().pressures(&state).into_iter().fold(f64::NEG_INFINITY, f64::max);
+        Ok(Self { controls: controls.clone(), state, value, peak_pressure })
+    }
 }

@@ -1,5 +1,6 @@
 //! Control files: a JSON array of numbers.
 
+use crate::commands::folder::file_error;
 use contact::contact_shape::ContactShape;
 use contact::error::SceneError;
 use nonsmooth::{StateSolver, Vector};
@@ -25,11 +26,8 @@ pub fn load(shape: &ContactShape, case: &Case, file: Option<&Path>) -> Result<Ve
 /// # Errors
 /// [`SceneError`] for an unreadable file; as [`parse`].
 pub fn read(file: &Path, expected: usize) -> Result<Vector, SceneError> {
-    let path = file.display().to_string();
-    match std::fs::read_to_string(file) {
-        Ok(text) => parse(&text, &path, expected),
-        Err(error) => Err(SceneError::File { path, reason: error.to_string() }),
-    }
+    let text = std::fs::read_to_string(file).map_err(|error| file_error(file, error))?;
+    parse(&text, &file.display().to_string(), expected)
 }
 
 /// The controls in a text; `name` stands in messages.
@@ -37,9 +35,8 @@ pub fn read(file: &Path, expected: usize) -> Result<Vector, SceneError> {
 /// # Errors
 /// [`SceneError`] for a text that is no JSON array, a wrong count, numbers that are not finite.
 pub fn parse(text: &str, name: &str, expected: usize) -> Result<Vector, SceneError> {
-    let values: Vec<Option<f64>> = serde_json::from_str(text).map_err(|error| SceneError::File {
-        path: name.to_owned(),
-        reason: format!("{error}; expected a JSON array of {expected} numbers"),
+    let values: Vec<Option<f64>> = serde_json::from_str(text).map_err(|error| {
+        file_error(Path::new(name), format!("{error}; expected a JSON array of {expected} numbers"))
     })?;
     if values.len() != expected {
         return Err(SceneError::WrongCount { what: format!("controls in {name}"), expected, found: values.len() });

@@ -1,14 +1,13 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::ContactObjective;
+use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::json;
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
 use crate::commands::report::files;
-use crate::commands::solved_shape::SolvedShape;
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
 use serde::Serialize;
 use std::fmt;

@@ -44,16 +44,6 @@ impl Failure {
         }
     }
 
-    /// The text for stdout.
-    fn text(&self) -> &str {
-        if let Self::Incomplete { text, .. } = self { text } else { "" }
-    }
-
-    /// [`Failure::status`] for the operating system.
-    pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(self.status())
-    }
-
     /// The text for stdout after files were written; a file that could not be written does not lose the text.
     ///
     /// # Errors
@@ -84,16 +74,15 @@ impl Failure {
 
 /// Prints the text of a command on stdout and the message of its failure on stderr; the exit status that belongs to them.
 pub fn finish(result: Result<String, Failure>) -> ExitCode {
-    let (text, failure) = match result {
-        Ok(text) => (text, None),
-        Err(failure) => (failure.text().to_owned(), Some(failure)),
+    let text = match &result {
+        Ok(text) | Err(Failure::Incomplete { text, .. }) => text,
+        Err(_) => "",
     };
     // A reader that closes the pipe early has seen what it wanted; then the exit status is the message.
     let _ = io::stdout().write_all(text.as_bytes());
-    failure.map_or(ExitCode::SUCCESS, |failure| {
-        let _ = writeln!(io::stderr(), "error: {failure}");
-        failure.exit_code()
-    })
+    let Err(failure) = result else { return ExitCode::SUCCESS };
+    let _ = writeln!(io::stderr(), "error: {failure}");
+    ExitCode::from(failure.status())
 }
 
 impl From<SceneError> for Failure {

@@ -22,23 +22,12 @@ pub const PICTURE_ENDINGS: &str = if cfg!(feature = "png") { ".svg, .png" } else
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Creates the folder if one is asked for and proves that it can be written to.
-    ///
-    /// # Errors
-    /// [`SceneError::File`] with the system's reason.
-    pub fn prepare(path: Option<impl AsRef<Path>>) -> Result<Option<Self>, SceneError> {
-        path.map(|path| Self::with_room(path.as_ref(), 1)).transpose()
-    }
-
     /// Creates the folder and proves that files of so many bytes can be written to it.
     ///
     /// # Errors
     /// [`SceneError::File`] with the system's reason.
     pub fn with_room(path: &Path, bytes: u64) -> Result<Self, SceneError> {
-        let failed = |error: std::io::Error| SceneError::File {
-            path: path.display().to_string(),
-            reason: format!("cannot write {bytes} bytes there: {error}"),
-        };
+        let failed = |error: std::io::Error| file_error(path, format!("cannot write {bytes} bytes there: {error}"));
         std::fs::create_dir_all(path).map_err(failed)?;
         let probe = path.join(format!(".nonsmooth-probe-{}", std::process::id()));
         let written = std::fs::File::create(&probe).and_then(|mut file| {
@@ -77,17 +66,9 @@ impl Folder {
     ///
     /// # Errors
     /// [`Failure::Computation`] with the system's reason.
-    pub fn write(&self, name: &str, text: &str) -> Result<(), Failure> {
-        self.write_bytes(name, text.as_bytes())
-    }
-
-    /// Writes one file that is not text.
-    ///
-    /// # Errors
-    /// As [`write`](Self::write).
-    pub fn write_bytes(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         let path = self.0.join(name);
-        std::fs::write(&path, bytes).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
+        std::fs::write(&path, content).map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
     }
 
     /// Writes a figure as SVG and, with the feature `png`, as PNG; without, stderr says once how to get PNG.
@@ -97,7 +78,7 @@ impl Folder {
     pub fn draw(&self, figure: &Figure) -> Result<(), Failure> {
         self.write(&format!("{}.svg", figure.name), &figure.svg)?;
         #[cfg(feature = "png")]
-        self.write_bytes(&format!("{}.png", figure.name), &figure.png(PNG_SCALE).map_err(Failure::computation)?)?;
+        self.write(&format!("{}.png", figure.name), figure.png(PNG_SCALE).map_err(Failure::computation)?)?;
         #[cfg(not(feature = "png"))]
         {
             static SAID: std::sync::Once = std::sync::Once::new();
@@ -118,6 +99,11 @@ impl Folder {
             .and_then(|()| std::fs::rename(&temporary, &path));
         written.map_err(|error| Failure::Computation(format!("{}: {error}", path.display())))
     }
+}
+
+/// The error about a file or a folder.
+pub fn file_error(path: &Path, reason: impl ToString) -> SceneError {
+    SceneError::File { path: path.display().to_string(), reason: reason.to_string() }
 }
 
 /// A value as JSON, one field per line.

@@ -1,8 +1,11 @@
-//! A scene file with its place and the case that it describes.
+//! What a command works on: a scene file with its place and the case that it describes, and one invocation of a binary.
 
+use crate::commands::arguments::Arguments;
+use crate::commands::long_run::StatusLine;
 use contact::error::SceneError;
 use scene_file::{Case, SceneFile};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// A scene file, options of the command line included, and the case that it describes.
 #[derive(Debug, Clone)]
@@ -46,4 +49,15 @@ impl LoadedScene {
 
 fn folder(path: Option<&Path>) -> &Path {
     path.and_then(Path::parent).unwrap_or(Path::new(""))
+}
+
+/// What all optimizations of one invocation have in common.
+#[derive(Debug, Clone)]
+pub struct Session<'a> {
+    /// The command line.
+    pub arguments: &'a Arguments,
+    /// When the time limit began to count.
+    pub clock: Instant,
+    /// The line on which progress is shown.
+    pub status: StatusLine,
 }

@@ -17,15 +17,13 @@ pub mod long_run;
 mod optimize;
 mod recheck;
 mod report;
-mod session;
-mod solved_shape;
 mod verify;
 
 pub use arguments::Arguments;
 pub use command_line::{execute, run, run_any};
-pub use contact_objective::{ContactObjective, objective};
+pub use contact_objective::{ContactObjective, SolvedShape, objective};
 pub use controls::parse as parse_controls;
 pub use failure::{Failure, finish};
 pub use folder::{Folder, json};
 pub use optimize::mesh_run::{first_step, mean_height_coordinates};
-pub use verify::smooth_step;
+pub use verify::{DIRECTION_SEED, smooth_taylor_test, taylor_steps};

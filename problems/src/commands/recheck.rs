@@ -3,10 +3,9 @@
 use crate::commands::arguments::Arguments;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::json;
+use crate::commands::folder::{file_error, json};
 use crate::commands::optimize::stages::{MeshStage, stages};
 use contact::equilibrium::ContactProblem;
-use contact::error::SceneError;
 use nonsmooth::{Certificate, CertificateCheck, Journal};
 use scene_file::Case;
 use serde::Serialize;
@@ -78,13 +77,11 @@ fn last_stage(case: &Case, folder: &Path) -> Option<MeshStage> {
 }
 
 fn read(file: &Path) -> Result<Certificate, Failure> {
-    let path = file.display().to_string();
-    let refused = |reason: String| SceneError::File { path: path.clone(), reason };
-    let text = std::fs::read_to_string(file).map_err(|error| refused(error.to_string()))?;
+    let text = std::fs::read_to_string(file).map_err(|error| file_error(file, error))?;
     let certificate: Option<Certificate> = serde_json::from_str(&text)
-        .map_err(|error| refused(format!("{error}; expected the certificate that an optimization writes")))?;
-    let none = || Failure::Computation(format!("{path}: the run solved no subproblem and has no certificate"));
-    certificate.ok_or_else(none)
+        .map_err(|error| file_error(file, format!("{error}; expected the certificate that an optimization writes")))?;
+    let none = "the run solved no subproblem and has no certificate";
+    certificate.ok_or_else(|| Failure::Computation(format!("{}: {none}", file.display())))
 }
 
 impl RecheckJson {

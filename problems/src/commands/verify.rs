@@ -6,6 +6,7 @@ use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json};
 use crate::commands::long_run::RunFolder;
+use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactStatus, Residuals};
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -13,9 +14,9 @@ use scene_file::Case;
 use serde::Serialize;
 
 /// Seed of the direction.
-const DIRECTION_SEED: u64 = 20_231;
+pub const DIRECTION_SEED: u64 = 20_231;
 /// Number of steps in the table.
-const STEP_COUNT: usize = 9;
+const STEP_COUNT: i32 = 9;
 /// Ratio of neighbouring steps: ten to the power −½.
 const STEP_RATIO: f64 = 0.316_227_766_016_837_94;
 /// Largest step tried, relative to the height of the body.
@@ -41,11 +42,7 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
     let folder = RunFolder::folder_for_results(case.output.folder.as_deref())?;
     let shape = objective.solver();
     let control = controls::load(shape, case, arguments.controls.as_deref())?;
-    let direction = nonsmooth::verify::seeded_direction(control.len(), DIRECTION_SEED);
-    let here = shape.solve(&control, None, Accuracy::TIGHTEST)?;
-    let step = smooth_step(objective, &control, &direction, &here.forces.status)?;
-    let steps: Vec<f64> = (0..STEP_COUNT).map(|index| step * STEP_RATIO.powi(index as i32)).collect();
-    let test = taylor_test(objective, &control, &Direction::Given(direction), &steps)?;
+    let (here, step, test) = smooth_taylor_test(objective, &control)?;
     let result = VerificationJson {
         test,
         smooth_step: step,
@@ -67,12 +64,29 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
     Failure::printed_with_files(arguments.printed(text, object), written)
 }
 
-/// A step along the direction and against it over which no contact node changes its status; the shortest step tried if there is
-/// none.
+/// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the largest step.
 ///
 /// # Errors
 /// [`Failure`] of the contact solver.
-pub fn smooth_step(
+pub fn smooth_taylor_test(
+    objective: &ContactObjective,
+    control: &Vector,
+) -> Result<(ContactState, f64, TaylorTest), Failure> {
+    let direction = nonsmooth::verify::seeded_direction(control.len(), DIRECTION_SEED);
+    let here = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
+    let step = smooth_step(objective, control, &direction, &here.forces.status)?;
+    let test = taylor_test(objective, control, &Direction::Given(direction), &taylor_steps(step))?;
+    Ok((here, step, test))
+}
+
+/// The steps of a Taylor table, from the largest down.
+pub fn taylor_steps(largest: f64) -> Vec<f64> {
+    (0..STEP_COUNT).map(|index| largest * STEP_RATIO.powi(index)).collect()
+}
+
+/// A step along the direction and against it over which no contact node changes its status; the shortest step tried if there is
+/// none.
+fn smooth_step(
     objective: &ContactObjective,
     control: &Vector,
     direction: &Vector,
@@ -80,28 +94,15 @@ pub fn smooth_step(
 ) -> Result<f64, Failure> {
     let height = control.iter().map(|height| height.abs()).sum::<f64>() / control.len() as f64;
     let mut step = MAX_RELATIVE_STEP * height;
+    let stays = |step: f64| -> Result<bool, Failure> {
+        let state = objective.solver().solve(&(control + direction * step), None, Accuracy::TIGHTEST)?;
+        Ok(state.forces.status == status)
+    };
     for _shortening in 0..MAX_SHORTENINGS {
-        if same_piece(objective, control, direction, step, status)? {
+        if stays(step)? && stays(-step)? {
             break;
         }
         step *= STEP_RATIO;
     }
     Ok(step)
-}
-
-/// Whether all contact nodes keep their status over a step along the direction and over one against it.
-fn same_piece(
-    objective: &ContactObjective,
-    control: &Vector,
-    direction: &Vector,
-    step: f64,
-    status: &[ContactStatus],
-) -> Result<bool, Failure> {
-    for sign in [1.0, -1.0] {
-        let state = objective.solver().solve(&(control + direction * (sign * step)), None, Accuracy::TIGHTEST)?;
-        if state.forces.status != status {
-            return Ok(false);
-        }
-    }
-    Ok(true)
 }

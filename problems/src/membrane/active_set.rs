@@ -5,9 +5,10 @@
 //! ```
 //! A is an M-matrix, so that u grows and the inactive part only shrinks after the first step: the method ends.
 
-use crate::membrane::MembraneGrid;
+use crate::membrane::{MembraneGrid, MembraneState};
 use contact::linear::FactorizationError;
 use contact::linear::cholesky::{NumericFactor, SymbolicFactor};
+use contact::linear::ordering::nested_dissection;
 use contact::linear::symmetric::LowerPattern;
 use nonsmooth::OracleError;
 use std::sync::Arc;
@@ -19,21 +20,6 @@ pub struct ReducedMembrane {
     symbolic: Arc<SymbolicFactor>,
 }
 
-/// A solved obstacle problem.
-#[derive(Debug)]
-pub struct Solved {
-    /// u at the inner nodes.
-    pub displacement: Vec<f64>,
-    /// λ h² = A u − b; exactly zero at inactive nodes.
-    pub reaction: Vec<f64>,
-    /// Whether a node is held by the obstacle: λ > 0.
-    pub active: Vec<bool>,
-    /// Factor of the matrix of the active set.
-    pub factor: NumericFactor,
-    /// Number of linear systems solved.
-    pub steps: usize,
-}
-
 /// Largest number of steps; the method needs about as many as there are grid lines.
 const MAX_STEPS: usize = 1000;
 
@@ -43,7 +29,10 @@ impl ReducedMembrane {
     /// # Errors
     /// [`FactorizationError`] when it fails.
     pub fn new(grid: &MembraneGrid) -> Result<Self, FactorizationError> {
-        let (pattern, symbolic) = grid.analyse()?;
+        let neighbours = (0..grid.node_count()).map(|index| grid.neighbours(index).collect());
+        let pattern = Arc::new(LowerPattern::from_columns(neighbours.collect()));
+        let order = nested_dissection([grid.inner(), grid.inner(), 1]);
+        let symbolic = Arc::new(SymbolicFactor::new(Arc::clone(&pattern), order)?);
         Ok(Self { pattern, symbolic })
     }
 
@@ -58,7 +47,7 @@ impl ReducedMembrane {
         load: &[f64],
         obstacle: &[f64],
         start: Option<&[bool]>,
-    ) -> Result<Solved, OracleError> {
+    ) -> Result<MembraneState, OracleError> {
         let mut active = start.map_or_else(|| vec![false; load.len()], <[bool]>::to_vec);
         let size = load.iter().zip(obstacle).fold(0.0_f64, |size, (b, psi)| size.max(b.abs()).max(psi.abs()));
         let rounding = 64.0 * f64::EPSILON * size;
@@ -81,7 +70,9 @@ impl ReducedMembrane {
                 .collect();
             changed = next.iter().zip(&active).filter(|(new, old)| new != old).count();
             if changed == 0 {
-                return Ok(Solved { displacement: u, reaction, active, factor, steps: step });
+                let area = grid.width() * grid.width();
+                let reaction = reaction.into_iter().map(|reaction| reaction / area).collect();
+                return Ok(MembraneState { displacement: u, reaction, active, steps: step, factor });
             }
             active = next;
         }

@@ -7,29 +7,22 @@
 use crate::membrane::{MembraneGrid, MembraneState};
 use nonsmooth::{Cost, CostGradient, Vector};
 
-/// Weights of the terms of the cost.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MembraneWishes {
-    /// ν, the weight of the load.
-    pub load_weight: f64,
-    /// κ, the weight of the reaction.
-    pub reaction_weight: f64,
-}
-
 /// The cost J.
 #[derive(Debug, Clone)]
 pub struct MembraneCost {
     wanted: Vec<f64>,
     area: f64,
     total: f64,
-    wishes: MembraneWishes,
+    load_weight: f64,
+    reaction_weight: f64,
 }
 
 impl MembraneCost {
-    /// The cost with a wanted shape u_d.
-    pub fn new(grid: &MembraneGrid, wanted: impl Fn([f64; 2]) -> f64, wishes: MembraneWishes) -> Self {
+    /// The cost with a wanted shape u_d, the weight ν of the load and the weight κ of the reaction.
+    pub fn new(grid: &MembraneGrid, wanted: impl Fn([f64; 2]) -> f64, load_weight: f64, reaction_weight: f64) -> Self {
         let wanted = (0..grid.node_count()).map(|index| wanted(grid.node(index))).collect();
-        Self { wanted, area: grid.width() * grid.width(), total: grid.length * grid.length, wishes }
+        let (area, total) = (grid.width() * grid.width(), grid.length * grid.length);
+        Self { wanted, area, total, load_weight, reaction_weight }
     }
 }
 
@@ -38,17 +31,17 @@ impl Cost<MembraneState> for MembraneCost {
         let off: f64 = state.displacement.iter().zip(&self.wanted).map(|(u, wanted)| (u - wanted).powi(2)).sum();
         let patch = self.total / control.len() as f64;
         0.5 * self.area * off
-            + 0.5 * self.wishes.load_weight * patch * control.norm_squared()
-            + self.wishes.reaction_weight * self.area * state.reaction.iter().sum::<f64>()
+            + 0.5 * self.load_weight * patch * control.norm_squared()
+            + self.reaction_weight * self.area * state.reaction.iter().sum::<f64>()
     }
 
     fn gradient(&self, control: &Vector, state: &MembraneState) -> CostGradient {
         let count = self.wanted.len();
         let toward = Vector::from_fn(2 * count, |i, _| match i.checked_sub(count) {
             None => self.area * (state.displacement[i] - self.wanted[i]),
-            Some(_) => self.wishes.reaction_weight * self.area,
+            Some(_) => self.reaction_weight * self.area,
         });
         let patch = self.total / control.len() as f64;
-        CostGradient { control: control * (self.wishes.load_weight * patch), state: toward }
+        CostGradient { control: control * (self.load_weight * patch), state: toward }
     }
 }

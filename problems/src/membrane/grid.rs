@@ -5,11 +5,6 @@
 //! ```
 
 use contact::error::SceneError;
-use contact::linear::FactorizationError;
-use contact::linear::cholesky::SymbolicFactor;
-use contact::linear::ordering::nested_dissection;
-use contact::linear::symmetric::LowerPattern;
-use std::sync::Arc;
 
 /// A square with N × N cells; unknowns are the (N − 1)² inner nodes, i·(N − 1) + j with i along x₁.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,15 +88,5 @@ impl MembraneGrid {
                 around.into_iter().filter(|k| !inside(k[0]) || !inside(k[1])).map(|k| value(self.point(k))).sum()
             })
             .collect()
-    }
-
-    /// Pattern and elimination order of A.
-    pub(super) fn analyse(&self) -> Result<(Arc<LowerPattern>, Arc<SymbolicFactor>), FactorizationError> {
-        let pattern = Arc::new(LowerPattern::from_columns(
-            (0..self.node_count()).map(|index| self.neighbours(index).collect()).collect(),
-        ));
-        let order = nested_dissection([self.inner(), self.inner(), 1]);
-        let symbolic = Arc::new(SymbolicFactor::new(Arc::clone(&pattern), order)?);
-        Ok((pattern, symbolic))
     }
 }

@@ -15,7 +15,7 @@ mod cost;
 mod grid;
 mod problem;
 
-pub use cost::{MembraneCost, MembraneWishes};
+pub use cost::MembraneCost;
 pub use grid::MembraneGrid;
 pub use problem::{MembraneControl, MembraneData, MembraneState};
 
@@ -66,8 +66,7 @@ pub fn example(cells: usize) -> Result<MembraneObjective, MembraneError> {
         patches: PATCHES,
     };
     let wanted = |[x, y]: [f64; 2]| 0.08 * (std::f64::consts::PI * x).sin() * (std::f64::consts::PI * y).sin();
-    let wishes = MembraneWishes { load_weight: 1e-6, reaction_weight: 0.02 };
-    let cost = MembraneCost::new(&grid, wanted, wishes);
+    let cost = MembraneCost::new(&grid, wanted, 1e-6, 0.02);
     Ok(ReducedObjective::new(MembraneControl::new(grid, &data)?, cost))
 }
 

@@ -50,7 +50,7 @@ pub struct MembraneState {
     pub active: Vec<bool>,
     /// Number of linear systems solved.
     pub steps: usize,
-    factor: NumericFactor,
+    pub(super) factor: NumericFactor,
 }
 
 impl MembraneControl {
@@ -124,15 +124,7 @@ impl StateSolver for MembraneControl {
         _accuracy: Accuracy,
     ) -> Result<MembraneState, OracleError> {
         let load = self.load(control)?;
-        let area = self.grid.width() * self.grid.width();
-        let solved = self.reduced.solve(&self.grid, &load, &self.obstacle, start.map(Vec::as_slice))?;
-        Ok(MembraneState {
-            displacement: solved.displacement,
-            reaction: solved.reaction.into_iter().map(|reaction| reaction / area).collect(),
-            active: solved.active,
-            steps: solved.steps,
-            factor: solved.factor,
-        })
+        self.reduced.solve(&self.grid, &load, &self.obstacle, start.map(Vec::as_slice))
     }
 
     fn warm_start(&self, state: &MembraneState) -> Vec<bool> {

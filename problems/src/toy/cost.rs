@@ -6,7 +6,6 @@
 //! ```
 //! The first two terms are the work of the loads. J is smooth in (α, y); all kinks of Θ come from S.
 
-use super::node::NodeData;
 use super::solver::ToyState;
 use nonsmooth::{Cost, CostGradient, Vector};
 
@@ -24,12 +23,6 @@ pub struct ToyCost {
 }
 
 impl ToyCost {
-    /// The cost with the loads of two nodes.
-    pub fn new(nodes: [&NodeData; 2], pressure_weight: f64, shape_weight: f64, nominal_shape: [f64; 2]) -> Self {
-        let loads = nodes.map(|data| (data.pressing_load, data.tangential_load));
-        Self { loads, pressure_weight, shape_weight, nominal_shape }
-    }
-
     fn shape_offset(&self, control: &Vector) -> Vector {
         control - Vector::from_row_slice(&self.nominal_shape)
     }

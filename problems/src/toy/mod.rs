@@ -24,8 +24,6 @@
 //!
 //! **Nonconvex**: φᵢ' drops at touch (0 to −5/3, −10/3) and at the start of backward slip; below touch Θ is nearly a plateau.
 
-pub mod landscape;
-
 mod clarke;
 mod cost;
 mod node;
@@ -40,7 +38,7 @@ pub use cost::ToyCost;
 pub use node::{Kink, Node, NodeData, NodeStatus, NodeValues};
 pub use solver::{NodeState, SURFACE, ToyContact, ToyState};
 pub use study::{SUCCESS, ToyRun, ToyStudy, random_starts, run_study};
-pub use trace::{ToyTrace, kink_lines, trace};
+pub use trace::{ToyTrace, kink_lines, landscape, trace};
 
 use nonsmooth::{Polyhedron, ReducedObjective, Vector};
 
@@ -74,7 +72,7 @@ pub fn toy_objective() -> ToyObjective {
         Node::new(NodeData { stiffness, coupling, friction_coefficient, pressing_load, tangential_load })
             .expect("invariant: the toy's data are admissible")
     });
-    let cost = ToyCost::new([nodes[0].data(), nodes[1].data()], 0.4, 0.125, [1.0, 1.0]);
+    let cost = ToyCost { loads: LOADS, pressure_weight: 0.4, shape_weight: 0.125, nominal_shape: [1.0, 1.0] };
     ReducedObjective::new(ToyContact::new(nodes), cost)
 }
 

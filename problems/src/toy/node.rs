@@ -121,24 +121,19 @@ impl Node {
     /// ```
     pub fn new(data: NodeData) -> Result<Self, InputError> {
         let NodeData { stiffness, coupling, friction_coefficient, pressing_load, tangential_load } = data;
-        let check = |setting, value: f64, allowed, valid: bool| {
-            if valid && value.is_finite() {
-                Ok(())
-            } else {
-                Err(InputError::OutOfRange { setting, value: value.to_string(), allowed })
-            }
-        };
-        check("stiffness", stiffness, "> 0, finite", stiffness > 0.0)?;
-        check("coupling", coupling, "|coupling| < stiffness", coupling.abs() < stiffness)?;
         let unique = friction_coefficient > 0.0 && friction_coefficient * coupling.abs() < stiffness;
-        check(
-            "friction_coefficient",
-            friction_coefficient,
-            "> 0, friction_coefficient·|coupling| < stiffness",
-            unique,
-        )?;
-        check("pressing_load", pressing_load, "finite", true)?;
-        check("tangential_load", tangential_load, "finite", true)?;
+        let cone = "> 0, friction_coefficient·|coupling| < stiffness";
+        for (setting, value, allowed, valid) in [
+            ("stiffness", stiffness, "> 0, finite", stiffness > 0.0),
+            ("coupling", coupling, "|coupling| < stiffness", coupling.abs() < stiffness),
+            ("friction_coefficient", friction_coefficient, cone, unique),
+            ("pressing_load", pressing_load, "finite", true),
+            ("tangential_load", tangential_load, "finite", true),
+        ] {
+            if !(valid && value.is_finite()) {
+                return Err(InputError::OutOfRange { setting, value: value.to_string(), allowed });
+            }
+        }
         Ok(Self { data })
     }
 

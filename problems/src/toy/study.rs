@@ -1,15 +1,12 @@
 //! Minimises the toy from many starts and says how far each run ended from the known minimiser.
 
-use super::{Kink, LOWER, MINIMUM, UPPER, admissible_set, minimiser, toy_objective};
-use nonsmooth::{BundleTrust, BundleTrustConfig, OptimizeError, Termination, Vector};
+use super::{Kink, LOWER, MINIMUM, UPPER, minimiser, toy_objective, trace};
+use nonsmooth::{OptimizeError, Termination, Vector};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Distance |α − α*| up to which a run has found the minimiser, mm.
 pub const SUCCESS: f64 = 1e-8;
-
-/// Tolerance of the runs; sharp growth turns it into a distance of about five times this.
-const TOLERANCE: f64 = 1e-10;
 
 /// One run of the engine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -76,15 +73,8 @@ pub fn run_study(starts: &[[f64; 2]]) -> Result<Option<ToyStudy>, OptimizeError>
     Ok(Some(ToyStudy { minimiser: super::MINIMISER, minimum: MINIMUM, best, kinks, runs }))
 }
 
-/// Settings of the engine for the toy.
-pub(super) fn config() -> BundleTrustConfig {
-    BundleTrustConfig { tolerance: TOLERANCE, ..BundleTrustConfig::default() }
-}
-
 fn run(start: &[f64; 2]) -> Result<ToyRun, OptimizeError> {
-    let report = BundleTrust::new(config())?
-        .constraints(admissible_set())
-        .minimize(&toy_objective(), Vector::from_row_slice(start))?;
+    let report = trace(*start)?.report;
     Ok(ToyRun {
         start: *start,
         solution: [report.solution[0], report.solution[1]],

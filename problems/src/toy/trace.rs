@@ -1,9 +1,14 @@
-//! One run of the engine on the toy with every point that it evaluated, for pictures.
+//! One run of the engine on the toy with every point that it evaluated; values and kinks over the admissible box for pictures.
 
-use super::study::config;
-use super::{LOWER, SURFACE, ToyObjective, UPPER, admissible_set, toy_objective};
-use nonsmooth::{Answer, BundleTrust, NonsmoothObjective, OptimizeError, OracleError, Report, Request, Vector};
+use super::{LOWER, SURFACE, UPPER, admissible_set, toy_objective};
+use nonsmooth::{
+    Accuracy, BundleTrust, BundleTrustConfig, Cost, Evaluation, FnObjective, NonsmoothObjective, OptimizeError,
+    OracleError, Report, Request, StateSolver, Vector,
+};
 use std::cell::RefCell;
+
+/// Tolerance of the runs; sharp growth turns it into a distance of about five times this.
+const TOLERANCE: f64 = 1e-10;
 
 /// A run with the points of its evaluations.
 #[derive(Debug, Clone)]
@@ -14,34 +19,45 @@ pub struct ToyTrace {
     pub points: Vec<[f64; 2]>,
 }
 
-/// An objective that keeps the points at which it is evaluated.
-struct Recorded {
-    inner: ToyObjective,
-    points: RefCell<Vec<[f64; 2]>>,
-}
-
-impl NonsmoothObjective for Recorded {
-    type WarmStart = <ToyObjective as NonsmoothObjective>::WarmStart;
-
-    fn dimension(&self) -> usize {
-        self.inner.dimension()
-    }
-
-    fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {
-        self.points.borrow_mut().push([request.point[0], request.point[1]]);
-        self.inner.evaluate(request)
-    }
-}
-
-/// Runs the engine from a start, with the settings of [`super::run_study`].
+/// Runs the engine from a start.
 ///
 /// # Errors
 /// [`OptimizeError`] if the start is not finite.
 pub fn trace(start: [f64; 2]) -> Result<ToyTrace, OptimizeError> {
-    let recorded = Recorded { inner: toy_objective(), points: RefCell::default() };
-    let mut method = BundleTrust::new(config())?.constraints(admissible_set());
+    let (objective, points) = (toy_objective(), RefCell::new(Vec::new()));
+    let recorded = FnObjective::new(2, |control: &Vector| {
+        points.borrow_mut().push([control[0], control[1]]);
+        let answer =
+            objective.evaluate(&Request::tight(control)).expect("invariant: the engine asks at finite controls");
+        let Evaluation { value, subgradient, .. } = answer.into_evaluation();
+        (value, subgradient)
+    });
+    let config = BundleTrustConfig { tolerance: TOLERANCE, ..BundleTrustConfig::default() };
+    let mut method = BundleTrust::new(config)?.constraints(admissible_set());
     let report = method.minimize(&recorded, Vector::from_row_slice(&start))?;
-    Ok(ToyTrace { report, points: recorded.points.into_inner() })
+    Ok(ToyTrace { report, points: points.into_inner() })
+}
+
+/// Controls at equal distances in the admissible box, `cells` + 1 along each axis, with Θ there; the second control runs fastest.
+///
+/// # Errors
+/// An [`OracleError`] without cells.
+///
+/// ```
+/// let points = problems::toy::landscape(4)?;
+/// assert_eq!((points.len(), points[1].0), (25, [-4.0, -1.5]));
+/// # Ok::<(), nonsmooth::OracleError>(())
+/// ```
+pub fn landscape(cells: usize) -> Result<Vec<([f64; 2], f64)>, OracleError> {
+    let objective = toy_objective();
+    let coordinate = |index: usize| LOWER + (UPPER - LOWER) * index as f64 / cells as f64;
+    let controls = (0..=cells).flat_map(|i| (0..=cells).map(move |j| [i, j])).map(|place| place.map(coordinate));
+    let point = |control: [f64; 2]| {
+        let at = Vector::from_row_slice(&control);
+        let state = objective.solver().solve(&at, None, Accuracy::TIGHTEST)?;
+        Ok((control, objective.cost().value(&at, &state)))
+    };
+    controls.map(point).collect()
 }
 
 /// The lines in the admissible box on which a node has a kink: ends of each.

@@ -3,5 +3,7 @@
 
 pub mod accuracy;
 pub mod headline;
+mod markdown;
+mod rates;
 pub mod scaling;
 pub mod stability;

@@ -1,4 +1,4 @@
-//! The binary `toy2d`: its page, its JSON, its landscape, its exit statuses.
+//! The binary `toy2d`: its page, its JSON, its pictures, its exit statuses.
 
 use testset::kit;
 
@@ -26,16 +26,6 @@ fn page_names_the_minimiser_and_its_kinks() {
 }
 
 #[test]
-fn landscape_is_written() {
-    let folder = kit::scratch();
-    let file = folder.path().join("landscape.csv");
-    let output = kit::run(TOY2D, &["--start", "0,0", "--cells", "10", "--landscape", kit::text(&file)]);
-    assert_eq!(output.status.code(), Some(0));
-    let text = std::fs::read_to_string(&file).expect("the landscape");
-    assert_eq!(text.lines().count(), 1 + 11 * 11);
-}
-
-#[test]
 fn pictures_show_every_evaluation_of_the_first_run() {
     let folder = kit::scratch();
     let out = folder.path();
@@ -54,7 +44,6 @@ fn bad_input_ends_with_status_2_and_a_reason() {
         (vec!["--start", "1,NaN"], "--start"),
         (vec!["--start", "1,7"], "between -4 and 6"),
         (vec!["--starts", "0"], "--starts"),
-        (vec!["--landscape", "/nonexistent/folder/file.csv"], "--landscape"),
         (vec!["--cells", "0"], "--cells"),
     ] {
         kit::refused(TOY2D, &arguments, &[reason]);

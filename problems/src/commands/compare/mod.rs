@@ -4,17 +4,15 @@
 pub mod comparison;
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::contact_objective::objective;
+use crate::commands::contact_objective::{SolvedShape, objective};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json};
-use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{COMPARED, RunFolder, STATUS};
 use crate::commands::optimize::run::{OptimizationRun, check_limit, initial_controls, open_folder, optimize};
 use crate::commands::optimize::stages::stages;
 use crate::commands::optimize::{interruption, report};
 use crate::commands::report::files;
-use crate::commands::session::Session;
-use crate::commands::solved_shape::SolvedShape;
 use contact::error::SceneError;
 use nonsmooth::Vector;
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, json};
+use crate::commands::folder::{Folder, file_error, json};
 use crate::commands::loaded_scene::LoadedScene;
 use contact::error::SceneError;
 use nonsmooth::{Journal, Journaled, NonsmoothObjective, Vector};
@@ -36,20 +36,19 @@ impl RunFolder {
     pub fn scene(folder: &Path, comparison: bool) -> Result<(SceneFile, Option<PathBuf>), SceneError> {
         if !folder.join(SCENE).exists() || !folder.join(START).exists() {
             let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
-            return Err(SceneError::File { path: folder.display().to_string(), reason });
+            return Err(file_error(folder, reason));
         }
-        let path = folder.display().to_string();
         if COMPARED.iter().any(|part| folder.join(part).join(START).exists()) != comparison {
             let found = if comparison {
                 "an optimization: continue it with optimize"
             } else {
                 "a comparison: continue it with compare"
             };
-            return Err(SceneError::File { path, reason: format!("holds {found} --resume") });
+            return Err(file_error(folder, format!("holds {found} --resume")));
         }
         let file = folder.join(SCENE);
         let mut scene = SceneFile::read(&file)?;
-        scene.output.folder = Some(path);
+        scene.output.folder = Some(folder.display().to_string());
         Ok((scene, Some(file)))
     }
 
@@ -62,15 +61,14 @@ impl RunFolder {
     /// would be replaced.
     ///
     /// # Errors
-    /// As [`Folder::prepare`].
+    /// As [`Folder::with_room`].
     pub fn folder_for_results(path: Option<&str>) -> Result<Option<Folder>, SceneError> {
-        match path.filter(|path| Self::is_one(Path::new(path))) {
-            None => Folder::prepare(path),
-            Some(path) => {
-                let reason = "holds an optimization, whose report would be replaced; --out takes another folder".into();
-                Err(SceneError::File { path: path.to_owned(), reason })
-            }
+        let Some(path) = path.map(Path::new) else { return Ok(None) };
+        if Self::is_one(path) {
+            let reason = "holds an optimization, whose report would be replaced; --out takes another folder";
+            return Err(file_error(path, reason));
         }
+        Folder::with_room(path, 1).map(Some)
     }
 
     /// Prepares the folder for a run; `bytes` must fit into it.
@@ -81,18 +79,15 @@ impl RunFolder {
         let folder = Folder::with_room(Path::new(path), bytes)?;
         let this = Self { folder, resumed };
         if !resumed && !this.journals()?.is_empty() && !this.path(REPORT).exists() {
-            let reason = "holds a run that has not ended; continue it with --resume, or remove the folder".to_owned();
-            return Err(SceneError::File { path: path.to_owned(), reason });
+            let reason = "holds a run that has not ended; continue it with --resume, or remove the folder";
+            return Err(file_error(Path::new(path), reason));
         }
         Ok(this)
     }
 
     /// Folders with a journal: this one, those of its stages, and those of the parts of a comparison.
     fn journals(&self) -> Result<Vec<PathBuf>, SceneError> {
-        let failed = |error: std::io::Error| SceneError::File {
-            path: self.folder.path().display().to_string(),
-            reason: error.to_string(),
-        };
+        let failed = |error: std::io::Error| file_error(self.folder.path(), error);
         let mut found = vec![self.folder.path().to_owned()];
         found.extend(COMPARED.iter().map(|part| self.path(part)).filter(|part| part.exists()));
         for place in found.clone() {
@@ -161,7 +156,7 @@ impl RunFolder {
             let path = self.folder.path().join(name);
             match std::fs::remove_file(&path) {
                 Err(error) if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-                    return Err(SceneError::File { path: path.display().to_string(), reason: error.to_string() });
+                    return Err(file_error(&path, error));
                 }
                 _ => {}
             }
@@ -173,8 +168,7 @@ impl RunFolder {
     fn keep_grids(&self, scene: &mut SceneFile, from: &Path) -> Result<(), Failure> {
         let copy = |file: &mut String, name: &str| {
             let path = from.join(&*file);
-            let text = std::fs::read_to_string(&path)
-                .map_err(|error| SceneError::File { path: path.display().to_string(), reason: error.to_string() })?;
+            let text = std::fs::read_to_string(&path).map_err(|error| file_error(&path, error))?;
             *file = name.to_owned();
             self.folder.replace(name, &text)
         };

@@ -12,20 +12,18 @@ pub const STATUS: u8 = 130;
 pub fn watch_interrupts() {
     // Several runs of one process share the handler.
     static WATCHED: Once = Once::new();
-    WATCHED.call_once(set_handler);
-}
-
-fn set_handler() {
-    let handler = || {
-        if INTERRUPTS.fetch_add(1, Ordering::SeqCst) > 0 {
-            std::process::exit(i32::from(STATUS));
+    WATCHED.call_once(|| {
+        let handler = || {
+            if INTERRUPTS.fetch_add(1, Ordering::SeqCst) > 0 {
+                std::process::exit(i32::from(STATUS));
+            }
+            eprintln!("interrupted: the current evaluation is finished first; once more ends the program at once");
+        };
+        // A program that has its own handler keeps it.
+        if let Err(error) = ctrlc::set_handler(handler) {
+            tracing::warn!("Ctrl-C is not watched: {error}");
         }
-        eprintln!("interrupted: the current evaluation is finished first; once more ends the program at once");
-    };
-    // A program that has its own handler keeps it.
-    if let Err(error) = ctrlc::set_handler(handler) {
-        tracing::warn!("Ctrl-C is not watched: {error}");
-    }
+    });
 }
 
 /// Whether an interruption was asked for.

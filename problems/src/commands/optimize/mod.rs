@@ -5,15 +5,14 @@ pub mod run;
 pub mod stages;
 pub mod summary;
 
+use crate::commands::contact_objective::SolvedShape;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json};
-use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS, interrupted};
 use crate::commands::optimize::run::{OptimizationRun, optimize};
 use crate::commands::optimize::summary::{page, stages_page, summary};
 use crate::commands::report::files;
-use crate::commands::session::Session;
-use crate::commands::solved_shape::SolvedShape;
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {

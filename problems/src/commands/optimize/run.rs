@@ -3,11 +3,10 @@
 use crate::commands::contact_objective::{ContactObjective, objective};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, interrupted, watch_interrupts};
 use crate::commands::optimize::mesh_run::{MeshRun, first_step, run_on_mesh};
 use crate::commands::optimize::stages::{MeshStage, stages};
-use crate::commands::session::Session;
 use contact::error::SceneError;
 use nonsmooth::{StateSolver, Termination, Vector};
 use std::path::Path;

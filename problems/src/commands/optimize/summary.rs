@@ -1,7 +1,7 @@
 //! The report of an optimization as text and as JSON.
 
+use crate::commands::contact_objective::SolvedShape;
 use crate::commands::optimize::mesh_run::MeshRun;
-use crate::commands::solved_shape::SolvedShape;
 use contact::equilibrium::{Kink, Residuals};
 use nonsmooth::{Report, Termination, Vector};
 use serde::Serialize;

@@ -1,15 +1,14 @@
 //! The files of each command. None of them is computed unless a folder is asked for.
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::contact_objective::ContactObjective;
+use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, PICTURE_ENDINGS, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::{COMPARED, RunFolder};
 use crate::commands::optimize::mesh_run::MeshRun;
-use crate::commands::report::shown_shape::ShownShape;
+use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::{gallery, pages, sections, tables};
-use crate::commands::solved_shape::SolvedShape;
 use contact::fields::{FieldState, vtk_files};
 use figures::page::Page;
 use figures::{Figure, FigureError};
@@ -105,7 +104,7 @@ impl<'a> ReportFolder<'a> {
         page.sections.push(sections::origin(&scene, &left_out, warnings));
         page.sections.push(sections::files(&self.files));
         page.sections.retain(|section| !section.blocks.is_empty());
-        self.folder.write("report.html", &page.html())
+        self.folder.write("report.html", page.html())
     }
 }
 

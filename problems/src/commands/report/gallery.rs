@@ -1,15 +1,54 @@
-//! The figures of solved shapes and of a run.
+//! The figures of solved shapes and of a run; solved shapes as figures and files show them.
 
-use crate::commands::contact_objective::ContactObjective;
-use crate::commands::report::shown_shape::ShownShape;
-use crate::commands::solved_shape::SolvedShape;
+use crate::commands::contact_objective::{ContactObjective, SolvedShape};
+use crate::commands::failure::Failure;
 use contact::body::mesh::Block;
 use contact::cost::PressureMeasure;
 use contact::fields::{BodyFields, Fields};
 use figures::{
     Convergence, Figure, FigureError, Map, MapPanel, SolidBlock, SolidPanel, Solids, Step, SurfacePanel, Surfaces,
+    nice_below,
 };
-use nonsmooth::Report;
+use nonsmooth::{Cost, Report};
+use scene_file::OutputSection;
+
+/// A solved shape with its fields and its names.
+pub struct ShownShape<'a> {
+    /// The words below its picture.
+    pub caption: String,
+    /// The beginning of the names of its files.
+    pub name: &'static str,
+    /// The shape.
+    pub solved: &'a SolvedShape,
+    /// Its displacements and stresses, if a picture or a file shows them.
+    pub fields: Option<Fields>,
+}
+
+impl<'a> ShownShape<'a> {
+    /// A solved shape with a caption that begins with `words`, and with as many fields as the outputs show. Files for ParaView hold the sensitivity of the objective to the
+    /// height of every contact node as well, which takes an adjoint.
+    ///
+    /// # Errors
+    /// [`Failure`] of the adjoint.
+    pub fn new(
+        objective: &ContactObjective,
+        name: &'static str,
+        words: &str,
+        solved: &'a SolvedShape,
+        wanted: &OutputSection,
+    ) -> Result<Self, Failure> {
+        let shape = objective.solver();
+        let mut fields = None;
+        if wanted.pictures || wanted.vtk {
+            fields = Some(shape.fields(&solved.state)?);
+        }
+        if let Some(fields) = fields.as_mut().filter(|_| wanted.vtk) {
+            let gradient = objective.cost().gradient(&solved.controls, &solved.state);
+            fields.contact.sensitivity = Some(shape.height_sensitivity(&solved.state, &gradient.state)?.0);
+        }
+        Ok(Self { caption: format!("{words}Θ = {:.4e}", solved.value), name, solved, fields })
+    }
+}
 
 /// Contact pressures side by side on one scale.
 pub fn pressure(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
@@ -75,13 +114,10 @@ pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Res
     let tallest = bodies().map(height).fold(0.0, f64::max);
     let largest =
         bodies().flat_map(|body| &body.displacement).map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
-    let times = if largest > 0.0 {
-        round_below(MAX_SHOWN_DISPLACEMENT * a.max(b).max(tallest) / largest).max(1.0)
-    } else {
-        1.0
-    };
+    let times =
+        if largest > 0.0 { nice_below(MAX_SHOWN_DISPLACEMENT * a.max(b).max(tallest) / largest).max(1.0) } else { 1.0 };
     let upper = seen().filter_map(|(_, fields)| fields.bodies.get(1)).map(height).fold(0.0, f64::max);
-    let lift = if upper > 0.0 { round_below(MAX_LIFT * upper) } else { 0.0 };
+    let lift = if upper > 0.0 { nice_below(MAX_LIFT * upper) } else { 0.0 };
     let panel = |(shape, fields): (&ShownShape<'_>, &Fields)| SolidPanel {
         caption: shape.caption.clone(),
         blocks: fields.bodies.iter().zip([0.0, lift]).map(|(body, lift)| block(body, times, lift)).collect(),
@@ -138,21 +174,4 @@ fn block(body: &BodyFields, times: f64, lift: f64) -> SolidBlock {
         [x1 + times * u[0], x2 + times * u[1], x3 + times * u[2] + lift]
     });
     SolidBlock { nodes: [n1, n2, n3], points: points.collect(), values: body.nodal_von_mises.clone() }
-}
-
-/// The largest of 1, 2, 5 times a power of ten that is not above a number > 0; zero for numbers that have none.
-fn round_below(number: f64) -> f64 {
-    let power = 10.0_f64.powi(number.log10().floor().clamp(-300.0, 300.0) as i32);
-    [5.0, 2.0, 1.0].map(|digit| digit * power).into_iter().find(|round| *round <= number).unwrap_or(0.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn magnifications_are_round_and_not_above() {
-        assert_eq!([0.07, 1.0, 1.9, 4.0, 99.0, 2e5].map(round_below), [0.05, 1.0, 1.0, 2.0, 50.0, 2e5]);
-        assert_eq!([0.0, f64::NAN].map(round_below), [0.0, 0.0]);
-    }
 }

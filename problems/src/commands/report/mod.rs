@@ -4,5 +4,4 @@ pub mod files;
 mod gallery;
 mod pages;
 mod sections;
-mod shown_shape;
 mod tables;

@@ -1,10 +1,9 @@
 //! The HTML report of each command, without the sections on its scene and its files.
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::contact_objective::ContactObjective;
+use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::report::sections::{certificate, course, pictures, states};
-use crate::commands::solved_shape::SolvedShape;
 use contact::equilibrium::StageSeconds;
 use figures::Figure;
 use figures::page::{Block, Page, Section};

@@ -1,7 +1,6 @@
 //! Sections that the report pages of several commands share.
 
-use crate::commands::contact_objective::ContactObjective;
-use crate::commands::solved_shape::SolvedShape;
+use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use figures::Figure;
 use figures::page::{Block, Section};
 use nonsmooth::{Certificate, Report};

@@ -1,10 +1,10 @@
 //! Error of the contact solvers against tolerance and seconds, with the estimate that they report beside the true error.
 
 use crate::accuracy::extent::case;
-use crate::accuracy::objective::{METHODS, Objective, norm, objective_by};
+use crate::accuracy::objective::{METHODS, norm, objective_by};
 use crate::scaling::{SceneName, Variant};
 use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
-use problems::commands::Failure;
+use problems::commands::{ContactObjective, Failure};
 use serde::Serialize;
 use std::time::Instant;
 
@@ -97,14 +97,14 @@ pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<Algeb
 }
 
 /// A shape that is nothing special.
-pub fn bent(objective: &Objective) -> Vector {
+pub fn bent(objective: &ContactObjective) -> Vector {
     const SEED: u64 = 5;
     let start = objective.solver().start();
     start.zip_map(&nonsmooth::verify::seeded_direction(start.len(), SEED), |height, bend| height * (0.98 + 0.01 * bend))
 }
 
 fn row(
-    objective: &Objective,
+    objective: &ContactObjective,
     method: &'static str,
     control: &Vector,
     tolerance: f64,

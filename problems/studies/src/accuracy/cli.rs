@@ -1,12 +1,13 @@
-//! The command line of the study.
+//! The command line of the study, and all that was measured.
 
 use crate::accuracy::extent::SCENES;
-use crate::accuracy::{Extent, Part, Report, algebra, discretisation, manufactured_errors, optimization};
+use crate::accuracy::{AlgebraStudy, ManufacturedErrors, MeshStudy, OptimizationStudy, SubgradientStudy};
+use crate::accuracy::{Extent, Part, algebra, discretisation, manufactured_errors, optimization};
 use crate::accuracy::{pictures, subgradient, tables};
 use crate::scaling::SceneName;
 use clap::Parser;
-use problems::commands::{Failure, Folder, json};
-use std::io::Write;
+use problems::commands::{Failure, Folder, finish, json};
+use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -35,12 +36,31 @@ pub struct Arguments {
     pub out: Option<PathBuf>,
 }
 
+/// The study; parts that were not asked for are empty.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// Threads of the machine.
+    pub machine_threads: usize,
+    /// Seconds of the whole study.
+    pub seconds: f64,
+    /// Smooth solution.
+    pub smooth: Vec<ManufacturedErrors>,
+    /// Meshes.
+    pub discretisation: Vec<MeshStudy>,
+    /// Contact solvers.
+    pub algebra: Vec<AlgebraStudy>,
+    /// Taylor tables and kinks.
+    pub subgradient: Option<SubgradientStudy>,
+    /// Optimizations.
+    pub optimization: Vec<OptimizationStudy>,
+}
+
 impl Arguments {
     fn extent(&self) -> Extent {
         match (self.smoke, self.full) {
-            (true, _) => Extent::Smoke,
-            (_, true) => Extent::Full,
-            _ => Extent::Quick,
+            (true, _) => Extent::SMOKE,
+            (_, true) => Extent::FULL,
+            _ => Extent::QUICK,
         }
     }
 
@@ -51,18 +71,7 @@ impl Arguments {
 
 /// Runs the binary.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
-    match execute(&arguments) {
-        Ok(text) => {
-            // A reader that closes the pipe early has seen what it wanted.
-            let _ = std::io::stdout().write_all(text.as_bytes());
-            ExitCode::SUCCESS
-        }
-        Err(failure) => {
-            eprintln!("error: {failure}");
-            failure.exit_code()
-        }
-    }
+    finish(execute(&Arguments::parse()))
 }
 
 /// Measures, writes the folder, and returns what belongs on stdout.
@@ -82,22 +91,21 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
 
 fn measure(arguments: &Arguments) -> Result<Report, Failure> {
     let (clock, extent) = (Instant::now(), arguments.extent());
-    let machine_threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let machine_threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut report = Report { machine_threads, ..Report::default() };
     let progress = |what: &str| eprintln!("{:>7.1} s  {what}", clock.elapsed().as_secs_f64());
     if arguments.wants(Part::Discretisation) {
-        for &bricks in extent.meshes().iter().filter(|bricks| **bricks <= LARGEST_SMOOTH) {
-            let errors = manufactured_errors(bricks).map_err(|error| Failure::Computation(error.to_string()))?;
-            report.smooth.push(errors);
+        for &bricks in extent.meshes.iter().filter(|bricks| **bricks <= LARGEST_SMOOTH) {
+            report.smooth.push(manufactured_errors(bricks)?);
         }
         for scene in SCENES {
-            report.discretisation.push(discretisation::study(scene, extent.meshes())?);
+            report.discretisation.push(discretisation::study(scene, extent.meshes)?);
         }
         progress("discretisation");
     }
     if arguments.wants(Part::Algebra) {
         for scene in SCENES {
-            report.algebra.push(algebra::study(scene, extent.algebra_mesh(), &extent.exponents())?);
+            report.algebra.push(algebra::study(scene, extent.algebra_mesh, extent.exponents)?);
         }
         progress("contact solvers");
     }

@@ -4,7 +4,7 @@
 
 use crate::accuracy::extent::case;
 use crate::accuracy::objective::{EXPONENT, norm, objective_of};
-use crate::accuracy::rates::{Extrapolation, extrapolate, observed};
+use crate::rates::{Extrapolation, extrapolate, observed};
 use crate::scaling::SceneName;
 use nonsmooth::{Accuracy, StateSolver};
 use problems::commands::Failure;

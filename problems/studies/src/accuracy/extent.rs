@@ -5,15 +5,23 @@ use clap::ValueEnum;
 use scene_file::default_subdomains;
 use serde::Serialize;
 
-/// Size of the study.
+/// Size of the study; meshes are bricks per edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extent {
-    /// A few seconds: smallest meshes, to see that everything works.
-    Smoke,
-    /// About two minutes.
-    Quick,
-    /// All meshes up to 35 bricks per edge, optimization up to 24.
-    Full,
+pub struct Extent {
+    /// Meshes of the study of the discretisation.
+    pub meshes: &'static [usize],
+    /// Mesh of the study of the contact solvers.
+    pub algebra_mesh: usize,
+    /// Exponents e of the tolerances 10^(−e).
+    pub exponents: &'static [i32],
+    /// Mesh of the Taylor tables.
+    pub taylor_mesh: usize,
+    /// Kinks constructed per scene.
+    pub kinks: usize,
+    /// Meshes of the optimization, coarse to fine; all but coarse-to-fine work on the last.
+    pub levels: &'static [usize],
+    /// Evaluations per optimization, on each mesh of coarse-to-fine as well.
+    pub evaluations: usize,
 }
 
 /// A part of the study.
@@ -39,60 +47,27 @@ pub fn case(mesh: usize) -> Case {
 }
 
 impl Extent {
-    /// Meshes of the study of the discretisation.
-    pub fn meshes(self) -> &'static [usize] {
-        match self {
-            Self::Smoke => &[4, 6, 8],
-            Self::Quick => &[4, 6, 8, 12, 16, 24],
-            Self::Full => &[4, 6, 8, 12, 16, 24, 35],
-        }
-    }
-
-    /// Mesh of the study of the contact solvers.
-    pub fn algebra_mesh(self) -> usize {
-        match self {
-            Self::Smoke => 4,
-            Self::Quick => 8,
-            Self::Full => 12,
-        }
-    }
-
-    /// Exponents e of the tolerances 10^(−e).
-    pub fn exponents(self) -> Vec<i32> {
-        match self {
-            Self::Smoke => vec![2, 6, 10],
-            Self::Quick | Self::Full => (2..=12).collect(),
-        }
-    }
-
-    /// Mesh of the Taylor tables.
-    pub fn taylor_mesh(self) -> usize {
-        if self == Self::Smoke { 4 } else { 6 }
-    }
-
-    /// Kinks constructed per scene.
-    pub fn kinks(self) -> usize {
-        match self {
-            Self::Smoke => 1,
-            Self::Quick => 4,
-            Self::Full => 12,
-        }
-    }
-
-    /// Meshes of the optimization, coarse to fine; all but coarse-to-fine work on the last.
-    pub fn levels(self) -> &'static [usize] {
-        match self {
-            Self::Smoke => &[4, 6],
-            Self::Quick => &[6, 12],
-            Self::Full => &[6, 12, 24],
-        }
-    }
-
-    /// Evaluations per optimization, on each mesh of coarse-to-fine as well.
-    pub fn evaluations(self) -> usize {
-        match self {
-            Self::Smoke => 6,
-            Self::Quick | Self::Full => 60,
-        }
-    }
+    /// A few seconds: smallest meshes, to see that everything works.
+    pub const SMOKE: Self = Self {
+        meshes: &[4, 6, 8],
+        algebra_mesh: 4,
+        exponents: &[2, 6, 10],
+        taylor_mesh: 4,
+        kinks: 1,
+        levels: &[4, 6],
+        evaluations: 6,
+    };
+    /// About two minutes.
+    pub const QUICK: Self = Self {
+        meshes: &[4, 6, 8, 12, 16, 24],
+        algebra_mesh: 8,
+        exponents: &[2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12],
+        taylor_mesh: 6,
+        kinks: 4,
+        levels: &[6, 12],
+        evaluations: 60,
+    };
+    /// All meshes up to 35 bricks per edge, optimization up to 24.
+    pub const FULL: Self =
+        Self { meshes: &[4, 6, 8, 12, 16, 24, 35], algebra_mesh: 12, kinks: 12, levels: &[6, 12, 24], ..Self::QUICK };
 }

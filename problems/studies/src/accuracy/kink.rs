@@ -5,13 +5,13 @@
 //! min(Θ′−, Θ′+) ≤ ⟨ξ, d⟩ ≤ max(Θ′−, Θ′+)     for any element ξ of the subdifferential of the two pieces that meet
 //! ```
 
-use crate::accuracy::objective::{Objective, norm, objective_of};
+use crate::accuracy::objective::{norm, objective_of};
 use crate::scaling::SceneName;
 use contact::contact_shape::ContactState;
 use contact::equilibrium::ContactStatus;
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, Cost, NonsmoothObjective, Request, StateSolver, Vector};
-use problems::commands::Failure;
+use problems::commands::{ContactObjective, Failure};
 use problems::toy::{self, ToyObjective};
 use serde::Serialize;
 
@@ -51,7 +51,7 @@ const SHORTENINGS: usize = 4;
 
 /// Θ along a line.
 struct Line<'a> {
-    objective: &'a Objective,
+    objective: &'a ContactObjective,
     start: Vector,
     direction: Vector,
 }

@@ -15,9 +15,8 @@ use contact::body::elasticity::{Formulation, Material};
 use contact::body::local_pattern::LocalPattern;
 use contact::body::mesh::{Block, Grid};
 use contact::equilibrium::SolvedBody;
-use contact::error::SceneError;
 use contact::fields::BodyFields;
-use contact::linear::FactorizationError;
+use problems::commands::Failure;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -101,8 +100,8 @@ fn samples(nodes: &Nodes<f64>) -> Vec<Sample> {
 /// Solves on `bricks`³ bricks and integrates the errors.
 ///
 /// # Errors
-/// [`FactorizationError`] when the stiffness matrix cannot be factored, [`SceneError`] never for the material used here.
-pub fn manufactured_errors(bricks: usize) -> Result<ManufacturedErrors, ManufacturedFailure> {
+/// [`Failure::Computation`] when the stiffness matrix cannot be factored.
+pub fn manufactured_errors(bricks: usize) -> Result<ManufacturedErrors, Failure> {
     let clock = Instant::now();
     let material = Material::new(1.0, 0.3)?;
     let Smooth { block, pattern, free: dofs, u } = smooth(bricks, &material)?;
@@ -139,7 +138,7 @@ struct Smooth {
     u: Vec<f64>,
 }
 
-fn smooth(bricks: usize, material: &Material) -> Result<Smooth, ManufacturedFailure> {
+fn smooth(bricks: usize, material: &Material) -> Result<Smooth, Failure> {
     let grid = Grid { cells: [bricks; 3], size: [1.0, 1.0] };
     let upper = grid.columns().map(|(i, j)| {
         let [x1, x2] = grid.position(i, j);
@@ -166,10 +165,7 @@ pub struct StressErrors {
 ///
 /// # Errors
 /// As [`manufactured_errors`].
-pub fn manufactured_stress_errors(
-    bricks: usize,
-    formulation: Formulation,
-) -> Result<StressErrors, ManufacturedFailure> {
+pub fn manufactured_stress_errors(bricks: usize, formulation: Formulation) -> Result<StressErrors, Failure> {
     let material = Material::new(1.0, 0.3)?.with_formulation(formulation);
     let Smooth { block, u, .. } = smooth(bricks, &material)?;
     let grid = block.grid;
@@ -201,28 +197,12 @@ pub fn manufactured_stress_errors(
     Ok(StressErrors { bricks, centre: relative(centre), nodal_von_mises: relative(nodal) })
 }
 
-/// Why the smooth case could not be solved.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ManufacturedFailure {
-    /// The material was refused.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The stiffness matrix could not be factored.
-    #[error(transparent)]
-    Factorization(#[from] FactorizationError),
-}
-
 fn contraction(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> f64 {
     a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum()
 }
 
 /// Number of free dofs and the nodal solution: free part of K u = f − K u_D, boundary values from the smooth solution.
-fn solution(
-    pattern: &LocalPattern,
-    block: &Block,
-    material: &Material,
-) -> Result<(usize, Vec<f64>), ManufacturedFailure> {
+fn solution(pattern: &LocalPattern, block: &Block, material: &Material) -> Result<(usize, Vec<f64>), Failure> {
     let wave = Wave::new(material);
     let mut values = pattern.assemble(material, |brick| block.brick(brick));
     let size = pattern.shape.dof_count();
@@ -260,7 +240,8 @@ fn solution(
             }
         }
     }
-    let factor = pattern.symbolic(&[])?.factorize(&values)?;
+    let factor =
+        pattern.symbolic(&[]).and_then(|symbolic| symbolic.factorize(&values)).map_err(Failure::computation)?;
     factor.solve_in_place(&mut right);
     let free = held.iter().filter(|held| !**held).count();
     Ok((free, right.iter().zip(&prescribed).map(|(free, prescribed)| free + prescribed).collect()))

@@ -1,7 +1,7 @@
 //! Error against run time: the study behind `docs/accuracy.md`.
 //!
 //! ```text
-//! cli ─┬─ discretisation, manufactured ─ rates      error against bricks, dofs, seconds
+//! cli ─┬─ discretisation, manufactured              error against bricks, dofs, seconds
 //!      ├─ algebra                                   error against tolerance, seconds; the solver's estimate beside it
 //!      ├─ subgradient ─ kink                        Taylor tables, one-sided slopes at constructed kinks
 //!      └─ optimization                              Θ(best) − Θ* against evaluations, seconds
@@ -19,20 +19,14 @@ mod manufactured;
 mod objective;
 mod optimization;
 mod pictures;
-mod rates;
-mod report;
 mod subgradient;
 mod tables;
 
 pub use algebra::{AlgebraRow, AlgebraStudy};
-pub use cli::{Arguments, run};
+pub use cli::{Arguments, Report, run};
 pub use discretisation::{MeshRow, MeshStudy, QUANTITIES};
 pub use extent::{Extent, Part};
 pub use kink::KinkRow;
-pub use manufactured::{
-    ManufacturedErrors, ManufacturedFailure, StressErrors, manufactured_errors, manufactured_stress_errors,
-};
+pub use manufactured::{ManufacturedErrors, StressErrors, manufactured_errors, manufactured_stress_errors};
 pub use optimization::{Course, Milestone, OptimizationStudy, PeakRow};
-pub use rates::{Extrapolation, extrapolate};
-pub use report::Report;
 pub use subgradient::{SubgradientStudy, TaylorStudy};

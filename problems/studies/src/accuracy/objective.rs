@@ -7,11 +7,8 @@ use contact::cost::{PressureCost, PressureMeasure};
 use contact::equilibrium::ContactProblem;
 use contact::scene::Scene;
 use nonsmooth::ReducedObjective;
-use problems::commands::Failure;
+use problems::commands::{ContactObjective, Failure};
 use std::sync::Arc;
-
-/// Θ of a scene.
-pub type Objective = ReducedObjective<ContactShape, PressureCost>;
 
 /// The paper's exponent.
 pub const EXPONENT: f64 = 4.0;
@@ -30,7 +27,7 @@ pub const METHODS: [(&str, Variant); 6] = [
 ///
 /// # Errors
 /// [`Failure::Input`] from the scene.
-pub fn objective_of(scene: SceneName, mesh: usize, measure: PressureMeasure) -> Result<Objective, Failure> {
+pub fn objective_of(scene: SceneName, mesh: usize, measure: PressureMeasure) -> Result<ContactObjective, Failure> {
     objective_by(Variant::Dirichlet, scene.scene(case(mesh))?, measure)
 }
 
@@ -38,7 +35,7 @@ pub fn objective_of(scene: SceneName, mesh: usize, measure: PressureMeasure) -> 
 ///
 /// # Errors
 /// [`Failure`] from the scene or the preparation of the solver.
-pub fn objective_by(variant: Variant, scene: Scene, measure: PressureMeasure) -> Result<Objective, Failure> {
+pub fn objective_by(variant: Variant, scene: Scene, measure: PressureMeasure) -> Result<ContactObjective, Failure> {
     let solver = variant.solver(&Arc::new(ContactProblem::new(scene)?)).map_err(Failure::computation)?;
     let cost = PressureCost::new(measure, &solver.problem().boundary)?;
     Ok(ReducedObjective::new(ContactShape::by(solver), cost))

@@ -5,15 +5,15 @@
 //! leaves out factorisations, one set per evaluation.
 
 use crate::accuracy::extent::{Extent, case};
-use crate::accuracy::objective::{Objective, norm, objective_of};
+use crate::accuracy::objective::{norm, objective_of};
 use crate::scaling::SceneName;
 use contact::contact_shape::ContactWarmStart;
 use contact::cost::PressureMeasure;
 use nonsmooth::{
-    Accuracy, AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Cost, NonsmoothObjective, OracleError, Request,
-    StateSolver, VariableScaling, Vector,
+    AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, NonsmoothObjective, OracleError, Request, StateSolver,
+    VariableScaling, Vector,
 };
-use problems::commands::{Failure, first_step, mean_height_coordinates};
+use problems::commands::{ContactObjective, Failure, SolvedShape, first_step, mean_height_coordinates};
 use serde::Serialize;
 use std::cell::RefCell;
 use std::time::Instant;
@@ -97,7 +97,7 @@ struct Run {
 
 /// Θ that counts its products with the dual operator, evaluation by evaluation.
 struct Metered<'a> {
-    objective: &'a Objective,
+    objective: &'a ContactObjective,
     products: RefCell<Vec<usize>>,
 }
 
@@ -126,13 +126,13 @@ impl NonsmoothObjective for Metered<'_> {
 /// # Errors
 /// [`Failure`] from a scene, a solver or the optimizer.
 pub fn study(scene: SceneName, extent: Extent) -> Result<OptimizationStudy, Failure> {
-    let levels = extent.levels();
+    let levels = extent.levels;
     let fine = levels[levels.len() - 1];
-    let evaluations = extent.evaluations();
+    let evaluations = extent.evaluations;
     let objective = objective_of(scene, fine, norm())?;
     let start = objective.solver().start();
     // The first solve pays for what is kept from solve to solve.
-    let before = value(&objective, &start)?;
+    let before = SolvedShape::at(&objective, &start)?.value;
     let mut courses = Vec::new();
     for (strategy, policy) in
         [("always tight", AccuracyPolicy::Tightest), ("accuracy on demand", AccuracyPolicy::ON_DEMAND)]
@@ -173,19 +173,9 @@ fn torn_dofs(mesh: usize) -> f64 {
     (3 * case.subdomains.pow(3) * (case.ratio() + 1).pow(3)) as f64
 }
 
-fn value(objective: &Objective, control: &Vector) -> Result<f64, Failure> {
-    let state = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
-    Ok(objective.cost().value(control, &state))
-}
-
-fn peak(objective: &Objective, control: &Vector) -> Result<f64, Failure> {
-    let state = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
-    Ok(objective.cost().pressures(&state).into_iter().fold(f64::NEG_INFINITY, f64::max))
-}
-
 /// As the command `optimize` does it, with a policy of accuracy.
 fn minimize(
-    objective: &Objective,
+    objective: &ContactObjective,
     start: Vector,
     accuracy: AccuracyPolicy,
     max_evaluations: usize,
@@ -211,7 +201,12 @@ fn minimize(
     Ok(Run { controls: report.solution, history: milestones.collect(), seconds: clock.elapsed().as_secs_f64() })
 }
 
-fn course(strategy: &'static str, objective: &Objective, run: &Run, passed: Milestone) -> Result<Course, Failure> {
+fn course(
+    strategy: &'static str,
+    objective: &ContactObjective,
+    run: &Run,
+    passed: Milestone,
+) -> Result<Course, Failure> {
     let points = run.history.iter().map(|point| Milestone {
         evaluations: passed.evaluations + point.evaluations,
         work: passed.work + point.work,
@@ -224,7 +219,7 @@ fn course(strategy: &'static str, objective: &Objective, run: &Run, passed: Mile
         evaluations: run.history.len(),
         coarse_evaluations: passed.evaluations,
         seconds: passed.seconds + run.seconds,
-        value: value(objective, &run.controls)?,
+        value: SolvedShape::at(objective, &run.controls)?.value,
         reached: [None; TARGETS.len()],
     })
 }
@@ -233,7 +228,7 @@ fn course(strategy: &'static str, objective: &Objective, run: &Run, passed: Mile
 fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRow>, Failure> {
     let judge = objective_of(scene, mesh, norm())?;
     let row = |measure: String, evaluations: usize, seconds: f64, controls: &Vector| -> Result<PeakRow, Failure> {
-        let (peak, norm) = (peak(&judge, controls)?, value(&judge, controls)?);
+        let SolvedShape { value: norm, peak_pressure: peak, .. } = SolvedShape::at(&judge, controls)?;
         Ok(PeakRow { measure, evaluations, seconds, peak, norm })
     };
     let norms = [4.0, 8.0, 16.0].map(|exponent| (format!("Σσ^{exponent}"), PressureMeasure::Norm { exponent }));

@@ -1,7 +1,9 @@
 //! The pictures of a report.
 
 use crate::accuracy::discretisation::QUANTITIES;
-use crate::accuracy::{AlgebraStudy, MeshStudy, Milestone, OptimizationStudy, Report, SubgradientStudy};
+use crate::accuracy::{
+    AlgebraRow, AlgebraStudy, Course, MeshStudy, Milestone, OptimizationStudy, Report, SubgradientStudy, TaylorStudy,
+};
 use crate::scaling::word;
 use figures::{Figure, FigureError, LogPlot, Series};
 
@@ -11,58 +13,39 @@ use figures::{Figure, FigureError, LogPlot, Series};
 /// [`FigureError`] for numbers that are not finite.
 pub fn all(report: &Report) -> Result<Vec<Figure>, FigureError> {
     let mut plots = Vec::new();
-    for study in &report.discretisation {
-        plots.extend([mesh(study), mesh_seconds(study)]);
-    }
+    plots.extend(report.discretisation.iter().map(mesh));
     for study in &report.algebra {
         plots.extend([solvers(study), estimate(study), slopes(study)]);
     }
     plots.extend(report.subgradient.as_ref().map(taylor));
     for study in &report.optimization {
-        plots.extend([Axis::Seconds, Axis::Evaluations, Axis::Work].map(|axis| optimization(study, axis)));
+        plots.push(optimization(study, "seconds", "seconds", |point| point.seconds));
+        let products = "products with the dual operator of the finest mesh";
+        plots.push(optimization(study, "work", products, |point| point.work));
     }
     plots.iter().map(LogPlot::figure).collect()
-}
-
-fn mesh_series(study: &MeshStudy, x: impl Fn(&crate::accuracy::MeshRow) -> f64) -> Vec<Series> {
-    let of = |(index, name): (usize, &&str)| Series {
-        name: (*name).to_owned(),
-        points: study.rows.iter().map(|row| (x(row), row.errors[index])).collect(),
-        joined: true,
-    };
-    QUANTITIES.iter().enumerate().map(of).collect()
 }
 
 /// Guides of the rates 1 and 2 through the first error of the first quantity.
 fn mesh(study: &MeshStudy) -> LogPlot {
     let anchor = study.rows.first().map_or((1.0, 1.0), |row| (row.bricks as f64, row.errors[0]));
     let guide = |rate: f64| (format!("rate {rate}"), anchor.1 * anchor.0.powf(rate), -rate);
+    let of = |(index, name): (usize, &&str)| Series {
+        name: (*name).to_owned(),
+        points: study.rows.iter().map(|row| (row.bricks as f64, row.errors[index])).collect(),
+        joined: true,
+    };
     LogPlot {
         name: format!("accuracy_mesh_{}", word(&study.scene)),
         title: format!("{}: error of the discretisation", word(&study.scene)),
         x: "bricks per edge of each body".into(),
         y: "error relative to the extrapolated limit".into(),
-        series: mesh_series(study, |row| row.bricks as f64),
+        series: QUANTITIES.iter().enumerate().map(of).collect(),
         guides: vec![guide(1.0), guide(2.0)],
     }
 }
 
-fn mesh_seconds(study: &MeshStudy) -> LogPlot {
-    LogPlot {
-        name: format!("accuracy_mesh_seconds_{}", word(&study.scene)),
-        title: format!("{}: what a smaller error of the discretisation costs", word(&study.scene)),
-        x: "seconds of the contact state".into(),
-        y: "error relative to the extrapolated limit".into(),
-        series: mesh_series(study, |row| row.seconds),
-        guides: vec![],
-    }
-}
-
-fn by_method(
-    study: &AlgebraStudy,
-    joined: bool,
-    point: impl Fn(&crate::accuracy::AlgebraRow) -> (f64, f64),
-) -> Vec<Series> {
+fn by_method(study: &AlgebraStudy, joined: bool, point: impl Fn(&AlgebraRow) -> (f64, f64)) -> Vec<Series> {
     let mut series: Vec<Series> = Vec::new();
     for row in &study.rows {
         match series.iter_mut().find(|series| series.name == row.method) {
@@ -107,7 +90,7 @@ fn slopes(study: &AlgebraStudy) -> LogPlot {
 }
 
 fn taylor(study: &SubgradientStudy) -> LogPlot {
-    let of = |taylor: &crate::accuracy::TaylorStudy| {
+    let of = |taylor: &TaylorStudy| {
         let value = taylor.test.rows.first().map_or(1.0, |row| row.remainder);
         Series {
             name: taylor.scene.clone(),
@@ -127,51 +110,18 @@ fn taylor(study: &SubgradientStudy) -> LogPlot {
     }
 }
 
-/// What an optimization is measured by.
-#[derive(Debug, Clone, Copy)]
-enum Axis {
-    Seconds,
-    Evaluations,
-    Work,
-}
-
-impl Axis {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Seconds => "seconds",
-            Self::Evaluations => "evaluations",
-            Self::Work => "work",
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Seconds => "seconds",
-            Self::Evaluations => "evaluations, those on coarser meshes included",
-            Self::Work => "products with the dual operator of the finest mesh",
-        }
-    }
-
-    fn of(self, point: &Milestone) -> f64 {
-        match self {
-            Self::Seconds => point.seconds,
-            Self::Evaluations => point.evaluations as f64,
-            Self::Work => point.work,
-        }
-    }
-}
-
-fn optimization(study: &OptimizationStudy, axis: Axis) -> LogPlot {
-    let of = |course: &crate::accuracy::Course| Series {
+/// Distance from the lowest Θ over a measure of the price: its word, its name and its value.
+fn optimization(study: &OptimizationStudy, word_of_axis: &str, axis: &str, price: fn(&Milestone) -> f64) -> LogPlot {
+    let of = |course: &Course| Series {
         name: course.strategy.to_owned(),
-        points: course.points.iter().map(|point| (axis.of(point), point.best / study.lowest - 1.0)).collect(),
+        points: course.points.iter().map(|point| (price(point), point.best / study.lowest - 1.0)).collect(),
         joined: true,
     };
     let fine = study.levels[study.levels.len() - 1];
     LogPlot {
-        name: format!("accuracy_optimization_{}_{}", axis.word(), word(&study.scene)),
+        name: format!("accuracy_optimization_{word_of_axis}_{}", word(&study.scene)),
         title: format!("{}, {fine}³ bricks: distance from the lowest Θ found", word(&study.scene)),
-        x: axis.name().into(),
+        x: axis.into(),
         y: "(Θ(best) − Θ*)/Θ*".into(),
         series: study.courses.iter().map(of).collect(),
         guides: vec![],

@@ -7,12 +7,12 @@ use contact::equilibrium::ContactProblem;
 use contact::error::{ContactError, SceneError};
 use contact::scene::{self, Scene};
 use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::fmt;
 use std::sync::Arc;
 
 /// Bricks and subdomains per edge of each body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Case {
     /// N, bricks per edge.
     pub mesh: usize,
@@ -21,7 +21,7 @@ pub struct Case {
 }
 
 /// The scenes of the paper.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SceneName {
     /// Example 5.1.
@@ -31,7 +31,7 @@ pub enum SceneName {
 }
 
 /// A contact solver with its preconditioner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Variant {
     /// Newton on TFETI, Dirichlet preconditioner.

@@ -1,12 +1,13 @@
 //! How counts and times grow with the number of subdomains at fixed H/h.
 
+use crate::rates::exponent;
 use crate::scaling::cases::{RATIO, SceneName, Variant};
-use crate::scaling::row::Row;
-use crate::scaling::solve::Start;
-use serde::{Deserialize, Serialize};
+use crate::scaling::rows::{Row, Start};
+use clap::ValueEnum;
+use serde::Serialize;
 
 /// Growth of one solver at H/h = 7.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Growth {
     /// The scene.
     pub scene: SceneName,
@@ -23,7 +24,7 @@ pub struct Growth {
 }
 
 /// Products with F of a cold state, relative to s = 3.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct CountGrowth {
     /// Relative residual of the states.
     pub tolerance: f64,
@@ -37,21 +38,13 @@ const TOLERANCES: [f64; 3] = [1e-6, 1e-8, 1e-10];
 const REFERENCE: usize = 3;
 
 impl Growth {
-    /// Growth per scene and variant, where at least two rows have H/h = 7.
+    /// Growth per variant, where at least two rows have H/h = 7.
     pub fn of(rows: &[Row]) -> Vec<Self> {
-        let mut growth = Vec::new();
-        let fixed: Vec<&Row> = rows.iter().filter(|row| row.case.ratio() == RATIO).collect();
-        for (index, row) in fixed.iter().enumerate() {
-            let alike = |other: &&&Row| other.scene == row.scene && other.variant == row.variant;
-            if fixed[..index].iter().any(|other| alike(&other)) {
-                continue;
-            }
-            let series: Vec<&Row> = fixed.iter().filter(alike).copied().collect();
-            if series.len() > 1 {
-                growth.push(Self::of_series(&series));
-            }
-        }
-        growth
+        let series = |variant: &Variant| -> Vec<&Row> {
+            rows.iter().filter(|row| row.variant == *variant && row.case.ratio() == RATIO).collect()
+        };
+        let all = Variant::value_variants().iter().map(series);
+        all.filter(|series| series.len() > 1).map(|series| Self::of_series(&series)).collect()
     }
 
     fn of_series(series: &[&Row]) -> Self {
@@ -79,27 +72,4 @@ fn count_growth(series: &[&Row], tolerance: f64) -> CountGrowth {
         counts.iter().filter(|(s, _)| *s > REFERENCE).map(|(s, count)| (*s, count / reference - 1.0)).collect()
     });
     CountGrowth { tolerance, growth }
-}
-
-/// Least-squares slope of log y over log x; none for fewer than two points.
-fn exponent(points: impl Iterator<Item = [f64; 2]>) -> Option<f64> {
-    let logs: Vec<[f64; 2]> = points.map(|point| point.map(f64::ln)).collect();
-    let count = logs.len() as f64;
-    let mean = |axis: usize| logs.iter().map(|log| log[axis]).sum::<f64>() / count;
-    let (x, y) = (mean(0), mean(1));
-    let variance: f64 = logs.iter().map(|log| (log[0] - x).powi(2)).sum();
-    let covariance: f64 = logs.iter().map(|log| (log[0] - x) * (log[1] - y)).sum();
-    (logs.len() > 1 && variance > 0.0).then(|| covariance / variance)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::exponent;
-
-    #[test]
-    fn a_power_law_gives_its_exponent() {
-        let points = [1.0_f64, 3.0, 10.0, 50.0].map(|x| [x, 7.0 * x.powf(1.25)]);
-        assert!((exponent(points.into_iter()).expect("four points") - 1.25).abs() < 1e-12);
-        assert_eq!(exponent([[2.0, 3.0]].into_iter()), None);
-    }
 }

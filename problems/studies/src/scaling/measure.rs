@@ -1,42 +1,54 @@
-//! Measures one case with one solver.
+//! Measures one case with one solver; tolerances are relative residuals.
 
 use crate::scaling::cases::{Case, SceneName, Variant};
-use crate::scaling::repeat::{TIMED, failure, median};
-use crate::scaling::row::Row;
-use crate::scaling::solve::{Sample, Solve, Start};
-use crate::scaling::{bandwidth, memory, threads, timing};
+use crate::scaling::memory;
+use crate::scaling::rows::{Adjoint, Row, Sample, Solve, Start};
 use contact::contact_shape::{AnySolver, ContactState, ContactWarmStart};
-use contact::equilibrium::{ContactProblem, SolverState};
+use contact::equilibrium::{ContactForces, ContactProblem, SolverState};
 use contact::error::ContactError;
+use nonsmooth::verify::seeded_direction;
 use problems::commands::Failure;
 use std::sync::Arc;
 use std::time::Instant;
 
+/// Tolerance of the timed states and of all subgradients.
+pub const TIMED: f64 = 1e-8;
 /// Tolerances of the states that are only counted, cold.
 pub const COLD: [f64; 2] = [1e-6, 1e-10];
 /// The same for warm states.
-pub const WARM: [f64; 1] = [1e-10];
+const WARM: [f64; 1] = [1e-10];
+/// Repetitions of what takes less than [`LONG_RUN`].
+const REPETITIONS: usize = 3;
+/// Seconds from which one repetition is enough.
+const LONG_RUN: f64 = 5.0;
+/// Exponent of the paper's pressure norm.
+const EXPONENT: i32 = 4;
+/// Seed of the change of the controls.
+const SEED: u64 = 20_231;
+/// Largest change of a control, relative to the height of the body: 0.1 mm for the 100 mm of Example 5.1.
+const CHANGE: f64 = 1e-3;
 
-/// Measures a case; `change` is what distinguishes the controls of the warm states from those of the cold ones, mm.
+/// Measures a case; warm states have controls that differ a little from those of the cold ones.
 ///
 /// # Errors
 /// [`Failure`] when the timed cold state cannot be found; other failures are listed in the row.
-pub fn row(scene: SceneName, case: Case, variant: Variant, change: &[f64]) -> Result<Row, Failure> {
+pub fn row(scene: SceneName, case: Case, variant: Variant) -> Result<Row, Failure> {
+    memory::reset_peak();
     let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
-    let controls = vec![problem.scene.start_height; change.len()];
-    let nearby: Vec<f64> = controls.iter().zip(change).map(|(control, change)| control + change).collect();
+    let [first, second] = problem.scene.control_points;
+    let (controls, change) = (vec![problem.scene.start_height; first * second], seeded_direction(first * second, SEED));
+    let nearby: Vec<f64> =
+        controls.iter().zip(&change).map(|(height, entry)| height + CHANGE * height * entry).collect();
     let clock = Instant::now();
     let mut solver = variant.solver(&problem).map_err(failure)?;
     let setup_seconds = clock.elapsed().as_secs_f64();
     let [dofs, multipliers] = solver.sizes();
     let mut restart = None;
-    let mut first = true;
     let cold = median(|| {
-        if !first {
+        if restart.is_some() {
             // Bodies that keep their shape are factored again: a cold state owns nothing.
             solver = variant.solver(&problem)?;
         }
-        first = false;
         let (sample, state) = sample(&*solver, &controls, None)?;
         restart = Some(state.solution.warm_start());
         Ok(sample)
@@ -47,43 +59,48 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, change: &[f64]) -> Re
     let warm = warm.map_err(|error| failures.push(format!("warm to {TIMED:e}: {error}"))).ok();
     let others =
         if variant == Variant::Direct { Vec::new() } else { counted(&*solver, [&controls, &nearby], &mut failures) };
-    // Up to here one state lived at a time; what follows needs memory of its own.
-    let peak_memory = memory::peak();
-    let thorough = matches!(variant, Variant::Dirichlet | Variant::Direct);
-    let threads = if thorough { Some(threads::measure(&problem, variant, &controls)?) } else { None };
-    let bandwidth = match variant.preconditioner() {
-        Some(preconditioner) if matches!(variant, Variant::Dirichlet | Variant::Lumped) => {
-            bandwidth::measure(&problem, preconditioner, &controls)?
-        }
-        _ => Vec::new(),
-    };
-    let contact_nodes = problem.boundary.points.len();
     Ok(Row {
         scene,
         case,
         variant,
         dofs,
         multipliers,
-        contact_nodes,
+        contact_nodes: problem.boundary.points.len(),
         setup_seconds,
         cold,
         warm,
         others,
-        peak_memory,
-        threads,
-        bandwidth,
+        peak_memory: memory::peak(),
         failures,
     })
 }
 
+/// A solver's reason as a failed command.
+fn failure(error: ContactError) -> Failure {
+    match error {
+        ContactError::InvertedElement { .. } | ContactError::NoEquilibrium { .. } => Failure::Input(error.to_string()),
+        _ => Failure::Computation(error.to_string()),
+    }
+}
+
+/// The repetition of median time; one alone when it takes long.
+fn median(mut run: impl FnMut() -> Result<Sample, ContactError>) -> Result<Sample, ContactError> {
+    let mut samples = vec![run()?];
+    while samples.len() < REPETITIONS && samples[0].seconds() < LONG_RUN {
+        samples.push(run()?);
+    }
+    samples.sort_by(|a, b| a.seconds().total_cmp(&b.seconds()));
+    Ok(samples.swap_remove(samples.len() / 2))
+}
+
 /// A state to [`TIMED`] and its subgradient.
-pub fn sample(
+fn sample(
     solver: &AnySolver,
     controls: &[f64],
     start: Option<&ContactWarmStart>,
 ) -> Result<(Sample, ContactState), ContactError> {
-    let (found, state) = timing::solve(solver, controls, start, TIMED)?;
-    let (_, adjoint) = timing::adjoint(solver, &found, TIMED)?;
+    let (found, state) = solve(solver, controls, start, TIMED)?;
+    let adjoint = adjoint(solver, &found, TIMED)?;
     Ok((Sample { state, adjoint }, found))
 }
 
@@ -92,7 +109,7 @@ fn counted(solver: &AnySolver, [controls, nearby]: [&[f64]; 2], failures: &mut V
     let mut solves = Vec::new();
     let mut record = |controls: &[f64], restart: Option<&ContactWarmStart>, tolerance: f64| {
         let start = if restart.is_some() { Start::Warm } else { Start::Cold };
-        let solved = timing::solve(solver, controls, restart, tolerance);
+        let solved = solve(solver, controls, restart, tolerance);
         let solved = solved.map_err(|error| failures.push(format!("{start:?} to {tolerance:e}: {error}")));
         let (state, solve) = solved.ok()?;
         solves.push(solve);
@@ -105,4 +122,42 @@ fn counted(solver: &AnySolver, [controls, nearby]: [&[f64]; 2], failures: &mut V
         }
     }
     solves
+}
+
+/// One state, timed.
+fn solve(
+    solver: &AnySolver,
+    controls: &[f64],
+    start: Option<&ContactWarmStart>,
+    tolerance: f64,
+) -> Result<(ContactState, Solve), ContactError> {
+    let clock = Instant::now();
+    let state = solver.solve(controls, start, tolerance)?;
+    let solve = Solve {
+        start: if start.is_some() { Start::Warm } else { Start::Cold },
+        tolerance,
+        residual: state.forces.residuals.newton,
+        work: state.work(),
+        objective: pressures(solver.problem(), &state.forces).map(|(pressure, _)| pressure.powi(EXPONENT)).sum(),
+        seconds: clock.elapsed().as_secs_f64(),
+        stages: state.stages,
+    };
+    Ok((state, solve))
+}
+
+/// Sensitivities of the column heights of Σσ⁴, timed.
+fn adjoint(solver: &AnySolver, state: &ContactState, tolerance: f64) -> Result<Adjoint, ContactError> {
+    let boundary = &solver.problem().boundary;
+    let mut dual = vec![0.0; boundary.dual_dimension()];
+    for (entry, (pressure, area)) in dual.iter_mut().zip(pressures(solver.problem(), &state.forces)) {
+        *entry = f64::from(EXPONENT) * pressure.powi(EXPONENT - 1) / area;
+    }
+    let result = solver.sensitivities(&state.solution, &boundary.pack(&dual), tolerance)?;
+    let (seconds, shape_seconds) = (result.adjoint_seconds, result.shape_seconds);
+    Ok(Adjoint { tolerance, applications: result.applications, seconds, shape_seconds })
+}
+
+/// max(σ, 0) and area per contact node.
+fn pressures(problem: &ContactProblem, forces: &ContactForces) -> impl Iterator<Item = (f64, f64)> {
+    forces.normal.iter().zip(&problem.boundary.points).map(|(force, point)| ((force / point.area).max(0.0), point.area))
 }

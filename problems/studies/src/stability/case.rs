@@ -1,6 +1,7 @@
-//! A case: its place in the matrix and how it is run.
+//! A case: its place in the matrix and how it is run; all cases.
 
 use crate::stability::record::Record;
+use crate::stability::{contacts, friction, geometry, loads, locking, materials, optimizer, tearing, units};
 use std::time::Instant;
 
 /// One line of the matrix.
@@ -21,7 +22,7 @@ impl std::fmt::Debug for Case {
 }
 
 impl Case {
-    /// A case of the fast subset.
+    /// A case of the fast subset; the record that `run` makes gets group and name from here.
     pub fn new(group: &'static str, name: impl Into<String>, run: impl Fn() -> Record + Send + Sync + 'static) -> Self {
         Self { group, name: name.into(), quick: true, run: Box::new(run) }
     }
@@ -36,6 +37,23 @@ impl Case {
     pub fn run(&self) -> Record {
         let clock = Instant::now();
         let record = (self.run)();
-        Record { seconds: clock.elapsed().as_secs_f64(), ..record }
+        Record { group: self.group, name: self.name.clone(), seconds: clock.elapsed().as_secs_f64(), ..record }
     }
+}
+
+/// The whole matrix, in the order of the page.
+pub fn all() -> Vec<Case> {
+    let groups = [
+        materials::cases(),
+        locking::cases(),
+        geometry::cases(),
+        friction::cases(),
+        contacts::cases(),
+        loads::cases(),
+        contacts::kinks(),
+        units::cases(),
+        tearing::cases(),
+        optimizer::cases(),
+    ];
+    groups.into_iter().flatten().collect()
 }

@@ -1,9 +1,9 @@
 //! The command line of the study.
 
 use crate::stability::record::{Outcome, Record, Report};
-use crate::stability::{matrix, table};
+use crate::stability::{case, table};
 use clap::Parser;
-use problems::commands::Failure;
+use problems::commands::{Failure, finish, json};
 use std::process::ExitCode;
 
 /// What the solvers and the optimizer do with stiff and extreme cases.
@@ -23,43 +23,24 @@ pub struct Arguments {
 
 /// Runs the binary.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
-    match execute(&arguments) {
-        Ok(text) => {
-            print!("{text}");
-            ExitCode::SUCCESS
-        }
-        Err((text, failure)) => {
-            print!("{text}");
-            eprintln!("error: {failure}");
-            failure.exit_code()
-        }
-    }
+    finish(execute(&Arguments::parse()))
 }
 
 /// Runs the cases that the arguments select; the text belongs on stdout, also when cases are broken.
-fn execute(arguments: &Arguments) -> Result<String, (String, Failure)> {
-    let bare = |failure| (String::new(), failure);
-    let records = select(arguments).map_err(bare)?;
-    let report = Report::new(records);
-    let text = if arguments.json {
-        let text = serde_json::to_string_pretty(&report);
-        text.map_err(|error| bare(Failure::Computation(error.to_string())))? + "\n"
-    } else {
-        table::markdown(&report)
-    };
+fn execute(arguments: &Arguments) -> Result<String, Failure> {
+    let report = Report::new(select(arguments)?);
+    let text = if arguments.json { json(&report)? } else { table::markdown(&report) };
     let broken: Vec<&str> = report.records.iter().filter(|r| r.outcome == Outcome::Broken).map(|r| &*r.name).collect();
     if broken.is_empty() {
         return Ok(text);
     }
-    let failure = Failure::Computation(format!("not as expected: {}", broken.join("; ")));
-    Err((text, failure))
+    Err(Failure::Incomplete { text, reason: format!("not as expected: {}", broken.join("; ")), status: 1 })
 }
 
 fn select(arguments: &Arguments) -> Result<Vec<Record>, Failure> {
     let wanted = |text: &str| arguments.only.as_deref().is_none_or(|only| text.contains(only));
     let mut records = Vec::new();
-    for case in matrix::all() {
+    for case in case::all() {
         if (wanted(case.group) || wanted(&case.name)) && (case.quick || !arguments.quick) {
             let record = case.run();
             eprintln!("{}", table::progress(&record));

@@ -2,9 +2,7 @@
 
 use crate::stability::record::Path;
 use contact::direct::DirectSolver;
-use contact::equilibrium::{
-    ContactForces, ContactProblem, ContactSolver, ContactState, Diagnosis, Kink, Residuals, StatusCounts,
-};
+use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver, ContactState, Diagnosis};
 use contact::error::{ContactError, SceneError};
 use contact::scene::Scene;
 use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
@@ -96,21 +94,6 @@ pub struct Found {
 /// A path's report with its state, if it found one.
 pub type Attempt = (Path, Option<Found>);
 
-fn refusal(solver: &'static str, error: &ContactError) -> Attempt {
-    let none: (Option<Residuals>, Option<StatusCounts>, Option<Kink>) = (None, None, None);
-    let path = Path {
-        solver,
-        steps: 0,
-        products: 0,
-        residuals: none.0,
-        status: none.1,
-        kink: none.2,
-        refusal: Some(error.kind().into()),
-        reason: Some(error.to_string()),
-    };
-    (path, None)
-}
-
 /// A state by a solver, and what is asked of it besides.
 fn attempt<S: ContactSolver>(
     name: &'static str,
@@ -129,13 +112,15 @@ fn attempt<S: ContactSolver>(
                 residuals: Some(state.forces.residuals),
                 status: Some(state.forces.counts()),
                 kink: Some(state.forces.kink),
-                refusal: None,
-                reason: None,
+                ..Path::default()
             };
             let found = examine(&solver, state, &mut path);
             (path, Some(found))
         }
-        Err(error) => refusal(name, &error),
+        Err(error) => {
+            let (refusal, reason) = (Some(error.kind().into()), Some(error.to_string()));
+            (Path { solver: name, refusal, reason, ..Path::default() }, None)
+        }
     }
 }
 

@@ -1,14 +1,16 @@
-//! No contact, one node, all nodes; stick and slip everywhere; onset of sliding; gaps of every size.
+//! No contact, one node, all nodes; stick and slip everywhere; onset of sliding; gaps of every size; nodes exactly on a kink,
+//! where the state is unique, the derivative is a selection, and the report says so.
 
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
-use crate::stability::scenes::{HELD, block, footed, pair, stacked};
+use crate::stability::scenes::{HELD, block, footed, pair, stacked, with_loads};
 use contact::body::mesh::Face;
-use contact::equilibrium::{ContactForces, ContactProblem};
+use contact::equilibrium::{ContactForces, ContactProblem, WEAKLY_ACTIVE};
 use contact::error::SceneError;
 use contact::scene::{CounterSurface, Load, Scene, Support};
 
 const GROUP: &str = "contact";
+const KINKS: &str = "kinks";
 
 /// Expects numbers of (open, stick, slip) nodes.
 pub fn counts(expected: [usize; 3]) -> impl Fn(&ContactProblem, &ContactForces) -> Result<String, String> {
@@ -113,4 +115,28 @@ fn penetrations_and_distances() -> Vec<Case> {
         });
     }
     cases
+}
+
+/// Expects at least this many nodes reported as weakly active.
+fn reported(least: usize) -> impl Fn(&ContactProblem, &ContactForces) -> Result<String, String> {
+    move |_, forces| {
+        let kink = forces.kink;
+        let text = format!(
+            "{} nodes reported on a kink (margin {:.1e}); the derivative is one selection",
+            kink.weakly_active, kink.smallest_margin
+        );
+        if kink.weakly_active >= least && kink.smallest_margin <= WEAKLY_ACTIVE { Ok(text) } else { Err(text) }
+    }
+}
+
+/// Nodes on a kink.
+pub fn kinks() -> Vec<Case> {
+    vec![
+        ContactCase::new(with_loads(footed(0.0), 0.0))
+            .check(reported(25))
+            .case(KINKS, "λ_N = 0 with closed gap: no load"),
+        ContactCase::new(stacked(0.3, 1.0, 0.3))
+            .check(reported(25))
+            .case(KINKS, "|λ_T| = 𝓕λ_N with zero slip at all nodes, upper body held by contact only"),
+    ]
 }

@@ -22,15 +22,13 @@ const NEGLIGIBLE: f64 = 1e-6;
 impl ContactCase {
     /// The case as a line of the matrix.
     pub fn case(self, group: &'static str, name: impl Into<String>) -> Case {
-        let name = name.into();
-        let label = name.clone();
-        Case::new(group, name, move || record(group, label.clone(), &self))
+        Case::new(group, name, move || record(&self))
     }
 }
 
 /// Runs a contact case by all its paths and judges what they did.
-fn record(group: &'static str, name: String, case: &ContactCase) -> Record {
-    let mut record = Record::plain(group, name, Outcome::Broken, String::new());
+fn record(case: &ContactCase) -> Record {
+    let mut record = Record::default();
     let scene = case.scene.as_ref().map_err(ToString::to_string);
     let problem = scene.and_then(|scene| ContactProblem::new(scene.clone()).map_err(|error| error.to_string()));
     let problem = match problem.map(Arc::new) {
@@ -207,12 +205,7 @@ pub fn force_difference(first: &ContactForces, second: &ContactForces) -> f64 {
     let all = |forces: &ContactForces| -> Vec<f64> {
         forces.normal.iter().chain(forces.tangential.iter().flatten()).copied().collect()
     };
-    relative_difference(&all(first), &all(second))
-}
-
-/// |a − b|∞/|b|∞; 0 if both vanish.
-pub fn relative_difference(a: &[f64], b: &[f64]) -> f64 {
-    difference_over(a, b, 0.0)
+    difference_over(&all(first), &all(second), 0.0)
 }
 
 /// |a − b|∞ over the larger of |a|∞, |b|∞ and a floor; 0 if all vanish, NaN if a number is not finite.

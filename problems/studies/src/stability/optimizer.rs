@@ -29,8 +29,8 @@ impl Run {
         Self { objective, scaling: VariableScaling::FromBox, set: None, start, minimum: 1.0, gap: GAP }
     }
 
-    fn run(&self, name: String) -> Record {
-        let mut record = Record::plain(GROUP, name, Outcome::Broken, String::new());
+    fn run(&self) -> Record {
+        let mut record = Record::default();
         let config =
             BundleTrustConfig { max_evaluations: MAX_EVALUATIONS, scaling: self.scaling.clone(), ..Default::default() };
         let result = BundleTrust::new(config).map_err(Into::into).and_then(|mut method| {
@@ -59,15 +59,13 @@ impl Run {
 }
 
 fn case(name: impl Into<String>, run: Run) -> Case {
-    let name = name.into();
-    let label = name.clone();
-    Case::new(GROUP, name, move || run.run(label.clone()))
+    Case::new(GROUP, name, move || run.run())
 }
 
 fn refused(name: &'static str, error: impl Fn() -> Result<String, String> + Send + Sync + 'static) -> Case {
     Case::new(GROUP, name, move || match error() {
-        Ok(reason) => Record::plain(GROUP, name.into(), Outcome::Refused, reason),
-        Err(finding) => Record::plain(GROUP, name.into(), Outcome::Broken, finding),
+        Ok(reason) => Record::plain(Outcome::Refused, reason),
+        Err(finding) => Record::plain(Outcome::Broken, finding),
     })
 }
 

@@ -21,13 +21,9 @@ pub fn polyhedral(x: &Vector) -> (f64, Vector) {
 
 /// 1 + max (xᵢ − cᵢ)².
 pub fn largest_square(x: &Vector) -> (f64, Vector) {
-    let mut worst = 0;
-    for i in 0..x.len() {
-        if (x[i] - centre(i)).abs() > (x[worst] - centre(worst)).abs() {
-            worst = i;
-        }
-    }
-    let distance = x[worst] - centre(worst);
+    let offset = |i: usize| x[i] - centre(i);
+    let worst = (0..x.len()).fold(0, |worst, i| if offset(i).abs() > offset(worst).abs() { i } else { worst });
+    let distance = offset(worst);
     let mut slope = Vector::zeros(x.len());
     slope[worst] = 2.0 * distance;
     (1.0 + distance * distance, slope)

@@ -4,7 +4,7 @@ use contact::equilibrium::{Kink, Residuals, StatusCounts};
 use serde::Serialize;
 
 /// How a case ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
     /// Solved to its certificate; the independent paths agree.
@@ -14,11 +14,12 @@ pub enum Outcome {
     /// A known limit: not solved, or not by every path, for the cause stated.
     Limit,
     /// Not what was expected.
+    #[default]
     Broken,
 }
 
 /// What one solver did.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Path {
     /// Name of the solver.
     pub solver: &'static str,
@@ -39,7 +40,7 @@ pub struct Path {
 }
 
 /// One case with its outcome.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct Record {
     /// Group of cases.
     pub group: &'static str,
@@ -67,20 +68,8 @@ pub struct Record {
 
 impl Record {
     /// A record without solver paths.
-    pub fn plain(group: &'static str, name: String, outcome: Outcome, remark: String) -> Self {
-        Self {
-            group,
-            name,
-            outcome,
-            remark,
-            paths: Vec::new(),
-            force_difference: None,
-            subgradient_difference: None,
-            contraction: None,
-            condition: None,
-            evaluations: None,
-            seconds: 0.0,
-        }
+    pub fn plain(outcome: Outcome, remark: String) -> Self {
+        Self { outcome, remark, ..Self::default() }
     }
 
     /// Largest certificate over TFETI and direct condensation (the successive approximations are asked for less).

@@ -1,7 +1,7 @@
 //! Records as a page.
 
+use crate::markdown::{or_dash, section};
 use crate::stability::record::{Outcome, Path, Record, Report};
-use std::fmt::Write;
 
 /// One line per finished case.
 pub fn progress(record: &Record) -> String {
@@ -28,47 +28,33 @@ pub fn markdown(report: &Report) -> String {
         counts.limits,
         counts.broken
     );
-    let mut group = "";
-    for record in &report.records {
-        if record.group != group {
-            group = record.group;
-            // Writing to a string cannot fail.
-            let _ = write!(
-                text,
-                "\n### {group}\n\n| case | outcome | steps: products (TFETI; direct) | largest residual | Δ forces | \
-                 Δ subgradient | contraction | condition | remark |\n|{}\n",
-                "---|".repeat(9)
-            );
-        }
-        text += &line(record);
-    }
+    let head = "case | outcome | steps: products (TFETI; direct) | largest residual | Δ forces | Δ subgradient | \
+                contraction | condition | remark";
+    let groups = report.records.chunk_by(|one, next| one.group == next.group);
+    text.extend(groups.map(|group| section(group[0].group, head, group.iter().map(line))));
     text
 }
 
-fn line(record: &Record) -> String {
-    let number = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| format!("{value:.1e}"));
+fn line(record: &Record) -> Vec<String> {
+    let number = |value| or_dash(value, |value: f64| format!("{value:.1e}"));
     let work: Vec<String> = record.paths.iter().take(2).map(work).collect();
-    let cells = [
+    let evaluations = || or_dash(record.evaluations, |count| format!("{count} evaluations"));
+    vec![
         escaped(&record.name),
         word(record.outcome).into(),
-        if work.is_empty() { evaluations(record) } else { work.join("; ") },
+        if work.is_empty() { evaluations() } else { work.join("; ") },
         number(record.largest_residual()),
         number(record.force_difference),
         number(record.subgradient_difference),
-        record.contraction.map_or_else(|| "–".into(), |value| format!("{value:.3}")),
+        or_dash(record.contraction, |value| format!("{value:.3}")),
         number(record.condition),
         escaped(&record.remark),
-    ];
-    format!("| {} |\n", cells.join(" | "))
+    ]
 }
 
 /// Text for a cell of a Markdown table.
 fn escaped(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
-}
-
-fn evaluations(record: &Record) -> String {
-    record.evaluations.map_or_else(|| "–".into(), |count| format!("{count} evaluations"))
 }
 
 fn work(path: &Path) -> String {

@@ -6,7 +6,7 @@
 
 use crate::stability::case::Case;
 use crate::stability::contact::{Attempt, by_condensation, by_tfeti};
-use crate::stability::judge::{difference_over, force_difference, relative_difference};
+use crate::stability::judge::{difference_over, force_difference};
 use crate::stability::record::{Outcome, Record};
 use crate::stability::scenes::{block, footed, pair, stacked, wavy, with_loads};
 use contact::body::elasticity::Material;
@@ -90,7 +90,7 @@ fn compare(record: &mut Record, scene: &Scene, s: f64, amplitude: f64) -> Result
         let times = |heights: &Result<Vec<f64>, String>, length: f64| -> Vec<f64> {
             heights.as_ref().map(|heights| heights.iter().map(|value| value * length).collect()).unwrap_or_default()
         };
-        let slopes = relative_difference(&times(&first.heights, length), &times(&second.heights, other_length));
+        let slopes = difference_over(&times(&first.heights, length), &times(&second.heights, other_length), 0.0);
         if first.forces.status != second.forces.status {
             return Ok((Outcome::Broken, "statuses differ".into()));
         }
@@ -108,7 +108,7 @@ fn compare(record: &mut Record, scene: &Scene, s: f64, amplitude: f64) -> Result
 
 fn case(name: &'static str, scene: Result<Scene, SceneError>, s: f64, amplitude: f64) -> Case {
     Case::new(GROUP, name, move || {
-        let mut record = Record::plain(GROUP, name.into(), Outcome::Broken, String::new());
+        let mut record = Record::default();
         let result = match &scene {
             Ok(scene) => compare(&mut record, scene, s, amplitude).map_err(|error| error.to_string()),
             Err(error) => Err(error.to_string()),

@@ -34,19 +34,28 @@ pub fn extrapolate(meshes: &[f64], values: &[f64]) -> Option<Extrapolation> {
 
 /// The weighted straight line Q* + C x over x = n^(−p).
 fn fit(meshes: &[f64], values: &[f64], rate: f64) -> Option<Extrapolation> {
-    let points: Vec<(f64, f64, f64)> = meshes.iter().zip(values).map(|(n, &q)| (n * n, n.powf(-rate), q)).collect();
-    let weight: f64 = points.iter().map(|(w, _, _)| w).sum();
-    let mean = |value: fn(&(f64, f64, f64)) -> f64| points.iter().map(|p| p.0 * value(p)).sum::<f64>() / weight;
-    let (x, q) = (mean(|p| p.1), mean(|p| p.2));
-    let square: f64 = points.iter().map(|p| p.0 * (p.1 - x).powi(2)).sum();
-    let product: f64 = points.iter().map(|p| p.0 * (p.1 - x) * (p.2 - q)).sum();
-    if square <= 0.0 {
-        return None;
-    }
-    let slope = product / square;
-    let limit = q - slope * x;
-    let misfit: f64 = points.iter().map(|p| p.0 * (p.2 - limit - slope * p.1).powi(2)).sum::<f64>() / weight;
+    let points: Vec<[f64; 3]> = meshes.iter().zip(values).map(|(n, &q)| [n * n, n.powf(-rate), q]).collect();
+    let (slope, limit) = line(&points)?;
+    let weight: f64 = points.iter().map(|[w, _, _]| w).sum();
+    let misfit: f64 = points.iter().map(|[w, x, q]| w * (q - limit - slope * x).powi(2)).sum::<f64>() / weight;
     Some(Extrapolation { limit, rate, misfit: misfit.sqrt() / limit.abs().max(f64::MIN_POSITIVE) })
+}
+
+/// Slope and intercept of the line of least squares through points (weight, x, y); none if all x are equal.
+fn line(points: &[[f64; 3]]) -> Option<(f64, f64)> {
+    let weight: f64 = points.iter().map(|[w, _, _]| w).sum();
+    let mean = |axis: usize| points.iter().map(|point| point[0] * point[axis]).sum::<f64>() / weight;
+    let (x, y) = (mean(1), mean(2));
+    let square: f64 = points.iter().map(|point| point[0] * (point[1] - x).powi(2)).sum();
+    let product: f64 = points.iter().map(|point| point[0] * (point[1] - x) * (point[2] - y)).sum();
+    let slope = product / square;
+    (square > 0.0).then_some((slope, y - slope * x))
+}
+
+/// Exponent p of the power law y = C x^p of least squares in logarithms; none for fewer than two places x.
+pub fn exponent(points: impl Iterator<Item = [f64; 2]>) -> Option<f64> {
+    let logs: Vec<[f64; 3]> = points.map(|[x, y]| [1.0, x.ln(), y.ln()]).collect();
+    line(&logs).map(|(slope, _)| slope)
 }
 
 /// log(e₁/e₂)/log(n₂/n₁); none where an error is zero.
@@ -66,6 +75,9 @@ mod tests {
         let found = extrapolate(&meshes, &values).expect("five meshes");
         assert!((found.limit - 3.0).abs() < 1e-9 && (found.rate - 1.5).abs() < 1e-9 && found.misfit < 1e-12);
         assert!(extrapolate(&meshes[..2], &values[..2]).is_none());
+        let powers = [1.0_f64, 3.0, 10.0, 50.0].map(|x| [x, 7.0 * x.powf(1.25)]);
+        assert!((exponent(powers.into_iter()).expect("four points") - 1.25).abs() < 1e-12);
+        assert_eq!(exponent([[2.0, 3.0]].into_iter()), None);
         let rate = observed([6.0, 12.0], [4.0, 1.0]).expect("positive errors");
         assert!((rate - 2.0).abs() < 1e-12);
     }

@@ -1,0 +1,131 @@
+//! What is measured of one case with one solver, and all rows of one run: keys of the JSON output.
+
+use crate::scaling::cases::{Case, SceneName, Variant};
+use crate::scaling::growth::Growth;
+use contact::equilibrium::{StageSeconds, Work};
+use serde::Serialize;
+
+/// Where a solve starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Start {
+    /// From nothing.
+    Cold,
+    /// From the state of slightly different controls.
+    Warm,
+}
+
+/// One state.
+#[derive(Debug, Clone, Serialize)]
+pub struct Solve {
+    /// Where it started.
+    pub start: Start,
+    /// Relative Newton residual asked for.
+    pub tolerance: f64,
+    /// Relative Newton residual reached.
+    pub residual: f64,
+    /// Steps and products.
+    pub work: Work,
+    /// Σσ⁴, MPa⁴.
+    pub objective: f64,
+    /// Wall-clock seconds.
+    pub seconds: f64,
+    /// Stages of these; none for direct condensation.
+    pub stages: Option<StageSeconds>,
+}
+
+/// One subgradient.
+#[derive(Debug, Clone, Serialize)]
+pub struct Adjoint {
+    /// Relative residual asked for.
+    pub tolerance: f64,
+    /// Products with the dual operator; 0 for direct condensation.
+    pub applications: usize,
+    /// Wall-clock seconds of the adjoint system (direct: with the element sums).
+    pub seconds: f64,
+    /// Wall-clock seconds of the element sums.
+    pub shape_seconds: f64,
+}
+
+/// A state and its subgradient, both timed.
+#[derive(Debug, Clone, Serialize)]
+pub struct Sample {
+    /// The state.
+    pub state: Solve,
+    /// The subgradient.
+    pub adjoint: Adjoint,
+}
+
+impl Solve {
+    /// Products with the dual operator; 0 for direct condensation.
+    pub fn applications(&self) -> usize {
+        self.work.dual_operator_applications
+    }
+}
+
+impl Sample {
+    /// Seconds of state and subgradient.
+    pub fn seconds(&self) -> f64 {
+        self.state.seconds + self.adjoint.seconds + self.adjoint.shape_seconds
+    }
+}
+
+/// One case with one solver.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// The scene.
+    pub scene: SceneName,
+    /// The mesh.
+    #[serde(flatten)]
+    pub case: Case,
+    /// The solver.
+    pub variant: Variant,
+    /// Torn degrees of freedom; untorn ones for direct condensation.
+    pub dofs: usize,
+    /// Rows of B; contact rows for direct condensation.
+    pub multipliers: usize,
+    /// Contact nodes.
+    pub contact_nodes: usize,
+    /// Seconds of what is done once per run: patterns, symbolic analysis, rows.
+    pub setup_seconds: f64,
+    /// State to 1e-8 and subgradient to 1e-8 from nothing: the repetition of median time.
+    pub cold: Sample,
+    /// The same after a small change of the controls, from the old multipliers.
+    pub warm: Option<Sample>,
+    /// States to other tolerances.
+    pub others: Vec<Solve>,
+    /// Peak resident memory of the process in this case, GiB; none where the system does not tell.
+    pub peak_memory: Option<f64>,
+    /// Solves that did not reach their tolerance, in words.
+    pub failures: Vec<String>,
+}
+
+impl Row {
+    /// The state solved from `start` to `tolerance`.
+    pub fn solve(&self, start: Start, tolerance: f64) -> Option<&Solve> {
+        let timed = std::iter::once(&self.cold).chain(&self.warm).map(|sample| &sample.state);
+        timed.chain(&self.others).find(|solve| solve.start == start && solve.tolerance == tolerance)
+    }
+}
+
+/// Everything measured in one run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Threads that the machine runs at once.
+    pub machine_threads: usize,
+    /// One entry per case and variant.
+    pub rows: Vec<Row>,
+    /// Growth at fixed H/h, per scene and variant.
+    pub growth: Vec<Growth>,
+    /// Cases that could not be measured, in words.
+    pub failures: Vec<String>,
+}
+
+impl Report {
+    /// A report over rows.
+    pub fn new(rows: Vec<Row>, failures: Vec<String>) -> Self {
+        let machine_threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let growth = Growth::of(&rows);
+        Self { machine_threads, rows, growth, failures }
+    }
+}
