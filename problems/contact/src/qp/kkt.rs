@@ -21,13 +21,9 @@ impl KktResidual {
         program.hessian.apply(x, &mut image);
         let scale = (norm(program.linear) + norm_h * norm(x)).max(f64::MIN_POSITIVE);
         let mut gradient: Vec<f64> = image.iter().zip(program.linear).map(|(image, b)| image - b).collect();
-        let mut equality = 0.0;
-        if let Some(equalities) = program.equalities {
-            add_scaled(&mut gradient, 1.0, &equalities.apply_transposed(multipliers));
-            let rows = equalities.apply(x);
-            let defect: Vec<f64> = rows.iter().zip(equalities.right_side()).map(|(row, e)| row - e).collect();
-            equality = norm(&defect) / (norm(x) + norm(equalities.right_side())).max(f64::MIN_POSITIVE);
-        }
+        add_scaled(&mut gradient, 1.0, &program.equalities.apply_transposed(multipliers));
+        let size = (norm(x) + norm(program.equalities.right_side())).max(f64::MIN_POSITIVE);
+        let equality = norm(&program.defect(x)) / size;
         let reduced = program.set.reduced_gradient(x, &gradient, 1.0 / norm_h);
         let mut projected = x.to_vec();
         program.set.project(&mut projected);

@@ -5,7 +5,7 @@
 //! reduced gradient:  g̃_α(x) = (x − P_Ω(x − α g))/α
 //! ```
 
-use crate::qp::{Face, QpError};
+use crate::qp::QpError;
 
 /// One constrained part of x.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -200,11 +200,6 @@ impl SeparableSet {
         }
         free = (free - chopped).max(0.0);
         (free, chopped)
-    }
-
-    /// The face of x: what may move at first order.
-    pub fn face(&self, x: &[f64], gradient: &[f64], release: bool) -> Face {
-        Face::new(self, x, gradient, release)
     }
 }
 

@@ -5,9 +5,10 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use contact::qp::kkt::KktResidual;
 use contact::qp::{
-    Block, DenseRows, DenseSymmetric, FacePreconditioner, LinearEqualities, QpError, QuadraticProgram, SeparableSet,
-    Smalse, SmalseSettings, SmalseSolution, SymmetricOperator, WarmStart, largest_eigenvalue,
+    Block, DenseEqualities, FacePreconditioner, QpError, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
+    SmalseSolution, SymmetricOperator, WarmStart, largest_eigenvalue,
 };
+use nonsmooth::Matrix;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
@@ -30,27 +31,25 @@ impl Instance {
         SeparableSet::new(self.dimension(), self.blocks.clone()).expect("valid set")
     }
 
-    fn hessian(&self) -> DenseSymmetric {
-        DenseSymmetric::new(self.rows.clone()).expect("square")
+    fn hessian(&self) -> Matrix {
+        Matrix::from_row_slice(self.rows.len(), self.rows.len(), &self.rows.concat())
     }
 
-    fn dense_rows(&self) -> Option<DenseRows> {
-        let (rows, right) = self.equalities.iter().cloned().unzip();
-        (!self.equalities.is_empty()).then(|| DenseRows::new(self.dimension(), rows, right).expect("sizes"))
+    fn dense_equalities(&self) -> DenseEqualities {
+        let (rows, right_side): (Vec<Vec<f64>>, _) = self.equalities.iter().cloned().unzip();
+        DenseEqualities { transposed: Matrix::from_vec(self.dimension(), rows.len(), rows.concat()), right_side }
     }
 
     fn solve(&self, settings: SmalseSettings, tolerance: f64) -> Result<SmalseSolution, QpError> {
-        let (hessian, set, rows) = (self.hessian(), self.set(), self.dense_rows());
-        let equalities = rows.as_ref().map(|rows| rows as &dyn LinearEqualities);
-        let program = QuadraticProgram { hessian: &hessian, linear: &self.linear, set: &set, equalities };
+        let (hessian, set, rows) = (self.hessian(), self.set(), self.dense_equalities());
+        let program = QuadraticProgram { hessian: &hessian, linear: &self.linear, set: &set, equalities: &rows };
         let start = WarmStart { x: vec![0.0; self.dimension()], ..WarmStart::default() };
         Smalse { program, preconditioner: None, settings }.solve(&start, tolerance)
     }
 
     fn residual(&self, solution: &SmalseSolution) -> f64 {
-        let (hessian, set, rows) = (self.hessian(), self.set(), self.dense_rows());
-        let equalities = rows.as_ref().map(|rows| rows as &dyn LinearEqualities);
-        let program = QuadraticProgram { hessian: &hessian, linear: &self.linear, set: &set, equalities };
+        let (hessian, set, rows) = (self.hessian(), self.set(), self.dense_equalities());
+        let program = QuadraticProgram { hessian: &hessian, linear: &self.linear, set: &set, equalities: &rows };
         let norm = largest_eigenvalue(&hessian, self.dimension()).expect("finite");
         KktResidual::of(&program, &solution.warm.x, &solution.warm.multipliers, norm).largest()
     }
@@ -208,9 +207,9 @@ proptest! {
     #[test]
     fn a_preconditioner_changes_the_path_but_not_the_solution(instance in instances()) {
         let instance = Instance { equalities: Vec::new(), ..instance };
-        let (hessian, set) = (instance.hessian(), instance.set());
+        let (hessian, set, rows) = (instance.hessian(), instance.set(), instance.dense_equalities());
         let inverse = Diagonal(instance.rows.iter().enumerate().map(|(i, row)| 1.0 / row[i]).collect());
-        let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities: None };
+        let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities: &rows };
         let preconditioner = Some(FacePreconditioner { operator: &inverse, diagonal: 1.0 });
         let start = WarmStart { x: vec![0.0; instance.dimension()], ..WarmStart::default() };
         let solver = Smalse { program, preconditioner, settings: SmalseSettings::default() };
@@ -317,9 +316,8 @@ fn units_do_not_matter() {
 fn warm_start_at_the_solution_costs_nothing_new() {
     let instance = string(1.0, 1.0);
     let first = instance.solve(SmalseSettings::default(), 1e-8).expect("solvable");
-    let (hessian, set, rows) = (instance.hessian(), instance.set(), instance.dense_rows());
-    let equalities = rows.as_ref().map(|rows| rows as &dyn LinearEqualities);
-    let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities };
+    let (hessian, set, rows) = (instance.hessian(), instance.set(), instance.dense_equalities());
+    let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities: &rows };
     let again = Smalse { program, preconditioner: None, settings: SmalseSettings::default() }.solve(&first.warm, 1e-7);
     assert_eq!(again.expect("solvable").counts.products(), 0);
 }

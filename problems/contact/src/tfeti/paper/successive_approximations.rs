@@ -14,7 +14,7 @@ use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::qp::{
     Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
-    SmalseSolution, WarmStart,
+    SmalseSolution, StepCounts, WarmStart,
 };
 use crate::tfeti::dual::{Iterate, TornContact, TornSolution};
 use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
@@ -56,14 +56,8 @@ pub struct AugmentedLagrangianCounts {
     pub fixed_point_steps: usize,
     /// Multiplier updates of SMALSE-M.
     pub outer: usize,
-    /// Conjugate gradient steps.
-    pub cg_steps: usize,
-    /// Expansion steps.
-    pub expansion_steps: usize,
-    /// Proportioning steps.
-    pub proportioning_steps: usize,
-    /// Gradients computed afresh at starts and against drift.
-    pub refreshed_gradients: usize,
+    /// Products of the dual QP solver by the kind of step.
+    pub steps: StepCounts,
     /// Estimated contraction factor of Ψ ↦ 𝓕λ_N(Ψ); 0 without friction or with fewer than three steps.
     pub contraction: f64,
 }
@@ -74,9 +68,9 @@ impl AugmentedLagrangianCounts {
         Work {
             newton_steps: 0,
             fixed_point_steps: self.fixed_point_steps,
-            cg_steps: self.cg_steps,
-            expansion_steps: self.expansion_steps,
-            proportioning_steps: self.proportioning_steps,
+            cg_steps: self.steps.cg_steps,
+            expansion_steps: self.steps.expansion_steps,
+            proportioning_steps: self.steps.proportioning_steps,
             ..work
         }
     }
@@ -165,12 +159,14 @@ impl TornContact<'_> {
     ) -> Result<(), ContactError> {
         loop {
             let solution = self.tresca(coarse, dual, linear, settings, state)?;
-            let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
+            let residual = self.coulomb_residual(&solution);
             history.push(residual);
             Stage::Contact.reached(history.len(), residual);
             let exhausted = !solution.converged && residual <= settings.tolerance.max(TIGHTEST_ACCEPTABLE);
             let target = TARGET_SHARE * settings.tolerance;
-            self.count(&mut state.counts, &solution);
+            state.counts.fixed_point_steps += 1;
+            state.counts.outer += solution.outer;
+            state.counts.steps += solution.counts;
             self.advance(state, solution)?;
             let spent = history.len() >= settings.max_fixed_point_steps;
             if residual <= target || exhausted || spent || !self.boundary.has_friction() {
@@ -211,7 +207,7 @@ impl TornContact<'_> {
         state: &FixedPoint,
     ) -> Result<SmalseSolution, ContactError> {
         let set = self.feasible_set(&state.bounds)?;
-        let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: Some(coarse) };
+        let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: coarse };
         let mut solver = Smalse { program, preconditioner: None, settings: settings.qp };
         let norm_h = solver.norm(&state.warm)?;
         let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
@@ -223,8 +219,8 @@ impl TornContact<'_> {
         let floor = INNER_SHARE * settings.tolerance * self.load / self.stiffness;
         let solution = solver.run(&warm, floor, &mut |progress| {
             let error = self.stiffness * progress.reduced_gradient + progress.infeasibility;
-            let residual = self.coulomb_residual(progress.x, progress.gradient, progress.infeasibility);
-            let change = difference(&self.slip_bounds(self.split(progress.x).1), &state.bounds);
+            let residual = self.coulomb_residual(progress);
+            let change = difference(&self.slip_bounds(self.split(&progress.warm.x).1), &state.bounds);
             let deserved = (settings.adaptivity * change).max(2.0 * floor * self.stiffness);
             residual <= TARGET_SHARE * settings.tolerance || (self.boundary.has_friction() && error <= deserved)
         })?;
@@ -237,20 +233,11 @@ impl TornContact<'_> {
     }
 
     /// The relative residual, as Newton measures it, for the jumps that the multipliers of the equalities imply.
-    fn coulomb_residual(&self, multipliers: &[f64], gradient: &[f64], infeasibility: f64) -> f64 {
-        let (glued, opening) = self.split(gradient);
+    fn coulomb_residual(&self, solution: &SmalseSolution) -> f64 {
+        let (glued, opening) = self.split(&solution.gradient);
         let jumps: Vec<f64> = opening.iter().map(|entry| -entry).collect();
-        let law = projection_residual(self.boundary, self.split(multipliers).1, &jumps, self.stiffness);
-        (self.stiffness * norm(glued)).hypot(norm(&law)).hypot(infeasibility) / self.load
-    }
-
-    fn count(&self, counts: &mut AugmentedLagrangianCounts, solution: &SmalseSolution) {
-        counts.fixed_point_steps += 1;
-        counts.outer += solution.outer;
-        counts.cg_steps += solution.counts.cg_steps;
-        counts.expansion_steps += solution.counts.expansion_steps;
-        counts.proportioning_steps += solution.counts.proportioning_steps;
-        counts.refreshed_gradients += solution.counts.refreshed_gradients;
+        let law = projection_residual(self.boundary, self.split(&solution.warm.x).1, &jumps, self.stiffness);
+        (self.stiffness * norm(glued)).hypot(norm(&law)).hypot(solution.infeasibility) / self.load
     }
 
     /// Ψ ← 𝓕λ_N; sliding tractions keep to the circle. Watches the contraction.
