@@ -7,6 +7,7 @@ use crate::body::shape_load::loaded_faces;
 use crate::equilibrium::modes::motions;
 use crate::equilibrium::{Configuration, ContactProblem};
 use crate::error::ContactError;
+use crate::lattice;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;
 use crate::linear::symmetric::Submatrix;
@@ -162,7 +163,7 @@ impl TornModel {
                     &self.symbolic,
                     &scene.material,
                     &rigid.modes,
-                    |local| block.brick(std::array::from_fn(|axis| local[axis] + place.first_cell[axis])),
+                    |local| block.brick(lattice::add(local, place.first_cell)),
                     &load,
                     subdomain.interior.as_deref(),
                 )?;
@@ -234,8 +235,7 @@ fn loads(body: &BodyScene, place: &Subdomain, block: &Block) -> Vec<f64> {
         for face in loaded_faces(&block.grid, scene_load.face, Some(place)) {
             let weights = face_weights(&face.map(|node| block.coordinates(node)));
             for (node, weight) in face.into_iter().zip(weights) {
-                let local: [usize; 3] = std::array::from_fn(|a| node[a] - place.first_cell[a]);
-                let first = 3 * place.local_node(local);
+                let first = 3 * place.local_node(lattice::subtract(node, place.first_cell));
                 for (component, traction) in scene_load.traction.iter().enumerate() {
                     load[first + component] += weight * traction;
                 }
