@@ -40,8 +40,8 @@ impl ContactProblem {
         let admissible = AdmissibleSet::new(&surface, &grid, &scene.bounds, |x1, x2| counter.height(x1, x2))?;
         let places = grid.columns().map(|(i, j)| grid.position(i, j));
         let counter_heights: Vec<f64> = places.map(|[x1, x2]| counter.height(x1, x2)).collect();
-        if let Some(height) = counter_heights.iter().find(|height| !height.is_finite()) {
-            return Err(SceneError::out_of_range("counter surface", height, "finite heights over the whole base"));
+        for height in &counter_heights {
+            SceneError::require(height.is_finite(), "counter surface", height, "finite heights over the whole base")?;
         }
         Ok(Self { grid, boundary, height_map: surface.height_map(&grid), admissible, counter_heights, scene })
     }

@@ -22,10 +22,8 @@ impl Basis {
     /// # Errors
     /// [`SceneError::OutOfRange`] unless 1 ≤ degree < count.
     pub fn clamped_uniform(degree: usize, count: usize) -> Result<Self, SceneError> {
-        if degree == 0 || degree >= count {
-            let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
-            return Err(SceneError::out_of_range("spline degree", degree, allowed));
-        }
+        let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
+        SceneError::require((1..count).contains(&degree), "spline degree", degree, allowed)?;
         let spans = count - degree;
         let knots =
             (0..count + degree + 1).map(|index| (index.clamp(degree, count) - degree) as f64 / spans as f64).collect();

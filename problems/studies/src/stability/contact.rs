@@ -105,7 +105,7 @@ fn refusal(solver: &'static str, error: &ContactError) -> Attempt {
         residuals: none.0,
         status: none.1,
         kink: none.2,
-        refusal: Some(error.kind().into()),
+        refusal: Some(error.kind()),
         reason: Some(error.to_string()),
     };
     (path, None)

@@ -86,8 +86,7 @@ impl TornContact<'_> {
                 add_scaled(&mut image, *coefficient, &product);
                 if let Some(recycled) = recycled.as_deref_mut() {
                     let amplitudes = balancing_amplitudes(active, direction, &product);
-                    let multipliers = rows.trial(direction);
-                    recycled.push(self, Direction::Full { multipliers, image: product, amplitudes });
+                    recycled.push(self, Direction { amplitudes, forces: Some((rows.trial(direction), product)) });
                 }
             }
         }

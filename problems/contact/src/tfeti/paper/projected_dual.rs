@@ -80,16 +80,13 @@ impl LinearEqualities for OrthonormalCoarse<'_> {
 /// P F P.
 #[derive(Debug)]
 pub struct ProjectedDual<'a> {
-    operator: &'a DualOperator<'a>,
-    coarse: &'a OrthonormalCoarse<'a>,
+    /// F of one shape.
+    pub operator: &'a DualOperator<'a>,
+    /// C.
+    pub coarse: &'a OrthonormalCoarse<'a>,
 }
 
-impl<'a> ProjectedDual<'a> {
-    /// The operator of one shape.
-    pub fn new(operator: &'a DualOperator<'a>, coarse: &'a OrthonormalCoarse<'a>) -> Self {
-        Self { operator, coarse }
-    }
-
+impl ProjectedDual<'_> {
     /// P (d − F λ₀) with λ₀ = Gᵀ(GGᵀ)⁻¹e.
     pub fn homogenised(&self, constant: &RowVector) -> RowVector {
         let mut rest = constant.clone();
@@ -112,16 +109,12 @@ impl SymmetricOperator for ProjectedDual<'_> {
 /// P M P + Q/ρ.
 #[derive(Debug)]
 pub struct ProjectedPreconditioner<'a> {
-    preconditioner: &'a Preconditioner<'a>,
-    coarse: &'a OrthonormalCoarse<'a>,
-    rho: f64,
-}
-
-impl<'a> ProjectedPreconditioner<'a> {
-    /// The preconditioner for a penalty ρ.
-    pub fn new(preconditioner: &'a Preconditioner<'a>, coarse: &'a OrthonormalCoarse<'a>, rho: f64) -> Self {
-        Self { preconditioner, coarse, rho }
-    }
+    /// M.
+    pub preconditioner: &'a Preconditioner<'a>,
+    /// C.
+    pub coarse: &'a OrthonormalCoarse<'a>,
+    /// The penalty ρ.
+    pub rho: f64,
 }
 
 impl SymmetricOperator for ProjectedPreconditioner<'_> {

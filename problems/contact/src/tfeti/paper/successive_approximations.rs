@@ -115,13 +115,13 @@ impl TornContact<'_> {
     ) -> Result<(TornSolution, AugmentedLagrangianCounts), ContactError> {
         let acceptable = settings.tolerance.max(TIGHTEST_ACCEPTABLE);
         let coarse = OrthonormalCoarse::new(self.space)?;
-        let dual = ProjectedDual::new(&self.operator, &coarse);
+        let dual = ProjectedDual { operator: &self.operator, coarse: &coarse };
         let linear = dual.homogenised(&self.constant);
         let mut state = self.first(&self.start(start, None)?, &coarse);
         let mut history = Vec::new();
         let mut aimed = *settings;
         let (iterate, residual) = loop {
-            self.approximate(&coarse, &dual, &linear, &aimed, &mut state, &mut history)?;
+            self.approximate(&dual, &linear, &aimed, &mut state, &mut history)?;
             let iterate = self.balanced(&self.operator.model.constraints.row_vector(&state.warm.x)?, &state.bounds)?;
             let residual = self.residual(&iterate);
             let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= TIGHTEST_TOLERANCE;
@@ -150,7 +150,6 @@ impl TornContact<'_> {
     /// Tresca problems until their residual is below a share of the tolerance aimed at, or the steps are spent.
     fn approximate(
         &self,
-        coarse: &OrthonormalCoarse<'_>,
         dual: &ProjectedDual<'_>,
         linear: &[f64],
         settings: &AugmentedLagrangianSettings,
@@ -158,7 +157,7 @@ impl TornContact<'_> {
         history: &mut Vec<f64>,
     ) -> Result<(), ContactError> {
         loop {
-            let solution = self.tresca(coarse, dual, linear, settings, state)?;
+            let solution = self.tresca(dual, linear, settings, state)?;
             let residual = self.coulomb_residual(&solution);
             history.push(residual);
             Stage::Contact.reached(history.len(), residual);
@@ -200,19 +199,18 @@ impl TornContact<'_> {
     /// Solves the Tresca problem of the current slip bounds as far as they deserve.
     fn tresca(
         &self,
-        coarse: &OrthonormalCoarse<'_>,
         dual: &ProjectedDual<'_>,
         linear: &[f64],
         settings: &AugmentedLagrangianSettings,
         state: &FixedPoint,
     ) -> Result<SmalseSolution, ContactError> {
-        let set = self.feasible_set(&state.bounds)?;
+        let (set, coarse) = (self.feasible_set(&state.bounds)?, dual.coarse);
         let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: coarse };
         let mut solver = Smalse { program, preconditioner: None, settings: settings.qp };
         let norm_h = solver.norm(&state.warm)?;
         let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
-        let penalty = settings.qp.penalty * norm_h;
-        let preconditioner = ProjectedPreconditioner::new(&self.preconditioner, coarse, penalty);
+        let (rho, preconditioner) = (settings.qp.penalty * norm_h, &self.preconditioner);
+        let preconditioner = ProjectedPreconditioner { preconditioner, coarse, rho };
         if settings.precondition {
             solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
         }
