@@ -79,12 +79,8 @@ impl<S> Cost<ContactState<S>> for PressureCost {
                 }
             }
             PressureMeasure::Peak => {
-                let mut peak = 0;
-                for (index, pressure) in pressures.iter().enumerate() {
-                    if *pressure > pressures[peak] {
-                        peak = index;
-                    }
-                }
+                let larger = |peak: usize, index: usize| if pressures[index] > pressures[peak] { index } else { peak };
+                let peak = (0..pressures.len()).fold(0, larger);
                 dual[peak] = 1.0 / self.areas[peak];
             }
         }

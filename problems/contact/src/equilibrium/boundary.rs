@@ -26,6 +26,11 @@ impl ContactPoint {
     pub fn row_count(&self) -> usize {
         1 + self.tangents.len()
     }
+
+    /// Its rows in a packed contact vector.
+    pub fn rows(&self) -> std::ops::Range<usize> {
+        self.start..self.start + self.row_count()
+    }
 }
 
 /// All contact nodes of a scene.

@@ -109,7 +109,7 @@ impl<'a> TornContact<'a> {
     pub(crate) fn linearize(&self, iterate: &Iterate) -> Vec<Linearization> {
         let arguments = self.arguments(iterate);
         let points = self.boundary.points.iter();
-        let range = points.map(|point| point.start..point.start + point.row_count());
+        let range = points.map(|point| point.rows());
         range.map(|rows| Linearization::at(&arguments[rows], self.boundary.friction)).collect()
     }
 

@@ -133,7 +133,7 @@ impl Recycled {
             .points
             .iter()
             .map(|point| {
-                let rows = point.start..point.start + point.row_count();
+                let rows = point.rows();
                 let x: Vec<f64> =
                     rows.map(|row| position.forces[row] + contact.stiffness * position.jumps[row]).collect();
                 Linearization::at(&x, boundary.friction).derivative(x.len(), boundary.friction)

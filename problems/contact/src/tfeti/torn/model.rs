@@ -9,7 +9,6 @@ use crate::equilibrium::{Configuration, ContactProblem};
 use crate::error::ContactError;
 use crate::lattice;
 use crate::linear::cholesky::SymbolicFactor;
-use crate::linear::ordering::nested_dissection;
 use crate::linear::symmetric::Submatrix;
 use crate::linear::vector::dot;
 use crate::scene::BodyScene;
@@ -257,16 +256,8 @@ fn interior_class(
         return Ok(Arc::clone(class));
     }
     let submatrix = Submatrix::new(&pattern.pattern, &marked);
-    let mut new_index = vec![usize::MAX; marked.len()];
-    for (new, &old) in submatrix.kept.iter().enumerate() {
-        new_index[old] = new;
-    }
-    let order: Vec<usize> = nested_dissection(pattern.shape.nodes())
-        .into_iter()
-        .flat_map(|node| 3 * node..3 * node + 3)
-        .filter(|&dof| marked[dof])
-        .map(|dof| new_index[dof])
-        .collect();
+    let order = pattern.elimination_order(&[]).into_iter();
+    let order: Vec<usize> = order.filter_map(|dof| submatrix.kept.binary_search(&dof).ok()).collect();
     let symbolic = if order.is_empty() {
         None
     } else {
