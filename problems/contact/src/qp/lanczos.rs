@@ -1,6 +1,6 @@
 //! Largest eigenvalue by a few Lanczos steps.
 
-use crate::linear::vector::{add_scaled, dot, norm};
+use crate::linear::vector::{dot, norm, orthogonalise};
 use crate::qp::{QpError, SymmetricOperator};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -23,12 +23,7 @@ pub fn largest_eigenvalue(operator: &dyn SymmetricOperator, steps: usize) -> Res
         let mut image = vec![0.0; dimension];
         operator.apply(current, &mut image);
         diagonal.push(dot(current, &image));
-        for _pass in 0..2 {
-            for vector in &basis {
-                let projection = dot(vector, &image);
-                add_scaled(&mut image, -projection, vector);
-            }
-        }
+        orthogonalise(&mut image, &basis);
         let length = norm(&image);
         if !length.is_finite() {
             return Err(QpError::NotFinite { what: "product with the quadratic form" });

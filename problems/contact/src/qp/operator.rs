@@ -21,6 +21,17 @@ pub trait LinearEqualities {
     fn right_side(&self) -> &[f64];
 }
 
+/// An operator by its dimension and its product.
+impl<F: Fn(&[f64], &mut [f64])> SymmetricOperator for (usize, F) {
+    fn dimension(&self) -> usize {
+        self.0
+    }
+
+    fn apply(&self, x: &[f64], result: &mut [f64]) {
+        self.1(x, result);
+    }
+}
+
 /// A dense symmetric matrix.
 ///
 /// ```

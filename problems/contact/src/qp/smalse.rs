@@ -12,43 +12,9 @@
 use crate::linear::vector::{add_scaled, dot, norm};
 use crate::qp::mpgp::Ending;
 use crate::qp::{
-    FacePreconditioner, LinearEqualities, Mpgp, Point, QpError, QuadraticProgram, SmalseSettings, SmalseSolution,
-    StepCounts, SymmetricOperator, WarmStart, largest_eigenvalue,
+    FacePreconditioner, Mpgp, Point, QpError, QuadraticProgram, SmalseSettings, SmalseSolution, StepCounts, WarmStart,
+    largest_eigenvalue,
 };
-
-/// H + ρCᵀC.
-struct Augmented<'a> {
-    program: QuadraticProgram<'a>,
-    rho: f64,
-}
-
-impl SymmetricOperator for Augmented<'_> {
-    fn dimension(&self) -> usize {
-        self.program.hessian.dimension()
-    }
-
-    fn apply(&self, x: &[f64], result: &mut [f64]) {
-        self.program.hessian.apply(x, result);
-        let equalities = self.program.equalities;
-        add_scaled(result, self.rho, &equalities.apply_transposed(&equalities.apply(x)));
-    }
-}
-
-/// CᵀC.
-struct Gram<'a> {
-    equalities: &'a dyn LinearEqualities,
-    dimension: usize,
-}
-
-impl SymmetricOperator for Gram<'_> {
-    fn dimension(&self) -> usize {
-        self.dimension
-    }
-
-    fn apply(&self, x: &[f64], result: &mut [f64]) {
-        result.copy_from_slice(&self.equalities.apply_transposed(&self.equalities.apply(x)));
-    }
-}
 
 /// The solver.
 ///
@@ -120,7 +86,11 @@ impl Smalse<'_> {
         let (mut infeasibility, mut stalled) = (f64::INFINITY, 0);
         let scale = norm(self.program.linear).max(f64::MIN_POSITIVE);
         loop {
-            let augmented = Augmented { program: self.program, rho: state.rho };
+            let (QuadraticProgram { hessian, equalities, .. }, rho) = (self.program, state.rho);
+            let augmented = (hessian.dimension(), |x: &[f64], result: &mut [f64]| {
+                hessian.apply(x, result);
+                add_scaled(result, rho, &equalities.apply_transposed(&equalities.apply(x)));
+            });
             let mut inner = Mpgp {
                 hessian: &augmented,
                 set: self.program.set,
@@ -232,7 +202,9 @@ impl<'a> State<'a> {
         let program = solver.program;
         let norm = solver.norm(start)?;
         let (equalities, right) = (program.equalities, program.equalities.right_side());
-        let gram = Gram { equalities, dimension: program.hessian.dimension() };
+        let gram = (program.hessian.dimension(), |x: &[f64], result: &mut [f64]| {
+            result.copy_from_slice(&equalities.apply_transposed(&equalities.apply(x)));
+        });
         let row_norm = largest_eigenvalue(&gram, ROW_NORM_STEPS)?.max(0.0).sqrt();
         let known = start.multipliers.len() == right.len();
         let multipliers = if known { start.multipliers.clone() } else { vec![0.0; right.len()] };

@@ -38,13 +38,13 @@ impl Basis {
     /// Values of all basis functions at t ∈ [0, 1].
     pub fn values<T: Scalar>(&self, t: T) -> Vec<T> {
         let span = (self.degree..self.count).rev().find(|&span| self.knots[span] <= t.value()).unwrap_or(self.degree);
-        let mut values = vec![T::zero(); self.count];
-        values[span] = T::one();
+        let mut values = vec![T::constant(0.0); self.count];
+        values[span] = T::constant(1.0);
         for degree in 1..=self.degree {
             for index in span - degree..=span {
-                let mut value = T::zero();
+                let mut value = T::constant(0.0);
                 let (left, right) = (self.knots[index], self.knots[index + degree]);
-                if right > left && !values[index].is_zero() {
+                if right > left {
                     value += (t - T::constant(left)) / T::constant(right - left) * values[index];
                 }
                 if index < span {

@@ -106,26 +106,16 @@ impl SymmetricOperator for ProjectedDual<'_> {
     }
 }
 
-/// P M P + Q/ρ.
-#[derive(Debug)]
-pub struct ProjectedPreconditioner<'a> {
-    /// M.
-    pub preconditioner: &'a Preconditioner<'a>,
-    /// C.
-    pub coarse: &'a OrthonormalCoarse<'a>,
-    /// The penalty ρ.
-    pub rho: f64,
-}
-
-impl SymmetricOperator for ProjectedPreconditioner<'_> {
-    fn dimension(&self) -> usize {
-        self.coarse.space.row_count()
-    }
-
-    fn apply(&self, x: &[f64], result: &mut [f64]) {
-        let rigid = self.coarse.rigid_part(x);
+/// P M P + Q/ρ for a penalty ρ.
+pub fn projected_preconditioner(
+    preconditioner: &Preconditioner<'_>,
+    coarse: &OrthonormalCoarse<'_>,
+    rho: f64,
+) -> impl SymmetricOperator {
+    (coarse.space.row_count(), move |x: &[f64], result: &mut [f64]| {
+        let rigid = coarse.rigid_part(x);
         let elastic = difference(x, rigid.clone());
-        result.copy_from_slice(&self.coarse.projected(&self.preconditioner.apply(&elastic)));
-        add_scaled(result, 1.0 / self.rho, &rigid);
-    }
+        result.copy_from_slice(&coarse.projected(&preconditioner.apply(&elastic)));
+        add_scaled(result, 1.0 / rho, &rigid);
+    })
 }

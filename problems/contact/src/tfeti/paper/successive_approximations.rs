@@ -17,7 +17,7 @@ use crate::qp::{
     SmalseSolution, StepCounts, WarmStart,
 };
 use crate::tfeti::dual::{Iterate, TornContact, TornSolution};
-use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
+use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, projected_preconditioner};
 
 /// When to stop, and how the dual QPs are solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -209,8 +209,7 @@ impl TornContact<'_> {
         let mut solver = Smalse { program, preconditioner: None, settings: settings.qp };
         let norm_h = solver.norm(&state.warm)?;
         let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
-        let (rho, preconditioner) = (settings.qp.penalty * norm_h, &self.preconditioner);
-        let preconditioner = ProjectedPreconditioner { preconditioner, coarse, rho };
+        let preconditioner = projected_preconditioner(&self.preconditioner, coarse, settings.qp.penalty * norm_h);
         if settings.precondition {
             solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
         }
