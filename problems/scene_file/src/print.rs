@@ -61,13 +61,8 @@ fn fields(text: &mut String, node: &Node<'_>, table: &Table, path: &str, comment
 
 fn other_forms(text: &mut String, field: &Node<'_>) {
     for (form, node) in field.forms() {
-        let names: Vec<&str> = node
-            .fields()
-            .into_iter()
-            .flat_map(|fields| fields.keys())
-            .map(String::as_str)
-            .filter(|n| *n != "form")
-            .collect();
+        let names = node.fields().into_iter().flat_map(|fields| fields.keys());
+        let names: Vec<&str> = names.map(String::as_str).filter(|name| *name != "form").collect();
         let description = node.text("description").unwrap_or_default();
         comment(text, &format!("form = \"{form}\" ({}): {description}", names.join(", ")));
     }

@@ -59,13 +59,8 @@ impl ContactBoundary {
                 let free: Vec<usize> = (0..2).filter(|&axis| !held[axis]).collect();
                 let can_slide = !free.is_empty();
                 let tangents = if scene.friction > 0.0 { free } else { Vec::new() };
-                let point = ContactPoint {
-                    position: [i, j],
-                    area: grid.tributary_area(i, j),
-                    start: row_count,
-                    tangents,
-                    can_slide,
-                };
+                let (position, area) = ([i, j], grid.tributary_area(i, j));
+                let point = ContactPoint { position, area, start: row_count, tangents, can_slide };
                 row_count += point.row_count();
                 point
             })

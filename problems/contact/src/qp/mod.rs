@@ -4,14 +4,13 @@
 //! min ½ xᵀHx − xᵀb   s.t.   C x = e,   x ∈ Ω = free entries × half-lines × discs
 //! ```
 //! [`mpgp`]: gradient projection with conjugate gradients in the face, for Ω alone. [`smalse`]: an augmented Lagrangian loop
-//! around it for C x = e. [`kkt`]: residuals of a claimed solution.
+//! around it for C x = e.
 //!
 //! References: \[Dostal2009\] (the algorithms), \[DostalKozubek2012\] (separable convex constraints), \[DostalKucera2010\]
 //! (with equalities), \[Kucera2007\] (reduced gradients).
 
 mod error;
 mod face;
-pub mod kkt;
 mod lanczos;
 pub mod mpgp;
 mod operator;

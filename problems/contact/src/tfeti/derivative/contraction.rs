@@ -102,12 +102,7 @@ impl TornContact<'_> {
             target,
             MAX_KRYLOV,
             |v| self.precondition(rows, v, |z| active.project(z)),
-            |z| {
-                let mut product = rows.test_transposed(&self.operator.apply(&rows.trial(z)));
-                rows.add_compliance(z, &mut product, 1.0);
-                active.project(&mut product);
-                product
-            },
+            |z| self.reduced_product(active, z).0,
         );
         if krylov.residual.is_nan() || krylov.residual > MAX_MISS * target {
             return Err(ContactError::NotConverged {

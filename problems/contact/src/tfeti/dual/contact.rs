@@ -138,6 +138,15 @@ impl<'a> TornContact<'a> {
         rest
     }
 
+    /// P (Qᵀ F T + Δ) y for unknowns y of an active set, and F T y.
+    pub(crate) fn reduced_product(&self, active: &ActiveSet<'_>, unknowns: &[f64]) -> (Vec<f64>, RowVector) {
+        let product = self.operator.apply(&active.rows.trial(unknowns));
+        let mut reduced = active.rows.test_transposed(&product);
+        active.rows.add_compliance(unknowns, &mut reduced, 1.0);
+        active.project(&mut reduced);
+        (reduced, product)
+    }
+
     /// (Qᵀ M Q + Z) v, projected as the system that it preconditions.
     pub(crate) fn precondition(&self, rows: &ActiveRows<'_>, v: &[f64], project: impl Fn(&mut [f64])) -> Vec<f64> {
         let mut z = rows.test_transposed(&self.preconditioner.apply(&rows.test(v)));
