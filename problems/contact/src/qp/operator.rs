@@ -47,8 +47,8 @@ impl SymmetricOperator for Matrix {
     }
 
     fn apply(&self, x: &[f64], result: &mut [f64]) {
-        for (result, column) in result.iter_mut().zip(self.as_slice().chunks_exact(self.nrows())) {
-            *result = dot(column, x);
+        for (result, column) in result.iter_mut().zip(self.column_iter()) {
+            *result = dot(column.as_slice(), x);
         }
     }
 }

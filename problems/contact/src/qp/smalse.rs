@@ -156,13 +156,11 @@ impl Smalse<'_> {
     /// # Errors
     /// [`QpError::NotFinite`] from the estimate.
     pub fn norm(&self, start: &WarmStart) -> Result<f64, QpError> {
-        match start.norm {
-            Some(norm) => Ok(norm),
-            None => {
-                let estimate = NORM_SAFETY * largest_eigenvalue(self.program.hessian, self.settings.norm_steps)?;
-                Ok(if estimate > 0.0 { estimate } else { 1.0 })
-            }
+        if let Some(norm) = start.norm {
+            return Ok(norm);
         }
+        let estimate = NORM_SAFETY * largest_eigenvalue(self.program.hessian, self.settings.norm_steps)?;
+        Ok(if estimate > 0.0 { estimate } else { 1.0 })
     }
 }
 

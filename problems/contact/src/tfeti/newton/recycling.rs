@@ -140,8 +140,9 @@ impl Recycled {
             })
             .collect();
         let change = |(direction, jumps): (&Direction, &RowVector)| {
-            let (forces, jumps) = (direction.forces.as_ref(), jumps.contact());
-            let force = |row: usize| forces.map_or(0.0, |(multipliers, _)| multipliers.contact()[row]);
+            let forces = direction.forces.as_ref().map(|(multipliers, _)| multipliers.contact());
+            let force = |row: usize| forces.map_or(0.0, |forces| forces[row]);
+            let jumps = jumps.contact();
             let mut change = vec![0.0; boundary.row_count];
             for (point, block) in boundary.points.iter().zip(&blocks) {
                 let count = point.row_count();

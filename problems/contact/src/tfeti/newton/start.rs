@@ -72,11 +72,8 @@ impl TornContact<'_> {
         let statuses: Vec<Linearization> = (self.boundary.points.iter().zip(bounds))
             .map(|(point, &bound)| suggested(&multipliers.contact()[point.rows()], bound))
             .collect();
-        let glued = statuses.iter().map(|status| match status {
-            Linearization::Open => Linearization::Open,
-            _ => Linearization::Stick,
-        });
-        let closed = self.active_set(glued.collect(), Friction::Tresca)?;
+        let glued = |status| if status == Linearization::Open { status } else { Linearization::Stick };
+        let closed = self.active_set(statuses.iter().copied().map(glued).collect(), Friction::Tresca)?;
         let mut unknowns = closed.rows.unknowns_of(multipliers);
         closed.enforce(&mut unknowns, self.space.resultants());
         let multipliers = closed.rows.trial(&unknowns);

@@ -258,11 +258,8 @@ fn interior_class(
     let submatrix = Submatrix::new(&pattern.pattern, &marked);
     let order = pattern.elimination_order(&[]).into_iter();
     let order: Vec<usize> = order.filter_map(|dof| submatrix.kept.binary_search(&dof).ok()).collect();
-    let symbolic = if order.is_empty() {
-        None
-    } else {
-        Some(Arc::new(SymbolicFactor::new(Arc::clone(&submatrix.pattern), order)?))
-    };
+    let symbolic = (!order.is_empty()).then(|| SymbolicFactor::new(Arc::clone(&submatrix.pattern), order));
+    let symbolic = symbolic.transpose()?.map(Arc::new);
     let class = Arc::new(InteriorClass { submatrix, symbolic });
     classes.insert(marked, Arc::clone(&class));
     Ok(class)
