@@ -50,7 +50,7 @@ impl AdmissibleSet {
             let (i, j) = (index / counts[1], index % counts[1]);
             ceiling(grid.size[0] * i as f64 / intervals[0], grid.size[1] * j as f64 / intervals[1])
         });
-        let mut rows: Vec<(String, Vec<(usize, f64)>, [f64; 2])> = Vec::new();
+        let mut rows = Vec::new();
         for i in 0..counts[0] {
             for j in 0..counts[1] {
                 let here = i * counts[1] + j;
