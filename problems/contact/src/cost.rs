@@ -30,10 +30,9 @@ impl PressureCost {
     /// # Errors
     /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1.
     pub fn new(measure: PressureMeasure, boundary: &ContactBoundary) -> Result<Self, SceneError> {
-        if let PressureMeasure::Norm { exponent } = measure
-            && !(exponent > 1.0 && exponent.is_finite())
-        {
-            return Err(SceneError::out_of_range("exponent of the pressure norm", exponent, "a finite number > 1"));
+        if let PressureMeasure::Norm { exponent } = measure {
+            let valid = exponent > 1.0 && exponent.is_finite();
+            SceneError::require(valid, "exponent of the pressure norm", exponent, "a finite number > 1")?;
         }
         let areas = boundary.points.iter().map(|point| point.area).collect();
         Ok(Self { measure, areas, dual_dimension: boundary.dual_dimension() })
@@ -80,12 +79,8 @@ impl<S> Cost<ContactState<S>> for PressureCost {
                 }
             }
             PressureMeasure::Peak => {
-                let mut peak = 0;
-                for (index, pressure) in pressures.iter().enumerate() {
-                    if *pressure > pressures[peak] {
-                        peak = index;
-                    }
-                }
+                let larger = |peak: usize, index: usize| if pressures[index] > pressures[peak] { index } else { peak };
+                let peak = (0..pressures.len()).fold(0, larger);
                 dual[peak] = 1.0 / self.areas[peak];
             }
         }

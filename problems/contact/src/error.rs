@@ -92,6 +92,16 @@ impl SceneError {
     pub fn out_of_range(field: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Self {
         Self::OutOfRange { field: field.into(), value: value.to_string(), allowed: allowed.into() }
     }
+
+    /// Refuses a field that is not `valid`.
+    pub(crate) fn require(
+        valid: bool,
+        field: impl Into<String>,
+        value: impl ToString,
+        allowed: impl Into<String>,
+    ) -> Result<(), Self> {
+        if valid { Ok(()) } else { Err(Self::out_of_range(field, value, allowed)) }
+    }
 }
 
 /// Why a contact problem was not solved.
@@ -243,21 +253,7 @@ impl ContactError {
     }
 
     /// The kind of the error: the name of its variant.
-    pub fn kind(&self) -> &'static str {
-        match self {
-            Self::InvertedElement { .. } => "InvertedElement",
-            Self::NoEquilibrium { .. } => "NoEquilibrium",
-            Self::Unheld { .. } => "Unheld",
-            Self::Factorization { .. } => "Factorization",
-            Self::NotConverged { .. } => "NotConverged",
-            Self::Inaccurate { .. } => "Inaccurate",
-            Self::Unsolved { .. } => "Unsolved",
-            Self::BeyondPrecision { .. } => "BeyondPrecision",
-            Self::ForeignState { .. } => "ForeignState",
-            Self::OtherSolver => "OtherSolver",
-            Self::NotFinite { .. } => "NotFinite",
-            Self::NoContraction { .. } => "NoContraction",
-            Self::DualProblem(_) => "DualProblem",
-        }
+    pub fn kind(&self) -> String {
+        format!("{self:?}").chars().take_while(|character| character.is_alphanumeric()).collect()
     }
 }

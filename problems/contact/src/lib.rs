@@ -56,6 +56,7 @@ pub mod direct;
 pub mod equilibrium;
 pub mod error;
 pub mod fields;
+mod lattice;
 pub mod linear;
 pub mod memory;
 pub mod qp;

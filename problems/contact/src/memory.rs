@@ -52,13 +52,9 @@ pub fn check(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind
         Some(available) if needed > USABLE * available => Err(SceneError::out_of_range(
             "mesh",
             format!(
-                "{}x{}x{} bricks with {}x{}x{} subdomains (about {:.1} GB)",
-                scene.mesh[0],
-                scene.mesh[1],
-                scene.mesh[2],
-                scene.subdomains[0],
-                scene.subdomains[1],
-                scene.subdomains[2],
+                "{} bricks with {} subdomains (about {:.1} GB)",
+                scene.mesh.map(|count| count.to_string()).join("x"),
+                scene.subdomains.map(|count| count.to_string()).join("x"),
                 needed / 1e9
             ),
             format!("what fits into the {:.1} GB of memory available", available / 1e9),

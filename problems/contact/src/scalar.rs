@@ -6,21 +6,11 @@
 
 use num_traits::{One, Zero};
 use std::fmt::Debug;
-use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 /// A field element with square root, enough for shape functions, splines and projections.
 pub trait Scalar:
-    Zero
-    + One
-    + Neg<Output = Self>
-    + Sub<Output = Self>
-    + Div<Output = Self>
-    + AddAssign
-    + SubAssign
-    + Copy
-    + Debug
-    + Send
-    + Sync
+    Zero + One + Sub<Output = Self> + Div<Output = Self> + AddAssign + Copy + Debug + Send + Sync
 {
     /// The constant `value`.
     fn constant(value: f64) -> Self;
@@ -87,22 +77,9 @@ impl Div for Dual {
     }
 }
 
-impl Neg for Dual {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self::new(-self.value, -self.derivative)
-    }
-}
-
 impl AddAssign for Dual {
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
-    }
-}
-
-impl SubAssign for Dual {
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
     }
 }
 

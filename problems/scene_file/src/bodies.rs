@@ -84,27 +84,11 @@ pub enum Component {
     U3,
 }
 
-impl BodySection {
-    /// The body of a scene.
-    ///
-    /// # Errors
-    /// [`SceneError`] for elastic constants outside their range.
-    pub fn body(&self) -> Result<BodyScene, SceneError> {
-        body(&self.material, &self.supports, &self.loads)
-    }
-}
-
-impl UpperSection {
-    /// The body of a scene.
-    ///
-    /// # Errors
-    /// [`SceneError`] for elastic constants outside their range.
-    pub fn body(&self) -> Result<BodyScene, SceneError> {
-        body(&self.material, &self.supports, &self.loads)
-    }
-}
-
-fn body(
+/// The body of a scene.
+///
+/// # Errors
+/// [`SceneError`] for elastic constants outside their range.
+pub(super) fn body(
     material: &MaterialSection,
     supports: &[SupportSection],
     loads: &[LoadSection],

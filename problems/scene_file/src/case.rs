@@ -1,9 +1,10 @@
 //! From a scene file to the scene and the settings of a run.
 
+use crate::bodies::body;
 use crate::grid_file;
 use crate::{
     CounterSection, MeasureName, ObjectiveSection, OptimizerSection, OutputSection, SceneFile, SplineName,
-    StartSection, SurfaceSection, UpperSection,
+    StartSection, SurfaceSection,
 };
 use contact::contact_shape::SolverKind;
 use contact::cost::PressureMeasure;
@@ -45,14 +46,15 @@ impl Case {
     pub fn new(file: &SceneFile, folder: &Path) -> Result<Self, SceneError> {
         let control_points = file.surface.control_points;
         let (start_height, start) = start(&file.surface.start, file.size, control_points, folder)?;
-        let body = |upper: &UpperSection| upper.body().map(|body| UpperBody { body, top: upper.top });
+        let (lower, upper) = (&file.lower, file.upper.as_ref());
+        let upper = upper.map(|upper| (upper.top, body(&upper.material, &upper.supports, &upper.loads)));
         let scene = Scene {
             name: file.name.clone(),
             size: file.size,
             mesh: file.mesh.bricks,
             subdomains: file.mesh.subdomains.unwrap_or_else(|| file.mesh.bricks.map(default_subdomains)),
-            lower: file.lower.body()?,
-            upper: file.upper.as_ref().map(body).transpose()?,
+            lower: body(&lower.material, &lower.supports, &lower.loads)?,
+            upper: upper.map(|(top, body)| body.map(|body| UpperBody { body, top })).transpose()?,
             counter_surface: counter_surface(&file.counter_surface, file.size, folder)?,
             friction: file.friction,
             surface: spline(&file.surface)?,

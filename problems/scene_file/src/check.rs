@@ -1,7 +1,7 @@
 //! A table against the schema: unknown and missing fields, types, ranges. Every refusal names the path of the field.
 
 use crate::allowed;
-use crate::schema::Node;
+use crate::schema::{Node, place};
 use contact::error::SceneError;
 use toml::{Table, Value};
 
@@ -29,15 +29,14 @@ impl Checker<'_> {
 
     fn table(&self, node: &Node<'_>, table: &Table, path: &str) -> Result<(), SceneError> {
         let Some(fields) = node.fields() else { return Ok(()) };
-        let place = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         for (name, value) in table {
             match fields.get(name) {
-                Some(field) => self.value(&Node::new(field), value, &place(name))?,
+                Some(field) => self.value(&Node::new(field), value, &place(path, name))?,
                 None => {
                     let names: Vec<&str> = fields.keys().map(String::as_str).collect();
                     return Err(SceneError::UnknownField {
                         file: self.file.to_owned(),
-                        path: place(&shorten(name.clone())),
+                        path: place(path, &shorten(name.clone())),
                         suggestion: nearest(name, &names)
                             .map_or_else(String::new, |near| format!(" (did you mean `{near}`?)")),
                         allowed: names.join(", "),
@@ -46,7 +45,7 @@ impl Checker<'_> {
             }
         }
         match fields.iter().find(|(name, _)| node.requires(name) && !table.contains_key(*name)) {
-            Some((name, field)) => self.refuse(&place(name), "missing", &Node::new(field)),
+            Some((name, field)) => self.refuse(&place(path, name), "missing", &Node::new(field)),
             None => Ok(()),
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::SceneFile;
 use crate::allowed;
-use crate::schema::Node;
+use crate::schema::{Node, place};
 use contact::error::SceneError;
 use toml::{Table, Value};
 
@@ -24,36 +24,25 @@ pub(super) fn print(file: &SceneFile) -> Result<String, SceneError> {
 /// The fields of a table: plain values first, as TOML wants them, then tables. Comments stand at the first of several alike.
 fn fields(text: &mut String, node: &Node<'_>, table: &Table, path: &str, commented: bool) {
     let Some(names) = node.fields() else { return };
-    let is_table = |field: &Node<'_>| {
-        let entries = field.items().is_some_and(|items| items.fields().is_some());
-        field.fields().is_some() || !field.forms().is_empty() || entries
-    };
     let all: Vec<(&String, Node<'_>)> = names.iter().map(|(name, field)| (name, Node::new(field))).collect();
-    for (name, field) in all.iter().filter(|(_, field)| !is_table(field)) {
+    for (name, field) in all.iter().filter(|(_, field)| !field.is_table()) {
         leaf(text, name, field, table.get(name.as_str()), commented);
     }
-    for (name, field) in all.iter().filter(|(_, field)| is_table(field)) {
-        let place = if path.is_empty() { (*name).clone() } else { format!("{path}.{name}") };
-        let description =
-            field.outer["description"].as_str().or(field.inner["description"].as_str()).unwrap_or_default();
+    for (name, field) in all.iter().filter(|(_, field)| field.is_table()) {
+        let place = place(path, name);
+        let description = field.text("description").unwrap_or_default();
+        *text += "\n";
         match table.get(name.as_str()) {
             Some(Value::Table(inner)) => {
-                *text += "\n";
-                comment(text, description);
+                comment(text, &description);
                 *text += &format!("[{place}]\n");
+                other_forms(text, field);
                 let form = inner.get("form").and_then(Value::as_str);
                 let chosen = field.forms().into_iter().find(|(name, _)| Some(*name) == form);
-                match chosen {
-                    Some((_, node)) => {
-                        other_forms(text, field);
-                        fields(text, &node, inner, &place, true);
-                    }
-                    None => fields(text, field, inner, &place, true),
-                }
+                fields(text, &chosen.map_or(*field, |(_, node)| node), inner, &place, true);
             }
             Some(Value::Array(entries)) if !entries.is_empty() => {
-                *text += "\n";
-                comment(text, description);
+                comment(text, &description);
                 for (index, entry) in entries.iter().enumerate() {
                     *text += if index > 0 { "\n" } else { "" };
                     *text += &format!("[[{place}]]\n");
@@ -63,7 +52,6 @@ fn fields(text: &mut String, node: &Node<'_>, table: &Table, path: &str, comment
                 }
             }
             _ => {
-                *text += "\n";
                 let brackets = if field.items().is_some() { format!("[[{place}]]") } else { format!("[{place}]") };
                 comment(text, &format!("{description} Not used here: {brackets}"));
             }
@@ -73,13 +61,8 @@ fn fields(text: &mut String, node: &Node<'_>, table: &Table, path: &str, comment
 
 fn other_forms(text: &mut String, field: &Node<'_>) {
     for (form, node) in field.forms() {
-        let names: Vec<&str> = node
-            .fields()
-            .into_iter()
-            .flat_map(|fields| fields.keys())
-            .map(String::as_str)
-            .filter(|n| *n != "form")
-            .collect();
+        let names = node.fields().into_iter().flat_map(|fields| fields.keys());
+        let names: Vec<&str> = names.map(String::as_str).filter(|name| *name != "form").collect();
         let description = node.text("description").unwrap_or_default();
         comment(text, &format!("form = \"{form}\" ({}): {description}", names.join(", ")));
     }

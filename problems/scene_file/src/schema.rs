@@ -10,6 +10,11 @@ pub fn schema() -> &'static Value {
     SCHEMA.get_or_init(|| schemars::schema_for!(SceneFile).to_value())
 }
 
+/// The path of a field in the table at a path.
+pub(super) fn place(path: &str, name: &str) -> String {
+    if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
+}
+
 /// A place in the schema, references and optional wrappers removed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Node<'s> {
@@ -53,6 +58,16 @@ impl<'s> Node<'s> {
         let choices = self.inner["oneOf"].as_array().map_or(&[][..], Vec::as_slice);
         let tag = |choice: &'s Value| choice["properties"]["form"]["const"].as_str();
         choices.iter().filter_map(|choice| tag(choice).map(|tag| (tag, Node::new(choice)))).collect()
+    }
+
+    /// Entries of a list of tables.
+    pub(super) fn tables(&self) -> Option<Node<'s>> {
+        self.items().filter(|items| items.fields().is_some())
+    }
+
+    /// Whether the place holds a table or a list of tables.
+    pub(super) fn is_table(&self) -> bool {
+        self.fields().is_some() || self.tables().is_some() || !self.forms().is_empty()
     }
 
     /// Names of which a text must be one.

@@ -1,7 +1,7 @@
 //! The table of all fields for `docs/scenes.md`.
 
 use crate::allowed;
-use crate::schema::Node;
+use crate::schema::{Node, place};
 use serde_json::Value;
 
 /// All fields of a scene file as a Markdown table: path, default, what is allowed with its unit, meaning.
@@ -18,24 +18,18 @@ fn rows(text: &mut String, node: &Node<'_>, path: &str, defaults: &Value) {
         if field.inner.get("const").is_some() {
             continue;
         }
-        let place = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-        let meaning = field.outer["description"].as_str().or(field.inner["description"].as_str()).unwrap_or_default();
+        let place = place(path, name);
+        let meaning = field.text("description").unwrap_or_default();
         let default = field.outer.get("default").or(defaults.get(name)).unwrap_or(&Value::Null);
-        let entries = field.items().filter(|items| items.fields().is_some());
-        let forms = field.forms();
-        if field.fields().is_some() || entries.is_some() || !forms.is_empty() {
+        if field.is_table() {
+            let (entries, forms) = (field.tables(), field.forms());
             let (open, close) = if entries.is_some() { ("[[", "]]") } else { ("[", "]") };
             let required = if node.requires(name) { "required" } else { "–" };
-            row(text, &format!("{open}{place}{close}"), required, "", meaning);
+            row(text, &format!("{open}{place}{close}"), required, "", &meaning);
             rows(text, &entries.unwrap_or(field), &place, default);
             for (form, node) in forms {
-                row(
-                    text,
-                    &format!("{place}.form"),
-                    "",
-                    &format!("\"{form}\""),
-                    &node.text("description").unwrap_or_default(),
-                );
+                let meaning = node.text("description").unwrap_or_default();
+                row(text, &format!("{place}.form"), "", &format!("\"{form}\""), &meaning);
                 rows(text, &node, &place, &Value::Null);
             }
             continue;
@@ -45,7 +39,7 @@ fn rows(text: &mut String, node: &Node<'_>, path: &str, defaults: &Value) {
             Value::Null => "see meaning".to_owned(),
             value => value.to_string(),
         };
-        row(text, &place, &default, &allowed::words(&field), meaning);
+        row(text, &place, &default, &allowed::words(&field), &meaning);
     }
 }
 

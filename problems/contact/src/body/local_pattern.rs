@@ -4,6 +4,7 @@ use crate::body::elasticity::Material;
 use crate::body::elasticity::brick::{DOFS, Nodes};
 use crate::body::elasticity::hex8;
 use crate::body::mesh::Subdomain;
+use crate::lattice;
 use crate::linear::FactorizationError;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::ordering::nested_dissection;
@@ -35,13 +36,10 @@ impl LocalPattern {
         };
         for node in 0..shape.node_count() {
             let position = shape.local_position(node);
-            let range = |axis: usize| position[axis].saturating_sub(1)..(position[axis] + 2).min(nodes[axis]);
-            for i in range(0) {
-                for j in range(1) {
-                    for k in range(2) {
-                        couple(node, shape.local_node([i, j, k]));
-                    }
-                }
+            let start = position.map(|index| index.saturating_sub(1));
+            let end: [usize; 3] = std::array::from_fn(|axis| (position[axis] + 2).min(nodes[axis]));
+            for neighbour in lattice::points(start, lattice::subtract(end, start)) {
+                couple(node, shape.local_node(neighbour));
             }
         }
         for &first in coupled {
@@ -57,16 +55,13 @@ impl LocalPattern {
 
     /// Local bricks (i, j, k) in the order of the scatter map.
     pub fn bricks(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
-        let [n1, n2, n3] = self.shape.cells;
-        (0..n1 * n2 * n3).map(move |brick| [brick / (n2 * n3), brick / n3 % n2, brick % n3])
+        lattice::points([0; 3], self.shape.cells)
     }
 
     /// Local dofs of a brick in the order of [`hex8`].
-    pub fn brick_dofs(&self, [i, j, k]: [usize; 3]) -> [usize; DOFS] {
-        std::array::from_fn(|dof| {
-            let a = dof / 3;
-            3 * self.shape.local_node([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]) + dof % 3
-        })
+    pub fn brick_dofs(&self, brick: [usize; 3]) -> [usize; DOFS] {
+        let corners = lattice::corners(brick);
+        std::array::from_fn(|dof| 3 * self.shape.local_node(corners[dof / 3]) + dof % 3)
     }
 
     fn brick_positions(&self, brick: [usize; 3]) -> Vec<u32> {

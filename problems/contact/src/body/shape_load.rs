@@ -7,14 +7,7 @@ use crate::scalar::Dual;
 /// Four block nodes of every brick face on a side of the block, optionally only those of one subdomain.
 pub fn loaded_faces(grid: &Grid, face: Face, place: Option<&Subdomain>) -> Vec<[[usize; 3]; 4]> {
     let (first, cells) = place.map_or(([0; 3], grid.cells), |place| (place.first_cell, place.cells));
-    let (axis, level) = match face {
-        Face::X1Min => (0, 0),
-        Face::X1Max => (0, grid.cells[0]),
-        Face::X2Min => (1, 0),
-        Face::X2Max => (1, grid.cells[1]),
-        Face::Bottom => (2, 0),
-        Face::Top => (2, grid.cells[2]),
-    };
+    let (axis, level) = grid.side(face);
     let touches = level == if level == 0 { first[axis] } else { first[axis] + cells[axis] };
     if !touches {
         return Vec::new();

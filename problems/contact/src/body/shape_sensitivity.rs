@@ -9,6 +9,7 @@ use crate::body::elasticity::brick::DOFS;
 use crate::body::elasticity::hex8;
 use crate::body::mesh::{Block, Subdomain};
 use crate::body::shape_load::{height_derivative, loaded_faces};
+use crate::lattice;
 use crate::scene::Load;
 
 /// Sensitivities of the column heights from one subdomain of the lower body: (column, value) for its columns.
@@ -24,21 +25,17 @@ pub fn column_sensitivities(
 ) -> Vec<(usize, f64)> {
     let [n1, n2, n3] = place.nodes();
     let mut nodes = vec![0.0; n1 * n2 * n3];
-    let [c1, c2, c3] = place.cells;
-    for brick in 0..c1 * c2 * c3 {
-        let local = [brick / (c2 * c3), brick / c3 % c2, brick % c3];
-        let corners: [usize; 8] = std::array::from_fn(|a| {
-            place.local_node([local[0] + (a >> 2 & 1), local[1] + (a >> 1 & 1), local[2] + (a & 1)])
-        });
+    for local in lattice::points([0; 3], place.cells) {
+        let corners = lattice::corners(local).map(|node| place.local_node(node));
         let take =
             |values: &[f64]| -> [f64; DOFS] { std::array::from_fn(|dof| values[3 * corners[dof / 3] + dof % 3]) };
-        let coordinates = block.brick(std::array::from_fn(|axis| local[axis] + place.first_cell[axis]));
+        let coordinates = block.brick(lattice::add(local, place.first_cell));
         let derivative = hex8::height_derivative(&coordinates, material, &take(u), &take(p));
         for (corner, derivative) in corners.into_iter().zip(derivative) {
             nodes[corner] -= derivative;
         }
     }
-    let local = |node: [usize; 3]| place.local_node(std::array::from_fn(|axis| node[axis] - place.first_cell[axis]));
+    let local = |node: [usize; 3]| place.local_node(lattice::subtract(node, place.first_cell));
     for load in loads {
         for face in loaded_faces(&block.grid, load.face, Some(place)) {
             let adjoint = |node| {

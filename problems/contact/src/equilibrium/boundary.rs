@@ -32,6 +32,11 @@ impl ContactPoint {
         let components = std::iter::once(2).chain(self.tangents.iter().copied());
         components.enumerate().map(move |(offset, component)| (self.start + offset, 3 * index + component))
     }
+
+    /// Its rows in a packed contact vector.
+    pub fn rows(&self) -> std::ops::Range<usize> {
+        self.start..self.start + self.row_count()
+    }
 }
 
 /// All contact nodes of a scene.
@@ -60,13 +65,8 @@ impl ContactBoundary {
                 let free: Vec<usize> = (0..2).filter(|&axis| !held[axis]).collect();
                 let can_slide = !free.is_empty();
                 let tangents = if scene.friction > 0.0 { free } else { Vec::new() };
-                let point = ContactPoint {
-                    position: [i, j],
-                    area: grid.tributary_area(i, j),
-                    start: row_count,
-                    tangents,
-                    can_slide,
-                };
+                let (position, area) = ([i, j], grid.tributary_area(i, j));
+                let point = ContactPoint { position, area, start: row_count, tangents, can_slide };
                 row_count += point.row_count();
                 point
             })

@@ -75,7 +75,7 @@ impl Kink {
         let largest = boundary.points.iter().map(|point| arguments[point.start].abs()).fold(0.0, f64::max);
         let mut kink = Self { smallest_margin: f64::INFINITY, weakly_active: 0 };
         for point in &boundary.points {
-            let x = &arguments[point.start..point.start + point.row_count()];
+            let x = &arguments[point.rows()];
             let mut margin = if largest > 0.0 { x[0].abs() / largest } else { 0.0 };
             if x[0] > 0.0 && x.len() > 1 {
                 let (radius, length) = (boundary.friction * x[0], tangential_norm(x));
@@ -92,7 +92,7 @@ impl Kink {
 pub fn projection_residual(boundary: &ContactBoundary, forces: &[f64], jumps: &[f64], stiffness: f64) -> Vec<f64> {
     let mut residual = vec![0.0; boundary.row_count];
     for point in &boundary.points {
-        let range = point.start..point.start + point.row_count();
+        let range = point.rows();
         let x: Vec<f64> = range.clone().map(|row| forces[row] + stiffness * jumps[row]).collect();
         law::project(&x, boundary.friction, &mut residual[range.clone()]);
         for row in range {
@@ -112,7 +112,7 @@ pub fn law_residuals(
 ) -> Residuals {
     let mut residuals = Residuals::default();
     for point in &boundary.points {
-        let range = point.start..point.start + point.row_count();
+        let range = point.rows();
         let (force, jump) = (&forces[range.clone()], &jumps[range]);
         let opening = -stiffness * jump[0];
         residuals.complementarity = residuals.complementarity.max(force[0].min(opening).abs());

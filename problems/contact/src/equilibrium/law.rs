@@ -85,7 +85,7 @@ pub fn tangential_norm(x: &[f64]) -> f64 {
 /// Π(x) for the packed rows of one node (1, 2 or 3 entries), written to `result`.
 pub fn project<T: Scalar>(x: &[T], friction: f64, result: &mut [T]) {
     if x[0].value() <= 0.0 {
-        result.fill(T::zero());
+        result.fill(T::constant(0.0));
         return;
     }
     project_onto_disc(&x[1..], T::constant(friction) * x[0], &mut result[1..]);
@@ -94,12 +94,12 @@ pub fn project<T: Scalar>(x: &[T], friction: f64, result: &mut [T]) {
 
 /// Projection of a tangential vector onto the disc of a given radius.
 pub fn project_onto_disc<T: Scalar>(x: &[T], radius: T, result: &mut [T]) {
-    let mut square = T::zero();
+    let mut square = T::constant(0.0);
     for &entry in x {
         square += entry * entry;
     }
     let inside = square.value() <= radius.value() * radius.value();
-    let factor = if inside { T::one() } else { radius / square.sqrt() };
+    let factor = if inside { T::constant(1.0) } else { radius / square.sqrt() };
     for (result, &entry) in result.iter_mut().zip(x) {
         *result = entry * factor;
     }

@@ -68,9 +68,8 @@ impl RigidScene {
         row
     }
 
-    /// Orthonormal basis of the motions that no held dof restrains.
-    fn free_of_supports(&self) -> Vec<DVector<f64>> {
-        kernel(self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0)), self.bodies)
+    fn held_rows(&self) -> impl Iterator<Item = DVector<f64>> {
+        self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0))
     }
 
     /// Contact displacements (three components per node) of the motions that the supports of one body leave free.
@@ -95,7 +94,7 @@ impl RigidScene {
     /// # Errors
     /// [`ContactError::NoEquilibrium`] naming the motion and the resultant that cannot be carried.
     pub fn analyse(&self, boundary: &ContactBoundary) -> Result<Vec<Motion>, ContactError> {
-        let free = self.free_of_supports();
+        let free = kernel(self.held_rows(), self.bodies);
         if free.is_empty() {
             return Ok(Vec::new());
         }
@@ -106,15 +105,13 @@ impl RigidScene {
                 load += self.row(body, point, component, value);
             }
         }
-        let rows: Vec<Vec<DVector<f64>>> = self
-            .contact
-            .iter()
-            .zip(&boundary.points)
-            .map(|(points, point)| {
-                let components = std::iter::once(2).chain(point.tangents.iter().copied());
-                components.map(|component| project(&self.contact_row(points, component))).collect()
-            })
-            .collect();
+        let nodes = self.contact.iter().zip(&boundary.points);
+        let contact = nodes.map(|(points, point)| -> Vec<DVector<f64>> {
+            let components = std::iter::once(2).chain(point.tangents.iter().copied());
+            components.map(|component| self.contact_row(points, component)).collect()
+        });
+        let contact: Vec<Vec<DVector<f64>>> = contact.collect();
+        let rows: Vec<Vec<DVector<f64>>> = contact.iter().map(|rows| rows.iter().map(project).collect()).collect();
         let scale = self.total_load();
         let rest = ConeProjection { rows: &rows, friction: boundary.friction }.residual(&project(&load));
         if rest.norm() > UNLOADED * scale {
@@ -128,27 +125,12 @@ impl RigidScene {
                 allowed: UNLOADED * scale,
             });
         }
-        let held = self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0));
-        let contact = self.contact.iter().zip(&boundary.points).flat_map(|(points, point)| {
-            std::iter::once(2)
-                .chain(point.tangents.iter().copied())
-                .map(|component| self.contact_row(points, component))
-                .collect::<Vec<_>>()
-        });
-        let grounded = kernel(held.chain(contact), self.bodies);
+        let grounded = kernel(self.held_rows().chain(contact.into_iter().flatten()), self.bodies);
         Ok(grounded.into_iter().map(|mode| mode.iter().copied().collect()).collect())
     }
 
     /// The largest parts of a motion in words.
     fn describe(&self, motion: &DVector<f64>) -> String {
-        const NAMES: [&str; MOTIONS] = [
-            "translation along x1",
-            "translation along x2",
-            "translation along x3",
-            "rotation about x1",
-            "rotation about x2",
-            "rotation about x3",
-        ];
         let largest = motion.amax();
         let parts: Vec<String> = motion
             .iter()
@@ -157,7 +139,8 @@ impl RigidScene {
             .map(|(index, value)| {
                 let body = if index < MOTIONS { "lower" } else { "upper" };
                 let sign = if *value < 0.0 { "negative " } else { "" };
-                format!("{sign}{} of the {body} body", NAMES[index % MOTIONS])
+                let kind = if index % MOTIONS < 3 { "translation along" } else { "rotation about" };
+                format!("{sign}{kind} x{} of the {body} body", index % 3 + 1)
             })
             .collect();
         parts.join(" with ")
@@ -245,11 +228,8 @@ fn nonnegative_fit(columns: &mut Vec<DVector<f64>>, weights: &mut Vec<f64>, load
             return;
         }
         let largest = weights.iter().copied().fold(0.0, f64::max);
-        let keep: Vec<bool> = weights.iter().map(|&weight| weight > 1e-15 * largest).collect();
-        let mut kept = keep.iter();
-        columns.retain(|_| *kept.next().unwrap_or(&false));
-        let mut kept = keep.iter();
-        weights.retain(|_| *kept.next().unwrap_or(&false));
+        let pairs = columns.drain(..).zip(weights.drain(..));
+        (*columns, *weights) = pairs.filter(|(_, weight)| *weight > 1e-15 * largest).unzip();
         if columns.is_empty() {
             return;
         }

@@ -6,6 +6,7 @@ use crate::body::shape_load::loaded_faces;
 use crate::equilibrium::ContactBoundary;
 use crate::equilibrium::modes::RigidScene;
 use crate::error::{ContactError, SceneError};
+use crate::lattice;
 use crate::scene::{BodyScene, Scene};
 use crate::shape::{AdmissibleSet, HeightMap};
 
@@ -37,15 +38,10 @@ impl ContactProblem {
         let boundary = ContactBoundary::new(&scene, &grid);
         let counter = &scene.counter_surface;
         let admissible = AdmissibleSet::new(&surface, &grid, &scene.bounds, |x1, x2| counter.height(x1, x2))?;
-        let counter_heights: Vec<f64> = grid
-            .columns()
-            .map(|(i, j)| {
-                let [x1, x2] = grid.position(i, j);
-                counter.height(x1, x2)
-            })
-            .collect();
-        if let Some(height) = counter_heights.iter().find(|height| !height.is_finite()) {
-            return Err(SceneError::out_of_range("counter surface", height, "finite heights over the whole base"));
+        let places = grid.columns().map(|(i, j)| grid.position(i, j));
+        let counter_heights: Vec<f64> = places.map(|[x1, x2]| counter.height(x1, x2)).collect();
+        for height in &counter_heights {
+            SceneError::require(height.is_finite(), "counter surface", height, "finite heights over the whole base")?;
         }
         Ok(Self { grid, boundary, height_map: surface.height_map(&grid), admissible, counter_heights, scene })
     }
@@ -60,13 +56,8 @@ impl ContactProblem {
     /// # Errors
     /// [`ContactError::InvertedElement`].
     pub fn lower_block(&self, controls: &[f64]) -> Result<Block, ContactError> {
-        let block = Block {
-            grid: self.grid,
-            lower: vec![0.0; self.grid.column_count()],
-            upper: self.height_map.heights(controls),
-        };
-        block.check_orientation(1)?;
-        Ok(block)
+        let (lower, upper) = (vec![0.0; self.grid.column_count()], self.height_map.heights(controls));
+        Block { grid: self.grid, lower, upper }.checked(1)
     }
 
     /// The upper body, if there is one.
@@ -75,13 +66,8 @@ impl ContactProblem {
     /// [`ContactError::InvertedElement`].
     pub fn upper_block(&self) -> Result<Option<Block>, ContactError> {
         let Some(upper) = &self.scene.upper else { return Ok(None) };
-        let block = Block {
-            grid: self.grid,
-            lower: self.counter_heights.clone(),
-            upper: vec![upper.top; self.grid.column_count()],
-        };
-        block.check_orientation(2)?;
-        Ok(Some(block))
+        let (lower, upper) = (self.counter_heights.clone(), vec![upper.top; self.grid.column_count()]);
+        Block { grid: self.grid, lower, upper }.checked(2).map(Some)
     }
 
     /// All blocks of a shape, lower first.
@@ -101,9 +87,7 @@ impl ContactProblem {
     pub fn rigid_scene(&self, blocks: &[Block]) -> RigidScene {
         let (mut held, mut loads) = (Vec::new(), Vec::new());
         for (body, (block, scene)) in blocks.iter().zip(self.bodies()).enumerate() {
-            let [n1, n2, n3] = self.grid.nodes();
-            for index in 0..n1 * n2 * n3 {
-                let node = [index / (n2 * n3), index / n3 % n2, index % n3];
+            for node in lattice::points([0; 3], self.grid.nodes()) {
                 for (component, fixed) in scene.held(&self.grid, node).into_iter().enumerate() {
                     if fixed {
                         held.push((body, block.coordinates(node), component));
@@ -119,28 +103,18 @@ impl ContactProblem {
                 }
             }
         }
-        let contact = self
-            .boundary
-            .points
-            .iter()
-            .map(|point| {
-                let [i, j] = point.position;
-                let lower = blocks[0].coordinates([i, j, self.grid.cells[2]]);
-                [
-                    lower,
-                    blocks
-                        .last()
-                        .map_or(lower, |block| if blocks.len() == 2 { block.coordinates([i, j, 0]) } else { lower }),
-                ]
-            })
-            .collect();
+        let nodes = self.boundary.points.iter().map(|point| point.position);
+        let contact = nodes.map(|[i, j]| {
+            let lower = blocks[0].coordinates([i, j, self.grid.cells[2]]);
+            [lower, blocks.get(1).map_or(lower, |block| block.coordinates([i, j, 0]))]
+        });
         let [a, b] = self.grid.size;
         let height = blocks[0].upper.iter().sum::<f64>() / blocks[0].upper.len() as f64;
         RigidScene {
             bodies: blocks.len(),
             held,
             loads,
-            contact,
+            contact: contact.collect(),
             centre: [a / 2.0, b / 2.0, height],
             length: a.max(b).max(height),
         }

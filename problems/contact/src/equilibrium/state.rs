@@ -160,18 +160,15 @@ impl ContactForces {
     ) -> Self {
         let normal = boundary.points.iter().map(|point| forces[point.start]).collect();
         let opening = boundary.points.iter().map(|point| jumps[point.start]).collect();
-        let pair = |values: &[f64]| {
+        let pair = |values: &[f64]| -> Vec<[f64; 2]> {
             let points = if boundary.has_friction() { &boundary.points[..] } else { &[] };
-            points
-                .iter()
-                .map(|point| {
-                    let mut pair = [0.0; 2];
-                    for (offset, &tangent) in point.tangents.iter().enumerate() {
-                        pair[tangent] = values[point.start + 1 + offset];
-                    }
-                    pair
-                })
-                .collect::<Vec<[f64; 2]>>()
+            let mut pairs = vec![[0.0; 2]; points.len()];
+            for (point, pair) in points.iter().zip(&mut pairs) {
+                for (&tangent, &value) in point.tangents.iter().zip(&values[point.start + 1..]) {
+                    pair[tangent] = value;
+                }
+            }
+            pairs
         };
         Self { normal, tangential: pair(forces), opening, slip: pair(jumps), status, residuals, kink }
     }

@@ -16,15 +16,8 @@ impl Fields {
     /// From the bodies (lower first, as many as the scene has) and the contact forces of a solved shape.
     pub(crate) fn new(problem: &ContactProblem, bodies: Vec<SolvedBody>, forces: &ContactForces) -> Self {
         let contact = ContactFields::new(problem, &bodies[0], forces);
-        let scenes = problem.bodies();
-        Self {
-            bodies: bodies
-                .into_iter()
-                .zip(scenes)
-                .map(|(body, scene)| BodyFields::new(body, &scene.material))
-                .collect(),
-            contact,
-        }
+        let bodies = bodies.into_iter().zip(problem.bodies());
+        Self { bodies: bodies.map(|(body, scene)| BodyFields::new(body, &scene.material)).collect(), contact }
     }
 
     /// Largest gluing defect of the bodies, mm; see [`SolvedBody::gluing_defect`].

@@ -20,6 +20,7 @@
 use crate::body::mesh::Grid;
 use crate::equilibrium::ContactStatus;
 use crate::fields::{BodyFields, ContactFields, Fields};
+use crate::lattice;
 use crate::vtk::{Array, Cell, Entry, UnstructuredGrid, Values, VtkError, collection, unstructured};
 use thiserror::Error;
 
@@ -99,8 +100,7 @@ fn bodies(bodies: &[BodyFields]) -> UnstructuredGrid {
     let (mut points, mut cells, mut body_numbers) = (Vec::new(), Vec::new(), Vec::new());
     for (number, body) in (1..).zip(bodies) {
         let (grid, first) = (body.block.grid, points.len());
-        let [_, n2, n3] = grid.nodes();
-        points.extend((0..grid.node_count()).map(|n| body.block.coordinates([n / (n2 * n3), n / n3 % n2, n % n3])));
+        points.extend(lattice::points([0; 3], grid.nodes()).map(|node| body.block.coordinates(node)));
         cells.extend(grid.bricks().map(|brick| {
             let corners = grid.brick_nodes(brick);
             Cell::Hexahedron(HEXAHEDRON.map(|corner| first + corners[corner]))

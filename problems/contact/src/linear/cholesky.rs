@@ -1,6 +1,7 @@
 //! Sparse Cholesky factorisation A = L Lᵀ by faer: one symbolic analysis for all matrices of a pattern.
 
 use crate::linear::FactorizationError;
+use crate::linear::dense::column;
 use crate::linear::symmetric::LowerPattern;
 use crate::linear::vector::{add_scaled, norm};
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -11,7 +12,8 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky, supernodal,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Mat, MatMut, Par, Side};
+use faer::traits::ComplexField;
+use faer::{Conj, Mat, Par, Side};
 use std::sync::{Arc, OnceLock};
 
 /// A factorisation works on one thread: subdomains are what threads are shared among.
@@ -85,6 +87,13 @@ impl SymbolicFactor {
             .map_err(|error| failure("Cholesky factorisation", format!("{error:?}: not positive definite")))?;
         Ok(NumericFactor { symbolic: Arc::clone(self), values: factor, single: OnceLock::new() })
     }
+
+    /// Solves L Lᵀ x = b in place for the values of a factor, in either precision.
+    fn solve<E: ComplexField>(&self, values: &[E], b: &mut [E]) {
+        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<E>(1, SEQUENTIAL));
+        let (right, stack) = (column(b), MemStack::new(&mut memory));
+        LltRef::new(&self.symbolic, values).solve_in_place_with_conj(Conj::No, right, SEQUENTIAL, stack);
+    }
 }
 
 /// Steps of iterative refinement allowed.
@@ -129,30 +138,14 @@ impl SymbolicFactor {
 impl NumericFactor {
     /// Solves A x = b in place.
     pub fn solve_in_place(&self, b: &mut [f64]) {
-        let symbolic = &self.symbolic.symbolic;
-        let rows = self.symbolic.pattern.dimension();
-        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, SEQUENTIAL));
-        LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(b, rows, 1),
-            SEQUENTIAL,
-            MemStack::new(&mut memory),
-        );
+        self.symbolic.solve(&self.values, b);
     }
 
     /// As [`NumericFactor::solve_in_place`], with factor and vector in single precision. The rounded factor is made at the
     /// first call and kept.
     pub fn solve_in_place_single(&self, b: &mut [f32]) {
         let values = self.single.get_or_init(|| self.values.iter().map(|&value| value as f32).collect());
-        let symbolic = &self.symbolic.symbolic;
-        let rows = self.symbolic.pattern.dimension();
-        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f32>(1, SEQUENTIAL));
-        LltRef::new(symbolic, values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(b, rows, 1),
-            SEQUENTIAL,
-            MemStack::new(&mut memory),
-        );
+        self.symbolic.solve(values, b);
     }
 
     /// L₂₂ of the trailing `size` indices of the elimination order: L₂₂L₂₂ᵀ is their Schur complement. Row and column p

@@ -56,17 +56,11 @@ impl DenseLu {
 
     /// Solves A x = b in place.
     pub fn solve_in_place(&self, b: &mut [f64]) {
-        let size = b.len();
-        let scratch = lu::solve::solve_in_place_scratch::<usize, f64>(size, 1, SEQUENTIAL);
-        lu::solve::solve_in_place_with_conj(
-            self.factors.as_ref(),
-            self.factors.as_ref(),
-            self.permutation.as_ref(),
-            Conj::No,
-            MatMut::from_column_major_slice_mut(b, size, 1),
-            SEQUENTIAL,
-            MemStack::new(&mut MemBuffer::new(scratch)),
-        );
+        let scratch = lu::solve::solve_in_place_scratch::<usize, f64>(b.len(), 1, SEQUENTIAL);
+        let mut memory = MemBuffer::new(scratch);
+        let (factors, permutation) = (self.factors.as_ref(), self.permutation.as_ref());
+        let (right, stack) = (column(b), MemStack::new(&mut memory));
+        lu::solve::solve_in_place_with_conj(factors, factors, permutation, Conj::No, right, SEQUENTIAL, stack);
     }
 
     /// Solves A x = b in place with one step of iterative refinement against the matrix that was factored; the correction is
@@ -105,16 +99,18 @@ impl DenseLu {
 
     /// Solves Aᵀ x = b in place.
     pub fn solve_transpose_in_place(&self, b: &mut [f64]) {
-        let size = b.len();
-        let scratch = lu::solve::solve_transpose_in_place_scratch::<usize, f64>(size, 1, SEQUENTIAL);
+        let scratch = lu::solve::solve_transpose_in_place_scratch::<usize, f64>(b.len(), 1, SEQUENTIAL);
+        let mut memory = MemBuffer::new(scratch);
+        let (factors, permutation) = (self.factors.as_ref(), self.permutation.as_ref());
+        let (right, stack) = (column(b), MemStack::new(&mut memory));
         lu::solve::solve_transpose_in_place_with_conj(
-            self.factors.as_ref(),
-            self.factors.as_ref(),
-            self.permutation.as_ref(),
+            factors,
+            factors,
+            permutation,
             Conj::No,
-            MatMut::from_column_major_slice_mut(b, size, 1),
+            right,
             SEQUENTIAL,
-            MemStack::new(&mut MemBuffer::new(scratch)),
+            stack,
         );
     }
 }
@@ -149,17 +145,19 @@ impl DenseCholesky {
 
     /// Solves L x = b in place.
     pub fn solve_lower_in_place(&self, b: &mut [f64]) {
-        let size = b.len();
-        let right = MatMut::from_column_major_slice_mut(b, size, 1);
-        solve_lower_triangular_in_place(self.factor.as_ref(), right, SEQUENTIAL);
+        solve_lower_triangular_in_place(self.factor.as_ref(), column(b), SEQUENTIAL);
     }
 
     /// Solves Lᵀ x = b in place.
     pub fn solve_upper_in_place(&self, b: &mut [f64]) {
-        let size = b.len();
-        let right = MatMut::from_column_major_slice_mut(b, size, 1);
-        solve_upper_triangular_in_place(self.factor.transpose(), right, SEQUENTIAL);
+        solve_upper_triangular_in_place(self.factor.transpose(), column(b), SEQUENTIAL);
     }
+}
+
+/// A vector as the right side of faer's solves.
+pub(super) fn column<E>(b: &mut [E]) -> MatMut<'_, E> {
+    let size = b.len();
+    MatMut::from_column_major_slice_mut(b, size, 1)
 }
 
 /// y = A x for a dense column-major matrix.

@@ -6,7 +6,7 @@
 //! The operator may attach a payload to every product (the dual operator's product before projection), so that the caller
 //! can recombine it without a further application.
 
-use crate::linear::vector::{add_scaled, dot, norm};
+use crate::linear::vector::{norm, orthogonalise};
 
 /// Directions, payloads and their coefficients: x = Σ coefficients·directions.
 #[derive(Debug)]
@@ -50,14 +50,7 @@ pub fn gmres<P>(
         let (mut image, payload) = apply(&direction);
         result.directions.push(direction);
         result.payloads.push(payload);
-        let mut column = vec![0.0; basis.len()];
-        for _pass in 0..2 {
-            for (entry, vector) in column.iter_mut().zip(&basis) {
-                let projection = dot(vector, &image);
-                *entry += projection;
-                add_scaled(&mut image, -projection, vector);
-            }
-        }
+        let column = orthogonalise(&mut image, &basis);
         let length = norm(&image);
         result.residual = triangle.append(column, length);
         history.push(result.residual);
@@ -126,6 +119,7 @@ impl Triangle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::vector::{add_scaled, dot};
 
     #[test]
     fn nonsymmetric_system_is_solved_in_n_steps() {

@@ -3,6 +3,8 @@
 //! The longest axis is split by a plane of nodes: left part, right part, separator. The order is a postorder of its
 //! elimination tree, which the factorisation relies on when trailing dofs must stay last.
 
+use crate::lattice;
+
 /// Nodes of a grid of `nodes` = (n₁, n₂, n₃) points, index (i·n₂ + j)·n₃ + k, in nested dissection order.
 pub fn nested_dissection(nodes: [usize; 3]) -> Vec<usize> {
     let mut order = Vec::with_capacity(nodes.iter().product());
@@ -14,7 +16,7 @@ pub fn nested_dissection(nodes: [usize; 3]) -> Vec<usize> {
 const LEAF: usize = 8;
 
 fn dissect(start: [usize; 3], end: [usize; 3], nodes: [usize; 3], order: &mut Vec<usize>) {
-    let size: [usize; 3] = std::array::from_fn(|axis| end[axis] - start[axis]);
+    let size = lattice::subtract(end, start);
     if size.contains(&0) {
         return;
     }
@@ -36,13 +38,7 @@ fn dissect(start: [usize; 3], end: [usize; 3], nodes: [usize; 3], order: &mut Ve
 }
 
 fn emit(start: [usize; 3], end: [usize; 3], nodes: [usize; 3], order: &mut Vec<usize>) {
-    for i in start[0]..end[0] {
-        for j in start[1]..end[1] {
-            for k in start[2]..end[2] {
-                order.push((i * nodes[1] + j) * nodes[2] + k);
-            }
-        }
-    }
+    order.extend(lattice::points(start, lattice::subtract(end, start)).map(|node| lattice::index(nodes, node)));
 }
 
 #[cfg(test)]

@@ -81,16 +81,11 @@ impl Submatrix {
     /// The rows and columns of `full` whose index is marked.
     pub fn new(full: &LowerPattern, marked: &[bool]) -> Self {
         let kept: Vec<usize> = (0..full.dimension()).filter(|&index| marked[index]).collect();
-        let mut new_index = vec![usize::MAX; full.dimension()];
-        for (new, &old) in kept.iter().enumerate() {
-            new_index[old] = new;
-        }
         let (mut starts, mut rows, mut positions) = (vec![0], Vec::new(), Vec::new());
         for &column in &kept {
             for position in full.starts[column]..full.starts[column + 1] {
-                let row = full.rows[position];
-                if marked[row] {
-                    rows.push(new_index[row]);
+                if let Ok(row) = kept.binary_search(&full.rows[position]) {
+                    rows.push(row);
                     positions.push(position);
                 }
             }

@@ -67,36 +67,21 @@ impl Face {
         }
     }
 
-    /// v += κ p pᵀ d on the circles.
-    pub fn add_curvature(&self, d: &[f64], v: &mut [f64]) {
-        self.for_circles(|first, curvature| {
-            v[first] += curvature * d[first];
-            v[first + 1] += curvature * d[first + 1];
-        });
-    }
-
     /// Multiplies the circles' entries of v by `factor(κ)`.
     pub fn scale_circles(&self, v: &mut [f64], factor: impl Fn(f64) -> f64) {
-        self.for_circles(|first, curvature| {
-            let factor = factor(curvature);
-            v[first] *= factor;
-            v[first + 1] *= factor;
-        });
+        self.for_circles(|entry, curvature| v[entry] *= factor(curvature));
     }
 
     /// v += `factor(κ)`·d on the circles.
     pub fn add_on_circles(&self, d: &[f64], v: &mut [f64], factor: impl Fn(f64) -> f64) {
-        self.for_circles(|first, curvature| {
-            let factor = factor(curvature);
-            v[first] += factor * d[first];
-            v[first + 1] += factor * d[first + 1];
-        });
+        self.for_circles(|entry, curvature| v[entry] += factor(curvature) * d[entry]);
     }
 
     fn for_circles(&self, mut visit: impl FnMut(usize, f64)) {
         for part in &self.parts {
             if let Part::Slide { first, curvature, .. } = *part {
                 visit(first, curvature);
+                visit(first + 1, curvature);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Largest eigenvalue by a few Lanczos steps.
 
-use crate::linear::vector::{add_scaled, dot, norm};
+use crate::linear::vector::{dot, norm, orthogonalise};
 use crate::qp::{QpError, SymmetricOperator};
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// A lower estimate of the largest eigenvalue after at most `steps` products; a start vector with all frequencies makes five
 /// to ten steps enough for a few per cent.
@@ -23,12 +23,7 @@ pub fn largest_eigenvalue(operator: &dyn SymmetricOperator, steps: usize) -> Res
         let mut image = vec![0.0; dimension];
         operator.apply(current, &mut image);
         diagonal.push(dot(current, &image));
-        for _pass in 0..2 {
-            for vector in &basis {
-                let projection = dot(vector, &image);
-                add_scaled(&mut image, -projection, vector);
-            }
-        }
+        orthogonalise(&mut image, &basis);
         let length = norm(&image);
         if !length.is_finite() {
             return Err(QpError::NotFinite { what: "product with the quadratic form" });
@@ -41,12 +36,8 @@ pub fn largest_eigenvalue(operator: &dyn SymmetricOperator, steps: usize) -> Res
         image.iter_mut().for_each(|entry| *entry /= length);
         basis.push(image);
     }
-    let size = diagonal.len();
-    let mut tridiagonal = DMatrix::zeros(size, size);
-    for (index, entry) in diagonal.iter().enumerate() {
-        tridiagonal[(index, index)] = *entry;
-    }
-    for (index, entry) in off_diagonal.iter().enumerate().take(size - 1) {
+    let mut tridiagonal = DMatrix::from_diagonal(&DVector::from_vec(diagonal));
+    for (index, entry) in off_diagonal.iter().enumerate().take(tridiagonal.nrows() - 1) {
         tridiagonal[(index, index + 1)] = *entry;
         tridiagonal[(index + 1, index)] = *entry;
     }
@@ -56,18 +47,19 @@ pub fn largest_eigenvalue(operator: &dyn SymmetricOperator, steps: usize) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::qp::DenseSymmetric;
 
     #[test]
     fn full_number_of_steps_is_exact() {
-        let h = DenseSymmetric::new(vec![vec![2.0, -1.0, 0.0], vec![-1.0, 2.0, -1.0], vec![0.0, -1.0, 2.0]]);
-        let value = largest_eigenvalue(&h.expect("square"), 3).expect("finite");
+        let h = DMatrix::from_row_slice(3, 3, &[2.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 2.0]);
+        let value = largest_eigenvalue(&h, 3).expect("finite");
         assert!((value - (2.0 + 2.0_f64.sqrt())).abs() < 1e-14);
     }
 
     #[test]
     fn nan_is_reported() {
-        let h = DenseSymmetric::new(vec![vec![f64::NAN]]).expect("square");
-        assert!(matches!(largest_eigenvalue(&h, 3), Err(QpError::NotFinite { .. })));
+        assert!(matches!(
+            largest_eigenvalue(&DMatrix::from_element(1, 1, f64::NAN), 3),
+            Err(QpError::NotFinite { .. })
+        ));
     }
 }

@@ -4,14 +4,13 @@
 //! min ½ xᵀHx − xᵀb   s.t.   C x = e,   x ∈ Ω = free entries × half-lines × discs
 //! ```
 //! [`mpgp`]: gradient projection with conjugate gradients in the face, for Ω alone. [`smalse`]: an augmented Lagrangian loop
-//! around it for C x = e. [`kkt`]: residuals of a claimed solution.
+//! around it for C x = e.
 //!
 //! References: \[Dostal2009\] (the algorithms), \[DostalKozubek2012\] (separable convex constraints), \[DostalKucera2010\]
 //! (with equalities), \[Kucera2007\] (reduced gradients).
 
 mod error;
 mod face;
-pub mod kkt;
 mod lanczos;
 pub mod mpgp;
 mod operator;
@@ -23,7 +22,7 @@ pub use error::QpError;
 pub use face::Face;
 pub use lanczos::largest_eigenvalue;
 pub use mpgp::{FacePreconditioner, Mpgp, MpgpSettings, Point, StepCounts};
-pub use operator::{DenseRows, DenseSymmetric, LinearEqualities, SymmetricOperator};
-pub use program::{Progress, QuadraticProgram, SmalseSettings, SmalseSolution, WarmStart};
+pub use operator::{DenseEqualities, LinearEqualities, SymmetricOperator};
+pub use program::{QuadraticProgram, SmalseSettings, SmalseSolution, WarmStart};
 pub use separable_set::{Block, SeparableSet};
 pub use smalse::Smalse;

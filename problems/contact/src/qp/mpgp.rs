@@ -85,8 +85,17 @@ impl StepCounts {
     }
 }
 
+impl std::ops::AddAssign for StepCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.cg_steps += other.cg_steps;
+        self.expansion_steps += other.expansion_steps;
+        self.proportioning_steps += other.proportioning_steps;
+        self.refreshed_gradients += other.refreshed_gradients;
+    }
+}
+
 /// A feasible point with its gradient.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Point {
     /// x ∈ Ω.
     pub x: Vec<f64>,
@@ -180,21 +189,17 @@ impl Mpgp<'_> {
                 return Err(QpError::NotConverged { solver: "MPGP", residual, steps, history });
             }
             let before = self.counts.cg_steps;
-            if !self.advance(point, linear, &reduced, tolerance)? {
-                if since_refresh == 0 {
-                    return Ok(Ending::Stagnated);
+            if self.advance(point, linear, &reduced, tolerance)? {
+                since_refresh += 1 + self.counts.cg_steps - before;
+                if since_refresh <= self.settings.refresh {
+                    continue;
                 }
-                self.counts.refreshed_gradients += 1;
-                point.gradient = self.gradient(&point.x, linear)?;
-                since_refresh = 0;
-                continue;
+            } else if since_refresh == 0 {
+                return Ok(Ending::Stagnated);
             }
-            since_refresh += 1 + self.counts.cg_steps - before;
-            if since_refresh > self.settings.refresh {
-                self.counts.refreshed_gradients += 1;
-                point.gradient = self.gradient(&point.x, linear)?;
-                since_refresh = 0;
-            }
+            self.counts.refreshed_gradients += 1;
+            point.gradient = self.gradient(&point.x, linear)?;
+            since_refresh = 0;
         }
     }
 
@@ -208,13 +213,14 @@ impl Mpgp<'_> {
     ) -> Result<bool, QpError> {
         let (free, chopped) = self.set.split(&point.x, &point.gradient, reduced);
         let release = chopped > self.settings.proportion * self.settings.proportion * free;
-        let face = self.set.face(&point.x, &point.gradient, release);
+        let face = Face::new(self.set, &point.x, &point.gradient, release);
         let sweep = self.sweep(point, &face, release, tolerance)?;
         let certain = 0.5 * self.settings.sufficient * (free + chopped) / self.norm;
         let mut x = point.x.clone();
         add_scaled(&mut x, 1.0, &sweep.step);
         let gradient = if self.set.project(&mut x) {
-            self.expansion_step(&x, linear)?
+            self.counts.expansion_steps += 1;
+            self.gradient(&x, linear)?
         } else {
             point.gradient.iter().zip(&sweep.image).map(|(g, image)| g + image).collect()
         };
@@ -252,13 +258,14 @@ impl Mpgp<'_> {
             let beta = if previous > 0.0 { product / previous } else { 0.0 };
             direction.iter_mut().zip(&z).for_each(|(d, z)| *d = z + beta * *d);
             previous = product;
-            let image = match (release, index) {
-                (true, 0) => self.proportioning_step(&direction),
-                _ => self.cg_step(&direction),
-            };
+            match (release, index) {
+                (true, 0) => self.counts.proportioning_steps += 1,
+                _ => self.counts.cg_steps += 1,
+            }
+            let image = self.product(&direction);
             let mut applied = image.clone();
             face.restrict(&mut applied);
-            face.add_curvature(&direction, &mut applied);
+            face.add_on_circles(&direction, &mut applied, |curvature| curvature);
             let curvature = dot(&direction, &applied);
             let Some(length) = self.step_length(point, &direction, product, curvature, index)? else { break };
             add_scaled(&mut sweep.step, length, &direction);
@@ -298,21 +305,6 @@ impl Mpgp<'_> {
         }
     }
 
-    fn cg_step(&mut self, direction: &[f64]) -> Vec<f64> {
-        self.counts.cg_steps += 1;
-        self.product(direction)
-    }
-
-    fn proportioning_step(&mut self, direction: &[f64]) -> Vec<f64> {
-        self.counts.proportioning_steps += 1;
-        self.product(direction)
-    }
-
-    fn expansion_step(&mut self, x: &[f64], linear: &[f64]) -> Result<Vec<f64>, QpError> {
-        self.counts.expansion_steps += 1;
-        self.gradient(x, linear)
-    }
-
     /// Whether |g̃| at the candidate is below `factor` times what it was.
     fn calmer(&self, candidate: &Point, reduced: &[f64], factor: f64) -> bool {
         norm(&self.set.reduced_gradient(&candidate.x, &candidate.gradient, 1.0 / self.norm)) < factor * norm(reduced)
@@ -325,22 +317,24 @@ impl Mpgp<'_> {
         for _raise in 0..MAX_RAISES {
             let mut x: Vec<f64> = point.x.iter().zip(&point.gradient).map(|(x, g)| x - g / self.norm).collect();
             self.set.project(&mut x);
-            let gradient = self.expansion_step(&x, linear)?;
+            self.counts.expansion_steps += 1;
+            let gradient = self.gradient(&x, linear)?;
             let candidate = Point { x, gradient };
             let moved: f64 = candidate.x.iter().zip(&point.x).map(|(new, old)| (new - old) * (new - old)).sum();
-            match judge(point, &candidate, 0.49 * self.norm * moved) {
-                Verdict::Lower if moved > 0.0 => {
-                    *point = candidate;
-                    return Ok(true);
+            let accepted = match judge(point, &candidate, 0.49 * self.norm * moved) {
+                Verdict::Lower => moved > 0.0,
+                Verdict::Blurred => self.calmer(&candidate, reduced, 1.0),
+                Verdict::Higher if moved.sqrt() > STAGNATION * scale => {
+                    self.norm *= 2.0;
+                    continue;
                 }
-                Verdict::Blurred if self.calmer(&candidate, reduced, 1.0) => {
-                    *point = candidate;
-                    return Ok(true);
-                }
-                Verdict::Higher if moved.sqrt() > STAGNATION * scale => {}
-                _ => break,
+                Verdict::Higher => false,
+            };
+            if accepted {
+                *point = candidate;
+                return Ok(true);
             }
-            self.norm *= 2.0;
+            break;
         }
         self.norm = estimate;
         Ok(false)

@@ -1,7 +1,7 @@
 //! What the solvers need to know of H and C: products.
 
 use crate::linear::vector::{add_scaled, dot};
-use crate::qp::QpError;
+use nonsmooth::Matrix;
 
 /// A symmetric positive semidefinite operator.
 pub trait SymmetricOperator {
@@ -21,81 +21,56 @@ pub trait LinearEqualities {
     fn right_side(&self) -> &[f64];
 }
 
-/// A dense symmetric matrix by rows.
-///
-/// ```
-/// use contact::qp::{DenseSymmetric, SymmetricOperator};
-/// let h = DenseSymmetric::new(vec![vec![2.0, 1.0], vec![1.0, 3.0]])?;
-/// let mut y = vec![0.0; 2];
-/// h.apply(&[1.0, 1.0], &mut y);
-/// assert_eq!(y, [3.0, 4.0]);
-/// # Ok::<(), contact::qp::QpError>(())
-/// ```
-#[derive(Debug, Clone)]
-pub struct DenseSymmetric {
-    rows: Vec<Vec<f64>>,
-}
-
-impl DenseSymmetric {
-    /// From its rows.
-    ///
-    /// # Errors
-    /// [`QpError::Dimension`] when a row has the wrong length.
-    pub fn new(rows: Vec<Vec<f64>>) -> Result<Self, QpError> {
-        let expected = rows.len();
-        match rows.iter().find(|row| row.len() != expected) {
-            Some(row) => Err(QpError::Dimension { what: "row of a symmetric matrix", expected, found: row.len() }),
-            None => Ok(Self { rows }),
-        }
-    }
-}
-
-impl SymmetricOperator for DenseSymmetric {
+/// An operator by its dimension and its product.
+impl<F: Fn(&[f64], &mut [f64])> SymmetricOperator for (usize, F) {
     fn dimension(&self) -> usize {
-        self.rows.len()
+        self.0
     }
 
     fn apply(&self, x: &[f64], result: &mut [f64]) {
-        for (result, row) in result.iter_mut().zip(&self.rows) {
-            *result = dot(row, x);
+        self.1(x, result);
+    }
+}
+
+/// A dense symmetric matrix.
+///
+/// ```
+/// use contact::qp::SymmetricOperator;
+/// let h = nonsmooth::Matrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 3.0]);
+/// let mut y = vec![0.0; 2];
+/// SymmetricOperator::apply(&h, &[1.0, 1.0], &mut y);
+/// assert_eq!(y, [3.0, 4.0]);
+/// ```
+impl SymmetricOperator for Matrix {
+    fn dimension(&self) -> usize {
+        self.nrows()
+    }
+
+    fn apply(&self, x: &[f64], result: &mut [f64]) {
+        for (result, column) in result.iter_mut().zip(self.column_iter()) {
+            *result = dot(column.as_slice(), x);
         }
     }
 }
 
-/// Equalities with a dense matrix by rows.
+/// Equalities with a dense matrix.
 #[derive(Debug, Clone)]
-pub struct DenseRows {
-    columns: usize,
-    rows: Vec<Vec<f64>>,
-    right_side: Vec<f64>,
+pub struct DenseEqualities {
+    /// Cᵀ: one column per equality.
+    pub transposed: Matrix,
+    /// e.
+    pub right_side: Vec<f64>,
 }
 
-impl DenseRows {
-    /// From rows of `columns` entries and the right side.
-    ///
-    /// # Errors
-    /// [`QpError::Dimension`] when the sizes do not fit.
-    pub fn new(columns: usize, rows: Vec<Vec<f64>>, right_side: Vec<f64>) -> Result<Self, QpError> {
-        if let Some(row) = rows.iter().find(|row| row.len() != columns) {
-            return Err(QpError::Dimension { what: "row of the equalities", expected: columns, found: row.len() });
-        }
-        if rows.len() != right_side.len() {
-            let (expected, found) = (rows.len(), right_side.len());
-            return Err(QpError::Dimension { what: "right side of the equalities", expected, found });
-        }
-        Ok(Self { columns, rows, right_side })
-    }
-}
-
-impl LinearEqualities for DenseRows {
+impl LinearEqualities for DenseEqualities {
     fn apply(&self, x: &[f64]) -> Vec<f64> {
-        self.rows.iter().map(|row| dot(row, x)).collect()
+        self.transposed.column_iter().map(|row| dot(row.as_slice(), x)).collect()
     }
 
     fn apply_transposed(&self, y: &[f64]) -> Vec<f64> {
-        let mut x = vec![0.0; self.columns];
-        for (row, y) in self.rows.iter().zip(y) {
-            add_scaled(&mut x, *y, row);
+        let mut x = vec![0.0; self.transposed.nrows()];
+        for (row, y) in self.transposed.column_iter().zip(y) {
+            add_scaled(&mut x, *y, row.as_slice());
         }
         x
     }

@@ -12,8 +12,16 @@ pub struct QuadraticProgram<'a> {
     pub linear: &'a [f64],
     /// Ω.
     pub set: &'a SeparableSet,
-    /// C x = e, if there are equalities.
-    pub equalities: Option<&'a dyn LinearEqualities>,
+    /// C x = e; C has no rows where there are no equalities.
+    pub equalities: &'a dyn LinearEqualities,
+}
+
+impl QuadraticProgram<'_> {
+    /// C x − e.
+    pub(crate) fn defect(&self, x: &[f64]) -> Vec<f64> {
+        let image = self.equalities.apply(x);
+        image.iter().zip(self.equalities.right_side()).map(|(image, e)| image - e).collect()
+    }
 }
 
 /// Constants of the outer loop.
@@ -97,17 +105,4 @@ pub struct SmalseSolution {
     pub counts: StepCounts,
     /// Whether the accuracy asked for was reached (otherwise rounding stopped all progress).
     pub converged: bool,
-}
-
-/// What a caller may judge the accuracy by.
-#[derive(Debug, Clone, Copy)]
-pub struct Progress<'a> {
-    /// x.
-    pub x: &'a [f64],
-    /// H x − b + Cᵀμ with the updated μ (without penalty).
-    pub gradient: &'a [f64],
-    /// |g̃|.
-    pub reduced_gradient: f64,
-    /// |C x − e|.
-    pub infeasibility: f64,
 }

@@ -5,7 +5,7 @@
 //! reduced gradient:  g̃_α(x) = (x − P_Ω(x − α g))/α
 //! ```
 
-use crate::qp::{Face, QpError};
+use crate::qp::QpError;
 
 /// One constrained part of x.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -180,7 +180,7 @@ impl SeparableSet {
     /// Splits a reduced gradient at x: squares of the norms of its free part (inside the face, sliding along circles
     /// included) and of its chopped part (leaving active constraints).
     pub fn split(&self, x: &[f64], gradient: &[f64], reduced: &[f64]) -> (f64, f64) {
-        let (mut free, mut chopped): (f64, f64) = (reduced.iter().map(|g| g * g).sum(), 0.0);
+        let (square, mut chopped): (f64, f64) = (reduced.iter().map(|g| g * g).sum(), 0.0);
         for block in &self.blocks {
             match *block {
                 Block::HalfLine { index, bound } if x[index] <= bound => chopped += reduced[index] * reduced[index],
@@ -198,13 +198,7 @@ impl SeparableSet {
                 }
             }
         }
-        free = (free - chopped).max(0.0);
-        (free, chopped)
-    }
-
-    /// The face of x: what may move at first order.
-    pub fn face(&self, x: &[f64], gradient: &[f64], release: bool) -> Face {
-        Face::new(self, x, gradient, release)
+        ((square - chopped).max(0.0), chopped)
     }
 }
 

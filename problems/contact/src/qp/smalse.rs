@@ -12,55 +12,19 @@
 use crate::linear::vector::{add_scaled, dot, norm};
 use crate::qp::mpgp::Ending;
 use crate::qp::{
-    FacePreconditioner, LinearEqualities, Mpgp, Point, Progress, QpError, QuadraticProgram, SmalseSettings,
-    SmalseSolution, StepCounts, SymmetricOperator, WarmStart, largest_eigenvalue,
+    FacePreconditioner, Mpgp, Point, QpError, QuadraticProgram, SmalseSettings, SmalseSolution, StepCounts, WarmStart,
+    largest_eigenvalue,
 };
-
-/// H + ρCᵀC.
-struct Augmented<'a> {
-    program: QuadraticProgram<'a>,
-    rho: f64,
-}
-
-impl SymmetricOperator for Augmented<'_> {
-    fn dimension(&self) -> usize {
-        self.program.hessian.dimension()
-    }
-
-    fn apply(&self, x: &[f64], result: &mut [f64]) {
-        self.program.hessian.apply(x, result);
-        if let Some(equalities) = self.program.equalities {
-            let image = equalities.apply_transposed(&equalities.apply(x));
-            add_scaled(result, self.rho, &image);
-        }
-    }
-}
-
-/// CᵀC.
-struct Gram<'a> {
-    equalities: &'a dyn LinearEqualities,
-    dimension: usize,
-}
-
-impl SymmetricOperator for Gram<'_> {
-    fn dimension(&self) -> usize {
-        self.dimension
-    }
-
-    fn apply(&self, x: &[f64], result: &mut [f64]) {
-        result.copy_from_slice(&self.equalities.apply_transposed(&self.equalities.apply(x)));
-    }
-}
 
 /// The solver.
 ///
 /// ```
 /// use contact::qp::*;
 /// // The point of the half-plane x₀ ≥ 1/2 on the line x₀ + x₁ = 0 that is nearest to the origin.
-/// let hessian = DenseSymmetric::new(vec![vec![1.0, 0.0], vec![0.0, 1.0]])?;
+/// let hessian = nonsmooth::Matrix::identity(2, 2);
 /// let set = SeparableSet::new(2, vec![Block::HalfLine { index: 0, bound: 0.5 }])?;
-/// let line = DenseRows::new(2, vec![vec![1.0, 1.0]], vec![0.0])?;
-/// let program = QuadraticProgram { hessian: &hessian, linear: &[0.0; 2], set: &set, equalities: Some(&line) };
+/// let line = DenseEqualities { transposed: nonsmooth::Matrix::from_element(2, 1, 1.0), right_side: vec![0.0] };
+/// let program = QuadraticProgram { hessian: &hessian, linear: &[0.0; 2], set: &set, equalities: &line };
 /// let solver = Smalse { program, preconditioner: None, settings: SmalseSettings::default() };
 /// let start = WarmStart { x: vec![0.0; 2], ..WarmStart::default() };
 /// let x = solver.solve(&start, 1e-10)?.warm.x;
@@ -89,7 +53,7 @@ impl Smalse<'_> {
         let start = WarmStart { norm: Some(norm_h), ..start.clone() };
         let mut nearest = vec![0.0; self.program.hessian.dimension()];
         self.program.set.project(&mut nearest);
-        let right = self.program.equalities.map_or(0.0, |equalities| norm(equalities.right_side()));
+        let right = norm(self.program.equalities.right_side());
         let feasible = (norm(self.program.linear) / norm_h).max(right).max(norm(&nearest));
         let scale = norm_h * feasible;
         let inner = tolerance * scale;
@@ -114,7 +78,7 @@ impl Smalse<'_> {
         &self,
         start: &WarmStart,
         floor: f64,
-        enough: &mut dyn FnMut(&Progress<'_>) -> bool,
+        enough: &mut dyn FnMut(&SmalseSolution) -> bool,
     ) -> Result<SmalseSolution, QpError> {
         self.check(start)?;
         let mut state = State::new(self, start)?;
@@ -122,7 +86,11 @@ impl Smalse<'_> {
         let (mut infeasibility, mut stalled) = (f64::INFINITY, 0);
         let scale = norm(self.program.linear).max(f64::MIN_POSITIVE);
         loop {
-            let augmented = Augmented { program: self.program, rho: state.rho };
+            let (QuadraticProgram { hessian, equalities, .. }, rho) = (self.program, state.rho);
+            let augmented = (hessian.dimension(), |x: &[f64], result: &mut [f64]| {
+                hessian.apply(x, result);
+                add_scaled(result, rho, &equalities.apply_transposed(&equalities.apply(x)));
+            });
             let mut inner = Mpgp {
                 hessian: &augmented,
                 set: self.program.set,
@@ -142,20 +110,12 @@ impl Smalse<'_> {
                 return Err(QpError::NotFinite { what: "residual of the equalities" });
             }
             state.strengthen(solution.infeasibility);
-            let progress = Progress {
-                x: &solution.warm.x,
-                gradient: &solution.gradient,
-                reduced_gradient: solution.reduced_gradient,
-                infeasibility: solution.infeasibility,
-            };
-            let converged = enough(&progress);
+            let converged = enough(&solution);
             let progressed = solution.infeasibility < 0.9 * infeasibility;
             stalled = if stagnated && !progressed { stalled + 1 } else { 0 };
             infeasibility = solution.infeasibility;
-            if converged
-                || stalled > STALLED
-                || (self.program.equalities.is_none() && solution.reduced_gradient <= floor)
-            {
+            let bounds_alone = self.program.equalities.right_side().is_empty();
+            if converged || stalled > STALLED || (bounds_alone && solution.reduced_gradient <= floor) {
                 return Ok(SmalseSolution { converged, ..solution });
             }
             if history.len() >= self.settings.max_outer {
@@ -178,12 +138,15 @@ impl Smalse<'_> {
         if let Some(&(what, found)) = sizes.iter().find(|(_, found)| *found != expected) {
             return Err(QpError::Dimension { what, expected, found });
         }
-        if let Some(equalities) = self.program.equalities {
-            let count = equalities.right_side().len();
-            let found = equalities.apply_transposed(&vec![0.0; count]).len();
-            if found != expected {
-                return Err(QpError::Dimension { what: "row of the equalities", expected, found });
-            }
+        let equalities = self.program.equalities;
+        let count = equalities.right_side().len();
+        let found = equalities.apply_transposed(&vec![0.0; count]).len();
+        if found != expected {
+            return Err(QpError::Dimension { what: "row of the equalities", expected, found });
+        }
+        let found = equalities.apply(&start.x).len();
+        if found != count {
+            return Err(QpError::Dimension { what: "equalities", expected: count, found });
         }
         Ok(())
     }
@@ -193,13 +156,11 @@ impl Smalse<'_> {
     /// # Errors
     /// [`QpError::NotFinite`] from the estimate.
     pub fn norm(&self, start: &WarmStart) -> Result<f64, QpError> {
-        match start.norm {
-            Some(norm) => Ok(norm),
-            None => {
-                let estimate = NORM_SAFETY * largest_eigenvalue(self.program.hessian, self.settings.norm_steps)?;
-                Ok(if estimate > 0.0 { estimate } else { 1.0 })
-            }
+        if let Some(norm) = start.norm {
+            return Ok(norm);
         }
+        let estimate = NORM_SAFETY * largest_eigenvalue(self.program.hessian, self.settings.norm_steps)?;
+        Ok(if estimate > 0.0 { estimate } else { 1.0 })
     }
 }
 
@@ -238,24 +199,18 @@ impl<'a> State<'a> {
     fn new(solver: &Smalse<'a>, start: &WarmStart) -> Result<Self, QpError> {
         let program = solver.program;
         let norm = solver.norm(start)?;
-        let (mut row_norm, mut multipliers) = (0.0, Vec::new());
-        if let Some(equalities) = program.equalities {
-            let gram = Gram { equalities, dimension: program.hessian.dimension() };
-            row_norm = largest_eigenvalue(&gram, ROW_NORM_STEPS)?.max(0.0).sqrt();
-            multipliers = vec![0.0; equalities.right_side().len()];
-            if start.multipliers.len() == multipliers.len() {
-                multipliers.copy_from_slice(&start.multipliers);
-            }
-        }
+        let (equalities, right) = (program.equalities, program.equalities.right_side());
+        let gram = (program.hessian.dimension(), |x: &[f64], result: &mut [f64]| {
+            result.copy_from_slice(&equalities.apply_transposed(&equalities.apply(x)));
+        });
+        let row_norm = largest_eigenvalue(&gram, ROW_NORM_STEPS)?.max(0.0).sqrt();
+        let known = start.multipliers.len() == right.len();
+        let multipliers = if known { start.multipliers.clone() } else { vec![0.0; right.len()] };
         let rho = if row_norm > 0.0 { solver.settings.penalty * norm / (row_norm * row_norm) } else { 0.0 };
         let m = start.m.unwrap_or(solver.settings.first_m * rho * row_norm);
         let mut linear = program.linear.to_vec();
-        if let Some(equalities) = program.equalities {
-            let shift: Vec<f64> =
-                equalities.right_side().iter().zip(&multipliers).map(|(e, mu)| rho * e - mu).collect();
-            add_scaled(&mut linear, 1.0, &equalities.apply_transposed(&shift));
-        }
-        let point = Point { x: Vec::new(), gradient: Vec::new() };
+        let shift: Vec<f64> = right.iter().zip(&multipliers).map(|(e, mu)| rho * e - mu).collect();
+        add_scaled(&mut linear, 1.0, &equalities.apply_transposed(&shift));
         Ok(Self {
             program,
             norm,
@@ -264,7 +219,7 @@ impl<'a> State<'a> {
             m,
             multipliers,
             linear,
-            point,
+            point: Point::default(),
             lagrangian: f64::NEG_INFINITY,
             counts: StepCounts::default(),
             checkpoint: (f64::INFINITY, 0),
@@ -279,9 +234,8 @@ impl<'a> State<'a> {
             && !self.program.set.project(&mut x)
         {
             let mut gradient: Vec<f64> = image.iter().zip(&self.linear).map(|(image, b)| image - b).collect();
-            if let Some(equalities) = self.program.equalities {
-                add_scaled(&mut gradient, self.rho, &equalities.apply_transposed(&equalities.apply(&x)));
-            }
+            let equalities = self.program.equalities;
+            add_scaled(&mut gradient, self.rho, &equalities.apply_transposed(&equalities.apply(&x)));
             self.point = Point { x, gradient };
         } else {
             self.point = inner.start(start.x.clone(), &self.linear)?;
@@ -289,22 +243,10 @@ impl<'a> State<'a> {
         Ok(())
     }
 
-    fn defect(&self, x: &[f64]) -> Vec<f64> {
-        self.program.equalities.map_or_else(Vec::new, |equalities| {
-            equalities.apply(x).iter().zip(equalities.right_side()).map(|(image, e)| image - e).collect()
-        })
-    }
-
     /// Minimises the augmented Lagrangian; true when rounding stopped it.
     fn inner_solve(&mut self, inner: &mut Mpgp<'_>, largest: f64, floor: f64) -> Result<bool, QpError> {
-        let mut point = std::mem::replace(&mut self.point, Point { x: Vec::new(), gradient: Vec::new() });
-        let ending = inner.minimise(&mut point, &self.linear, &|x: &[f64]| {
-            if self.program.equalities.is_none() {
-                return floor;
-            }
-            (self.m * norm(&self.defect(x))).min(largest).max(floor)
-        });
-        self.point = point;
+        let tolerance = |x: &[f64]| (self.m * norm(&self.program.defect(x))).min(largest).max(floor);
+        let ending = inner.minimise(&mut self.point, &self.linear, &tolerance);
         Ok(ending? == Ending::Stagnated)
     }
 
@@ -315,11 +257,9 @@ impl<'a> State<'a> {
             return;
         }
         let rounding = f64::EPSILON * self.row_norm * norm(&self.point.x);
-        if let Some(equalities) = self.program.equalities
-            && infeasibility > (0.5 * self.checkpoint.0).max(BLURRED * rounding)
-        {
-            let added = (RAISE - 1.0) * self.rho;
-            let defect = self.defect(&self.point.x);
+        if infeasibility > (0.5 * self.checkpoint.0).max(BLURRED * rounding) {
+            let (added, equalities) = ((RAISE - 1.0) * self.rho, self.program.equalities);
+            let defect = self.program.defect(&self.point.x);
             add_scaled(&mut self.linear, added, &equalities.apply_transposed(equalities.right_side()));
             add_scaled(&mut self.point.gradient, added, &equalities.apply_transposed(&defect));
             self.rho *= RAISE;
@@ -332,36 +272,26 @@ impl<'a> State<'a> {
     /// Step 3; returns the state of affairs.
     fn update(&mut self, solver: &Smalse<'_>, norm_rho: f64, outer: usize) -> SmalseSolution {
         let reduced = self.program.set.reduced_gradient(&self.point.x, &self.point.gradient, 1.0 / norm_rho);
-        let defect = self.defect(&self.point.x);
+        let equalities = self.program.equalities;
+        let defect = self.program.defect(&self.point.x);
         let infeasibility = norm(&defect);
-        let energy = 0.5
-            * self
-                .point
-                .x
-                .iter()
-                .zip(&self.point.gradient)
-                .zip(&self.linear)
-                .map(|((x, g), b)| x * (g - b))
-                .sum::<f64>();
-        let right = self.program.equalities.map_or(&[][..], |equalities| equalities.right_side());
+        let terms = self.point.x.iter().zip(&self.point.gradient).zip(&self.linear);
+        let energy = 0.5 * terms.map(|((x, g), b)| x * (g - b)).sum::<f64>();
+        let right = equalities.right_side();
         let lagrangian = energy - dot(&self.multipliers, right) + 0.5 * self.rho * dot(right, right);
         if lagrangian < self.lagrangian + 0.5 * self.rho * infeasibility * infeasibility {
             self.m *= solver.settings.beta;
         }
         self.lagrangian = lagrangian;
-        if let Some(equalities) = self.program.equalities {
-            add_scaled(&mut self.multipliers, self.rho, &defect);
-            let shift = equalities.apply_transposed(&defect);
-            add_scaled(&mut self.linear, -self.rho, &shift);
-            add_scaled(&mut self.point.gradient, self.rho, &shift);
-        }
+        add_scaled(&mut self.multipliers, self.rho, &defect);
+        let shift = equalities.apply_transposed(&defect);
+        add_scaled(&mut self.linear, -self.rho, &shift);
+        add_scaled(&mut self.point.gradient, self.rho, &shift);
         // H x − b + Cᵀμ⁺ = g⁺ − ρCᵀ(C x − e) = the gradient before the update.
         let mut gradient = self.point.gradient.clone();
         let mut image: Vec<f64> = gradient.iter().zip(&self.linear).map(|(g, b)| g + b).collect();
-        if let Some(equalities) = self.program.equalities {
-            add_scaled(&mut gradient, -self.rho, &equalities.apply_transposed(&defect));
-            add_scaled(&mut image, -self.rho, &equalities.apply_transposed(&equalities.apply(&self.point.x)));
-        }
+        add_scaled(&mut gradient, -self.rho, &shift);
+        add_scaled(&mut image, -self.rho, &equalities.apply_transposed(&equalities.apply(&self.point.x)));
         let warm = WarmStart {
             x: self.point.x.clone(),
             image: Some(image),

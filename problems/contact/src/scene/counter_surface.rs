@@ -66,11 +66,7 @@ impl CounterSurface {
             }
             // Nodes on the edge belong to the face, whatever rounding says.
             &Self::Punch { height, half_width, relief } => {
-                if x1.abs() <= half_width * (1.0 + 1e-9) {
-                    height
-                } else {
-                    height + relief
-                }
+                height + if x1.abs() <= half_width * (1.0 + 1e-9) { 0.0 } else { relief }
             }
             &Self::Plane { height } => height,
             Self::Grid(grid) => grid.height(x1, x2),

@@ -96,40 +96,25 @@ impl Scene {
     /// [`SceneError`] naming the field, its value and what is allowed.
     pub fn validate(&self) -> Result<(), SceneError> {
         for (axis, (&mesh, &subdomains)) in self.mesh.iter().zip(&self.subdomains).enumerate() {
-            if mesh == 0 || mesh > 400 {
-                return Err(SceneError::out_of_range(
-                    format!("mesh (axis {})", axis + 1),
-                    mesh,
-                    "1 … 400 bricks per edge",
-                ));
-            }
-            if subdomains == 0 || !mesh.is_multiple_of(subdomains) {
-                let allowed = format!("a divisor of the {mesh} bricks per edge");
-                return Err(SceneError::out_of_range(format!("subdomains (axis {})", axis + 1), subdomains, allowed));
-            }
+            let field = |name: &str| format!("{name} (axis {})", axis + 1);
+            SceneError::require((1..=400).contains(&mesh), field("mesh"), mesh, "1 … 400 bricks per edge")?;
+            let divides = subdomains > 0 && mesh.is_multiple_of(subdomains);
+            let allowed = format!("a divisor of the {mesh} bricks per edge");
+            SceneError::require(divides, field("subdomains"), subdomains, allowed)?;
         }
+        let positive = |value: f64| value > 0.0 && value.is_finite();
         for (axis, &length) in self.size.iter().enumerate() {
-            if !(length > 0.0 && length.is_finite()) {
-                return Err(SceneError::out_of_range(
-                    format!("size (axis {})", axis + 1),
-                    length,
-                    "a finite length > 0 mm",
-                ));
-            }
+            let field = format!("size (axis {})", axis + 1);
+            SceneError::require(positive(length), field, length, "a finite length > 0 mm")?;
         }
-        if !(self.friction >= 0.0 && self.friction.is_finite()) {
-            return Err(SceneError::out_of_range("friction", self.friction, "a finite number ≥ 0"));
-        }
-        if !(self.start_height > 0.0 && self.start_height.is_finite()) {
-            return Err(SceneError::out_of_range("start height", self.start_height, "a finite height > 0 mm"));
-        }
+        let valid = self.friction == 0.0 || positive(self.friction);
+        SceneError::require(valid, "friction", self.friction, "a finite number ≥ 0")?;
+        let height = self.start_height;
+        SceneError::require(positive(height), "start height", height, "a finite height > 0 mm")?;
         let [a, b] = self.size;
         for [x1, x2] in [[0.0, 0.0], [a, 0.0], [0.0, b], [a, b]] {
-            let height = self.counter_surface.height(x1, x2);
-            if !height.is_finite() {
-                let field = format!("counter surface at ({x1}, {x2})");
-                return Err(SceneError::out_of_range(field, height, "finite heights over the whole base"));
-            }
+            let (height, field) = (self.counter_surface.height(x1, x2), format!("counter surface at ({x1}, {x2})"));
+            SceneError::require(height.is_finite(), field, height, "finite heights over the whole base")?;
         }
         self.spline_surface()?;
         Self::validate_body("lower body", &self.lower, Face::Top)?;
@@ -140,34 +125,25 @@ impl Scene {
     }
 
     fn validate_body(name: &str, body: &BodyScene, contact: Face) -> Result<(), SceneError> {
+        let not_on_contact = |part: &str, face: Face| {
+            let (field, value) = (format!("{name}: {part} face"), format!("{face:?}"));
+            SceneError::require(face != contact, field, value, "any face but the contact boundary")
+        };
         for load in &body.loads {
-            if let Some(value) = load.traction.iter().find(|value| !value.is_finite()) {
-                return Err(SceneError::out_of_range(format!("{name}: traction"), value, "finite numbers (MPa)"));
+            for value in load.traction {
+                let field = format!("{name}: traction");
+                SceneError::require(value.is_finite(), field, value, "finite numbers (MPa)")?;
             }
-            if load.face == contact {
-                return Err(SceneError::out_of_range(
-                    format!("{name}: loaded face"),
-                    format!("{:?}", load.face),
-                    "any face but the contact boundary",
-                ));
-            }
+            not_on_contact("loaded", load.face)?;
         }
-        if let Some(support) = body.supports.iter().find(|support| support.face == contact) {
-            return Err(SceneError::out_of_range(
-                format!("{name}: supported face"),
-                format!("{:?}", support.face),
-                "any face but the contact boundary",
-            ));
-        }
+        body.supports.iter().try_for_each(|support| not_on_contact("supported", support.face))?;
         let vertical = |face: Face| !matches!(face, Face::Bottom | Face::Top);
-        if body.supports.iter().any(|support| support.components[2] && vertical(support.face)) {
-            return Err(SceneError::out_of_range(
-                format!("{name}: support"),
-                "u₃ held on a vertical face",
-                "u₃ held on the face opposite to the contact boundary only (it would hold the contact normal)",
-            ));
-        }
-        Ok(())
+        SceneError::require(
+            !body.supports.iter().any(|support| support.components[2] && vertical(support.face)),
+            format!("{name}: support"),
+            "u₃ held on a vertical face",
+            "u₃ held on the face opposite to the contact boundary only (it would hold the contact normal)",
+        )
     }
 
     /// The bodies, lower first, for changes.

@@ -27,8 +27,8 @@ impl HeightGrid {
     /// # Errors
     /// [`SceneError`] unless there are at least two places per axis, a height for each, and all heights are finite.
     pub fn new(size: [f64; 2], counts: [usize; 2], heights: Vec<f64>) -> Result<Self, SceneError> {
-        if let Some(count) = counts.iter().find(|count| **count < 2) {
-            return Err(SceneError::out_of_range("heights per axis of a grid", count, "at least 2"));
+        for count in counts {
+            SceneError::require(count >= 2, "heights per axis of a grid", count, "at least 2")?;
         }
         let expected = counts[0].saturating_mul(counts[1]);
         if heights.len() != expected {

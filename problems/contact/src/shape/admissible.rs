@@ -50,7 +50,7 @@ impl AdmissibleSet {
             let (i, j) = (index / counts[1], index % counts[1]);
             ceiling(grid.size[0] * i as f64 / intervals[0], grid.size[1] * j as f64 / intervals[1])
         });
-        let mut rows = Rows::default();
+        let mut rows = Vec::new();
         for i in 0..counts[0] {
             for j in 0..counts[1] {
                 let here = i * counts[1] + j;
@@ -59,21 +59,27 @@ impl AdmissibleSet {
                     if exists {
                         let bound = bounds.slope * grid.size[axis] / intervals[axis];
                         let name = format!("α[{next}] − α[{here}] (slope along x{})", axis + 1);
-                        rows.push(name, vec![(next, 1.0), (here, -1.0)], [-bound, bound]);
+                        rows.push((name, vec![(next, 1.0), (here, -1.0)], [-bound, bound]));
                     }
                 }
             }
         }
         let area = grid.size[0] * grid.size[1];
         let measure = surface.integrals().iter().map(|value| value * area).collect::<Vec<_>>();
-        rows.push("volume under the surface".into(), measure.into_iter().enumerate().collect(), bounds.volume);
+        rows.push(("volume under the surface".into(), measure.into_iter().enumerate().collect(), bounds.volume));
         let areas: Vec<f64> = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
         let bricks = surface.height_map(grid).pull_back(&areas);
-        rows.push("volume of the bricks".into(), bricks.into_iter().enumerate().collect(), bounds.volume);
+        rows.push(("volume of the bricks".into(), bricks.into_iter().enumerate().collect(), bounds.volume));
         let polyhedron = Polyhedron::boxed(Vector::from_element(dimension, bounds.minimum_height), upper)?;
-        let (matrix, lower_side, upper_side) = rows.assemble(dimension);
-        let polyhedron = polyhedron.with_rows(&matrix, &lower_side, &upper_side)?;
-        Ok(Self { polyhedron, row_names: rows.names })
+        let mut matrix = Matrix::zeros(rows.len(), dimension);
+        for (row, (_, entries, _)) in rows.iter().enumerate() {
+            for &(column, value) in entries {
+                matrix[(row, column)] += value;
+            }
+        }
+        let side = |which: usize| Vector::from_iterator(rows.len(), rows.iter().map(|(_, _, sides)| sides[which]));
+        let polyhedron = polyhedron.with_rows(&matrix, &side(0), &side(1))?;
+        Ok(Self { polyhedron, row_names: rows.into_iter().map(|(name, ..)| name).collect() })
     }
 
     /// The set for the optimizer.
@@ -81,20 +87,25 @@ impl AdmissibleSet {
         &self.polyhedron
     }
 
-    /// Bounds and rows that controls attain (up to the tolerance of [`AdmissibleSet::check`]), in words.
-    pub fn active(&self, controls: &Vector) -> Vec<String> {
+    /// Name, value, lower and upper bound of every control and every row.
+    fn expressions(&self, controls: &Vector) -> Vec<(String, f64, f64, f64)> {
         let set = &self.polyhedron;
         let products = set.rows() * controls;
         let bounds = (0..controls.len()).map(|i| (format!("α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
         let rows = (0..products.len())
             .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
+        bounds.chain(rows).collect()
+    }
+
+    /// Bounds and rows that controls attain (up to the tolerance of [`AdmissibleSet::check`]), in words.
+    pub fn active(&self, controls: &Vector) -> Vec<String> {
         let attained = |value: f64, side: f64| (value - side).abs() <= ADMISSIBLE * side.abs().max(f64::MIN_POSITIVE);
         let words = |(name, value, lower, upper): (String, f64, f64, f64)| match () {
             () if attained(value, lower) => Some(format!("{name} = {lower}, its least value")),
             () if attained(value, upper) => Some(format!("{name} = {upper}, its largest value")),
             () => None,
         };
-        bounds.chain(rows).filter_map(words).collect()
+        self.expressions(controls).into_iter().filter_map(words).collect()
     }
 
     /// Refuses controls outside U.
@@ -105,46 +116,16 @@ impl AdmissibleSet {
         if self.polyhedron.violation(controls) <= ADMISSIBLE {
             return Ok(());
         }
-        let set = &self.polyhedron;
-        let bounds = (0..controls.len()).map(|i| (format!("α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
-        let products = set.rows() * controls;
-        let rows = (0..products.len())
-            .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
         let excess = |value: f64, lower: f64, upper: f64| {
             (lower - value).max(value - upper) / lower.abs().max(upper.abs()).max(f64::MIN_POSITIVE)
         };
-        let worst = bounds.chain(rows).max_by(|a, b| excess(a.1, a.2, a.3).total_cmp(&excess(b.1, b.2, b.3)));
+        let expressions = self.expressions(controls).into_iter();
+        let worst = expressions.max_by(|a, b| excess(a.1, a.2, a.3).total_cmp(&excess(b.1, b.2, b.3)));
         match worst {
             Some((constraint, value, lower, upper)) => {
                 Err(SceneError::NotAdmissible { constraint, value, allowed: format!("[{lower}, {upper}]") })
             }
             None => Ok(()),
         }
-    }
-}
-
-#[derive(Default)]
-struct Rows {
-    names: Vec<String>,
-    entries: Vec<Vec<(usize, f64)>>,
-    sides: Vec<[f64; 2]>,
-}
-
-impl Rows {
-    fn push(&mut self, name: String, entries: Vec<(usize, f64)>, sides: [f64; 2]) {
-        self.names.push(name);
-        self.entries.push(entries);
-        self.sides.push(sides);
-    }
-
-    fn assemble(&self, dimension: usize) -> (Matrix, Vector, Vector) {
-        let mut matrix = Matrix::zeros(self.entries.len(), dimension);
-        for (row, entries) in self.entries.iter().enumerate() {
-            for &(column, value) in entries {
-                matrix[(row, column)] += value;
-            }
-        }
-        let side = |which: usize| Vector::from_iterator(self.sides.len(), self.sides.iter().map(|sides| sides[which]));
-        (matrix, side(0), side(1))
     }
 }

@@ -22,10 +22,8 @@ impl Basis {
     /// # Errors
     /// [`SceneError::OutOfRange`] unless 1 ≤ degree < count.
     pub fn clamped_uniform(degree: usize, count: usize) -> Result<Self, SceneError> {
-        if degree == 0 || degree >= count {
-            let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
-            return Err(SceneError::out_of_range("spline degree", degree, allowed));
-        }
+        let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
+        SceneError::require((1..count).contains(&degree), "spline degree", degree, allowed)?;
         let spans = count - degree;
         let knots =
             (0..count + degree + 1).map(|index| (index.clamp(degree, count) - degree) as f64 / spans as f64).collect();
@@ -40,13 +38,13 @@ impl Basis {
     /// Values of all basis functions at t ∈ [0, 1].
     pub fn values<T: Scalar>(&self, t: T) -> Vec<T> {
         let span = (self.degree..self.count).rev().find(|&span| self.knots[span] <= t.value()).unwrap_or(self.degree);
-        let mut values = vec![T::zero(); self.count];
-        values[span] = T::one();
+        let mut values = vec![T::constant(0.0); self.count];
+        values[span] = T::constant(1.0);
         for degree in 1..=self.degree {
             for index in span - degree..=span {
-                let mut value = T::zero();
+                let mut value = T::constant(0.0);
                 let (left, right) = (self.knots[index], self.knots[index + degree]);
-                if right > left && !values[index].is_zero() {
+                if right > left {
                     value += (t - T::constant(left)) / T::constant(right - left) * values[index];
                 }
                 if index < span {

@@ -45,27 +45,20 @@ pub enum Values {
 
 impl Values {
     /// Number of entries.
-    pub fn len(&self) -> usize {
-        match self {
-            Self::Integers(values) => values.len(),
-            Self::Scalars(values) => values.len(),
-            Self::Vectors(values) => values.len(),
-            Self::Tensors(values) => values.len(),
+    pub fn count(&self) -> usize {
+        match (self, self.numbers()) {
+            (Self::Integers(values), _) => values.len(),
+            (_, (components, numbers)) => numbers.len() / components,
         }
     }
 
-    /// Whether there are no entries.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// All floating-point numbers, in order.
-    fn numbers(&self) -> &[f64] {
+    /// Components of an entry, and all floating-point numbers in order.
+    pub(crate) fn numbers(&self) -> (usize, &[f64]) {
         match self {
-            Self::Integers(_) => &[],
-            Self::Scalars(values) => values,
-            Self::Vectors(values) => values.as_flattened(),
-            Self::Tensors(values) => values.as_flattened(),
+            Self::Integers(_) => (1, &[]),
+            Self::Scalars(values) => (1, values),
+            Self::Vectors(values) => (3, values.as_flattened()),
+            Self::Tensors(values) => (6, values.as_flattened()),
         }
     }
 }
@@ -180,10 +173,10 @@ fn check_arrays(arrays: &[Array], place: &'static str, expected: usize) -> Resul
         if !names.insert(name) {
             return Err(VtkError::Twice { array: name.clone(), place });
         }
-        if values.len() != expected {
-            return Err(VtkError::WrongLength { array: name.clone(), place, expected, found: values.len() });
+        if values.count() != expected {
+            return Err(VtkError::WrongLength { array: name.clone(), place, expected, found: values.count() });
         }
-        check_finite(name, values.numbers())?;
+        check_finite(name, values.numbers().1)?;
     }
     Ok(())
 }

@@ -48,19 +48,15 @@ pub fn unstructured(grid: &UnstructuredGrid) -> Result<String, VtkError> {
 
 fn write_array(text: &mut String, Array { name, values }: &Array) -> Result<(), VtkError> {
     let name = attribute("name of an array", name)?;
-    match values {
-        Values::Integers(values) => {
-            let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-            write_bytes(text, "Int32", &name, 1, "", &bytes);
-        }
-        Values::Scalars(values) => write_bytes(text, "Float64", &name, 1, "", &float_bytes(values)),
-        Values::Vectors(values) => write_bytes(text, "Float64", &name, 3, "", &float_bytes(values.as_flattened())),
-        Values::Tensors(values) => {
-            let names = TENSOR_COMPONENTS.iter().enumerate();
-            let names: String = names.map(|(index, name)| format!(" ComponentName{index}=\"{name}\"")).collect();
-            write_bytes(text, "Float64", &name, 6, &names, &float_bytes(values.as_flattened()));
-        }
+    if let Values::Integers(values) = values {
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        write_bytes(text, "Int32", &name, 1, "", &bytes);
+        return Ok(());
     }
+    let (components, numbers) = values.numbers();
+    let named = if components == 6 { &TENSOR_COMPONENTS[..] } else { &[] };
+    let names = named.iter().enumerate().map(|(index, name)| format!(" ComponentName{index}=\"{name}\""));
+    write_bytes(text, "Float64", &name, components, &names.collect::<String>(), &float_bytes(numbers));
     Ok(())
 }
 

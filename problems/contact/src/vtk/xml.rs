@@ -11,18 +11,9 @@ pub fn attribute(what: &'static str, text: &str) -> Result<String, VtkError> {
         let allowed = "at least one character, no control characters";
         return Err(VtkError::Text { what, text: text.to_owned(), allowed });
     }
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            '\'' => escaped += "&apos;",
-            other => escaped.push(other),
-        }
-    }
-    Ok(escaped)
+    // The ampersand first: the other replacements bring their own.
+    let named = [("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ("\"", "&quot;"), ("'", "&apos;")];
+    Ok(named.iter().fold(text.to_owned(), |text, (character, name)| text.replace(character, name)))
 }
 
 /// A comment on lines of its own, or nothing for an empty text.

@@ -3,14 +3,52 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
-use contact::qp::kkt::KktResidual;
+use contact::linear::vector::{add_scaled, norm};
 use contact::qp::{
-    Block, DenseRows, DenseSymmetric, FacePreconditioner, LinearEqualities, QpError, QuadraticProgram, SeparableSet,
-    Smalse, SmalseSettings, SmalseSolution, SymmetricOperator, WarmStart, largest_eigenvalue,
+    Block, DenseEqualities, FacePreconditioner, QpError, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
+    SmalseSolution, SymmetricOperator, WarmStart, largest_eigenvalue,
 };
+use nonsmooth::Matrix;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
+
+/// How far (x, μ) is from satisfying the optimality conditions; dimensionless.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct KktResidual {
+    /// |x − P_Ω(x)|∞ over |x|∞.
+    set: f64,
+    /// |C x − e| over |e| + |x|: meant for rows C of unit length.
+    equality: f64,
+    /// |x − P_Ω(x − α(H x − b + Cᵀμ))|/α over |b| + norm·|x|, with α = 1/norm.
+    stationarity: f64,
+}
+
+impl KktResidual {
+    /// The residual of a point; `norm_h` is a norm of H, which sets the length of the trial step.
+    fn of(program: &QuadraticProgram<'_>, x: &[f64], multipliers: &[f64], norm_h: f64) -> Self {
+        let mut image = vec![0.0; x.len()];
+        program.hessian.apply(x, &mut image);
+        let scale = (norm(program.linear) + norm_h * norm(x)).max(f64::MIN_POSITIVE);
+        let mut gradient: Vec<f64> = image.iter().zip(program.linear).map(|(image, b)| image - b).collect();
+        add_scaled(&mut gradient, 1.0, &program.equalities.apply_transposed(multipliers));
+        let size = (norm(x) + norm(program.equalities.right_side())).max(f64::MIN_POSITIVE);
+        let rows = program.equalities.apply(x);
+        let defect: Vec<f64> = rows.iter().zip(program.equalities.right_side()).map(|(row, e)| row - e).collect();
+        let equality = norm(&defect) / size;
+        let reduced = program.set.reduced_gradient(x, &gradient, 1.0 / norm_h);
+        let mut projected = x.to_vec();
+        program.set.project(&mut projected);
+        let largest = x.iter().fold(f64::MIN_POSITIVE, |largest, entry| largest.max(entry.abs()));
+        let moved = x.iter().zip(&projected).fold(0.0_f64, |largest, (x, p)| largest.max((x - p).abs()));
+        Self { set: moved / largest, equality, stationarity: norm(&reduced) / scale }
+    }
+
+    /// The largest of the three.
+    fn largest(&self) -> f64 {
+        self.set.max(self.equality).max(self.stationarity)
+    }
+}
 
 /// A program with everything owned.
 #[derive(Debug, Clone)]
@@ -30,27 +68,25 @@ impl Instance {
         SeparableSet::new(self.dimension(), self.blocks.clone()).expect("valid set")
     }
 
-    fn hessian(&self) -> DenseSymmetric {
-        DenseSymmetric::new(self.rows.clone()).expect("square")
+    fn hessian(&self) -> Matrix {
+        Matrix::from_row_slice(self.rows.len(), self.rows.len(), &self.rows.concat())
     }
 
-    fn dense_rows(&self) -> Option<DenseRows> {
-        let (rows, right) = self.equalities.iter().cloned().unzip();
-        (!self.equalities.is_empty()).then(|| DenseRows::new(self.dimension(), rows, right).expect("sizes"))
+    fn dense_equalities(&self) -> DenseEqualities {
+        let (rows, right_side): (Vec<Vec<f64>>, _) = self.equalities.iter().cloned().unzip();
+        DenseEqualities { transposed: Matrix::from_vec(self.dimension(), rows.len(), rows.concat()), right_side }
     }
 
     fn solve(&self, settings: SmalseSettings, tolerance: f64) -> Result<SmalseSolution, QpError> {
-        let (hessian, set, rows) = (self.hessian(), self.set(), self.dense_rows());
-        let equalities = rows.as_ref().map(|rows| rows as &dyn LinearEqualities);
-        let program = QuadraticProgram { hessian: &hessian, linear: &self.linear, set: &set, equalities };
+        let (hessian, set, rows) = (self.hessian(), self.set(), self.dense_equalities());
+        let program = QuadraticProgram { hessian: &hessian, linear: &self.linear, set: &set, equalities: &rows };
         let start = WarmStart { x: vec![0.0; self.dimension()], ..WarmStart::default() };
         Smalse { program, preconditioner: None, settings }.solve(&start, tolerance)
     }
 
     fn residual(&self, solution: &SmalseSolution) -> f64 {
-        let (hessian, set, rows) = (self.hessian(), self.set(), self.dense_rows());
-        let equalities = rows.as_ref().map(|rows| rows as &dyn LinearEqualities);
-        let program = QuadraticProgram { hessian: &hessian, linear: &self.linear, set: &set, equalities };
+        let (hessian, set, rows) = (self.hessian(), self.set(), self.dense_equalities());
+        let program = QuadraticProgram { hessian: &hessian, linear: &self.linear, set: &set, equalities: &rows };
         let norm = largest_eigenvalue(&hessian, self.dimension()).expect("finite");
         KktResidual::of(&program, &solution.warm.x, &solution.warm.multipliers, norm).largest()
     }
@@ -208,9 +244,9 @@ proptest! {
     #[test]
     fn a_preconditioner_changes_the_path_but_not_the_solution(instance in instances()) {
         let instance = Instance { equalities: Vec::new(), ..instance };
-        let (hessian, set) = (instance.hessian(), instance.set());
+        let (hessian, set, rows) = (instance.hessian(), instance.set(), instance.dense_equalities());
         let inverse = Diagonal(instance.rows.iter().enumerate().map(|(i, row)| 1.0 / row[i]).collect());
-        let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities: None };
+        let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities: &rows };
         let preconditioner = Some(FacePreconditioner { operator: &inverse, diagonal: 1.0 });
         let start = WarmStart { x: vec![0.0; instance.dimension()], ..WarmStart::default() };
         let solver = Smalse { program, preconditioner, settings: SmalseSettings::default() };
@@ -317,9 +353,8 @@ fn units_do_not_matter() {
 fn warm_start_at_the_solution_costs_nothing_new() {
     let instance = string(1.0, 1.0);
     let first = instance.solve(SmalseSettings::default(), 1e-8).expect("solvable");
-    let (hessian, set, rows) = (instance.hessian(), instance.set(), instance.dense_rows());
-    let equalities = rows.as_ref().map(|rows| rows as &dyn LinearEqualities);
-    let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities };
+    let (hessian, set, rows) = (instance.hessian(), instance.set(), instance.dense_equalities());
+    let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities: &rows };
     let again = Smalse { program, preconditioner: None, settings: SmalseSettings::default() }.solve(&first.warm, 1e-7);
     assert_eq!(again.expect("solvable").counts.products(), 0);
 }

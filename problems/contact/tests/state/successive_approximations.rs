@@ -117,7 +117,7 @@ fn products_are_those_counted() {
     let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet).expect("torn");
     let settings = AugmentedLagrangianSettings::to(1e-6);
     let Paper { work, counts, .. } = paper(&solver, None, &settings).expect("solved");
-    let steps = counts.cg_steps + counts.expansion_steps + counts.proportioning_steps + counts.refreshed_gradients;
+    let steps = counts.steps.products();
     // Beside the steps: λ₀, five Lanczos steps, the bonded start (about four), the final balanced multipliers.
     let rest = work.dual_operator_applications - steps;
     assert!((8..=14).contains(&rest), "{rest}");

@@ -6,6 +6,7 @@ use crate::accuracy::extent::case;
 use crate::accuracy::objective::{EXPONENT, norm, objective_of};
 use crate::rates::{Extrapolation, extrapolate, observed};
 use crate::scaling::SceneName;
+use contact::equilibrium::ContactSolver;
 use nonsmooth::{Accuracy, StateSolver};
 use problems::commands::Failure;
 use serde::Serialize;

@@ -4,7 +4,7 @@ use crate::accuracy::extent::case;
 use crate::scaling::{SceneName, Variant};
 use contact::contact_shape::ContactShape;
 use contact::cost::{PressureCost, PressureMeasure};
-use contact::equilibrium::ContactProblem;
+use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::scene::Scene;
 use nonsmooth::ReducedObjective;
 use problems::commands::{ContactObjective, Failure};

@@ -4,7 +4,7 @@ use crate::scaling::cases::{Case, SceneName, Variant};
 use crate::scaling::memory;
 use crate::scaling::rows::{Adjoint, Row, Sample, Solve, Start};
 use contact::contact_shape::{AnySolver, ContactState, ContactWarmStart};
-use contact::equilibrium::{ContactForces, ContactProblem, SolverState};
+use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver, SolverState};
 use contact::error::ContactError;
 use nonsmooth::verify::seeded_direction;
 use problems::commands::Failure;
@@ -49,16 +49,16 @@ pub fn row(scene: SceneName, case: Case, variant: Variant) -> Result<Row, Failur
             // Bodies that keep their shape are factored again: a cold state owns nothing.
             solver = variant.solver(&problem)?;
         }
-        let (sample, state) = sample(&*solver, &controls, None)?;
+        let (sample, state) = sample(&solver, &controls, None)?;
         restart = Some(state.solution.warm_start());
         Ok(sample)
     })
     .map_err(failure)?;
     let mut failures = Vec::new();
-    let warm = median(|| Ok(sample(&*solver, &nearby, restart.as_ref())?.0));
+    let warm = median(|| Ok(sample(&solver, &nearby, restart.as_ref())?.0));
     let warm = warm.map_err(|error| failures.push(format!("warm to {TIMED:e}: {error}"))).ok();
     let others =
-        if variant == Variant::Direct { Vec::new() } else { counted(&*solver, [&controls, &nearby], &mut failures) };
+        if variant == Variant::Direct { Vec::new() } else { counted(&solver, [&controls, &nearby], &mut failures) };
     Ok(Row {
         scene,
         case,

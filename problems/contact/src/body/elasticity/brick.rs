@@ -52,7 +52,7 @@ pub fn gauss_points<T: Scalar>(nodes: &Nodes<T>) -> [GaussPoint<T>; 8] {
 /// Gradients at ξ ∈ [−1, 1]³, with det(∂x/∂ξ) as `volume`.
 pub fn sample<T: Scalar>(nodes: &Nodes<T>, xi: [f64; 3]) -> GaussPoint<T> {
     let reference = reference_gradients(xi);
-    let mut jacobian = [[T::zero(); 3]; 3];
+    let mut jacobian = [[T::constant(0.0); 3]; 3];
     for (node, gradient) in nodes.iter().zip(&reference) {
         for (i, row) in jacobian.iter_mut().enumerate() {
             for (entry, &derivative) in row.iter_mut().zip(gradient) {
@@ -63,7 +63,7 @@ pub fn sample<T: Scalar>(nodes: &Nodes<T>, xi: [f64; 3]) -> GaussPoint<T> {
     let (inverse, volume) = invert(&jacobian);
     let gradients = std::array::from_fn(|a| {
         std::array::from_fn(|i| {
-            let mut sum = T::zero();
+            let mut sum = T::constant(0.0);
             for (k, &derivative) in reference[a].iter().enumerate() {
                 sum += inverse[k][i] * T::constant(derivative);
             }

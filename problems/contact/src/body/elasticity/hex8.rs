@@ -22,7 +22,7 @@ pub(crate) fn pointwise_lambda(material: &Material) -> f64 {
 /// Stiffness matrix of a brick, 24 × 24 row major (symmetric), N/mm.
 pub fn stiffness<T: Scalar>(nodes: &Nodes<T>, material: &Material) -> [[T; DOFS]; DOFS] {
     let (lambda, mu) = (T::constant(pointwise_lambda(material)), T::constant(material.shear_modulus()));
-    let mut matrix = [[T::zero(); DOFS]; DOFS];
+    let mut matrix = [[T::constant(0.0); DOFS]; DOFS];
     let points = gauss_points(nodes);
     for point in &points {
         let g = &point.gradients;

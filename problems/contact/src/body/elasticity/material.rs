@@ -30,12 +30,10 @@ impl Material {
     /// # Errors
     /// [`SceneError::OutOfRange`] unless E > 0 and −1 < ν < 0.5.
     pub fn new(young_modulus: f64, poisson_ratio: f64) -> Result<Self, SceneError> {
-        if !(young_modulus > 0.0 && young_modulus.is_finite()) {
-            return Err(SceneError::out_of_range("Young's modulus", young_modulus, "a finite number > 0 (MPa)"));
-        }
-        if !(poisson_ratio > -1.0 && poisson_ratio < 0.5) {
-            return Err(SceneError::out_of_range("Poisson's ratio", poisson_ratio, "−1 < ν < 0.5"));
-        }
+        let valid = young_modulus > 0.0 && young_modulus.is_finite();
+        SceneError::require(valid, "Young's modulus", young_modulus, "a finite number > 0 (MPa)")?;
+        let valid = poisson_ratio > -1.0 && poisson_ratio < 0.5;
+        SceneError::require(valid, "Poisson's ratio", poisson_ratio, "−1 < ν < 0.5")?;
         Ok(Self { young_modulus, poisson_ratio, formulation: Formulation::default() })
     }
 

@@ -23,7 +23,7 @@ pub fn mean(points: &[GaussPoint<f64>; 8], u: &[f64; DOFS]) -> f64 {
 
 /// Adds κ D Dᵀ/V to the lower triangle of a stiffness matrix.
 pub fn add_stiffness<T: Scalar>(points: &[GaussPoint<T>; 8], bulk_modulus: f64, matrix: &mut [[T; DOFS]; DOFS]) {
-    let (mut divergence, mut volume) = ([T::zero(); DOFS], T::zero());
+    let (mut divergence, mut volume) = ([T::constant(0.0); DOFS], T::constant(0.0));
     for point in points {
         volume += point.volume;
         for (dof, entry) in divergence.iter_mut().enumerate() {

@@ -9,12 +9,12 @@ use crate::scalar::Scalar;
 /// ∫ N_a dA over a face of four nodes, ordered a = 2p + q along its two parameters; mm².
 pub fn face_weights<T: Scalar>(nodes: &[[T; 3]; 4]) -> [T; 4] {
     let abscissa = 1.0 / 3.0_f64.sqrt();
-    let mut weights = [T::zero(); 4];
+    let mut weights = [T::constant(0.0); 4];
     for point in 0..4 {
         let xi = if point & 2 == 2 { abscissa } else { -abscissa };
         let eta = if point & 1 == 1 { abscissa } else { -abscissa };
         let sign = |bit: usize| if bit == 1 { 1.0 } else { -1.0 };
-        let (mut along_xi, mut along_eta) = ([T::zero(); 3], [T::zero(); 3]);
+        let (mut along_xi, mut along_eta) = ([T::constant(0.0); 3], [T::constant(0.0); 3]);
         for (a, node) in nodes.iter().enumerate() {
             let (s, t) = (sign(a >> 1), sign(a & 1));
             for i in 0..3 {

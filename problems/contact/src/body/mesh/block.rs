@@ -6,6 +6,7 @@
 
 use crate::body::elasticity::brick::Nodes;
 use crate::error::ContactError;
+use crate::lattice;
 
 /// Topology and plan of a block: numbers of bricks and the size of its base.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,8 +48,8 @@ impl Grid {
     }
 
     /// Index of node (i, j, k).
-    pub fn node(&self, [i, j, k]: [usize; 3]) -> usize {
-        (i * (self.cells[1] + 1) + j) * (self.cells[2] + 1) + k
+    pub fn node(&self, node: [usize; 3]) -> usize {
+        lattice::index(self.nodes(), node)
     }
 
     /// Number of bricks of the block.
@@ -57,19 +58,18 @@ impl Grid {
     }
 
     /// Index of brick (i, j, k).
-    pub fn brick(&self, [i, j, k]: [usize; 3]) -> usize {
-        (i * self.cells[1] + j) * self.cells[2] + k
+    pub fn brick(&self, brick: [usize; 3]) -> usize {
+        lattice::index(self.cells, brick)
     }
 
     /// All bricks (i, j, k) in index order.
     pub fn bricks(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
-        let [_, n2, n3] = self.cells;
-        (0..self.brick_count()).map(move |brick| [brick / (n2 * n3), brick / n3 % n2, brick % n3])
+        lattice::points([0; 3], self.cells)
     }
 
     /// Indices of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::brick`].
-    pub fn brick_nodes(&self, [i, j, k]: [usize; 3]) -> [usize; 8] {
-        std::array::from_fn(|a| self.node([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]))
+    pub fn brick_nodes(&self, brick: [usize; 3]) -> [usize; 8] {
+        lattice::corners(brick).map(|node| self.node(node))
     }
 
     /// Number of vertical columns of nodes, the points of a surface.
@@ -100,16 +100,22 @@ impl Grid {
         cell * share(i, self.cells[0]) * share(j, self.cells[1])
     }
 
-    /// Whether node (i, j, k) lies on a face.
-    pub fn is_on(&self, face: Face, [i, j, k]: [usize; 3]) -> bool {
+    /// The axis across a face, and the layer of nodes along it.
+    pub fn side(&self, face: Face) -> (usize, usize) {
         match face {
-            Face::X1Min => i == 0,
-            Face::X1Max => i == self.cells[0],
-            Face::X2Min => j == 0,
-            Face::X2Max => j == self.cells[1],
-            Face::Bottom => k == 0,
-            Face::Top => k == self.cells[2],
+            Face::X1Min => (0, 0),
+            Face::X1Max => (0, self.cells[0]),
+            Face::X2Min => (1, 0),
+            Face::X2Max => (1, self.cells[1]),
+            Face::Bottom => (2, 0),
+            Face::Top => (2, self.cells[2]),
         }
+    }
+
+    /// Whether node (i, j, k) lies on a face.
+    pub fn is_on(&self, face: Face, node: [usize; 3]) -> bool {
+        let (axis, level) = self.side(face);
+        node[axis] == level
     }
 }
 
@@ -134,8 +140,8 @@ impl Block {
     }
 
     /// Coordinates of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::brick`].
-    pub fn brick(&self, [i, j, k]: [usize; 3]) -> Nodes<f64> {
-        std::array::from_fn(|a| self.coordinates([i + (a >> 2 & 1), j + (a >> 1 & 1), k + (a & 1)]))
+    pub fn brick(&self, brick: [usize; 3]) -> Nodes<f64> {
+        lattice::corners(brick).map(|node| self.coordinates(node))
     }
 
     /// Refuses a block with an inverted or flat brick. `body` is its number in messages (1 lower, 2 upper).
@@ -145,22 +151,17 @@ impl Block {
     ///
     /// # Errors
     /// [`ContactError::InvertedElement`] naming a brick at the first such column.
-    pub fn check_orientation(&self, body: usize) -> Result<(), ContactError> {
+    pub fn checked(self, body: usize) -> Result<Self, ContactError> {
         let [n1, n2, n3] = self.grid.cells;
         let base = self.grid.size[0] / n1 as f64 * self.grid.size[1] / n2 as f64;
         for (i, j) in self.grid.columns() {
             let column = self.grid.column(i, j);
             let determinant = base * (self.upper[column] - self.lower[column]) / n3 as f64;
             if !(determinant > 0.0 && determinant.is_finite()) {
-                return Err(ContactError::InvertedElement {
-                    body,
-                    i: i.min(n1 - 1),
-                    j: j.min(n2 - 1),
-                    k: 0,
-                    determinant,
-                });
+                let (i, j) = (i.min(n1 - 1), j.min(n2 - 1));
+                return Err(ContactError::InvertedElement { body, i, j, k: 0, determinant });
             }
         }
-        Ok(())
+        Ok(self)
     }
 }

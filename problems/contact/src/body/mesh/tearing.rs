@@ -1,6 +1,7 @@
 //! Tearing of a block into s₁ × s₂ × s₃ subdomains of equal numbers of bricks.
 
 use crate::body::mesh::Grid;
+use crate::lattice;
 
 /// One torn piece of a block.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,20 +29,18 @@ impl Subdomain {
     }
 
     /// Local index of local node (i, j, k).
-    pub fn local_node(&self, [i, j, k]: [usize; 3]) -> usize {
-        (i * (self.cells[1] + 1) + j) * (self.cells[2] + 1) + k
+    pub fn local_node(&self, node: [usize; 3]) -> usize {
+        lattice::index(self.nodes(), node)
     }
 
     /// Local node (i, j, k) of a local index.
     pub fn local_position(&self, node: usize) -> [usize; 3] {
-        let [_, n2, n3] = self.nodes();
-        [node / (n2 * n3), node / n3 % n2, node % n3]
+        lattice::point(self.nodes(), node)
     }
 
     /// Block node (i, j, k) of a local index.
     pub fn block_position(&self, node: usize) -> [usize; 3] {
-        let local = self.local_position(node);
-        std::array::from_fn(|axis| local[axis] + self.first_cell[axis])
+        lattice::add(self.local_position(node), self.first_cell)
     }
 }
 
@@ -58,43 +57,22 @@ impl Tearing {
     /// Tears a grid into `counts` subdomains per axis, which must divide its numbers of bricks (checked by the scene).
     pub fn new(grid: &Grid, counts: [usize; 3]) -> Self {
         let cells: [usize; 3] = std::array::from_fn(|axis| grid.cells[axis] / counts[axis]);
-        let mut subdomains = Vec::with_capacity(counts.iter().product());
-        for i in 0..counts[0] {
-            for j in 0..counts[1] {
-                for k in 0..counts[2] {
-                    subdomains.push(Subdomain { first_cell: [i * cells[0], j * cells[1], k * cells[2]], cells });
-                }
-            }
-        }
-        Self { subdomains, counts, cells }
+        let place = |[i, j, k]: [usize; 3]| [i * cells[0], j * cells[1], k * cells[2]];
+        let places = lattice::points([0; 3], counts).map(place);
+        Self { subdomains: places.map(|first_cell| Subdomain { first_cell, cells }).collect(), counts, cells }
     }
 
     /// Copies of block node (i, j, k): (subdomain, local node), in ascending order of subdomains.
     pub fn copies(&self, position: [usize; 3]) -> Vec<(usize, usize)> {
-        let owners: [Vec<usize>; 3] = std::array::from_fn(|axis| {
-            let (index, width) = (position[axis], self.cells[axis]);
-            let right = index / width;
-            let mut owners = Vec::with_capacity(2);
-            if index % width == 0 && right > 0 {
-                owners.push(right - 1);
-            }
-            if right < self.counts[axis] {
-                owners.push(right);
-            }
-            owners
-        });
-        let mut copies = Vec::with_capacity(8);
-        for &i in &owners[0] {
-            for &j in &owners[1] {
-                for &k in &owners[2] {
-                    let index = (i * self.counts[1] + j) * self.counts[2] + k;
-                    let first = self.subdomains[index].first_cell;
-                    let local: [usize; 3] = std::array::from_fn(|axis| position[axis] - first[axis]);
-                    copies.push((index, self.subdomains[index].local_node(local)));
-                }
-            }
-        }
-        copies
+        let first: [usize; 3] = std::array::from_fn(|axis| position[axis].saturating_sub(1) / self.cells[axis]);
+        let last: [usize; 3] =
+            std::array::from_fn(|axis| (position[axis] / self.cells[axis]).min(self.counts[axis] - 1));
+        let copy = |owner| {
+            let index = lattice::index(self.counts, owner);
+            let subdomain = &self.subdomains[index];
+            (index, subdomain.local_node(lattice::subtract(position, subdomain.first_cell)))
+        };
+        lattice::points(first, lattice::subtract(lattice::add(last, [1; 3]), first)).map(copy).collect()
     }
 }
 

@@ -10,7 +10,7 @@ use crate::equilibrium::diagnosis::{Diagnosis, spectral_radius};
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::pcg::pcg;
-use crate::linear::vector::{add_scaled, dot, norm};
+use crate::linear::vector::{add_scaled, norm, orthogonalise};
 use crate::tfeti::dual::{ActiveSet, Friction, TornContact};
 
 /// Arnoldi steps.
@@ -54,12 +54,8 @@ impl TornContact<'_> {
         while taken < steps {
             let mut image = self.bound_change(&active, &sliding, &basis[taken])?;
             let size = norm(&image);
-            for _pass in 0..2 {
-                for (row, vector) in basis.iter().enumerate() {
-                    let projection = dot(vector, &image);
-                    hessenberg[row * steps + taken] += projection;
-                    add_scaled(&mut image, -projection, vector);
-                }
+            for (row, component) in orthogonalise(&mut image, &basis).into_iter().enumerate() {
+                hessenberg[row * steps + taken] = component;
             }
             taken += 1;
             let rest = norm(&image);
@@ -106,12 +102,7 @@ impl TornContact<'_> {
             target,
             MAX_KRYLOV,
             |v| self.precondition(rows, v, |z| active.project(z)),
-            |z| {
-                let mut product = rows.test_transposed(&self.operator.apply(&rows.trial(z)));
-                rows.add_compliance(z, &mut product, 1.0);
-                active.project(&mut product);
-                product
-            },
+            |z| self.reduced_product(active, z).0,
         );
         if krylov.residual.is_nan() || krylov.residual > MAX_MISS * target {
             return Err(ContactError::NotConverged {

@@ -22,7 +22,7 @@ impl TornContact<'_> {
         let mut terms: Vec<f64> = glued.iter().zip(iterate.jumps.iter()).map(|(eta, jump)| eta * jump).collect();
         let (j, image, forces) = (direction.contact(), image.contact(), iterate.multipliers.contact());
         for point in &self.boundary.points {
-            let rows = point.start..point.start + point.row_count();
+            let rows = point.rows();
             let outside = &forces[rows.clone()];
             let mut inside = vec![0.0; outside.len()];
             law::project(outside, self.boundary.friction, &mut inside);

@@ -119,43 +119,35 @@ impl<'a> ActiveRows<'a> {
 
     /// (Q + friction·e⊗n)ᵀ r.
     fn restrict(&self, all: &RowVector, friction: f64) -> Vec<f64> {
-        let (equality, rows) = all.split();
-        let mut reduced = self.with_equality_rows(equality);
-        self.closed_nodes(|row, count, unknown, linearization| match *linearization {
-            Linearization::Slip { direction, ratio } => {
-                let along: f64 = (1..count).map(|tangent| direction[tangent - 1] * rows[row + tangent]).sum();
-                reduced[unknown] = rows[row] + friction * along;
-                if count == 3 {
-                    reduced[unknown + 1] = ratio.sqrt() * (direction[0] * rows[row + 2] - direction[1] * rows[row + 1]);
-                }
-            }
-            _ => reduced[unknown..unknown + count].copy_from_slice(&rows[row..row + count]),
-        });
-        reduced
+        self.reduce(all, |rows, direction, ratio| {
+            let along: f64 = rows[1..].iter().zip(direction).map(|(row, e)| e * row).sum();
+            [rows[0] + friction * along, ratio.sqrt() * across(rows, direction)]
+        })
     }
 
     /// The unknowns y that repeat given multipliers: T y has their values on B_E, their normal forces on the closed nodes,
     /// their tangential forces on the stick nodes, and their part across the slip direction on the slip nodes.
     pub fn unknowns_of(&self, multipliers: &RowVector) -> Vec<f64> {
-        let (equality, rows) = multipliers.split();
-        let mut unknowns = self.with_equality_rows(equality);
-        self.closed_nodes(|row, count, unknown, linearization| match *linearization {
-            Linearization::Slip { direction, ratio } => {
-                unknowns[unknown] = rows[row];
-                if count == 3 && ratio > 0.0 {
-                    let along = direction[0] * rows[row + 2] - direction[1] * rows[row + 1];
-                    unknowns[unknown + 1] = along / ratio.sqrt();
-                }
-            }
-            _ => unknowns[unknown..unknown + count].copy_from_slice(&rows[row..row + count]),
-        });
-        unknowns
+        self.reduce(multipliers, |rows, direction, ratio| {
+            [rows[0], if ratio > 0.0 { across(rows, direction) / ratio.sqrt() } else { 0.0 }]
+        })
     }
 
-    /// Unknowns with given values on B_E, zero elsewhere.
-    fn with_equality_rows(&self, equality: &[f64]) -> Vec<f64> {
+    /// Unknowns from all rows: those of B_E and of stick nodes as they are, those of slip nodes by `slip(rows, e, β)`.
+    fn reduce(&self, all: &RowVector, slip: impl Fn(&[f64], [f64; 2], f64) -> [f64; 2]) -> Vec<f64> {
+        let (equality, rows) = all.split();
         let mut unknowns = vec![0.0; self.dimension];
         unknowns[..self.equality_count].copy_from_slice(equality);
+        self.closed_nodes(|row, count, unknown, linearization| {
+            let rows = &rows[row..row + count];
+            match *linearization {
+                Linearization::Slip { direction, ratio } => {
+                    let values = slip(rows, direction, ratio);
+                    unknowns[unknown..unknown + count - 1].copy_from_slice(&values[..count - 1]);
+                }
+                _ => unknowns[unknown..unknown + count].copy_from_slice(rows),
+            }
+        });
         unknowns
     }
 
@@ -199,4 +191,9 @@ impl<'a> ActiveRows<'a> {
             }
         });
     }
+}
+
+/// The part of the tangential rows of a node across a slip direction; 0 if there is one row.
+fn across(rows: &[f64], direction: [f64; 2]) -> f64 {
+    if rows.len() == 3 { direction[0] * rows[2] - direction[1] * rows[1] } else { 0.0 }
 }

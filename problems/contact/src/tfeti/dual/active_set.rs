@@ -8,7 +8,7 @@
 
 use crate::error::ContactError;
 use crate::linear::dense::DenseLu;
-use crate::linear::vector::norm;
+use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::active_rows::ActiveRows;
 use crate::tfeti::dual::coarse_space::CoarseSpace;
 
@@ -63,10 +63,7 @@ impl<'a> ActiveSet<'a> {
 
     /// v += Gqᵀ a.
     pub fn add_rigid(&self, amplitudes: &[f64], v: &mut [f64]) {
-        let rigid = self.rows.test_transposed(&self.space.jumps(amplitudes));
-        for (v, rigid) in v.iter_mut().zip(&rigid) {
-            *v += rigid;
-        }
+        add_scaled(v, 1.0, &self.rows.test_transposed(&self.space.jumps(amplitudes)));
     }
 
     /// y += Gqᵀ (G_T Gqᵀ)⁻¹ (target − G T y): the smallest change after which T y has the given resultants.
@@ -90,9 +87,6 @@ impl<'a> ActiveSet<'a> {
     /// v ← Pᵀ v.
     pub fn project_adjoint(&self, v: &mut [f64]) {
         let amplitudes = self.adjoint_amplitudes(v);
-        let rigid = self.rows.trial_transposed(&self.space.jumps(&amplitudes));
-        for (v, rigid) in v.iter_mut().zip(&rigid) {
-            *v += rigid;
-        }
+        add_scaled(v, 1.0, &self.rows.trial_transposed(&self.space.jumps(&amplitudes)));
     }
 }

@@ -109,7 +109,7 @@ impl<'a> TornContact<'a> {
     pub(crate) fn linearize(&self, iterate: &Iterate) -> Vec<Linearization> {
         let arguments = self.arguments(iterate);
         let points = self.boundary.points.iter();
-        let range = points.map(|point| point.start..point.start + point.row_count());
+        let range = points.map(|point| point.rows());
         range.map(|rows| Linearization::at(&arguments[rows], self.boundary.friction)).collect()
     }
 
@@ -136,6 +136,15 @@ impl<'a> TornContact<'a> {
         let mut rest = self.constant.clone();
         add_scaled(&mut rest, -1.0, image);
         rest
+    }
+
+    /// P (Qᵀ F T + Δ) y for unknowns y of an active set, and F T y.
+    pub(crate) fn reduced_product(&self, active: &ActiveSet<'_>, unknowns: &[f64]) -> (Vec<f64>, RowVector) {
+        let product = self.operator.apply(&active.rows.trial(unknowns));
+        let mut reduced = active.rows.test_transposed(&product);
+        active.rows.add_compliance(unknowns, &mut reduced, 1.0);
+        active.project(&mut reduced);
+        (reduced, product)
     }
 
     /// (Qᵀ M Q + Z) v, projected as the system that it preconditions.

@@ -41,10 +41,7 @@ impl<'a> DualOperator<'a> {
 
     /// F λ.
     pub fn apply(&self, multipliers: &RowVector) -> RowVector {
-        self.applications.fetch_add(1, Ordering::Relaxed);
-        let mut torn = self.scatter(multipliers);
-        self.solve_subdomains(&mut torn);
-        self.gather(&torn)
+        self.apply_with(multipliers, |factors, part| factors.inverse.solve_in_place(part))
     }
 
     /// F of a search direction, in the precision asked for.
@@ -57,9 +54,7 @@ impl<'a> DualOperator<'a> {
 
     /// F λ with the subdomain solves in single precision: relative error near 1e-6, half the memory traffic.
     fn apply_single(&self, multipliers: &RowVector) -> RowVector {
-        self.applications.fetch_add(1, Ordering::Relaxed);
-        let mut torn = self.scatter(multipliers);
-        self.for_each_subdomain(&mut torn, |factors, part| {
+        self.apply_with(multipliers, |factors, part| {
             // Brought to size one, so that no unit system leaves the range of single precision.
             let size = part.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
             if size > 0.0 {
@@ -69,7 +64,14 @@ impl<'a> DualOperator<'a> {
                     *entry = size * f64::from(single);
                 }
             }
-        });
+        })
+    }
+
+    /// B K⁺ Bᵀ λ for a given product with K⁺.
+    fn apply_with(&self, multipliers: &RowVector, solve: impl Fn(&SubdomainFactors, &mut [f64]) + Sync) -> RowVector {
+        self.applications.fetch_add(1, Ordering::Relaxed);
+        let mut torn = self.scatter(multipliers);
+        self.for_each_subdomain(&mut torn, solve);
         self.gather(&torn)
     }
 
@@ -86,11 +88,6 @@ impl<'a> DualOperator<'a> {
         self.model.constraints.rows.multiply(&torn.0, &mut rows);
         self.model.communication.exchange(&mut rows);
         rows
-    }
-
-    /// K⁺ on every subdomain, in place.
-    fn solve_subdomains(&self, torn: &mut TornVector) {
-        self.for_each_subdomain(torn, |factors, part| factors.inverse.solve_in_place(part));
     }
 
     /// Works on the parts of a torn vector that belong to this process and clears the others.
@@ -116,7 +113,7 @@ impl<'a> DualOperator<'a> {
     /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere, from `loaded` = K⁺ f; method.md (4.2).
     pub fn displacement(&self, mut loaded: TornVector, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
         let mut torn = self.scatter(multipliers);
-        self.solve_subdomains(&mut torn);
+        self.for_each_subdomain(&mut torn, |factors, part| factors.inverse.solve_in_place(part));
         add_scaled(&mut loaded.0, -1.0, &torn.0);
         let size = self.model.pattern.pattern.dimension();
         let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).zip(amplitudes.par_chunks(6));

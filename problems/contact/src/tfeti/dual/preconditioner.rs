@@ -5,6 +5,7 @@
 //! lumped:     B_D K_BB B_Dᵀ
 //! ```
 
+use crate::linear::vector::add_scaled;
 use crate::tfeti::torn::{PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornSystem};
 use rayon::prelude::*;
 
@@ -61,8 +62,6 @@ impl<'a> Preconditioner<'a> {
             extended[dof] = *value;
         }
         pattern.multiply(&factors.stiffness, &extended, &mut image);
-        for (part, image) in part.iter_mut().zip(&image) {
-            *part -= image;
-        }
+        add_scaled(part, -1.0, &image);
     }
 }

@@ -88,14 +88,14 @@ impl TornContact<'_> {
         rows.add_compliance(&rows.unknowns_of(&iterate.multipliers), &mut residual, -1.0);
         let rigid = active.amplitudes(&residual);
         active.add_rigid(&rigid, &mut residual);
-        directions.push(self, Direction::Rigid { amplitudes: rigid });
+        directions.push(self, Direction { amplitudes: rigid, forces: None });
         let mut step = self.precondition(rows, &residual, |z| active.project(z));
         let defect: Vec<f64> = self.space.resultant(&direction).iter().map(|value| -value).collect();
         active.enforce(&mut step, &defect);
         add_scaled(&mut direction, 1.0, &rows.trial(&step));
         let image = self.operator.apply_direction(&direction, self.precision);
         let amplitudes = balancing_amplitudes(active, &rows.unknowns_of(&direction), &image);
-        directions.push(self, Direction::Full { multipliers: direction, image, amplitudes });
+        directions.push(self, Direction { amplitudes, forces: Some((direction, image)) });
     }
 }
 

@@ -25,33 +25,24 @@ impl TornContact<'_> {
         priority: impl Fn() -> Vec<f64>,
     ) -> Result<ActiveSet<'_>, ContactError> {
         let active_set = |linearizations: &[Linearization]| self.active_set(linearizations.to_vec(), Friction::Coulomb);
-        let mut failure = match active_set(&linearizations) {
-            Err(failure) => failure,
-            held => return held,
-        };
+        if let Ok(held) = active_set(&linearizations) {
+            return Ok(held);
+        }
         let mut enlarged = linearizations;
-        let mut changed = false;
         for linearization in enlarged.iter_mut().filter(|l| matches!(l, Linearization::Slip { .. })) {
             *linearization = Linearization::Stick;
-            changed = true;
         }
         let priority = priority();
         let mut order: Vec<usize> = (0..enlarged.len()).filter(|&node| enlarged[node] == Linearization::Open).collect();
         order.sort_by(|&a, &b| priority[b].total_cmp(&priority[a]));
         let mut closed = 0;
         loop {
-            if changed {
-                match active_set(&enlarged) {
-                    Err(again) => failure = again,
-                    held => return held,
-                }
-            }
-            if closed == order.len() {
-                return Err(failure);
+            let held = active_set(&enlarged);
+            if held.is_ok() || closed == order.len() {
+                return held;
             }
             closed = (2 * closed).max(FIRST_CLOSED).min(order.len());
             order[..closed].iter().for_each(|&node| enlarged[node] = Linearization::Stick);
-            changed = true;
         }
     }
 

@@ -72,13 +72,7 @@ impl TornContact<'_> {
                 accuracy.max_krylov,
                 accuracy.patience,
                 |v| self.precondition(rows, v, |z| active.project(z)),
-                |z| {
-                    let product = self.operator.apply(&rows.trial(z));
-                    let mut reduced = rows.test_transposed(&product);
-                    rows.add_compliance(z, &mut reduced, 1.0);
-                    active.project(&mut reduced);
-                    (reduced, product)
-                },
+                |z| self.reduced_product(active, z),
             );
             let directions = krylov.directions.iter().zip(krylov.payloads);
             for (coefficient, (direction, product)) in krylov.coefficients.iter().zip(directions) {
@@ -86,8 +80,7 @@ impl TornContact<'_> {
                 add_scaled(&mut image, *coefficient, &product);
                 if let Some(recycled) = recycled.as_deref_mut() {
                     let amplitudes = balancing_amplitudes(active, direction, &product);
-                    let multipliers = rows.trial(direction);
-                    recycled.push(self, Direction::Full { multipliers, image: product, amplitudes });
+                    recycled.push(self, Direction { amplitudes, forces: Some((rows.trial(direction), product)) });
                 }
             }
         }

@@ -26,38 +26,11 @@ const RIDGES: [f64; 2] = [1e-14, 1e-6];
 
 /// A direction that iterates may move along.
 #[derive(Debug)]
-pub enum Direction {
-    /// A change b of the rigid amplitudes alone.
-    Rigid {
-        /// b.
-        amplitudes: Vec<f64>,
-    },
-    /// Multipliers v with G v = 0, with a change b of the rigid amplitudes.
-    Full {
-        /// v.
-        multipliers: RowVector,
-        /// F v.
-        image: RowVector,
-        /// b.
-        amplitudes: Vec<f64>,
-    },
-}
-
-impl Direction {
-    /// b.
-    fn amplitudes(&self) -> &[f64] {
-        match self {
-            Self::Rigid { amplitudes } | Self::Full { amplitudes, .. } => amplitudes,
-        }
-    }
-
-    /// The packed contact rows of v; none for a rigid change.
-    fn forces(&self) -> Option<&[f64]> {
-        match self {
-            Self::Rigid { .. } => None,
-            Self::Full { multipliers, .. } => Some(multipliers.contact()),
-        }
-    }
+pub struct Direction {
+    /// A change b of the rigid amplitudes.
+    pub amplitudes: Vec<f64>,
+    /// Multipliers v with G v = 0, and F v; none where the rigid amplitudes change alone.
+    pub forces: Option<(RowVector, RowVector)>,
 }
 
 /// All directions of a solve.
@@ -78,8 +51,8 @@ impl Recycled {
 
     /// Adds a direction.
     pub fn push(&mut self, contact: &TornContact<'_>, direction: Direction) {
-        let mut jumps = contact.space.jumps(direction.amplitudes());
-        if let Direction::Full { image, .. } = &direction {
+        let mut jumps = contact.space.jumps(&direction.amplitudes);
+        if let Some((_, image)) = &direction.forces {
             add_scaled(&mut jumps, -1.0, image);
         }
         self.directions.push(direction);
@@ -116,11 +89,11 @@ impl Recycled {
     /// Adds the weighted directions to an iterate.
     fn apply(&self, weights: &[f64], iterate: &mut Iterate) {
         for ((&weight, direction), jumps) in weights.iter().zip(&self.directions).zip(&self.jumps) {
-            if let Direction::Full { multipliers, image, .. } = direction {
+            if let Some((multipliers, image)) = &direction.forces {
                 add_scaled(&mut iterate.multipliers, weight, multipliers);
                 add_scaled(&mut iterate.image, weight, image);
             }
-            add_scaled(&mut iterate.amplitudes, weight, direction.amplitudes());
+            add_scaled(&mut iterate.amplitudes, weight, &direction.amplitudes);
             add_scaled(&mut iterate.jumps, weight, jumps);
         }
     }
@@ -160,15 +133,16 @@ impl Recycled {
             .points
             .iter()
             .map(|point| {
-                let rows = point.start..point.start + point.row_count();
+                let rows = point.rows();
                 let x: Vec<f64> =
                     rows.map(|row| position.forces[row] + contact.stiffness * position.jumps[row]).collect();
                 Linearization::at(&x, boundary.friction).derivative(x.len(), boundary.friction)
             })
             .collect();
         let change = |(direction, jumps): (&Direction, &RowVector)| {
-            let (forces, jumps) = (direction.forces(), jumps.contact());
+            let forces = direction.forces.as_ref().map(|(multipliers, _)| multipliers.contact());
             let force = |row: usize| forces.map_or(0.0, |forces| forces[row]);
+            let jumps = jumps.contact();
             let mut change = vec![0.0; boundary.row_count];
             for (point, block) in boundary.points.iter().zip(&blocks) {
                 let count = point.row_count();
@@ -216,8 +190,8 @@ impl Position {
         let mut to = self.clone();
         for (k, &change) in change.iter().enumerate() {
             to.weights[k] += change;
-            if let Some(forces) = recycled.directions[k].forces() {
-                add_scaled(&mut to.forces, change, forces);
+            if let Some((multipliers, _)) = &recycled.directions[k].forces {
+                add_scaled(&mut to.forces, change, multipliers.contact());
             }
             add_scaled(&mut to.jumps, change, recycled.jumps[k].contact());
         }

@@ -70,15 +70,10 @@ impl TornContact<'_> {
     /// [`ContactError::Unheld`] when the nodes that carry forces leave a motion free.
     pub(crate) fn balanced(&self, multipliers: &RowVector, bounds: &[f64]) -> Result<Iterate, ContactError> {
         let statuses: Vec<Linearization> = (self.boundary.points.iter().zip(bounds))
-            .map(|(point, &bound)| {
-                suggested(&multipliers.contact()[point.start..point.start + point.row_count()], bound)
-            })
+            .map(|(point, &bound)| suggested(&multipliers.contact()[point.rows()], bound))
             .collect();
-        let glued = statuses.iter().map(|status| match status {
-            Linearization::Open => Linearization::Open,
-            _ => Linearization::Stick,
-        });
-        let closed = self.active_set(glued.collect(), Friction::Tresca)?;
+        let glued = |status| if status == Linearization::Open { status } else { Linearization::Stick };
+        let closed = self.active_set(statuses.iter().copied().map(glued).collect(), Friction::Tresca)?;
         let mut unknowns = closed.rows.unknowns_of(multipliers);
         closed.enforce(&mut unknowns, self.space.resultants());
         let multipliers = closed.rows.trial(&unknowns);

@@ -80,16 +80,13 @@ impl LinearEqualities for OrthonormalCoarse<'_> {
 /// P F P.
 #[derive(Debug)]
 pub struct ProjectedDual<'a> {
-    operator: &'a DualOperator<'a>,
-    coarse: &'a OrthonormalCoarse<'a>,
+    /// F of one shape.
+    pub operator: &'a DualOperator<'a>,
+    /// C.
+    pub coarse: &'a OrthonormalCoarse<'a>,
 }
 
-impl<'a> ProjectedDual<'a> {
-    /// The operator of one shape.
-    pub fn new(operator: &'a DualOperator<'a>, coarse: &'a OrthonormalCoarse<'a>) -> Self {
-        Self { operator, coarse }
-    }
-
+impl ProjectedDual<'_> {
     /// P (d − F λ₀) with λ₀ = Gᵀ(GGᵀ)⁻¹e.
     pub fn homogenised(&self, constant: &RowVector) -> RowVector {
         let mut rest = constant.clone();
@@ -109,30 +106,16 @@ impl SymmetricOperator for ProjectedDual<'_> {
     }
 }
 
-/// P M P + Q/ρ.
-#[derive(Debug)]
-pub struct ProjectedPreconditioner<'a> {
-    preconditioner: &'a Preconditioner<'a>,
-    coarse: &'a OrthonormalCoarse<'a>,
+/// P M P + Q/ρ for a penalty ρ.
+pub fn projected_preconditioner(
+    preconditioner: &Preconditioner<'_>,
+    coarse: &OrthonormalCoarse<'_>,
     rho: f64,
-}
-
-impl<'a> ProjectedPreconditioner<'a> {
-    /// The preconditioner for a penalty ρ.
-    pub fn new(preconditioner: &'a Preconditioner<'a>, coarse: &'a OrthonormalCoarse<'a>, rho: f64) -> Self {
-        Self { preconditioner, coarse, rho }
-    }
-}
-
-impl SymmetricOperator for ProjectedPreconditioner<'_> {
-    fn dimension(&self) -> usize {
-        self.coarse.space.row_count()
-    }
-
-    fn apply(&self, x: &[f64], result: &mut [f64]) {
-        let rigid = self.coarse.rigid_part(x);
+) -> impl SymmetricOperator {
+    (coarse.space.row_count(), move |x: &[f64], result: &mut [f64]| {
+        let rigid = coarse.rigid_part(x);
         let elastic = difference(x, rigid.clone());
-        result.copy_from_slice(&self.coarse.projected(&self.preconditioner.apply(&elastic)));
-        add_scaled(result, 1.0 / self.rho, &rigid);
-    }
+        result.copy_from_slice(&coarse.projected(&preconditioner.apply(&elastic)));
+        add_scaled(result, 1.0 / rho, &rigid);
+    })
 }

@@ -14,10 +14,10 @@ use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::qp::{
     Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
-    SmalseSolution, WarmStart,
+    SmalseSolution, StepCounts, WarmStart,
 };
 use crate::tfeti::dual::{Iterate, TornContact, TornSolution};
-use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, ProjectedPreconditioner};
+use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, projected_preconditioner};
 
 /// When to stop, and how the dual QPs are solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,14 +56,8 @@ pub struct AugmentedLagrangianCounts {
     pub fixed_point_steps: usize,
     /// Multiplier updates of SMALSE-M.
     pub outer: usize,
-    /// Conjugate gradient steps.
-    pub cg_steps: usize,
-    /// Expansion steps.
-    pub expansion_steps: usize,
-    /// Proportioning steps.
-    pub proportioning_steps: usize,
-    /// Gradients computed afresh at starts and against drift.
-    pub refreshed_gradients: usize,
+    /// Products of the dual QP solver by the kind of step.
+    pub steps: StepCounts,
     /// Estimated contraction factor of Ψ ↦ 𝓕λ_N(Ψ); 0 without friction or with fewer than three steps.
     pub contraction: f64,
 }
@@ -74,9 +68,9 @@ impl AugmentedLagrangianCounts {
         Work {
             newton_steps: 0,
             fixed_point_steps: self.fixed_point_steps,
-            cg_steps: self.cg_steps,
-            expansion_steps: self.expansion_steps,
-            proportioning_steps: self.proportioning_steps,
+            cg_steps: self.steps.cg_steps,
+            expansion_steps: self.steps.expansion_steps,
+            proportioning_steps: self.steps.proportioning_steps,
             ..work
         }
     }
@@ -121,13 +115,13 @@ impl TornContact<'_> {
     ) -> Result<(TornSolution, AugmentedLagrangianCounts), ContactError> {
         let acceptable = settings.tolerance.max(TIGHTEST_ACCEPTABLE);
         let coarse = OrthonormalCoarse::new(self.space)?;
-        let dual = ProjectedDual::new(&self.operator, &coarse);
+        let dual = ProjectedDual { operator: &self.operator, coarse: &coarse };
         let linear = dual.homogenised(&self.constant);
         let mut state = self.first(&self.start(start, None)?, &coarse);
         let mut history = Vec::new();
         let mut aimed = *settings;
         let (iterate, residual) = loop {
-            self.approximate(&coarse, &dual, &linear, &aimed, &mut state, &mut history)?;
+            self.approximate(&dual, &linear, &aimed, &mut state, &mut history)?;
             let iterate = self.balanced(&self.operator.model.constraints.row_vector(&state.warm.x)?, &state.bounds)?;
             let residual = self.residual(&iterate);
             let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= TIGHTEST_TOLERANCE;
@@ -156,7 +150,6 @@ impl TornContact<'_> {
     /// Tresca problems until their residual is below a share of the tolerance aimed at, or the steps are spent.
     fn approximate(
         &self,
-        coarse: &OrthonormalCoarse<'_>,
         dual: &ProjectedDual<'_>,
         linear: &[f64],
         settings: &AugmentedLagrangianSettings,
@@ -164,13 +157,15 @@ impl TornContact<'_> {
         history: &mut Vec<f64>,
     ) -> Result<(), ContactError> {
         loop {
-            let solution = self.tresca(coarse, dual, linear, settings, state)?;
-            let residual = self.coulomb_residual(&solution.warm.x, &solution.gradient, solution.infeasibility);
+            let solution = self.tresca(dual, linear, settings, state)?;
+            let residual = self.coulomb_residual(&solution);
             history.push(residual);
             Stage::Contact.reached(history.len(), residual);
             let exhausted = !solution.converged && residual <= settings.tolerance.max(TIGHTEST_ACCEPTABLE);
             let target = TARGET_SHARE * settings.tolerance;
-            self.count(&mut state.counts, &solution);
+            state.counts.fixed_point_steps += 1;
+            state.counts.outer += solution.outer;
+            state.counts.steps += solution.counts;
             self.advance(state, solution)?;
             let spent = history.len() >= settings.max_fixed_point_steps;
             if residual <= target || exhausted || spent || !self.boundary.has_friction() {
@@ -204,27 +199,25 @@ impl TornContact<'_> {
     /// Solves the Tresca problem of the current slip bounds as far as they deserve.
     fn tresca(
         &self,
-        coarse: &OrthonormalCoarse<'_>,
         dual: &ProjectedDual<'_>,
         linear: &[f64],
         settings: &AugmentedLagrangianSettings,
         state: &FixedPoint,
     ) -> Result<SmalseSolution, ContactError> {
-        let set = self.feasible_set(&state.bounds)?;
-        let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: Some(coarse) };
+        let (set, coarse) = (self.feasible_set(&state.bounds)?, dual.coarse);
+        let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: coarse };
         let mut solver = Smalse { program, preconditioner: None, settings: settings.qp };
         let norm_h = solver.norm(&state.warm)?;
         let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
-        let penalty = settings.qp.penalty * norm_h;
-        let preconditioner = ProjectedPreconditioner::new(&self.preconditioner, coarse, penalty);
+        let preconditioner = projected_preconditioner(&self.preconditioner, coarse, settings.qp.penalty * norm_h);
         if settings.precondition {
             solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
         }
         let floor = INNER_SHARE * settings.tolerance * self.load / self.stiffness;
         let solution = solver.run(&warm, floor, &mut |progress| {
             let error = self.stiffness * progress.reduced_gradient + progress.infeasibility;
-            let residual = self.coulomb_residual(progress.x, progress.gradient, progress.infeasibility);
-            let change = difference(&self.slip_bounds(self.split(progress.x).1), &state.bounds);
+            let residual = self.coulomb_residual(progress);
+            let change = difference(&self.slip_bounds(self.split(&progress.warm.x).1), &state.bounds);
             let deserved = (settings.adaptivity * change).max(2.0 * floor * self.stiffness);
             residual <= TARGET_SHARE * settings.tolerance || (self.boundary.has_friction() && error <= deserved)
         })?;
@@ -237,20 +230,11 @@ impl TornContact<'_> {
     }
 
     /// The relative residual, as Newton measures it, for the jumps that the multipliers of the equalities imply.
-    fn coulomb_residual(&self, multipliers: &[f64], gradient: &[f64], infeasibility: f64) -> f64 {
-        let (glued, opening) = self.split(gradient);
+    fn coulomb_residual(&self, solution: &SmalseSolution) -> f64 {
+        let (glued, opening) = self.split(&solution.gradient);
         let jumps: Vec<f64> = opening.iter().map(|entry| -entry).collect();
-        let law = projection_residual(self.boundary, self.split(multipliers).1, &jumps, self.stiffness);
-        (self.stiffness * norm(glued)).hypot(norm(&law)).hypot(infeasibility) / self.load
-    }
-
-    fn count(&self, counts: &mut AugmentedLagrangianCounts, solution: &SmalseSolution) {
-        counts.fixed_point_steps += 1;
-        counts.outer += solution.outer;
-        counts.cg_steps += solution.counts.cg_steps;
-        counts.expansion_steps += solution.counts.expansion_steps;
-        counts.proportioning_steps += solution.counts.proportioning_steps;
-        counts.refreshed_gradients += solution.counts.refreshed_gradients;
+        let law = projection_residual(self.boundary, self.split(&solution.warm.x).1, &jumps, self.stiffness);
+        (self.stiffness * norm(glued)).hypot(norm(&law)).hypot(solution.infeasibility) / self.load
     }
 
     /// Ψ ← 𝓕λ_N; sliding tractions keep to the circle. Watches the contraction.

@@ -10,6 +10,7 @@
 use crate::body::mesh::{Grid, Tearing};
 use crate::equilibrium::ContactBoundary;
 use crate::error::ContactError;
+use crate::lattice;
 use crate::linear::csr::Csr;
 use crate::scene::{BodyScene, Scene};
 use crate::tfeti::torn::vectors::RowVector;
@@ -119,27 +120,21 @@ impl Constraints {
 }
 
 /// Appends the rows of supports and gluing of one body; returns the number of gluing rows.
-fn equality_rows(body: &BodyRows<'_>, rows: &mut Vec<Vec<(usize, f64)>>) -> usize {
-    let [n1, n2, n3] = body.grid.nodes();
+fn equality_rows(body: &BodyRows<'_>, rows: &mut Vec<Row>) -> usize {
     let mut gluing_count = 0;
-    for i in 0..n1 {
-        for j in 0..n2 {
-            for k in 0..n3 {
-                let copies = body.copies([i, j, k]);
-                for (component, held) in body.scene.held(body.grid, [i, j, k]).into_iter().enumerate() {
-                    if held {
-                        rows.extend(copies.iter().map(|first| vec![(first + component, 1.0)]));
-                        continue;
-                    }
-                    for last in 1..copies.len() {
-                        let scale = 1.0 / ((last * (last + 1)) as f64).sqrt();
-                        let mut row: Vec<(usize, f64)> =
-                            copies[..last].iter().map(|first| (first + component, scale)).collect();
-                        row.push((copies[last] + component, -(last as f64) * scale));
-                        rows.push(row);
-                        gluing_count += 1;
-                    }
-                }
+    for node in lattice::points([0; 3], body.grid.nodes()) {
+        let copies = body.copies(node);
+        for (component, held) in body.scene.held(body.grid, node).into_iter().enumerate() {
+            if held {
+                rows.extend(copies.iter().map(|first| vec![(first + component, 1.0)]));
+                continue;
+            }
+            for last in 1..copies.len() {
+                let scale = 1.0 / ((last * (last + 1)) as f64).sqrt();
+                let mut row: Row = copies[..last].iter().map(|first| (first + component, scale)).collect();
+                row.push((copies[last] + component, -(last as f64) * scale));
+                rows.push(row);
+                gluing_count += 1;
             }
         }
     }

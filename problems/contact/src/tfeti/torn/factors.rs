@@ -134,9 +134,7 @@ fn check_generalised_inverse(
     let mut solution = image.clone();
     inverse.solve_in_place(&mut solution);
     pattern.pattern.multiply(stiffness, &solution, &mut again);
-    for (again, image) in again.iter_mut().zip(&image) {
-        *again -= image;
-    }
+    add_scaled(&mut again, -1.0, &image);
     let error = (dot(&again, &again) / dot(&image, &image)).sqrt();
     if error.is_nan() || error > GENERALISED_INVERSE {
         return Err(ContactError::Factorization {
@@ -144,9 +142,7 @@ fn check_generalised_inverse(
             reason: format!("|K K⁺ K x − K x|/|K x| = {error:.2e}, allowed: {GENERALISED_INVERSE:.0e}"),
         });
     }
-    for (solution, probe) in solution.iter_mut().zip(&probe) {
-        *solution -= probe;
-    }
+    add_scaled(&mut solution, -1.0, &probe);
     for mode in modes {
         let amplitude = dot(mode, &solution);
         add_scaled(&mut solution, -amplitude, mode);

@@ -7,8 +7,8 @@ use crate::body::shape_load::loaded_faces;
 use crate::equilibrium::modes::motions;
 use crate::equilibrium::{Configuration, ContactProblem};
 use crate::error::ContactError;
+use crate::lattice;
 use crate::linear::cholesky::SymbolicFactor;
-use crate::linear::ordering::nested_dissection;
 use crate::linear::symmetric::Submatrix;
 use crate::linear::vector::dot;
 use crate::scene::BodyScene;
@@ -162,7 +162,7 @@ impl TornModel {
                     &self.symbolic,
                     &scene.material,
                     &rigid.modes,
-                    |local| block.brick(std::array::from_fn(|axis| local[axis] + place.first_cell[axis])),
+                    |local| block.brick(lattice::add(local, place.first_cell)),
                     &load,
                     subdomain.interior.as_deref(),
                 )?;
@@ -234,8 +234,7 @@ fn loads(body: &BodyScene, place: &Subdomain, block: &Block) -> Vec<f64> {
         for face in loaded_faces(&block.grid, scene_load.face, Some(place)) {
             let weights = face_weights(&face.map(|node| block.coordinates(node)));
             for (node, weight) in face.into_iter().zip(weights) {
-                let local: [usize; 3] = std::array::from_fn(|a| node[a] - place.first_cell[a]);
-                let first = 3 * place.local_node(local);
+                let first = 3 * place.local_node(lattice::subtract(node, place.first_cell));
                 for (component, traction) in scene_load.traction.iter().enumerate() {
                     load[first + component] += weight * traction;
                 }
@@ -257,21 +256,10 @@ fn interior_class(
         return Ok(Arc::clone(class));
     }
     let submatrix = Submatrix::new(&pattern.pattern, &marked);
-    let mut new_index = vec![usize::MAX; marked.len()];
-    for (new, &old) in submatrix.kept.iter().enumerate() {
-        new_index[old] = new;
-    }
-    let order: Vec<usize> = nested_dissection(pattern.shape.nodes())
-        .into_iter()
-        .flat_map(|node| 3 * node..3 * node + 3)
-        .filter(|&dof| marked[dof])
-        .map(|dof| new_index[dof])
-        .collect();
-    let symbolic = if order.is_empty() {
-        None
-    } else {
-        Some(Arc::new(SymbolicFactor::new(Arc::clone(&submatrix.pattern), order)?))
-    };
+    let order = pattern.elimination_order(&[]).into_iter();
+    let order: Vec<usize> = order.filter_map(|dof| submatrix.kept.binary_search(&dof).ok()).collect();
+    let symbolic = (!order.is_empty()).then(|| SymbolicFactor::new(Arc::clone(&submatrix.pattern), order));
+    let symbolic = symbolic.transpose()?.map(Arc::new);
     let class = Arc::new(InteriorClass { submatrix, symbolic });
     classes.insert(marked, Arc::clone(&class));
     Ok(class)

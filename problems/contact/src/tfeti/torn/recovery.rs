@@ -2,6 +2,7 @@
 
 use crate::body::mesh::Block;
 use crate::equilibrium::SolvedBody;
+use crate::lattice;
 use crate::tfeti::torn::model::TornModel;
 use crate::tfeti::torn::vectors::TornVector;
 
@@ -40,11 +41,8 @@ fn whole_body(model: &TornModel, body: usize, block: &Block, TornVector(torn): &
     model.communication.sum(&mut spread);
     let mut subdomains = vec![0; grid.brick_count()];
     for (index, piece) in pieces() {
-        let [n1, n2, n3] = piece.place.cells;
-        let first = piece.place.first_cell;
-        for brick in 0..n1 * n2 * n3 {
-            let local = [brick / (n2 * n3), brick / n3 % n2, brick % n3];
-            subdomains[grid.brick(std::array::from_fn(|axis| first[axis] + local[axis]))] = index;
+        for brick in lattice::points(piece.place.first_cell, piece.place.cells) {
+            subdomains[grid.brick(brick)] = index;
         }
     }
     SolvedBody {
