@@ -249,8 +249,12 @@ impl TornSolver {
         for ((scaled, physical), nu) in scaled.contact_mut().iter_mut().zip(direction).zip(scales) {
             *scaled = physical / nu;
         }
-        let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, tolerance)?;
         let iterate = &state.solution.iterate;
+        // A sensitivity of J over the height of the body; below its rounding, no residual means anything.
+        let heights = &state.blocks[0].upper;
+        let height = heights.iter().sum::<f64>() / heights.len() as f64;
+        let natural = dot(scaled.contact(), iterate.multipliers.contact()).abs() / (contact.stiffness * height);
+        let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, tolerance, natural)?;
         let terms = contact.weighted_residuals(iterate, &adjoint, &scaled);
         let value_error = ValueError::from_terms(&terms, scaled.contact(), iterate.multipliers.contact());
         let adjoint_seconds = clock.lap();

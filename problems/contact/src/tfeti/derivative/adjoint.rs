@@ -37,6 +37,8 @@ const STALLED_REDUCTION: f64 = 0.5;
 const MAX_KRYLOV: usize = 600;
 /// Share of the right side below which its projection is known to few digits: relative residuals refer to no less.
 const SMALLEST_PROJECTED_SHARE: f64 = 1e-5;
+/// Share of the natural residual below which the whole right side is rounding for the sensitivity.
+const ROUNDING_SHARE: f64 = 1e-3;
 /// Relative residual accepted when rounding stops all progress.
 const TIGHTEST_ACCEPTABLE: f64 = 1e-8;
 
@@ -69,7 +71,8 @@ enum NextCycle {
 }
 
 impl TornContact<'_> {
-    /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ.
+    /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ. `natural`: a residual, in the unit of j, that
+    /// is rounding for the sensitivity however small that is.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] when the tolerance is not reached, [`ContactError::Unheld`].
@@ -78,6 +81,7 @@ impl TornContact<'_> {
         linearizations: &[Linearization],
         direction: &RowVector,
         tolerance: f64,
+        natural: f64,
     ) -> Result<TornAdjoint, ContactError> {
         let active = self.active_set(linearizations.to_vec(), Friction::Coulomb)?;
         let right = active.rows.trial_transposed(direction).into_iter().map(|entry| -entry).collect();
@@ -85,7 +89,8 @@ impl TornContact<'_> {
         let mut iterate = system.at_zero();
         // Where equilibrium alone determines the forces, all of the right side is rigid and only rounding is left of it.
         let size = iterate.residual.max(SMALLEST_PROJECTED_SHARE * norm(&system.right));
-        let goal = tolerance * size;
+        let goal = if size < ROUNDING_SHARE * natural { TIGHTEST_ACCEPTABLE * natural } else { tolerance * size };
+        let size = size.max(natural);
         let mut precision = self.precision;
         for _cycle in 0..MAX_CYCLES {
             if iterate.residual <= goal {

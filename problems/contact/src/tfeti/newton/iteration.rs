@@ -31,22 +31,23 @@ impl TornContact<'_> {
     /// [`ContactError::NotFinite`], [`ContactError::Unheld`] when an active set leaves a motion free.
     pub fn solve(&self, start: Option<&[f64]>, settings: &NewtonSettings) -> Result<TornSolution, ContactError> {
         let mut recycled = settings.recycling.pays(self.space).then(Recycled::default);
-        let mut iterate = self.start(start, recycled.as_mut())?;
+        let mut iterate = self.start(start, settings.max_products, recycled.as_mut())?;
         let mut residual = self.residual(&iterate);
         let mut history = vec![residual];
         if let Some(mut recycled) = recycled {
             residual = self.descend(&mut iterate, &mut recycled, residual, settings, &mut history)?;
         }
         if residual > settings.tolerance || self.precision == Precision::Double {
-            let deserved = |target| LinearAccuracy::to(target, settings.max_krylov.min(self.products_left(settings)));
+            let deserved = |target| LinearAccuracy::to(target, settings.max_krylov, self.products_left(settings));
             iterate = self.newton_steps(iterate, residual, deserved, settings, &mut history)?;
             residual = self.replace_image(&mut iterate);
         }
         if (residual.is_nan() || residual > settings.acceptable) && self.products_left(settings) > 0 {
-            let exact = self.bonded(LinearAccuracy::EXACT, None)?;
+            let exact = self.bonded(LinearAccuracy::exact(self.products_left(settings)), None)?;
             let start = self.residual(&exact);
             history.push(start);
-            iterate = self.newton_steps(exact, start, |_| LinearAccuracy::EXACT, settings, &mut history)?;
+            let accuracy = |_| LinearAccuracy::exact(self.products_left(settings));
+            iterate = self.newton_steps(exact, start, accuracy, settings, &mut history)?;
             residual = self.replace_image(&mut iterate);
         }
         if residual.is_nan() || residual > settings.acceptable {

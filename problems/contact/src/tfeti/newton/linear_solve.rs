@@ -24,17 +24,24 @@ pub struct LinearAccuracy {
     pub patience: usize,
     /// Cycles of iterative refinement: each recomputes the residual.
     pub cycles: usize,
+    /// Products with F allowed in all.
+    pub max_products: usize,
 }
 
 impl LinearAccuracy {
     /// The start: one digit.
-    pub const START: Self = Self { target: 0.0, reduction: 0.1, max_krylov: 200, patience: PATIENCE, cycles: 1 };
+    pub fn start(max_products: usize) -> Self {
+        Self { target: 0.0, reduction: 0.1, max_krylov: 200, patience: PATIENCE, cycles: 1, max_products }
+    }
+
     /// All that rounding allows.
-    pub const EXACT: Self = Self { target: 0.0, reduction: 1e-14, max_krylov: 400, patience: 400, cycles: 6 };
+    pub fn exact(max_products: usize) -> Self {
+        Self { target: 0.0, reduction: 1e-14, max_krylov: 400, patience: 400, cycles: 6, max_products }
+    }
 
     /// One cycle to a given residual.
-    pub fn to(target: f64, max_krylov: usize) -> Self {
-        Self { target, reduction: 0.0, max_krylov, patience: PATIENCE, cycles: 1 }
+    pub fn to(target: f64, max_krylov: usize, max_products: usize) -> Self {
+        Self { target, reduction: 0.0, max_krylov, patience: PATIENCE, cycles: 1, max_products }
     }
 }
 
@@ -55,6 +62,7 @@ impl TornContact<'_> {
         let mut unknowns = rows.unknowns_of(start);
         let (mut first, mut last) = (None, f64::INFINITY);
         let mut image = self.zeros();
+        let allowed = self.operator.applications() + accuracy.max_products;
         for _cycle in 0..accuracy.cycles {
             active.enforce(&mut unknowns, self.space.resultants());
             image = self.operator.apply(&rows.trial(&unknowns));
@@ -69,7 +77,7 @@ impl TornContact<'_> {
             let krylov = gmres(
                 &projected,
                 target,
-                accuracy.max_krylov,
+                accuracy.max_krylov.min(allowed.saturating_sub(self.operator.applications())),
                 accuracy.patience,
                 |v| self.precondition(rows, v, |z| active.project(z)),
                 |z| self.reduced_product(active, z),

@@ -23,6 +23,7 @@ impl TornContact<'_> {
     pub(crate) fn start(
         &self,
         forces: Option<&[f64]>,
+        max_products: usize,
         recycled: Option<&mut Recycled>,
     ) -> Result<Iterate, ContactError> {
         if let Some(forces) = forces {
@@ -33,7 +34,7 @@ impl TornContact<'_> {
                 balanced => return balanced,
             }
         }
-        self.bonded(LinearAccuracy::START, recycled)
+        self.bonded(LinearAccuracy::start(max_products), recycled)
     }
 
     /// The start that Newton converges from: contact rows glued, solved roughly. Nodes that only forces beyond all

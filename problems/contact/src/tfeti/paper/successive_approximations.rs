@@ -117,7 +117,7 @@ impl TornContact<'_> {
         let coarse = OrthonormalCoarse::new(self.space)?;
         let dual = ProjectedDual { operator: &self.operator, coarse: &coarse };
         let linear = dual.homogenised(&self.constant);
-        let mut state = self.first(&self.start(start, None)?, &coarse);
+        let mut state = self.first(&self.start(start, usize::MAX, None)?, &coarse);
         let mut history = Vec::new();
         let mut aimed = *settings;
         let (iterate, residual) = loop {
