@@ -32,11 +32,11 @@ const EXTREME_BRICK: f64 = 30.0;
 #[derive(Debug)]
 pub enum AnySolver {
     /// Total FETI.
-    Torn(TotalFeti),
+    Torn(Box<TotalFeti>),
     /// Direct condensation.
-    Direct(DirectSolver),
+    Direct(Box<DirectSolver>),
     /// Whichever of the two finds a state.
-    Auto(AutoSolver),
+    Auto(Box<AutoSolver>),
 }
 
 /// Total FETI and direct condensation, each prepared when it is needed.
@@ -82,6 +82,18 @@ impl From<DirectState> for AnyState {
     }
 }
 
+impl From<TotalFeti> for AnySolver {
+    fn from(solver: TotalFeti) -> Self {
+        Self::Torn(Box::new(solver))
+    }
+}
+
+impl From<DirectSolver> for AnySolver {
+    fn from(solver: DirectSolver) -> Self {
+        Self::Direct(Box::new(solver))
+    }
+}
+
 impl AnySolver {
     /// The solver of a kind; `preconditioner` is for total FETI.
     ///
@@ -92,12 +104,12 @@ impl AnySolver {
         kind: SolverKind,
         preconditioner: PreconditionerKind,
     ) -> Result<Self, ContactError> {
-        let torn = |problem, method| TotalFeti::new(problem, preconditioner, method).map(Self::Torn);
+        let torn = |problem, method| TotalFeti::new(problem, preconditioner, method).map(Self::from);
         match kind {
-            SolverKind::Auto => AutoSolver::new(problem, preconditioner).map(Self::Auto),
+            SolverKind::Auto => AutoSolver::new(problem, preconditioner).map(|solver| Self::Auto(Box::new(solver))),
             SolverKind::Newton => torn(problem, DualMethod::Newton(Recycling::default())),
             SolverKind::AugmentedLagrangian => torn(problem, DualMethod::SuccessiveApproximations),
-            SolverKind::Direct => DirectSolver::new(problem).map(Self::Direct),
+            SolverKind::Direct => DirectSolver::new(problem).map(Self::from),
         }
     }
 
@@ -186,7 +198,7 @@ impl AutoSolver {
         let failed = match self.torn()?.attempt(controls, start, tolerance, self.max_products) {
             Ok(state) => return Ok(state.map(AnyState::from)),
             Err(failed) if self.max_products.is_none() || failed.error.is_about_the_problem() => {
-                return Err(failed.error);
+                return Err(*failed.error);
             }
             Err(failed) => failed,
         };
@@ -219,7 +231,7 @@ fn slow_for_total_feti(scene: &Scene) -> Option<String> {
 
 fn unsolved(torn: Failed, direct: ContactError) -> ContactError {
     let products = torn.work.dual_operator_applications;
-    ContactError::Unsolved { torn: Box::new(torn.error), products, direct: Box::new(direct) }
+    ContactError::Unsolved { torn: torn.error, products, direct: Box::new(direct) }
 }
 
 impl ContactSolver for AnySolver {
@@ -284,6 +296,13 @@ impl ContactSolver for AnySolver {
         match state {
             AnyState::Torn(state) => self.torn()?.diagnose(state),
             AnyState::Direct(state) => self.direct()?.diagnose(state),
+        }
+    }
+
+    fn estimate_contraction(&self, state: &AnyState, max_products: usize) -> Result<f64, ContactError> {
+        match state {
+            AnyState::Torn(state) => self.torn()?.estimate_contraction(state, max_products),
+            AnyState::Direct(state) => self.direct()?.estimate_contraction(state, max_products),
         }
     }
 

@@ -10,6 +10,7 @@ use crate::equilibrium::{ContactProblem, ContactSolver, Diagnosis, SolverState, 
 use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
 use crate::memory;
+use crate::plausibility::{self, Warning};
 use crate::scene::Scene;
 use crate::tfeti::PreconditionerKind;
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
@@ -28,6 +29,9 @@ pub type ContactState<S = AnyState> = crate::equilibrium::ContactState<S>;
 pub struct ContactShape<S: ContactSolver = AnySolver> {
     solver: S,
 }
+
+/// Share of a state's products that its checks may take.
+const CHECKS_SHARE: f64 = 0.1;
 
 /// Relative residual of the state per relative accuracy asked of Θ: a safety factor, since single pressures are less accurate
 /// than the residual.
@@ -93,6 +97,19 @@ impl<S: ContactSolver> ContactShape<S> {
     /// [`OracleError::Failed`] and [`OracleError::NotConverged`] from the linear systems.
     pub fn diagnose(&self, state: &ContactState<S::State>) -> Result<Diagnosis, OracleError> {
         self.solver.diagnose(&state.solution).map_err(oracle)
+    }
+
+    /// What is implausible about a state, for at most a tenth of its work.
+    ///
+    /// # Errors
+    /// [`OracleError::Failed`] for a state of another mesh.
+    pub fn warnings(&self, state: &ContactState<S::State>) -> Result<Vec<Warning>, OracleError> {
+        let products = (CHECKS_SHARE * state.work().dual_operator_applications as f64) as usize;
+        let friction = self.problem().boundary.has_friction();
+        // An estimate that fails says nothing.
+        let contraction = friction.then(|| self.solver.estimate_contraction(&state.solution, products).ok()).flatten();
+        let bodies = self.solver.bodies(&state.solution).map_err(oracle)?;
+        Ok(plausibility::warnings(self.problem(), &bodies, &state.forces, contraction))
     }
 
     /// What this scene did not need, in words.

@@ -46,6 +46,7 @@
 //! | [`qp`], [`linear`] | dual QPs over half-lines and discs; factorisations |
 //! | [`fields`], [`vtk`] | displacements, stresses and contact fields of a solved shape; their files |
 //! | [`memory`] | memory estimated before any work |
+//! | [`plausibility`] | what linear elasticity, the mesh and uniqueness say about a state |
 //! | [`error`] | what can be wrong with a scene, and why a contact problem has no answer |
 
 mod any_solver;
@@ -59,6 +60,7 @@ pub mod fields;
 mod lattice;
 pub mod linear;
 pub mod memory;
+pub mod plausibility;
 pub mod qp;
 mod scalar;
 pub mod scene;

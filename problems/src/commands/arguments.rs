@@ -4,7 +4,7 @@ use crate::commands::failure::Failure;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use contact::body::elasticity::Formulation;
-use contact::contact_shape::SolverKind;
+use contact::contact_shape::{ContactShape, SolverKind};
 use contact::error::SceneError;
 use contact::shape::SplineKind;
 use contact::tfeti::PreconditionerKind;
@@ -68,7 +68,7 @@ pub struct Arguments {
     #[arg(long, value_name = "F")]
     pub load_factor: Option<f64>,
     /// Contact solver.
-    #[arg(long, value_parser = named::<SolverKind>, value_name = "newton|direct|augmented-lagrangian")]
+    #[arg(long, value_parser = named::<SolverKind>, value_name = "auto|newton|direct|augmented-lagrangian")]
     pub solver: Option<SolverKind>,
     /// Preconditioner of the dual operator.
     #[arg(long, value_parser = named::<PreconditionerKind>, value_name = "dirichlet|lumped|none")]
@@ -106,6 +106,9 @@ pub struct Arguments {
     /// With evaluate: contraction factor and condition at the state (costs some ten adjoint solves; not done unless asked).
     #[arg(long)]
     pub diagnose: bool,
+    /// Leave out the checks of uniqueness and plausibility at the state of evaluate and at the final shape of optimize.
+    #[arg(long)]
+    pub no_checks: bool,
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
@@ -118,6 +121,13 @@ pub struct Arguments {
 }
 
 impl Arguments {
+    /// What a scene and these options did not need, in words.
+    pub fn left_out(&self, shape: &ContactShape) -> Vec<&'static str> {
+        let mut left_out = shape.left_out();
+        left_out.extend(self.no_checks.then_some("checks of uniqueness and plausibility (--no-checks)"));
+        left_out
+    }
+
     /// Refuses options that do not go together.
     ///
     /// # Errors
@@ -313,7 +323,7 @@ mod tests {
             }
         }
         let refusal = Arguments::try_parse_from(["contact", "--solver", "newtn"]).expect_err("no solver").to_string();
-        assert!(refusal.contains("`newton`, `direct`, `augmented-lagrangian`"), "{refusal}");
+        assert!(refusal.contains("`auto`, `newton`, `direct`, `augmented-lagrangian`"), "{refusal}");
     }
 
     #[test]

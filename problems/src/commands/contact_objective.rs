@@ -1,8 +1,10 @@
 //! The objective Θ of a contact problem, and shapes with their contact states.
 
+use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
 use contact::contact_shape::{ContactShape, ContactState};
 use contact::cost::PressureCost;
+use contact::plausibility::Warning;
 use nonsmooth::{Accuracy, Cost, ReducedObjective, StateSolver, Vector};
 use scene_file::Case;
 
@@ -43,4 +45,13 @@ impl SolvedShape {
         let peak_pressure = objective.cost().pressures(&state).into_iter().fold(f64::NEG_INFINITY, f64::max);
         Ok(Self { controls: controls.clone(), state, value, peak_pressure })
     }
+}
+
+/// What is implausible about a state; nothing where the checks are left out.
+pub fn checks(
+    objective: &ContactObjective,
+    shape: &SolvedShape,
+    arguments: &Arguments,
+) -> Result<Vec<Warning>, Failure> {
+    if arguments.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
 }

@@ -1,14 +1,16 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::{ContactObjective, SolvedShape};
+use crate::commands::contact_objective::{ContactObjective, SolvedShape, checks};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::json;
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
 use crate::commands::report::files;
+use contact::contact_shape::SolverKind;
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
+use contact::plausibility::Warning;
 use serde::Serialize;
 use std::fmt;
 use std::time::Instant;
@@ -23,6 +25,10 @@ struct EvaluationJson {
     status: StatusCounts,
     kink: Kink,
     residuals: Residuals,
+    solver: SolverKind,
+    /// Why that solver, where another would have been the first choice.
+    solver_reason: Option<String>,
+    warnings: Vec<Warning>,
     work: contact::equilibrium::Work,
     /// Contraction factor seen by the successive approximations; null for the other solvers.
     contraction: Option<f64>,
@@ -58,16 +64,29 @@ pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Argum
         status: forces.counts(),
         kink: forces.kink,
         residuals: forces.residuals,
+        solver: state.solver,
+        solver_reason: state.reason.clone(),
+        warnings: checks(objective, &shape, arguments)?,
         work: state.work(),
         contraction: state.contraction,
         diagnosis: arguments.diagnose.then(|| solver.diagnose(state)).transpose()?,
         seconds: Seconds { state: state_seconds, subgradient: subgradient_seconds },
-        left_out: solver.left_out(),
+        left_out: arguments.left_out(solver),
     };
     let object = json(&result)?;
-    let write = |folder| files::write_evaluation(&folder, loaded, objective, &shape, &object);
+    let write = |folder| files::write_evaluation(&folder, loaded, objective, &shape, &object, &result.warnings);
     let written = folder.map_or(Ok(()), write);
     Failure::printed_with_files(arguments.printed(result.to_string(), object), written)
+}
+
+/// A solver and why it was taken.
+pub fn said(solver: SolverKind, reason: Option<&str>) -> String {
+    let name = match solver {
+        SolverKind::Direct => "direct condensation",
+        SolverKind::AugmentedLagrangian => "total FETI, successive approximations",
+        _ => "total FETI, semismooth Newton",
+    };
+    reason.map_or_else(|| name.into(), |reason| format!("{name}; {reason}"))
 }
 
 impl fmt::Display for EvaluationJson {
@@ -86,6 +105,7 @@ impl fmt::Display for EvaluationJson {
         )?;
         let r = &self.residuals;
         writeln!(f, "relative residuals   {r}")?;
+        writeln!(f, "solver               {}", said(self.solver, self.solver_reason.as_deref()))?;
         let work = &self.work;
         writeln!(
             f,
@@ -107,6 +127,9 @@ impl fmt::Display for EvaluationJson {
         }
         if let Some(diagnosis) = &self.diagnosis {
             writeln!(f, "diagnosis            {diagnosis}")?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "warning              {warning}")?;
         }
         writeln!(f, "left out             {}", self.left_out.join("; "))
     }

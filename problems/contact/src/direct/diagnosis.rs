@@ -10,6 +10,7 @@ use crate::equilibrium::diagnosis::{Diagnosis, spectral_radius};
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::dense::{DenseLu, spectral_condition};
+use crate::linear::vector::{dot, norm};
 
 impl CompliantContact {
     /// Contraction factor and condition at given derivatives.
@@ -28,34 +29,108 @@ impl CompliantContact {
     }
 
     /// Spectral radius of Φ′.
-    pub(super) fn contraction(&self, linearizations: &[Linearization]) -> f64 {
+    fn contraction(&self, linearizations: &[Linearization]) -> f64 {
+        let bounds = BoundChange::new(self, linearizations);
+        let count = bounds.sliding.len();
+        let mut map = vec![0.0; count * count];
+        for column in 0..count {
+            let mut unit = vec![0.0; count];
+            unit[column] = 1.0;
+            for (row, change) in bounds.apply(&unit).into_iter().enumerate() {
+                map[row * count + column] = change;
+            }
+        }
+        spectral_radius(count, &map)
+    }
+
+    /// 𝓕 ‖∂λ_N/∂λ_T‖₂ over the closed nodes by power iteration: what the slip bounds contract by, at most, as long as the same
+    /// nodes are closed, whichever of them slide and wherever to. 0 without friction or closed nodes.
+    pub(super) fn estimate_contraction(&self, linearizations: &[Linearization]) -> f64 {
         let boundary = &self.problem.boundary;
-        let mut tresca = self.active_system(linearizations, 0.0, 0.0);
-        let size = tresca.rows.len();
-        for motion in size..tresca.matrix.nrows() {
+        let all_sliding: Vec<Linearization> = linearizations
+            .iter()
+            .map(|linearization| match linearization {
+                Linearization::Open => Linearization::Open,
+                _ => Linearization::Slip { direction: [1.0, 0.0], ratio: 0.0 },
+            })
+            .collect();
+        let mut system = self.active_system(&all_sliding, 0.0, 0.0);
+        for motion in system.rows.len()..system.matrix.nrows() {
+            system.matrix[(motion, motion)] = SPRINGS[0];
+        }
+        let (factors, size) = (DenseLu::new(&system.matrix), system.matrix.nrows());
+        let mut is_normal = vec![false; boundary.row_count];
+        boundary.points.iter().for_each(|point| is_normal[point.start] = true);
+        let part = |values: &mut [f64], normal: bool| {
+            for (position, value) in values.iter_mut().enumerate() {
+                let belongs = system.rows.get(position).is_some_and(|&row| is_normal[row] == normal);
+                *value = if belongs { *value } else { 0.0 };
+            }
+        };
+        let mut forces: Vec<f64> = (0..size).map(|position| 1.0 + 0.5 * (1.7 * position as f64).sin()).collect();
+        let mut square = 0.0;
+        for _step in 0..POWER_STEPS {
+            part(&mut forces, false);
+            let length = norm(&forces);
+            if length == 0.0 {
+                return 0.0;
+            }
+            forces.iter_mut().for_each(|force| *force /= length);
+            factors.solve_in_place(&mut forces);
+            part(&mut forces, true);
+            square = dot(&forces, &forces);
+            factors.solve_transpose_in_place(&mut forces);
+        }
+        boundary.friction * square.sqrt()
+    }
+}
+
+/// Steps of the power iteration of a rough estimate.
+const POWER_STEPS: usize = 10;
+
+/// A sliding node: the position of its normal row in the active system, direction, number of tangential rows.
+struct Sliding {
+    position: usize,
+    direction: [f64; 2],
+    tangents: usize,
+}
+
+/// The map Φ′ over the sliding nodes.
+struct BoundChange {
+    sliding: Vec<Sliding>,
+    factors: DenseLu,
+    size: usize,
+    friction: f64,
+}
+
+impl BoundChange {
+    fn new(contact: &CompliantContact, linearizations: &[Linearization]) -> Self {
+        let boundary = &contact.problem.boundary;
+        let mut tresca = contact.active_system(linearizations, 0.0, 0.0);
+        for motion in tresca.rows.len()..tresca.matrix.nrows() {
             tresca.matrix[(motion, motion)] = SPRINGS[0];
         }
-        let mut sliding: Vec<(usize, [f64; 2], usize)> = Vec::new();
-        let mut first = 0;
+        let mut sliding = Vec::new();
+        let mut position = 0;
         for (node, linearization) in boundary.points.iter().zip(linearizations) {
-            if let Linearization::Slip { direction, .. } = linearization {
-                sliding.push((first, *direction, node.tangents.len()));
+            if let Linearization::Slip { direction, .. } = *linearization {
+                sliding.push(Sliding { position, direction, tangents: node.tangents.len() });
             }
-            first += if *linearization == Linearization::Open { 0 } else { node.row_count() };
+            position += if *linearization == Linearization::Open { 0 } else { node.row_count() };
         }
-        if sliding.is_empty() {
-            return 0.0;
-        }
-        let factors = DenseLu::new(&tresca.matrix);
-        let mut map = vec![0.0; sliding.len() * sliding.len()];
-        for (column, (first, direction, tangents)) in sliding.iter().enumerate() {
-            let mut change = vec![0.0; tresca.matrix.nrows()];
-            change[first + 1..first + 1 + tangents].copy_from_slice(&direction[..*tangents]);
-            factors.solve_in_place(&mut change);
-            for (row, (normal, ..)) in sliding.iter().enumerate() {
-                map[row * sliding.len() + column] = boundary.friction * change[*normal];
+        let (factors, size) = (DenseLu::new(&tresca.matrix), tresca.matrix.nrows());
+        Self { sliding, factors, size, friction: boundary.friction }
+    }
+
+    /// Φ′ dΨ.
+    fn apply(&self, bounds: &[f64]) -> Vec<f64> {
+        let mut change = vec![0.0; self.size];
+        for (Sliding { position, direction, tangents }, bound) in self.sliding.iter().zip(bounds) {
+            for (entry, direction) in change[position + 1..=position + tangents].iter_mut().zip(direction) {
+                *entry = bound * direction;
             }
         }
-        spectral_radius(sliding.len(), &map)
+        self.factors.solve_in_place(&mut change);
+        self.sliding.iter().map(|sliding| self.friction * change[sliding.position]).collect()
     }
 }

@@ -234,6 +234,10 @@ impl ContactSolver for DirectSolver {
         state.contact.diagnose(&state.solution.linearizations)
     }
 
+    fn estimate_contraction(&self, state: &DirectState, _max_products: usize) -> Result<f64, ContactError> {
+        Ok(state.contact.estimate_contraction(&state.solution.linearizations))
+    }
+
     fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
         self.whole_bodies(state)
     }

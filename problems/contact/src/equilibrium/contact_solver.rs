@@ -52,6 +52,13 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// [`ContactError`] from the linear systems.
     fn diagnose(&self, state: &Self::State) -> Result<Diagnosis, ContactError>;
 
+    /// A rough estimate of the contraction of the slip bounds at a solved shape, for at most so many products with the dual
+    /// operator; 0 without sliding nodes.
+    ///
+    /// # Errors
+    /// [`ContactError`] from the linear system.
+    fn estimate_contraction(&self, state: &Self::State, max_products: usize) -> Result<f64, ContactError>;
+
     /// All bodies of a solved shape, lower first.
     ///
     /// # Errors

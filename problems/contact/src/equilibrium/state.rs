@@ -48,13 +48,13 @@ impl Work {
 /// A solver's failure, and the work that it cost.
 #[derive(Debug)]
 pub(crate) struct Failed {
-    pub(crate) error: ContactError,
+    pub(crate) error: Box<ContactError>,
     pub(crate) work: Work,
 }
 
 impl From<ContactError> for Failed {
     fn from(error: ContactError) -> Self {
-        Self { error, work: Work::default() }
+        Self { error: Box::new(error), work: Work::default() }
     }
 }
 

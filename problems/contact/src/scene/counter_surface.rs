@@ -51,6 +51,12 @@ pub enum CounterSurface {
     Grid(HeightGrid),
 }
 
+/// R − √(R² − r²) of a sphere at the place r from its lowest point, without the cancellation for large R.
+fn rise(radius: f64, place: [f64; 2]) -> f64 {
+    let square = place[0] * place[0] + place[1] * place[1];
+    square / (radius + (radius * radius - square).sqrt())
+}
+
 impl CounterSurface {
     /// Height at (x₁, x₂), mm; NaN outside a sphere.
     pub fn height(&self, x1: f64, x2: f64) -> f64 {
@@ -59,11 +65,8 @@ impl CounterSurface {
                 let angle = 2.0 * std::f64::consts::PI / period;
                 first * (angle * x1).sin() + second * (angle * x2).cos() + base
             }
-            &Self::Sphere { apex, radius } => apex + radius - (radius * radius - x1 * x1 - x2 * x2).sqrt(),
-            &Self::SphereAt { apex, radius, centre } => {
-                let (y1, y2) = (x1 - centre[0], x2 - centre[1]);
-                apex + radius - (radius * radius - y1 * y1 - y2 * y2).sqrt()
-            }
+            &Self::Sphere { apex, radius } => apex + rise(radius, [x1, x2]),
+            &Self::SphereAt { apex, radius, centre } => apex + rise(radius, [x1 - centre[0], x2 - centre[1]]),
             // Nodes on the edge belong to the face, whatever rounding says.
             &Self::Punch { height, half_width, relief } => {
                 height + if x1.abs() <= half_width * (1.0 + 1e-9) { 0.0 } else { relief }

@@ -109,7 +109,7 @@ impl ContactSolver for TotalFeti {
         start: Option<&ContactWarmStart>,
         tolerance: f64,
     ) -> Result<ContactState<TornState>, ContactError> {
-        self.attempt(controls, start, tolerance, None).map_err(|failed| failed.error)
+        self.attempt(controls, start, tolerance, None).map_err(|failed| *failed.error)
     }
 
     fn sensitivities(
@@ -123,6 +123,10 @@ impl ContactSolver for TotalFeti {
 
     fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {
         self.solver.diagnose(state)
+    }
+
+    fn estimate_contraction(&self, state: &TornState, max_products: usize) -> Result<f64, ContactError> {
+        self.solver.estimate_contraction(state, max_products)
     }
 
     fn bodies(&self, state: &TornState) -> Result<Vec<SolvedBody>, ContactError> {

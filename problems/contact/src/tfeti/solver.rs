@@ -138,7 +138,7 @@ impl TornSolver {
         allowed: f64,
         method: impl FnOnce(&TornContact<'_>) -> Result<(TornSolution, T), ContactError>,
     ) -> Result<(TornState, ContactForces, Work, T), ContactError> {
-        self.attempt(controls, allowed, method).map_err(|failed| failed.error)
+        self.attempt(controls, allowed, method).map_err(|failed| *failed.error)
     }
 
     /// As [`TornSolver::solve_by`]; a failure says what work it cost.
@@ -171,7 +171,7 @@ impl TornSolver {
             ..Work::default()
         };
         let solved = if load > 0.0 { method(&contact) } else { Ok((contact.at_rest(), T::default())) };
-        let (solution, returned) = solved.map_err(|error| Failed { error, work: work(0) })?;
+        let (solution, returned) = solved.map_err(|error| Failed { error: Box::new(error), work: work(0) })?;
         seconds.newton = clock.lap();
         Stage::Recovery.enter();
         let (operator, iterate) = (&contact.operator, &solution.iterate);
@@ -179,7 +179,7 @@ impl TornSolver {
         let displacement = operator.displacement(loaded, &iterate.multipliers, &iterate.amplitudes);
         let forces = forces(&contact, &solution);
         let work = work(solution.steps);
-        forces.residuals.check(allowed).map_err(|error| Failed { error, work })?;
+        forces.residuals.check(allowed).map_err(|error| Failed { error: Box::new(error), work })?;
         seconds.recovery = clock.lap();
         let Configuration { blocks, gaps, .. } = configuration;
         let state = TornState { blocks, space, solution, displacement, gaps, stiffness, load, system, seconds };
@@ -226,6 +226,16 @@ impl TornSolver {
             Some(contact) => contact.diagnose(&state.solution.linearizations),
             None => Ok(Diagnosis { contraction: 0.0, condition: None }),
         }
+    }
+
+    /// A rough contraction factor at a solved shape, by at most so many products with F.
+    ///
+    /// # Errors
+    /// [`ContactError::Unheld`], [`ContactError::ForeignState`] for a state of another mesh.
+    pub fn estimate_contraction(&self, state: &TornState, max_products: usize) -> Result<f64, ContactError> {
+        let Some(contact) = self.contact_of(state)? else { return Ok(0.0) };
+        let forces = state.solution.iterate.multipliers.contact();
+        contact.estimate_contraction(&state.solution.linearizations, forces, max_products)
     }
 
     /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed physical rows.

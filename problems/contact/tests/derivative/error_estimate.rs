@@ -18,8 +18,8 @@ type Solver = Option<(PreconditionerKind, DualMethod)>;
 fn objective(scene: &Scene, solver: Solver) -> Objective {
     let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
     let solver = match solver {
-        Some((preconditioner, method)) => AnySolver::Torn(TotalFeti::new(problem, preconditioner, method).unwrap()),
-        None => AnySolver::Direct(DirectSolver::new(problem).unwrap()),
+        Some((preconditioner, method)) => AnySolver::from(TotalFeti::new(problem, preconditioner, method).unwrap()),
+        None => AnySolver::from(DirectSolver::new(problem).unwrap()),
     };
     let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &solver.problem().boundary).unwrap();
     ReducedObjective::new(ContactShape::by(solver), cost)

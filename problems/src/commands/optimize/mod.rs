@@ -5,7 +5,7 @@ pub mod run;
 pub mod stages;
 pub mod summary;
 
-use crate::commands::contact_objective::SolvedShape;
+use crate::commands::contact_objective::{SolvedShape, checks};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json};
 use crate::commands::loaded_scene::{LoadedScene, Session};
@@ -46,15 +46,16 @@ pub fn report(
         SolvedShape::at(&last.objective, controls).map_err(|failure| failure.after(&last.report.to_string()))
     };
     let shapes = [solved(&first.initial_controls)?, solved(&last.report.solution)?];
-    let object = json(&summary(last, runs, &shapes))?;
-    let mut text = page(last, &shapes) + &stages_page(runs, optimization.meshes);
+    let checks = checks(&last.objective, &shapes[1], session.arguments)?;
+    let object = json(&summary(last, runs, &shapes, &checks, session.arguments))?;
+    let mut text = page(last, &shapes, &checks, session.arguments) + &stages_page(runs, optimization.meshes);
     if let Some(options) = continued.filter(|_| optimization.can_continue()) {
         text += &format!("to continue: {options}\n");
     }
     let write = |folder: &Folder| {
         folder.write("report.txt", &text)?;
         folder.replace("report.json", &object)?;
-        files::write_optimization(folder, loaded, runs, last, &shapes)
+        files::write_optimization(folder, loaded, runs, last, &shapes, &checks)
     };
     let written = optimization.folder.as_ref().map_or(Ok(()), |folder| write(folder.folder()));
     let printed = session.arguments.printed(text, object);

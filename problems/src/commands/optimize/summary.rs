@@ -1,8 +1,12 @@
 //! The report of an optimization as text and as JSON.
 
+use crate::commands::arguments::Arguments;
 use crate::commands::contact_objective::SolvedShape;
+use crate::commands::evaluate::said;
 use crate::commands::optimize::mesh_run::MeshRun;
+use contact::contact_shape::SolverKind;
 use contact::equilibrium::{Kink, Residuals};
+use contact::plausibility::Warning;
 use nonsmooth::{Report, Termination, Vector};
 use serde::Serialize;
 
@@ -30,7 +34,12 @@ struct OptimizationJson<'a> {
     /// One entry per mesh of a coarse-to-fine optimization.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     stages: Vec<MeshRunJson<'a>>,
-    warnings: &'a [String],
+    /// The solver of the final state.
+    solver: SolverKind,
+    /// Why that solver, where another would have been the first choice.
+    solver_reason: Option<&'a str>,
+    /// Those of the optimizer have the code `optimizer`, the others look at the final state.
+    warnings: Vec<Warning>,
     left_out: Vec<&'static str>,
 }
 
@@ -104,7 +113,13 @@ pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
 }
 
 /// The JSON of an optimization: the run on its last mesh, and an entry for every mesh if there are several.
-pub fn summary<'a>(last: &'a MeshRun, runs: &'a [MeshRun], shapes: &[SolvedShape; 2]) -> impl Serialize + use<'a> {
+pub fn summary<'a>(
+    last: &'a MeshRun,
+    runs: &'a [MeshRun],
+    shapes: &'a [SolvedShape; 2],
+    checks: &[Warning],
+    arguments: &Arguments,
+) -> impl Serialize + use<'a> {
     let MeshRun { report, objective, replayed, .. } = last;
     let active = |multipliers: &Vector| multipliers.iter().filter(|multiplier| **multiplier != 0.0).count();
     OptimizationJson {
@@ -133,13 +148,21 @@ pub fn summary<'a>(last: &'a MeshRun, runs: &'a [MeshRun], shapes: &[SolvedShape
         residuals: shapes.each_ref().map(|shape| shape.state.forces.residuals),
         kinks: shapes.each_ref().map(|shape| shape.state.forces.kink),
         stages: stages(runs),
-        warnings: &report.warnings,
-        left_out: objective.solver().left_out(),
+        solver: shapes[1].state.solver,
+        solver_reason: shapes[1].state.reason.as_deref(),
+        warnings: all_warnings(report, checks),
+        left_out: arguments.left_out(objective.solver()),
     }
 }
 
+/// The warnings of the optimizer and those about the final state.
+pub fn all_warnings(report: &Report, checks: &[Warning]) -> Vec<Warning> {
+    let own = report.warnings.iter().map(|text| Warning { code: "optimizer", text: text.clone() });
+    own.chain(checks.iter().cloned()).collect()
+}
+
 /// The one-page report.
-pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2]) -> String {
+pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], arguments: &Arguments) -> String {
     let MeshRun { report, objective, .. } = last;
     let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;
@@ -149,8 +172,9 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2]) -> String {
          reduction:   {:.4} times, peak pressure {:.1} -> {:.1} MPa\n{report}\
          state:       relative residuals at the solution: {}\n\
          \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
+         solver:      {}\n\
          active:      {}\n\
-         left out:    {}\n",
+         {}left out:    {}\n",
         scene.name,
         bodies,
         scene.mesh[0],
@@ -166,7 +190,9 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2]) -> String {
         at_solution.residuals,
         at_solution.kink.smallest_margin,
         at_solution.kink.weakly_active,
+        said(shapes[1].state.solver, shapes[1].state.reason.as_deref()),
         last.active_constraints(),
-        objective.solver().left_out().join("; "),
+        checks.iter().map(|warning| format!("warning:     {warning}\n")).collect::<String>(),
+        arguments.left_out(objective.solver()).join("; "),
     )
 }

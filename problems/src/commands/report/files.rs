@@ -7,9 +7,11 @@ use crate::commands::folder::{Folder, PICTURE_ENDINGS, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::{COMPARED, RunFolder};
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::optimize::summary::all_warnings;
 use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::{gallery, pages, sections, tables};
 use contact::fields::{FieldState, vtk_files};
+use contact::plausibility::Warning;
 use figures::page::Page;
 use figures::{Figure, FigureError};
 use scene_file::OutputSection;
@@ -91,7 +93,7 @@ impl<'a> ReportFolder<'a> {
     }
 
     /// Writes the page if it is wanted; sections on the scene, the versions and all files are added to it.
-    fn finish(mut self, page: impl FnOnce(&[Figure]) -> Page, warnings: &[String]) -> Result<(), Failure> {
+    fn finish(mut self, page: impl FnOnce(&[Figure]) -> Page, warnings: &[Warning]) -> Result<(), Failure> {
         if !self.wanted().report {
             return Ok(());
         }
@@ -115,6 +117,7 @@ pub fn write_optimization(
     runs: &[MeshRun],
     last: &MeshRun,
     shapes: &[SolvedShape; 2],
+    checks: &[Warning],
 ) -> Result<(), Failure> {
     let MeshRun { objective, report, .. } = last;
     let mut out = ReportFolder::new(folder, loaded, objective);
@@ -127,7 +130,7 @@ pub fn write_optimization(
         let figure = gallery::convergence(objective, loaded.case.measure, report, &shapes[1]);
         out.draw(figure, "objective of every evaluation and kinds of steps")?;
     }
-    out.finish(|figures| pages::optimization(figures, runs, last, shapes), &report.warnings)
+    out.finish(|figures| pages::optimization(figures, runs, last, shapes), &all_warnings(report, checks))
 }
 
 /// The files of an evaluation.
@@ -137,11 +140,12 @@ pub fn write_evaluation(
     objective: &ContactObjective,
     shape: &SolvedShape,
     json: &str,
+    checks: &[Warning],
 ) -> Result<(), Failure> {
     let mut out = ReportFolder::new(folder, loaded, objective);
     out.write("evaluation.json", json, "everything that evaluate knows, as one JSON object")?;
     out.show(&[("shape", "", shape)])?;
-    out.finish(|figures| pages::evaluation(figures, objective, shape), &[])
+    out.finish(|figures| pages::evaluation(figures, objective, shape), checks)
 }
 
 /// The files of a comparison.

@@ -1,6 +1,7 @@
 //! Sections that the report pages of several commands share.
 
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
+use contact::plausibility::Warning;
 use figures::Figure;
 use figures::page::{Block, Section};
 use nonsmooth::{Certificate, Report};
@@ -98,7 +99,7 @@ pub fn certificate(certificate: Option<&Certificate>) -> Section {
 }
 
 /// The scene, the versions of the program, and what the scene did not need.
-pub fn origin(scene: &str, left_out: &[&str], warnings: &[String]) -> Section {
+pub fn origin(scene: &str, left_out: &[&str], warnings: &[Warning]) -> Section {
     let build = if cfg!(debug_assertions) { "with debug assertions" } else { "optimized" };
     let versions = vec![
         vec!["nonsmooth".to_owned(), nonsmooth::VERSION.to_owned()],
@@ -116,7 +117,7 @@ pub fn origin(scene: &str, left_out: &[&str], warnings: &[String]) -> Section {
     }
     if !warnings.is_empty() {
         blocks.push(Block::Text("Warnings:".into()));
-        blocks.push(Block::List(warnings.to_vec()));
+        blocks.push(Block::List(warnings.iter().map(Warning::to_string).collect()));
     }
     blocks
         .push(Block::Listing { title: "The scene, complete, with all options put in".into(), text: scene.to_owned() });

@@ -155,14 +155,14 @@ impl Variant {
     pub fn solver(self, problem: &Arc<ContactProblem>) -> Result<AnySolver, ContactError> {
         let problem = Arc::clone(problem);
         let Some(preconditioner) = self.preconditioner() else {
-            return DirectSolver::new(problem).map(AnySolver::Direct);
+            return DirectSolver::new(problem).map(AnySolver::from);
         };
         let method = match self {
             Self::AugmentedLagrangian => DualMethod::SuccessiveApproximations,
             Self::Gmres => DualMethod::Newton(Recycling::Off),
             _ => DualMethod::Newton(Recycling::Auto),
         };
-        TotalFeti::new(problem, preconditioner, method).map(AnySolver::Torn)
+        TotalFeti::new(problem, preconditioner, method).map(AnySolver::from)
     }
 
     /// The preconditioner; none for direct condensation.

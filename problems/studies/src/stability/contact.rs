@@ -118,7 +118,7 @@ fn attempt<S: ContactSolver>(
             (path, Some(found))
         }
         Err(error) => {
-            let (refusal, reason) = (Some(error.kind().into()), Some(error.to_string()));
+            let (refusal, reason) = (Some(error.kind()), Some(error.to_string()));
             (Path { solver: name, refusal, reason, ..Path::default() }, None)
         }
     }

@@ -37,6 +37,8 @@ const STALLED_REDUCTION: f64 = 0.5;
 const MAX_KRYLOV: usize = 600;
 /// Share of the right side below which its projection is known to few digits: relative residuals refer to no less.
 const SMALLEST_PROJECTED_SHARE: f64 = 1e-5;
+/// Share of the natural residual accepted when rounding stops all progress: six digits of a sensitivity of its size.
+const NATURAL_ACCEPTABLE: f64 = 1e-6;
 /// Share of the natural residual below which the whole right side is rounding for the sensitivity.
 const ROUNDING_SHARE: f64 = 1e-3;
 /// Relative residual accepted when rounding stops all progress.
@@ -108,7 +110,9 @@ impl TornContact<'_> {
                 NextCycle::Stop => break,
             }
         }
-        if iterate.residual.is_nan() || iterate.residual > TIGHTEST_ACCEPTABLE.max(tolerance) * size {
+        if iterate.residual.is_nan()
+            || iterate.residual > (TIGHTEST_ACCEPTABLE.max(tolerance) * size).max(NATURAL_ACCEPTABLE * natural)
+        {
             return Err(ContactError::NotConverged {
                 solver: "adjoint GMRES on TFETI",
                 residual: iterate.residual / size,

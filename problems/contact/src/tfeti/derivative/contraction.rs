@@ -19,6 +19,8 @@ const MAX_STEPS: usize = 12;
 const INVARIANT: f64 = 1e-4;
 /// Relative reduction of the linear solves: the estimate is meant to two digits.
 const REDUCTION: f64 = 1e-5;
+/// Relative reduction of the one linear solve of a rough estimate.
+const ROUGH_REDUCTION: f64 = 0.1;
 /// Times its target that the residual of a linear solve may be.
 const MAX_MISS: f64 = 1e3;
 /// Krylov iterations allowed per solve.
@@ -31,16 +33,7 @@ impl TornContact<'_> {
     /// [`ContactError::NotConverged`] when a linear solve does not reach its tolerance, [`ContactError::Unheld`],
     /// [`ContactError::NotFinite`].
     pub fn diagnose(&self, linearizations: &[Linearization]) -> Result<Diagnosis, ContactError> {
-        let sliding: Vec<(usize, usize, [f64; 2])> = self
-            .boundary
-            .points
-            .iter()
-            .zip(linearizations)
-            .filter_map(|(point, linearization)| match linearization {
-                Linearization::Slip { direction, .. } => Some((point.start, point.tangents.len(), *direction)),
-                _ => None,
-            })
-            .collect();
+        let sliding = self.sliding(linearizations);
         let start = (0..sliding.len()).map(|node| 1.0 + 0.5 * (1.7 * node as f64).sin()).collect::<Vec<f64>>();
         let length = norm(&start);
         let mut basis = vec![start.into_iter().map(|entry| entry / length).collect::<Vec<f64>>()];
@@ -52,7 +45,16 @@ impl TornContact<'_> {
         }
         let active = self.active_set(linearizations.to_vec(), Friction::Tresca)?;
         while taken < steps {
-            let mut image = self.bound_change(&active, &sliding, &basis[taken])?;
+            let (mut image, miss) = self.bound_change(&active, &sliding, &basis[taken], REDUCTION, MAX_KRYLOV);
+            if miss.is_nan() || miss > MAX_MISS * REDUCTION {
+                return Err(ContactError::NotConverged {
+                    solver: "Tresca problem of the contraction factor",
+                    residual: miss,
+                    tolerance: REDUCTION,
+                    iterations: MAX_KRYLOV,
+                    history: vec![miss],
+                });
+            }
             let size = norm(&image);
             for (row, component) in orthogonalise(&mut image, &basis).into_iter().enumerate() {
                 hessenberg[row * steps + taken] = component;
@@ -73,13 +75,47 @@ impl TornContact<'_> {
         Ok(Diagnosis { contraction, condition: None })
     }
 
-    /// Φ′ dΨ over the sliding nodes (scaled rows; all rows of a node share their scale).
+    /// A rough |Φ′ Ψ|/|Ψ| at the slip bounds Ψ of the state, by at most so many products with F; 0 without sliding nodes.
+    ///
+    /// # Errors
+    /// [`ContactError::Unheld`] when the closed nodes leave a motion free.
+    pub fn estimate_contraction(
+        &self,
+        linearizations: &[Linearization],
+        forces: &[f64],
+        max_products: usize,
+    ) -> Result<f64, ContactError> {
+        let sliding = self.sliding(linearizations);
+        if sliding.is_empty() {
+            return Ok(0.0);
+        }
+        let active = self.active_set(linearizations.to_vec(), Friction::Tresca)?;
+        let bounds: Vec<f64> = sliding.iter().map(|(start, ..)| self.boundary.friction * forces[*start]).collect();
+        let (image, _) = self.bound_change(&active, &sliding, &bounds, ROUGH_REDUCTION, max_products.saturating_sub(1));
+        Ok(norm(&image) / norm(&bounds))
+    }
+
+    /// First row, number of tangential rows and direction of the sliding nodes.
+    fn sliding(&self, linearizations: &[Linearization]) -> Vec<(usize, usize, [f64; 2])> {
+        let nodes = self.boundary.points.iter().zip(linearizations);
+        nodes
+            .filter_map(|(point, linearization)| match linearization {
+                Linearization::Slip { direction, .. } => Some((point.start, point.tangents.len(), *direction)),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// Φ′ dΨ over the sliding nodes (scaled rows; all rows of a node share their scale), and the relative residual of its
+    /// linear system.
     fn bound_change(
         &self,
         active: &ActiveSet<'_>,
         sliding: &[(usize, usize, [f64; 2])],
         bounds: &[f64],
-    ) -> Result<Vec<f64>, ContactError> {
+        reduction: f64,
+        max_krylov: usize,
+    ) -> (Vec<f64>, f64) {
         let rows = &active.rows;
         let mut driven = self.zeros();
         for ((start, count, direction), bound) in sliding.iter().zip(bounds) {
@@ -96,25 +132,17 @@ impl TornContact<'_> {
         let mut residual: Vec<f64> = rows.test_transposed(&image).into_iter().map(|entry| -entry).collect();
         rows.add_compliance(&unknowns, &mut residual, -1.0);
         active.project(&mut residual);
-        let target = REDUCTION * norm(&residual);
+        let size = norm(&residual);
         let krylov = pcg(
             &residual,
-            target,
-            MAX_KRYLOV,
+            reduction * size,
+            max_krylov,
             |v| self.precondition(rows, v, |z| active.project(z)),
             |z| self.reduced_product(active, z).0,
         );
-        if krylov.residual.is_nan() || krylov.residual > MAX_MISS * target {
-            return Err(ContactError::NotConverged {
-                solver: "Tresca problem of the contraction factor",
-                residual: krylov.residual * REDUCTION / target,
-                tolerance: REDUCTION,
-                iterations: krylov.iterations,
-                history: vec![krylov.residual],
-            });
-        }
         add_scaled(&mut unknowns, 1.0, &krylov.solution);
         let multipliers = rows.trial(&unknowns);
-        Ok(sliding.iter().map(|(start, ..)| self.boundary.friction * multipliers.contact()[*start]).collect())
+        let change = |(start, ..): &(usize, usize, [f64; 2])| self.boundary.friction * multipliers.contact()[*start];
+        (sliding.iter().map(change).collect(), krylov.residual / size)
     }
 }

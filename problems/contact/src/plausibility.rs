@@ -1,0 +1,215 @@
+//! Whether a state means what it seems to mean: linear elasticity, the mesh, the contact zone, uniqueness.
+//!
+//! A warning does not say that the state is wrong: it solves the discrete problem to rounding. It says that the discrete
+//! problem may be far from the body it stands for. Every warning has a code that does not change.
+
+use crate::body::elasticity::brick::{self, DOFS, Nodes};
+use crate::equilibrium::{ContactForces, ContactProblem, ContactStatus, SolvedBody};
+use nalgebra::{Matrix3, SymmetricEigen};
+use serde::Serialize;
+use std::fmt;
+
+/// Largest displacement over the smallest edge of the bodies that small displacements allow.
+const MAX_DISPLACEMENT: f64 = 0.05;
+/// Largest rotation that small displacements allow, radians.
+const MAX_ROTATION: f64 = 0.1;
+/// Largest principal strain that linear elasticity allows.
+const MAX_STRAIN: f64 = 0.02;
+/// Smallest scaled Jacobian of a brick that resolves a stress.
+const MIN_SCALED_JACOBIAN: f64 = 0.2;
+/// Fewest bricks per wave length of the obstacle.
+const MIN_BRICKS_PER_WAVE: f64 = 4.0;
+/// Largest turn of the obstacle over one brick, degrees: 30° over four of them.
+const MAX_TURN: f64 = 7.5;
+/// Fewest closed nodes that resolve a contact zone.
+const MIN_CLOSED_NODES: usize = 6;
+/// Places per brick at which the obstacle is sampled.
+const SAMPLES: usize = 8;
+/// Estimated contraction of the slip bounds from which a state may not be unique.
+const MAX_CONTRACTION: f64 = 1.0;
+
+/// A stable code and a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Warning {
+    /// Stable code, such as `large-strain`.
+    pub code: &'static str,
+    /// What was found, and what is allowed.
+    pub text: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.code, self.text)
+    }
+}
+
+/// Adds a warning where a check fails.
+fn warn(warnings: &mut Vec<Warning>, fails: bool, code: &'static str, text: impl FnOnce() -> String) {
+    if fails {
+        warnings.push(Warning { code, text: text() });
+    }
+}
+
+/// What is implausible about a state; `contraction`: estimated contraction of the slip bounds, where friction asks for it.
+pub fn warnings(
+    problem: &ContactProblem,
+    bodies: &[SolvedBody],
+    forces: &ContactForces,
+    contraction: Option<f64>,
+) -> Vec<Warning> {
+    let mut found = Vec::new();
+    let estimate = contraction.unwrap_or(0.0);
+    warn(&mut found, estimate >= MAX_CONTRACTION, "not-unique", || {
+        format!(
+            "the slip bounds contract by an estimated factor {estimate:.2} (below 1 needed): other equilibria may exist"
+        )
+    });
+    deformation(bodies, &mut found);
+    obstacle(problem, forces, &mut found);
+    zone(problem, forces, &mut found);
+    found
+}
+
+/// Displacement, rotation, strain and the shape of the bricks.
+fn deformation(bodies: &[SolvedBody], found: &mut Vec<Warning>) {
+    let mut displacement = 0.0_f64;
+    let (mut rotation, mut strain, mut jacobian, mut edge) = (0.0_f64, 0.0_f64, f64::INFINITY, f64::INFINITY);
+    for SolvedBody { block, displacement: u, .. } in bodies {
+        displacement = u.iter().map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(displacement, f64::max);
+        let heights = block.upper.iter().zip(&block.lower).map(|(upper, lower)| upper - lower);
+        edge = heights.fold(edge.min(block.grid.size[0]).min(block.grid.size[1]), f64::min);
+        for position in block.grid.bricks() {
+            let (nodes, corners) = (block.brick(position), block.grid.brick_nodes(position));
+            jacobian = jacobian.min(scaled_jacobian(&nodes));
+            let u: [f64; DOFS] = std::array::from_fn(|dof| u[corners[dof / 3]][dof % 3]);
+            let gradient = brick::displacement_gradient(&brick::sample(&nodes, [0.0; 3]), &u);
+            let gradient = Matrix3::from_fn(|i, j| gradient[i][j]);
+            let skew = (gradient - gradient.transpose()) * 0.5;
+            rotation = rotation.max(skew[(2, 1)].hypot(skew[(0, 2)]).hypot(skew[(1, 0)]));
+            strain = strain.max(SymmetricEigen::new((gradient + gradient.transpose()) * 0.5).eigenvalues.amax());
+        }
+    }
+    warn(found, displacement > MAX_DISPLACEMENT * edge, "large-displacement", || {
+        format!(
+            "the largest displacement is {displacement:.3} mm, {:.1} % of the smallest edge of the bodies (linear elasticity: \
+             at most {:.0} %)",
+            100.0 * displacement / edge,
+            100.0 * MAX_DISPLACEMENT
+        )
+    });
+    warn(found, rotation > MAX_ROTATION, "large-rotation", || {
+        format!("the largest rotation is {rotation:.3} (linear elasticity: at most {MAX_ROTATION})")
+    });
+    warn(found, strain > MAX_STRAIN, "large-strain", || {
+        let (strain, allowed) = (100.0 * strain, 100.0 * MAX_STRAIN);
+        format!("the largest principal strain is {strain:.1} % (linear elasticity: at most {allowed:.0} %)")
+    });
+    warn(found, jacobian < MIN_SCALED_JACOBIAN, "distorted-bricks", || {
+        format!(
+            "the smallest scaled Jacobian of a brick is {jacobian:.3} (stresses need at least {MIN_SCALED_JACOBIAN})"
+        )
+    });
+}
+
+/// Smallest over the corners of a brick of det(edges)/Π|edges|: 1 for a box, 0 for a flat corner.
+fn scaled_jacobian(nodes: &Nodes<f64>) -> f64 {
+    let corner = |a: usize| {
+        let edges = [4, 2, 1].map(|bit| {
+            let (from, to) = (nodes[a & !bit], nodes[a | bit]);
+            nalgebra::Vector3::from_fn(|i, _| to[i] - from[i])
+        });
+        Matrix3::from_columns(&edges).determinant() / edges.iter().map(|edge| edge.norm()).product::<f64>()
+    };
+    (0..8).map(corner).fold(f64::INFINITY, f64::min)
+}
+
+/// Waves and curvature of the obstacle against the bricks of the contact zone.
+fn obstacle(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Warning>) {
+    let grid = &problem.grid;
+    let closed = |i: usize, j: usize| forces.status[grid.column(i, j)] != ContactStatus::Open;
+    let (mut turn, mut bricks_per_wave) = (0.0_f64, f64::INFINITY);
+    for axis in 0..2 {
+        let [along, across] = [grid.cells[axis], grid.cells[1 - axis]];
+        let step = grid.size[axis] / (along * SAMPLES) as f64;
+        for line in 0..=across {
+            let node = |k: usize| if axis == 0 { (k, line) } else { (line, k) };
+            let is_closed: Vec<bool> = (0..=along).map(|k| closed(node(k).0, node(k).1)).collect();
+            if !is_closed.contains(&true) {
+                continue;
+            }
+            let start = grid.position(node(0).0, node(0).1);
+            let height = |sample: usize| {
+                let mut place = start;
+                place[axis] += sample as f64 * step;
+                problem.scene.counter_surface.height(place[0], place[1])
+            };
+            let heights: Vec<f64> = (0..=along * SAMPLES).map(height).collect();
+            let slopes: Vec<f64> = heights.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect();
+            let turns: Vec<f64> = slopes.windows(2).map(|pair| pair[1].atan() - pair[0].atan()).collect();
+            for brick in (0..along).filter(|&brick| is_closed[brick] || is_closed[brick + 1]) {
+                let within = &turns[brick * SAMPLES..((brick + 1) * SAMPLES).min(turns.len())];
+                turn = turn.max(within.iter().map(|turn| turn.abs()).sum::<f64>().to_degrees());
+            }
+            let extrema = slopes.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
+            // Two extrema make a wave; a single one is a hump.
+            if extrema > 1 {
+                bricks_per_wave = bricks_per_wave.min(2.0 * along as f64 / extrema as f64);
+            }
+        }
+    }
+    let coarse = turn > MAX_TURN || bricks_per_wave < MIN_BRICKS_PER_WAVE;
+    warn(found, coarse, "coarse-obstacle", || {
+        let waves =
+            if bricks_per_wave.is_finite() { format!(", {bricks_per_wave:.1} bricks per wave") } else { String::new() };
+        format!(
+            "the mesh is too coarse for the obstacle: it turns by {turn:.1} degrees over one brick{waves} (at most {MAX_TURN} \
+             degrees, at least {MIN_BRICKS_PER_WAVE} bricks per wave)"
+        )
+    });
+}
+
+/// The size of the contact zone, and where its pressure peaks.
+fn zone(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Warning>) {
+    let grid = &problem.grid;
+    let closed = forces.status.iter().filter(|status| **status != ContactStatus::Open).count();
+    if closed == 0 {
+        return;
+    }
+    warn(found, closed < MIN_CLOSED_NODES, "few-closed-nodes", || {
+        format!("{closed} nodes are closed: the contact zone is not resolved (at least {MIN_CLOSED_NODES} needed)")
+    });
+    let pressure = |(i, j): (usize, usize)| forces.normal[grid.column(i, j)] / grid.tributary_area(i, j);
+    let peak = grid.columns().max_by(|a, b| pressure(*a).total_cmp(&pressure(*b)));
+    let Some((i, j)) = peak else { return };
+    let [n1, n2] = [grid.cells[0], grid.cells[1]];
+    // Where supports hold the nodes of a face against leaving it, the face is a plane of symmetry and no edge.
+    let free = |axis: usize| !problem.scene.lower.held(grid, [i, j, grid.cells[2]])[axis];
+    let on_edge = ((i == 0 || i == n1) && free(0)) || ((j == 0 || j == n2) && free(1));
+    let neighbours = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
+    let inside = neighbours.into_iter().filter(|&(i, j)| i <= n1 && j <= n2);
+    let beside_open = inside.into_iter().any(|(i, j)| forces.status[grid.column(i, j)] == ContactStatus::Open);
+    warn(found, on_edge || beside_open, "peak-at-edge", || {
+        let [x1, x2] = grid.position(i, j);
+        let where_it_is = if on_edge { "edge of the body" } else { "edge of the contact zone" };
+        format!(
+            "the pressure peaks at the {where_it_is}, at ({x1:.2}, {x2:.2}) mm: it may grow with every refinement of the mesh"
+        )
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_scaled_jacobian_is_one_for_a_box_and_falls_with_shear() {
+        let box_at = |shear: f64| -> Nodes<f64> {
+            std::array::from_fn(|a| {
+                let [x, y, z] = [a >> 2 & 1, a >> 1 & 1, a & 1].map(|bit| bit as f64);
+                [3.0 * x + shear * z, 2.0 * y, z]
+            })
+        };
+        assert!((scaled_jacobian(&box_at(0.0)) - 1.0).abs() < 1e-15);
+        assert!((scaled_jacobian(&box_at(1.0)) - 0.5_f64.sqrt()).abs() < 1e-15);
+    }
+}
