@@ -7,7 +7,8 @@
 //! (hertz3d, mesh 12); 1.4985e16 and 1.4835e16 come after 30 and 34 evaluations as before (signorini3d, mesh 12). The entries of
 //! direct condensation were replaced by the commit "Direct condensation solves for forces and rigid motions": its unknowns are
 //! others, so that it rounds differently. Measured: Θ by at most 1.3e-13 (relative), every entry of ξ by less than that share of the
-//! largest.
+//! largest. Those of hertz3d were replaced by the commit "Warnings where a state may not be unique": heights of a sphere are computed
+//! without cancellation. Measured: Θ by at most 5.6e-15, histories of 60 evaluations by at most 1.6e-9 of their largest entry.
 
 use crate::binary;
 use serde_json::Value;

@@ -87,13 +87,11 @@ impl CompliantBody {
         u
     }
 
-    /// |S u − f ± Bᵀλ|₂ with u = C (f ∓ Bᵀλ): what the forces leave unbalanced, rigid motions included, N.
+    /// |Nᵀ(f ∓ Bᵀλ)|₂: the resultants that the forces leave along the free motions, N.
     pub(super) fn imbalance(&self, multipliers: &[f64]) -> f64 {
-        let u = self.displacement(multipliers, &[], true);
-        let mut defect = multiply(&self.condensed.schur, &u);
-        add_scaled(&mut defect, -1.0, &self.condensed.load);
-        add_scaled(&mut defect, -1.0, &self.contact_forces(multipliers));
-        norm(&defect)
+        let mut force = self.contact_forces(multipliers);
+        add_scaled(&mut force, 1.0, &self.condensed.load);
+        norm(&self.motions.iter().map(|motion| dot(motion, &force)).collect::<Vec<f64>>())
     }
 }
 

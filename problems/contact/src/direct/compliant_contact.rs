@@ -37,6 +37,8 @@ pub struct CompliantContact {
     /// Unit of compliances, mm/N.
     pub unit: f64,
     pub(super) bodies: Vec<Arc<CompliantBody>>,
+    /// Amplitudes that `constant` already holds.
+    offset: Vec<f64>,
     /// From the amplitudes of R to those of the bodies' own motions.
     basis: DMatrix<f64>,
     /// From the bodies' own amplitudes to those of R.
@@ -73,7 +75,8 @@ impl CompliantContact {
         let own: Vec<f64> = bodies.iter().flat_map(|body| body.resultants()).collect();
         let resultant = (basis.transpose() * DVector::from_vec(own) / load).iter().copied().collect();
         let motions = Mat::from_fn(rows, motions.ncols(), |i, k| motions[(i, k)]);
-        Self { problem, compliance, constant, motions, resultant, load, unit, bodies, basis, inverse_basis }
+        let offset = vec![0.0; motions.ncols()];
+        Self { offset, problem, compliance, constant, motions, resultant, load, unit, bodies, basis, inverse_basis }
     }
 
     /// Number of packed rows.
@@ -107,6 +110,21 @@ impl CompliantContact {
         (residual, arguments)
     }
 
+    /// Moves the bodies by the rigid motions of given unknowns: d := d + R a, a := 0. Jumps of nodes in contact are small
+    /// numbers then, and no longer differences of large ones.
+    pub(super) fn recentre(&mut self, unknowns: &mut [f64]) {
+        let (_, amplitudes) = unknowns.split_at_mut(self.constant.len());
+        add_scaled(&mut self.constant, 1.0, &multiply(&self.motions, amplitudes));
+        add_scaled(&mut self.offset, 1.0, amplitudes);
+        amplitudes.fill(0.0);
+    }
+
+    /// Relative residual that the rounding of d and R a causes.
+    pub(super) fn rounding(&self, unknowns: &[f64]) -> f64 {
+        let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        f64::EPSILON * largest(&self.constant).max(largest(&multiply(&self.motions, &unknowns[self.row_count()..])))
+    }
+
     /// Derivatives of Π selected at given arguments x.
     pub fn linearize(&self, arguments: &[f64]) -> Vec<Linearization> {
         let boundary = &self.problem.boundary;
@@ -126,7 +144,8 @@ impl CompliantContact {
     pub fn dimensional(&self, unknowns: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (forces, amplitudes) = unknowns.split_at(self.row_count());
         let forces: Vec<f64> = forces.iter().map(|force| force * self.load).collect();
-        let own = self.own_amplitudes(amplitudes, self.unit * self.load);
+        let amplitudes: Vec<f64> = amplitudes.iter().zip(&self.offset).map(|(a, offset)| a + offset).collect();
+        let own = self.own_amplitudes(&amplitudes, self.unit * self.load);
         let parts = self.bodies.iter().zip(&own);
         let displacements = parts.flat_map(|(body, own)| body.displacement(&forces, own, true)).collect();
         (forces, displacements)

@@ -7,6 +7,7 @@
 //! Newton's method converges from the bonded guess also where few nodes hold the bodies; the state of every δ is the start of
 //! the next. A proximal spring in the rigid block of the derivative keeps it regular where the closed nodes leave a motion
 //! free; the residual does not hold it, so that the state does not depend on it. Open nodes are eliminated from every step.
+//! Once the residual comes near the rounding of d + R a, the bodies are taken to where they are: d := d + R a, a := 0.
 
 use crate::direct::compliant_contact::CompliantContact;
 use crate::equilibrium::Stage;
@@ -35,6 +36,8 @@ const MAX_TOTAL_STEPS: usize = 600;
 const MAX_HALVINGS: usize = 6;
 /// Decrease asked of a step of length one.
 const SUFFICIENT_DECREASE: f64 = 1e-4;
+/// Times its rounding floor that a residual is seen to reach.
+pub(super) const FLOOR_REACHED: f64 = 100.0;
 /// Tightest relative residual aimed at: below it rounding decides.
 const TIGHTEST: f64 = 1e-13;
 /// Relative residual accepted when rounding stops all progress.
@@ -70,20 +73,20 @@ pub(super) struct ActiveSystem {
 
 impl CompliantContact {
     /// The equilibrium from given unknowns or from the bonded problem, to a relative residual; or the last state on the way.
-    pub(super) fn equilibrium(&self, start: Option<&[f64]>, tolerance: f64) -> Reached {
+    pub(super) fn equilibrium(&mut self, start: Option<&[f64]>, tolerance: f64) -> Reached {
         let mut history = Vec::new();
         let tolerance = tolerance.max(TIGHTEST);
         let zero = vec![0.0; self.row_count() + self.resultant.len()];
         let problem = |delta, spring| Problem { delta, spring, tolerance };
         let started = start.and_then(|start| self.newton(start.to_vec(), problem(0.0, SPRINGS[0]), &mut history));
         let mut reached = (zero.clone(), false);
-        for spring in SPRINGS.iter().take_while(|_| started.is_none()) {
-            let first = FIRST_COMPLIANCES.iter().find_map(|&delta| {
-                let bonded = self.bonded(&zero, problem(delta, *spring));
-                self.newton(bonded, problem(delta, *spring), &mut history).map(|found| (delta, found))
+        for spring in SPRINGS.into_iter().take_while(|_| started.is_none()) {
+            let first = FIRST_COMPLIANCES.into_iter().find_map(|delta| {
+                let bonded = self.bonded(&zero, problem(delta, spring));
+                self.newton(bonded, problem(delta, spring), &mut history).map(|found| (delta, found))
             });
             if let Some((delta, found)) = first {
-                reached = self.lower(found, problem(delta, *spring), &mut history);
+                reached = self.lower(found, problem(delta, spring), &mut history);
                 if reached.1 {
                     break;
                 }
@@ -94,8 +97,14 @@ impl CompliantContact {
         Reached { unknowns, linearizations, solved, history }
     }
 
+    /// Newton's method from given unknowns; none where it does not converge.
+    pub fn newton_from(&mut self, unknowns: &[f64]) -> Option<Vec<f64>> {
+        let problem = Problem { delta: 0.0, spring: SPRINGS[0], tolerance: TIGHTEST };
+        self.newton(unknowns.to_vec(), problem, &mut Vec::new())
+    }
+
     /// Lowers the compliance from a solved problem; the last solved one, and whether its compliance is 0.
-    fn lower(&self, mut unknowns: Vec<f64>, mut problem: Problem, history: &mut Vec<f64>) -> (Vec<f64>, bool) {
+    fn lower(&mut self, mut unknowns: Vec<f64>, mut problem: Problem, history: &mut Vec<f64>) -> (Vec<f64>, bool) {
         let mut factor = SHRINKAGE;
         let first = history.len();
         while problem.delta > 0.0 && factor <= LARGEST_FACTOR && history.len() - first < MAX_TOTAL_STEPS {
@@ -112,12 +121,19 @@ impl CompliantContact {
     }
 
     /// Newton's method for one compliance; none where it does not converge.
-    fn newton(&self, mut unknowns: Vec<f64>, problem: Problem, history: &mut Vec<f64>) -> Option<Vec<f64>> {
+    fn newton(&mut self, mut unknowns: Vec<f64>, problem: Problem, history: &mut Vec<f64>) -> Option<Vec<f64>> {
         let (mut residual, mut arguments) = self.residual(&unknowns, problem.delta);
         let mut size = norm(&residual);
+        let mut recentred = false;
         for _step in 0..MAX_STEPS {
             if size <= problem.tolerance || !size.is_finite() {
                 break;
+            }
+            if !recentred && size <= FLOOR_REACHED * self.rounding(&unknowns) {
+                recentred = true;
+                self.recentre(&mut unknowns);
+                (residual, arguments) = self.residual(&unknowns, problem.delta);
+                size = norm(&residual);
             }
             let previous = size;
             let step = self.step(&self.linearize(&arguments), &residual, problem);

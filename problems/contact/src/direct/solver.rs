@@ -5,6 +5,7 @@ use crate::body::shape_sensitivity::column_sensitivities;
 use crate::direct::compliant_body::CompliantBody;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
+use crate::direct::newton::FLOOR_REACHED;
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::modes::RigidScene;
@@ -13,7 +14,6 @@ use crate::equilibrium::{
     Residuals, Sensitivities, SolvedBody, SolverState, Stage, ValueError, Work,
 };
 use crate::error::ContactError;
-use crate::linear::dense::multiply;
 use crate::linear::vector::norm;
 use crate::scene::BodyScene;
 use crate::solver_kind::SolverKind;
@@ -54,9 +54,6 @@ pub(super) struct CondensedSolution {
     /// Derivatives selected.
     pub(super) linearizations: Vec<Linearization>,
 }
-
-/// Times its rounding floor that a residual is seen to reach.
-const FLOOR_REACHED: f64 = 100.0;
 
 impl DirectSolver {
     /// Analyses the bodies of a problem.
@@ -124,7 +121,7 @@ impl DirectSolver {
 
     /// The equilibrium of a condensed shape.
     fn equilibrium(
-        contact: &CompliantContact,
+        contact: &mut CompliantContact,
         start: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<(CondensedSolution, usize), ContactError> {
@@ -181,10 +178,10 @@ impl ContactSolver for DirectSolver {
             Some(ContactWarmStart::Displacements(displacements)) => Some(displacements.as_slice()),
             _ => None,
         };
-        let (contact, block, load, factorizations) = self.condense(Configuration::new(&self.problem, controls)?)?;
+        let (mut contact, block, load, factorizations) = self.condense(Configuration::new(&self.problem, controls)?)?;
         Stage::Contact.enter();
         let (solution, newton_steps) =
-            if load > 0.0 { Self::equilibrium(&contact, start, tolerance)? } else { (contact.at_rest(), 0) };
+            if load > 0.0 { Self::equilibrium(&mut contact, start, tolerance)? } else { (contact.at_rest(), 0) };
         let state = DirectState { block, contact, solution, load };
         let forces = state.forces();
         forces.residuals.check(tolerance)?;
@@ -271,12 +268,6 @@ impl SolverState for DirectState {
 }
 
 impl CompliantContact {
-    /// Relative residual that the rounding of d and R a causes.
-    fn rounding(&self, unknowns: &[f64]) -> f64 {
-        let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        f64::EPSILON * largest(&self.constant).max(largest(&multiply(&self.motions, &unknowns[self.row_count()..])))
-    }
-
     /// The state of bodies that nothing loads and nothing penetrates: no forces, no displacements.
     fn at_rest(&self) -> CondensedSolution {
         let unknowns = vec![0.0; self.row_count() + self.resultant.len()];

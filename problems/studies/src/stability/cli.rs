@@ -1,9 +1,10 @@
 //! The command line of the study.
 
 use crate::stability::record::{Outcome, Record, Report};
-use crate::stability::{case, table};
+use crate::stability::{case, random, table};
 use clap::Parser;
-use problems::commands::{Failure, finish, json};
+use problems::commands::{Failure, Folder, finish, json};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// What the solvers and the optimizer do with stiff and extreme cases.
@@ -16,6 +17,15 @@ pub struct Arguments {
     /// Only cases whose group or name contains this text.
     #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
+    /// Random scenes instead of the cases: so many of them.
+    #[arg(long, value_name = "COUNT", conflicts_with_all = ["quick", "only"])]
+    pub random: Option<usize>,
+    /// Seed of the random scenes.
+    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "random")]
+    pub seed: u64,
+    /// Folder for the files of random scenes that fell short.
+    #[arg(long, value_name = "DIR", requires = "random")]
+    pub out: Option<PathBuf>,
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
@@ -28,6 +38,9 @@ pub fn run() -> ExitCode {
 
 /// Runs the cases that the arguments select; the text belongs on stdout, also when cases are broken.
 fn execute(arguments: &Arguments) -> Result<String, Failure> {
+    if let Some(count) = arguments.random {
+        return at_random(arguments, count);
+    }
     let report = Report::new(select(arguments)?);
     let text = if arguments.json { json(&report)? } else { table::markdown(&report) };
     let broken: Vec<&str> = report.records.iter().filter(|r| r.outcome == Outcome::Broken).map(|r| &*r.name).collect();
@@ -35,6 +48,18 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
         return Ok(text);
     }
     Err(Failure::Incomplete { text, reason: format!("not as expected: {}", broken.join("; ")), status: 1 })
+}
+
+/// The study of random scenes.
+fn at_random(arguments: &Arguments, count: usize) -> Result<String, Failure> {
+    let report = random::run(arguments.seed, count);
+    if let Some(path) = &arguments.out {
+        let folder = Folder::with_room(path, 1_000_000)?;
+        for short in report.short() {
+            folder.write(&format!("{:05}.toml", short.index), &format!("# {}\n{}", short.reason, short.text))?;
+        }
+    }
+    if arguments.json { json(&report) } else { Ok(report.markdown()) }
 }
 
 fn select(arguments: &Arguments) -> Result<Vec<Record>, Failure> {

@@ -23,6 +23,7 @@ mod locking;
 mod materials;
 mod optimizer;
 mod oracle;
+mod random;
 mod record;
 mod scenes;
 mod table;

@@ -1,0 +1,182 @@
+//! The paths to a state of a random scene, and what is found of each.
+
+use crate::stability::random::cone;
+use contact::WorkEstimate;
+use contact::contact_shape::{AnySolver, SolverKind};
+use contact::direct::{CompliantContact, DirectSolver};
+use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
+use contact::error::ContactError;
+use contact::linear::vector::norm;
+use contact::tfeti::PreconditionerKind;
+use scene_file::Case;
+use std::sync::Arc;
+
+/// Exponent of Θ.
+const EXPONENT: i32 = 4;
+/// Share of the load below which contact forces are rounding.
+const NOTHING: f64 = 1e-6;
+/// Roundings of the gaps that jumps may differ by.
+const JUMP_ROUNDINGS: f64 = 50.0;
+/// Relative residual asked of states.
+const TOLERANCE: f64 = 1e-12;
+
+/// A state that a path found.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// Who found it.
+    pub path: String,
+    /// Θ.
+    pub objective: f64,
+    /// Largest residual, computed anew from the forces.
+    pub residual: f64,
+    /// Estimated floating-point operations.
+    pub operations: f64,
+    /// Whether the state may not be unique.
+    pub may_not_be_unique: bool,
+}
+
+/// A path's state, or why it found none.
+pub type Outcome = Result<Found, String>;
+
+/// The problem of a random scene with all that its paths share.
+pub struct Examined {
+    problem: Arc<ContactProblem>,
+    controls: Vec<f64>,
+    /// Operations per part of a state.
+    pub estimate: WorkEstimate,
+    contact: Result<CompliantContact, ContactError>,
+    /// Unit of Θ: that of pressures of the size of the load's rounding.
+    pub smallest: f64,
+}
+
+impl Examined {
+    /// Prepares a case.
+    ///
+    /// # Errors
+    /// In words, when the scene describes no problem.
+    pub fn new(case: &Case) -> Result<Self, String> {
+        let words = |error: contact::error::SceneError| error.to_string();
+        let problem = Arc::new(ContactProblem::new(case.scene.clone()).map_err(words)?);
+        let points: usize = case.scene.control_points.iter().product();
+        let controls = case.start.clone().unwrap_or_else(|| vec![case.scene.start_height; points]);
+        let contact = DirectSolver::new(Arc::clone(&problem)).and_then(|solver| solver.contact(&controls));
+        let base: f64 = case.scene.size.iter().product();
+        let smallest = contact.as_ref().map_or(0.0, |contact| (NOTHING * contact.load / base).powi(EXPONENT));
+        Ok(Self { smallest, controls, estimate: WorkEstimate::of(&case.scene), contact, problem })
+    }
+
+    /// Whether rigid statics allow an equilibrium.
+    pub fn has_statics(&self) -> bool {
+        !matches!(self.contact, Err(ContactError::NoEquilibrium { .. } | ContactError::InvertedElement { .. }))
+    }
+
+    /// Relative change of Θ, by direct condensation, when the heights change by their rounding.
+    pub fn rounding(&self) -> f64 {
+        let objective = |factor: f64| {
+            let controls: Vec<f64> = self.controls.iter().map(|height| height * factor).collect();
+            self.at(SolverKind::Direct, &controls).map_or(f64::NAN, |found| found.objective)
+        };
+        let (here, there) = (objective(1.0), objective(1.0 + 4.0 * f64::EPSILON));
+        (here - there).abs() / here.abs().max(f64::MIN_POSITIVE)
+    }
+
+    /// The state by a contact solver.
+    pub fn by(&self, kind: SolverKind) -> Outcome {
+        self.at(kind, &self.controls)
+    }
+
+    fn at(&self, kind: SolverKind, controls: &[f64]) -> Outcome {
+        let solver = AnySolver::new(Arc::clone(&self.problem), kind, PreconditionerKind::default());
+        let solved = solver.and_then(|solver| {
+            let state = solver.solve(controls, None, TOLERANCE)?;
+            let friction = self.problem.boundary.has_friction();
+            let contraction = if friction { solver.estimate_contraction(&state.solution, 20).ok() } else { None };
+            Ok((state, contraction))
+        });
+        let (state, contraction) = solved.map_err(|error| error.to_string())?;
+        Ok(Found {
+            path: format!("{kind:?}, {:?}", state.solver),
+            objective: self.objective(&state.forces.normal),
+            residual: self.residual(&state.forces),
+            operations: self.estimate.operations(state.solver, &state.work()),
+            may_not_be_unique: contraction.is_some_and(|factor| factor >= 1.0),
+        })
+    }
+
+    /// The state by cone programs, brought to rounding by Newton's method from there.
+    pub fn by_cone_programs(&self) -> Outcome {
+        self.contact.as_ref().map_err(ToString::to_string)?;
+        let solver = DirectSolver::new(Arc::clone(&self.problem));
+        let contact = solver.and_then(|solver| solver.contact(&self.controls));
+        let mut contact = contact.map_err(|error| error.to_string())?;
+        let near = cone::equilibrium(&contact).ok_or("the cone program was not solved")?;
+        let unknowns = contact.newton_from(&near).ok_or("Newton's method from the cone program did not converge")?;
+        let (forces, _) = contact.dimensional(&unknowns);
+        let normal: Vec<f64> = self.problem.boundary.points.iter().map(|point| forces[point.start].max(0.0)).collect();
+        let residual = norm(&contact.residual(&unknowns, 0.0).0);
+        let objective = self.objective(&normal);
+        Ok(Found {
+            path: "cone programs".into(),
+            objective,
+            residual,
+            operations: f64::INFINITY,
+            may_not_be_unique: false,
+        })
+    }
+
+    /// Θ of normal forces.
+    fn objective(&self, normal: &[f64]) -> f64 {
+        let points = self.problem.boundary.points.iter();
+        points.zip(normal).map(|(point, force)| (force.max(0.0) / point.area).powi(EXPONENT)).sum()
+    }
+
+    /// The residual of given forces in the problem condensed anew: equilibrium of the bodies, contact law at every node.
+    fn residual(&self, forces: &ContactForces) -> f64 {
+        let Ok(contact) = &self.contact else { return f64::NAN };
+        let (boundary, length) = (&self.problem.boundary, contact.unit * contact.load);
+        let mut unknowns = vec![0.0; contact.row_count()];
+        let mut jumps = vec![0.0; contact.row_count()];
+        for (index, point) in boundary.points.iter().enumerate() {
+            unknowns[point.start] = forces.normal[index] / contact.load;
+            jumps[point.start] = forces.opening[index] / length;
+            for (offset, &tangent) in point.tangents.iter().enumerate() {
+                unknowns[point.start + 1 + offset] = forces.tangential[index][tangent] / contact.load;
+                jumps[point.start + 1 + offset] = forces.slip[index][tangent] / length;
+            }
+        }
+        // The amplitudes that explain the jumps best. The columns of R are orthonormal up to rounding: a few passes.
+        let forces = unknowns.clone();
+        unknowns.resize(forces.len() + contact.resultant.len(), 0.0);
+        let mut explained = contact.jumps(&unknowns, 0.0);
+        for _pass in 0..4 {
+            for column in 0..contact.resultant.len() {
+                let rest = |row: usize| jumps[row] - explained[row];
+                let share: f64 = (0..forces.len()).map(|row| contact.motions[(row, column)] * rest(row)).sum();
+                unknowns[forces.len() + column] += share;
+            }
+            explained = contact.jumps(&unknowns, 0.0);
+        }
+        let largest = |values: &mut dyn Iterator<Item = f64>| {
+            values.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b.abs()) })
+        };
+        let defect = largest(&mut explained.iter().zip(&jumps).map(|(a, b)| a - b));
+        let amplitudes = unknowns[contact.row_count()..].iter();
+        let terms = largest(&mut contact.constant.iter().chain(amplitudes).copied());
+        let rounding = JUMP_ROUNDINGS * f64::EPSILON * terms;
+        let mut law = 0.0_f64;
+        for point in &boundary.points {
+            let range = point.start..point.start + point.row_count();
+            let argument: Vec<f64> = range.clone().map(|row| forces[row] + jumps[row]).collect();
+            let radius = boundary.friction * argument[0].max(0.0);
+            let length = argument[1..].iter().map(|x| x * x).sum::<f64>().sqrt();
+            let factor = if length > radius { radius / length } else { 1.0 };
+            law = law.max((forces[range.start] - argument[0].max(0.0)).abs());
+            for (row, x) in range.skip(1).zip(&argument[1..]) {
+                law = law.max((forces[row] - if argument[0] > 0.0 { factor * x } else { 0.0 }).abs());
+            }
+        }
+        let balance =
+            contact.residual(&unknowns, 0.0).0[contact.row_count()..].iter().map(|r| r.abs()).fold(0.0, f64::max);
+        if defect > rounding { law.max(balance).max(defect) } else { law.max(balance) }
+    }
+}
