@@ -7,8 +7,8 @@
 
 use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{
-    ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, Sensitivities, SolvedBody,
-    SolverState,
+    Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, MAX_RESIDUAL,
+    Sensitivities, SolvedBody, SolverState,
 };
 use crate::error::ContactError;
 use crate::memory;
@@ -23,6 +23,9 @@ use std::sync::{Arc, OnceLock};
 const MAX_CONDENSED_BYTES: f64 = 4e9;
 /// Products with F that total FETI is always allowed: states of the smallest scenes take some tens.
 const MIN_PRODUCTS: usize = 100;
+/// Share of the largest residual of a state above which the state of total FETI is found anew by direct condensation: the two
+/// measure forces and lengths in different units, and a defect of the gluing grows along a slender body.
+const COMFORTABLE_SHARE: f64 = 0.01;
 /// Poisson's ratio from which total FETI takes hundreds of products and more.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.499;
 /// Longest over shortest edge of a brick from which total FETI takes hundreds of products and more.
@@ -189,6 +192,14 @@ impl AutoSolver {
         }
     }
 
+    /// Sensitivities at a state of total FETI by direct condensation: where the adjoint on TFETI does not converge.
+    fn sensitivities(&self, state: &TornState, direction: &[f64]) -> Result<Sensitivities, ContactError> {
+        let configuration = Configuration::of(&self.problem, state.blocks().to_vec())?;
+        let direct = self.direct()?;
+        let state = direct.solve_configuration(configuration, None, 0.0)?;
+        direct.sensitivities(&state.solution, direction, 0.0)
+    }
+
     fn torn_then_direct(
         &self,
         controls: &[f64],
@@ -196,7 +207,10 @@ impl AutoSolver {
         tolerance: f64,
     ) -> Result<ContactState<AnyState>, ContactError> {
         let failed = match self.torn()?.attempt(controls, start, tolerance, self.max_products) {
-            Ok(state) => return Ok(state.map(AnyState::from)),
+            Ok(state) => match (comfortable(&state, tolerance), self.max_products) {
+                (Err(error), Some(_)) => Failed { error: Box::new(error), work: state.work() },
+                _ => return Ok(state.map(AnyState::from)),
+            },
             Err(failed) if self.max_products.is_none() || failed.error.is_about_the_problem() => {
                 return Err(*failed.error);
             }
@@ -211,6 +225,16 @@ impl AutoSolver {
             Err(error) => Err(unsolved(failed, error)),
         }
     }
+}
+
+/// Refuses a state whose residuals leave no room for how another path would measure them.
+fn comfortable(state: &ContactState<TornState>, tolerance: f64) -> Result<(), ContactError> {
+    let residuals = state.forces.residuals;
+    let allowed = tolerance.max(COMFORTABLE_SHARE * MAX_RESIDUAL);
+    if residuals.largest() <= allowed {
+        return Ok(());
+    }
+    Err(ContactError::Inaccurate { residuals: residuals.to_string(), largest: residuals.largest(), allowed })
 }
 
 /// Why total FETI would be slow for a scene, if it would.
@@ -287,7 +311,10 @@ impl ContactSolver for AnySolver {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
         match state {
-            AnyState::Torn(state) => self.torn()?.sensitivities(state, direction, tolerance),
+            AnyState::Torn(state) => match (self.torn()?.sensitivities(state, direction, tolerance), self) {
+                (Err(_), Self::Auto(solver)) if solver.max_products.is_some() => solver.sensitivities(state, direction),
+                (result, _) => result,
+            },
             AnyState::Direct(state) => self.direct()?.sensitivities(state, direction, tolerance),
         }
     }

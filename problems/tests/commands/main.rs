@@ -20,6 +20,7 @@ mod compare;
 mod contact3d;
 mod fuzz;
 mod long_runs;
+mod loosely_held;
 mod pages_run;
 mod pictures;
 mod pins;

@@ -119,6 +119,33 @@ impl DirectSolver {
         Ok((Some(Arc::clone(self.fixed.get_or_init(|| body))), 1))
     }
 
+    /// The state of a shape to a relative residual, from contact displacements of a similar shape or from nothing.
+    pub(crate) fn solve_configuration(
+        &self,
+        configuration: Configuration,
+        start: Option<&[f64]>,
+        tolerance: f64,
+    ) -> Result<ContactState<DirectState>, ContactError> {
+        let (mut contact, block, load, factorizations) = self.condense(configuration)?;
+        Stage::Contact.enter();
+        let (solution, newton_steps) =
+            if load > 0.0 { Self::equilibrium(&mut contact, start, tolerance)? } else { (contact.at_rest(), 0) };
+        let state = DirectState { block, contact, solution, load };
+        let forces = state.forces();
+        forces.residuals.check(tolerance)?;
+        Ok(ContactState {
+            forces,
+            load,
+            solver: SolverKind::Direct,
+            reason: None,
+            contraction: None,
+            stages: None,
+            work: Work { newton_steps, factorizations, ..Work::default() },
+            adjoint_applications: AtomicUsize::new(0),
+            solution: state,
+        })
+    }
+
     /// The equilibrium of a condensed shape.
     fn equilibrium(
         contact: &mut CompliantContact,
@@ -178,24 +205,7 @@ impl ContactSolver for DirectSolver {
             Some(ContactWarmStart::Displacements(displacements)) => Some(displacements.as_slice()),
             _ => None,
         };
-        let (mut contact, block, load, factorizations) = self.condense(Configuration::new(&self.problem, controls)?)?;
-        Stage::Contact.enter();
-        let (solution, newton_steps) =
-            if load > 0.0 { Self::equilibrium(&mut contact, start, tolerance)? } else { (contact.at_rest(), 0) };
-        let state = DirectState { block, contact, solution, load };
-        let forces = state.forces();
-        forces.residuals.check(tolerance)?;
-        Ok(ContactState {
-            forces,
-            load,
-            solver: SolverKind::Direct,
-            reason: None,
-            contraction: None,
-            stages: None,
-            work: Work { newton_steps, factorizations, ..Work::default() },
-            adjoint_applications: AtomicUsize::new(0),
-            solution: state,
-        })
+        self.solve_configuration(Configuration::new(&self.problem, controls)?, start, tolerance)
     }
 
     fn sensitivities(

@@ -24,8 +24,15 @@ impl Configuration {
     /// # Errors
     /// [`ContactError::InvertedElement`], [`ContactError::NoEquilibrium`].
     pub fn new(problem: &ContactProblem, controls: &[f64]) -> Result<Self, ContactError> {
+        Self::of(problem, problem.blocks(controls)?)
+    }
+
+    /// The configuration of given bodies, lower first.
+    ///
+    /// # Errors
+    /// [`ContactError::NoEquilibrium`].
+    pub fn of(problem: &ContactProblem, blocks: Vec<Block>) -> Result<Self, ContactError> {
         Stage::Equilibrium.enter();
-        let blocks = problem.blocks(controls)?;
         let rigid = problem.rigid_scene(&blocks);
         let grounded = rigid.analyse(&problem.boundary)?;
         let gaps = problem.gaps(&blocks[0]);

@@ -260,10 +260,12 @@ impl TornSolver {
             *scaled = physical / nu;
         }
         let iterate = &state.solution.iterate;
-        // A sensitivity of J over the height of the body; below its rounding, no residual means anything.
+        // A sensitivity of J over the height of the body, or over its displacement where that is larger; below the rounding of
+        // this scale, no residual means anything.
         let heights = &state.blocks[0].upper;
         let height = heights.iter().sum::<f64>() / heights.len() as f64;
-        let natural = dot(scaled.contact(), iterate.multipliers.contact()).abs() / (contact.stiffness * height);
+        let natural =
+            dot(scaled.contact(), iterate.multipliers.contact()).abs() / (contact.stiffness * height + contact.load);
         let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, tolerance, natural)?;
         let terms = contact.weighted_residuals(iterate, &adjoint, &scaled);
         let value_error = ValueError::from_terms(&terms, scaled.contact(), iterate.multipliers.contact());
@@ -339,6 +341,11 @@ impl TornState {
     /// λ over all rows, to start a similar problem from.
     pub fn multipliers(&self) -> &[f64] {
         &self.solution.iterate.multipliers
+    }
+
+    /// The bodies, lower first.
+    pub(crate) fn blocks(&self) -> &[Block] {
+        &self.blocks
     }
 
     /// Displacements over the torn dofs of this process (zero elsewhere), mm.

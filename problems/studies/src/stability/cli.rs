@@ -56,7 +56,7 @@ fn at_random(arguments: &Arguments, count: usize) -> Result<String, Failure> {
     if let Some(path) = &arguments.out {
         let folder = Folder::with_room(path, 1_000_000)?;
         for short in report.short() {
-            folder.write(&format!("{:05}.toml", short.index), &format!("# {}\n{}", short.reason, short.text))?;
+            folder.write(&format!("{:05}.toml", short.index), format!("# {}\n{}", short.reason, short.text))?;
         }
     }
     if arguments.json { json(&report) } else { Ok(report.markdown()) }

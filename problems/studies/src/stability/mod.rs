@@ -33,4 +33,5 @@ mod units;
 pub use case::{Case, all};
 pub use cli::{Arguments, run};
 pub use locking::field_error;
+pub use random::run as random_scenes;
 pub use record::{Counts, Outcome, Path, Record, Report};

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
 use std::sync::Arc;
-use studies::stability::{Counts, Outcome, Report, all, field_error};
+use studies::stability::{Counts, Outcome, Report, all, field_error, random_scenes};
 
 fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
     let method = DualMethod::Newton(Recycling::default());
@@ -182,4 +182,13 @@ fn random_scenes_are_certified_or_refused_with_a_cause() {
     let (certified_states, refused) = (certified_states.get(), refused.get());
     println!("{certified_states} states certified, {refused} refused as beyond double precision");
     assert!(f64::from(refused) <= REFUSED * f64::from(certified_states + refused), "{refused} refused");
+}
+
+/// 2000 scenes are drawn in the test `long`.
+#[test]
+fn random_scenes_are_solved_by_the_default_where_any_path_solves_them() {
+    let report = random_scenes(7, 60);
+    let counts = &report.counts;
+    assert_eq!([counts.wrong, counts.panics, counts.beyond_cost, counts.disagreeing], [0; 4], "{:?}", report.short());
+    assert!(counts.solvable >= 45 && counts.solved == counts.solvable, "{:?}", report.short());
 }

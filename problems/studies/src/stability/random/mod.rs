@@ -31,34 +31,35 @@ const CONE_EVERY: usize = 10;
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Counts {
     /// Scenes drawn.
-    scenes: usize,
+    pub scenes: usize,
     /// States that any path returned.
-    states: usize,
+    pub states: usize,
     /// States whose residual, computed anew, is above 1e-8.
-    wrong: usize,
+    pub wrong: usize,
     /// Scenes on which a path panicked.
-    panics: usize,
+    pub panics: usize,
     /// Scenes that any path solves.
-    solvable: usize,
+    pub solvable: usize,
     /// Scenes that the default solves.
-    solved: usize,
+    pub solved: usize,
     /// Scenes without friction that any path solves.
-    frictionless_solvable: usize,
+    pub frictionless_solvable: usize,
     /// Scenes without friction that the default solves.
-    frictionless_solved: usize,
+    pub frictionless_solved: usize,
     /// Scenes on which the default cost more than allowed.
-    beyond_cost: usize,
+    pub beyond_cost: usize,
     /// Scenes on which two paths differ without a warning that the state may not be unique.
-    disagreeing: usize,
+    pub disagreeing: usize,
     /// Scenes that rigid statics refuse.
-    no_equilibrium: usize,
+    pub no_equilibrium: usize,
 }
 
 /// The report of a study.
 #[derive(Debug, Serialize)]
 pub struct Report {
+    /// Counts of all scenes.
     #[serde(flatten)]
-    counts: Counts,
+    pub counts: Counts,
     seconds: f64,
     families: Vec<(String, Counts)>,
     /// Everything that fell short: name, reason, scene file.

@@ -76,8 +76,9 @@ impl Examined {
             let controls: Vec<f64> = self.controls.iter().map(|height| height * factor).collect();
             self.at(SolverKind::Direct, &controls).map_or(f64::NAN, |found| found.objective)
         };
-        let (here, there) = (objective(1.0), objective(1.0 + 4.0 * f64::EPSILON));
-        (here - there).abs() / here.abs().max(f64::MIN_POSITIVE)
+        let values = [0.0, 4.0, -4.0].map(|roundings| objective(1.0 + roundings * f64::EPSILON));
+        let (low, high) = values.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(*v), high.max(*v)));
+        (high - low) / high.max(f64::MIN_POSITIVE)
     }
 
     /// The state by a contact solver.
@@ -90,6 +91,12 @@ impl Examined {
         let solved = solver.and_then(|solver| {
             let state = solver.solve(controls, None, TOLERANCE)?;
             let friction = self.problem.boundary.has_friction();
+            let exponent = f64::from(EXPONENT);
+            let mut dual = vec![0.0; self.problem.boundary.row_count];
+            for (point, force) in self.problem.boundary.points.iter().zip(&state.forces.normal) {
+                dual[point.start] = exponent * (force.max(0.0) / point.area).powi(EXPONENT - 1) / point.area;
+            }
+            solver.sensitivities(&state.solution, &dual, 1e-11)?;
             let contraction = if friction { solver.estimate_contraction(&state.solution, 20).ok() } else { None };
             Ok((state, contraction))
         });

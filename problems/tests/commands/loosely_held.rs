@@ -1,0 +1,53 @@
+//! Scenes that few nodes hold, found wrong or refused by an independent check: the default finds their states.
+//!
+//! Θ comes from other programs, with residuals ≤ 5e-10: a convex program without friction, a contact-dynamics solver with it.
+
+use std::path::Path;
+use testset::kit::{errors, json, run};
+
+const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
+
+/// Scene and its Θ; three equilibria for the last.
+const SCENES: [(&str, &[f64]); 12] = [
+    ("two_bodies_q028", &[20700.3749957751]),
+    ("two_bodies_q035", &[2.134449071975984e-2]),
+    ("two_bodies_r11", &[4232.943473874128]),
+    ("sphere_r08", &[4.972685578e-13]),
+    ("sphere_r38", &[123.78134710212245]),
+    ("tilting_without_friction", &[2687.3856]),
+    ("tilting_with_friction", &[1.679616e10]),
+    ("few_nodes_000", &[1.4113142535859e-41]),
+    ("few_nodes_023", &[7.132515028314e-33]),
+    ("few_nodes_045", &[4.0498864713750e-4]),
+    ("few_nodes_057", &[5.343651916988e-12]),
+    ("few_nodes_143", &[1.4969438510865e11, 3.468210860384e6, 2.985668394055e6]),
+];
+
+#[test]
+fn the_default_finds_the_states_of_loosely_held_bodies() {
+    for (name, values) in SCENES {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/data/loosely_held/{name}.toml"));
+        let result = json(CONTACT, &[&file.display().to_string(), "evaluate", "--json"]);
+        let objective = result["objective"].as_f64().unwrap();
+        let error = values.iter().map(|value| (objective / value - 1.0).abs()).fold(f64::INFINITY, f64::min);
+        assert!(error <= 1e-7, "{name}: {objective:e}, relative error {error:.1e}");
+        let residuals = result["residuals"].as_object().unwrap();
+        assert!(residuals.values().all(|residual| residual.as_f64().unwrap() <= 1e-8), "{name}: {residuals:?}");
+        let warned = result["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "not-unique");
+        assert_eq!(warned, values.len() > 1, "{name}: {}", result["warnings"]);
+        assert_eq!(result["solver_reason"].is_null(), result["solver"] == "newton", "{name}");
+    }
+}
+
+/// Total FETI alone used to return this state with a resultant of 5e-3 of the load.
+#[test]
+fn a_state_that_does_not_balance_the_load_is_refused_with_its_residuals() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/loosely_held/two_bodies_q028.toml");
+    let file = file.display().to_string();
+    let output = run(CONTACT, &[&file, "evaluate", "--solver", "newton"]);
+    let message = errors(&output);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    for words in ["are no state", "equilibrium 4.7e-3", "at most 1.0e-8"] {
+        assert!(message.contains(words), "{words:?} not in {message}");
+    }
+}
