@@ -52,7 +52,7 @@ pub enum MeasureName {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SolverSection {
-    /// Newton on total FETI, direct condensation, or successive approximations on total FETI.
+    /// Total FETI with direct condensation where that is needed, or one method alone: Newton on total FETI, direct condensation, successive approximations on total FETI.
     pub kind: SolverKind,
     /// Preconditioner of the dual operator of total FETI.
     pub preconditioner: PreconditionerKind,
