@@ -12,6 +12,9 @@ pub enum Termination {
     Stationary {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
+        /// Θ declared convex: how far Θ can lie above its minimum within reach, in units of Θ.
+        #[serde(default)]
+        gap: Option<f64>,
     },
     /// The model promises less than the tolerance, again after local restarts or because Θ looks convex, but some active
     /// cuts lie away from the center: optimal if Θ is convex there, probably stationary otherwise.
@@ -95,7 +98,10 @@ impl Termination {
 impl fmt::Display for Termination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Stationary { radius } => {
+            Self::Stationary { gap: Some(gap), .. } => {
+                write!(f, "stationary, confirmed: the cuts of the convex objective leave {gap:.1e} to its minimum")
+            }
+            Self::Stationary { radius, gap: None } => {
                 write!(f, "stationary, confirmed by cuts within relative distance {radius:.1e}")
             }
             Self::StationaryUnconfirmed { radius } => {

@@ -52,7 +52,11 @@ impl Model {
         for (cut, (&error, &distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(&distances)) {
             // A value that may be too high by its promised error must not put the cut above Θ.
             let promised = if cut.id == state.center_id { 0.0 } else { cut.excess() + state.center_error_bound() };
-            let offset = (error + c * distance).max(error.abs()) + promised;
+            let offset = match config.convexity {
+                // A cut above a convex Θ by no more than what its value leaves open is put back to it.
+                Convexity::Convex => (error + promised).max(0.0),
+                Convexity::Unknown => (error + c * distance).max(error.abs()) + promised,
+            };
             let tilt = state.norm.lower_index(&(&state.center - &cut.point));
             model.slopes.push(if c > 0.0 { &cut.subgradient - tilt * (2.0 * c) } else { cut.subgradient.clone() });
             model.offsets.push(offset);
