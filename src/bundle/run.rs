@@ -109,7 +109,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             return Continue(());
         }
         Break(if self.noise_level() > 0.0 {
-            Termination::NoiseLimit { estimate: self.noise_level().max(self.state.decrease_bound(proposal)) }
+            Termination::NoiseLimit { estimate: self.noise_level().max(self.state.decrease_bound(proposal, &self.set)) }
         } else {
             Termination::StepTooShort { predicted_decrease: proposal.predicted_decrease }
         })

@@ -14,14 +14,14 @@ use super::config::BundleTrustConfig;
 use super::cut::Cut;
 use super::proposers::proposal::Proposal;
 use super::state::State;
-use crate::Vector;
+use crate::{Polyhedron, Vector};
 
 /// ε: sizes below this share of what a variable has passed through are not told from zero.
 const LEAST_SHARE: f64 = 1e-8;
 /// The same for the length of all variables together.
 const LEAST_LENGTH_SHARE: f64 = 1e-2;
 /// The same for values, as a share of their variation.
-const LEAST_VALUE_SHARE: f64 = 1e-5;
+const LEAST_VALUE_SHARE: f64 = 1e-6;
 /// Values beyond this many times their variation carry a shift.
 const MAX_VALUE_SHARE: f64 = 10.0;
 /// Where values carry a shift, the variation alone tells the scale, and only this share of it counts: without a shift the values
@@ -54,7 +54,7 @@ impl State {
             if size > 0.0 {
                 variation *= (MAX_VALUE_SHARE * variation / size).clamp(SHIFTED_SHARE, 1.0);
             }
-            let least = LEAST_VALUE_SHARE * drop.min(self.linear_variation(&self.reach()));
+            let least = LEAST_VALUE_SHARE * drop.min(self.active_variation(&self.reach()));
             size.clamp(least.min(variation), variation)
         })
     }
@@ -69,8 +69,17 @@ impl State {
         terms.get(terms.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// ẽ + Σ |z̃_i| reach_i: what a convex Θ can still fall within reach.
-    pub(crate) fn decrease_bound(&self, proposal: &Proposal) -> f64 {
-        proposal.cut_error + proposal.slack_error + proposal.aggregate_sizes.dot(&self.reach())
+    /// Σ λ_j Σ |g_ji| length_i: the terms that cancel in the aggregate subgradient.
+    pub(crate) fn active_variation(&self, lengths: &Vector) -> f64 {
+        let cuts = self.bundle.cuts().iter().filter(|cut| cut.is_active());
+        cuts.map(|cut| cut.multiplier * cut.subgradient.abs().dot(lengths)).sum()
+    }
+
+    /// ẽ + Σ |z̃_i| reach_i: what a convex Θ can still fall within reach and in the box.
+    pub(crate) fn decrease_bound(&self, proposal: &Proposal, set: &Polyhedron) -> f64 {
+        let farthest = |i: usize| (set.upper()[i] - self.center[i]).max(self.center[i] - set.lower()[i]);
+        let reach = self.reach();
+        let falls = proposal.aggregate_sizes.iter().enumerate().map(|(i, slope)| slope * reach[i].min(farthest(i)));
+        proposal.cut_error + proposal.slack_error + falls.sum::<f64>()
     }
 }

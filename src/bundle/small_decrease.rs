@@ -23,8 +23,8 @@ const MAX_REMAINING_DECREASES: f64 = 1.0 / LEAST_STEP_LENGTH;
 const MAX_CONVEX_DECREASES: f64 = 10.0;
 /// The bound of a convex Θ that ends a run with noise, in units of the noise of two values.
 const MAX_NOISY_DECREASES: f64 = 4.0;
-/// Largest aggregate subgradient of a confirmed end, relative to the steepest cut.
-const MAX_AGGREGATE_SHARE: f64 = 1e-2;
+/// Times the bound that the linearizations of active cuts must vary within reach.
+const LEAST_SEEN_VARIATION: f64 = 10.0;
 /// Noise below this share of the wanted decrease does not matter.
 const NEGLIGIBLE_NOISE: f64 = 1e-2;
 /// Noise below this share of the wanted decrease is not worth a word.
@@ -71,10 +71,10 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.method.config.tolerance * self.state.natural_scale(&self.method.config)
     }
 
-    /// Noise of the oracle beyond rounding and this share of the wanted decrease.
+    /// Noise of the oracle beyond this share of the wanted decrease, or rounding where that hides more.
     fn noise_above(&self, share: f64) -> Option<f64> {
         let noise = self.noise_level();
-        (noise > share * self.wanted_decrease() + self.state.rounding()).then_some(noise)
+        (noise > share * self.wanted_decrease()).then(|| noise.max(self.state.rounding()))
     }
 
     /// The word for a point that the model calls stationary up to what remains, if there is one.
@@ -82,7 +82,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let (wanted, rounding) = (self.wanted_decrease(), self.state.rounding());
         if let Some(noise) = self.noise_above(UNMENTIONED_NOISE) {
             Some(Termination::NoiseLimit { estimate: noise.max(remaining) })
-        } else if remaining + rounding <= allowed * wanted {
+        } else if remaining == 0.0 || remaining + rounding <= allowed * wanted {
             Some(confirmed)
         } else {
             (rounding > wanted).then(|| Termination::NoiseLimit { estimate: rounding.max(remaining) })
@@ -140,7 +140,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         if proposal.predicted_decrease > limit {
             return Continue(proposal);
         }
-        let mut least = (self.meaningful_bound(&proposal), self.state.weight);
+        let mut least = (self.meaningful_bound(&proposal, limit), self.state.weight);
         let mut worthwhile = (proposal.predicted_decrease > small).then_some(self.state.weight);
         let farthest = self.state.norm.length(&self.state.reach());
         for _ in 0..self.method.config.attenuation_steps {
@@ -149,7 +149,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             }
             let Some(next) = self.lower_weight() else { break };
             proposal = next;
-            let bound = self.meaningful_bound(&proposal);
+            let bound = self.meaningful_bound(&proposal, limit);
             if bound < least.0 {
                 least = (bound, self.state.weight);
             }
@@ -168,13 +168,13 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         Break(self.word((least.0, 2.0 * MAX_CONVEX_DECREASES), confirmed).unwrap_or(uncertain))
     }
 
-    /// The bound of the decrease within reach; ∞ as long as the aggregate subgradient is not small beside those it is made of, so
-    /// that a reach which is a rounding of zero proves nothing.
-    fn meaningful_bound(&self, proposal: &Proposal) -> f64 {
-        let state = &self.state;
-        let slopes = state.bundle.cuts().iter().map(|cut| state.norm.dual_length(&cut.subgradient));
-        let small = proposal.aggregate_norm <= MAX_AGGREGATE_SHARE * slopes.fold(0.0, f64::max);
-        if small { state.decrease_bound(proposal) } else { f64::INFINITY }
+    /// The bound of the decrease within reach; ∞ where the linearizations do not vary by much more than the limit over that reach: a
+    /// reach that is a rounding of zero proves nothing.
+    fn meaningful_bound(&self, proposal: &Proposal, limit: f64) -> f64 {
+        let bound = self.state.decrease_bound(proposal, &self.set);
+        let seen = self.state.active_variation(&self.state.reach());
+        let meaningful = proposal.aggregate_norm == 0.0 || seen >= LEAST_SEEN_VARIATION * limit;
+        if meaningful { bound } else { f64::INFINITY }
     }
 
     /// Ends the run if nothing is left to try.
@@ -182,7 +182,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let radius = self.relative_radius(proposal);
         let near = radius <= CONFIRMING_RADIUS;
         let confirmed = Termination::Stationary { radius, gap: None };
-        if let Some(word) = self.word((self.state.decrease_bound(proposal), MAX_REMAINING_DECREASES), confirmed)
+        if let Some(word) =
+            self.word((self.state.decrease_bound(proposal, &self.set), MAX_REMAINING_DECREASES), confirmed)
             && (near || matches!(word, Termination::NoiseLimit { .. }))
         {
             return Break(word);
