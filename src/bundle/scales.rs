@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! reach_i = max(|x̂_i|, |x̂_i − x⁰_i|)        size_i = max(|x̂_i|, ε reach_i)
-//! variation = min( highest value seen − Θ(x̂),  max Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂ )
-//! scale     = |Θ(x̂)| clamped to [ε variation, variation]
+//! variation = min( highest value seen − Θ(x̂),  median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂ )
+//! scale     = |Θ(x̂)| clamped to [ε min(highest − Θ(x̂), Σ_j λ_j Σ_i |g_ji| reach_i), variation]
 //! bound     = ẽ + Σ_i |z̃_i| reach_i ≥ Θ(x̂) − Θ(y)        if Θ is convex and |y_i − x̂_i| ≤ reach_i
 //! ```
 //! The variation does not change if Θ is shifted; the sums Σ |g_i| size_i and the bound do not depend on the units of the

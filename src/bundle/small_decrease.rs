@@ -21,6 +21,8 @@ const LEAST_STEP_LENGTH: f64 = 1e-2;
 const MAX_REMAINING_DECREASES: f64 = 1.0 / LEAST_STEP_LENGTH;
 /// The same where Θ is convex, so that the bound itself ends the run.
 const MAX_CONVEX_DECREASES: f64 = 10.0;
+/// The bound of a convex Θ, rounding included, up to which its end counts as confirmed, in wanted decreases.
+const MAX_BOUND_DECREASES: f64 = 2.0 * MAX_CONVEX_DECREASES;
 /// The bound of a convex Θ that ends a run with noise, in units of the noise of two values.
 const MAX_NOISY_DECREASES: f64 = 4.0;
 /// Times the bound that the linearizations of active cuts must vary within reach.
@@ -29,6 +31,16 @@ const LEAST_SEEN_VARIATION: f64 = 10.0;
 const NEGLIGIBLE_NOISE: f64 = 1e-2;
 /// Noise below this share of the wanted decrease is not worth a word.
 const UNMENTIONED_NOISE: f64 = 1e-4;
+
+/// What the cuts say about the decrease within reach.
+struct WithinReach {
+    /// The least bound.
+    bound: f64,
+    /// The weight that gave it.
+    weight: f64,
+    /// The largest weight at which the predicted decrease is not small.
+    worthwhile: Option<f64>,
+}
 
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// A trial point worth an evaluation, or the reason to end.
@@ -81,7 +93,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     fn word(&self, (remaining, allowed): (f64, f64), confirmed: Termination) -> Option<Termination> {
         let (wanted, rounding) = (self.wanted_decrease(), self.state.rounding());
         if let Some(noise) = self.noise_above(UNMENTIONED_NOISE) {
-            Some(Termination::NoiseLimit { estimate: noise.max(remaining) })
+            let bound = if remaining.is_finite() { remaining } else { 0.0 };
+            Some(Termination::NoiseLimit { estimate: noise.max(bound) })
         } else if remaining == 0.0 || remaining + rounding <= allowed * wanted {
             Some(confirmed)
         } else {
@@ -132,40 +145,49 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         proposal
     }
 
-    /// Convex Θ: looks, without evaluations, for the weight at which the cuts bound the decrease within reach best. Ends the run if
-    /// that is little; otherwise the trial point comes from the largest weight at which the decrease is not small.
-    fn bound_decrease(&mut self, mut proposal: Proposal) -> ControlFlow<Termination, Proposal> {
-        let (small, noise) = (self.small(), self.noise_above(NEGLIGIBLE_NOISE));
-        let limit = noise.map_or(MAX_CONVEX_DECREASES * small, |noise| MAX_NOISY_DECREASES * noise);
+    /// Convex Θ: the cuts bound what Θ can still fall. Ends the run if that is little; otherwise the trial point comes from the
+    /// largest weight at which the decrease is not small.
+    fn bound_decrease(&mut self, proposal: Proposal) -> ControlFlow<Termination, Proposal> {
+        let noise = self.noise_above(NEGLIGIBLE_NOISE);
+        let limit = noise.map_or_else(|| MAX_CONVEX_DECREASES * self.small(), |noise| MAX_NOISY_DECREASES * noise);
         if proposal.predicted_decrease > limit {
             return Continue(proposal);
         }
-        let mut least = (self.meaningful_bound(&proposal, limit), self.state.weight);
-        let mut worthwhile = (proposal.predicted_decrease > small).then_some(self.state.weight);
+        let found = self.look_within_reach(proposal, limit);
+        let certified = found.bound <= limit;
+        self.state.weight = if certified { found.weight } else { found.worthwhile.unwrap_or(self.state.weight) };
+        let proposal = self.solve_subproblem()?;
+        if !certified {
+            return Continue(proposal);
+        }
+        let confirmed = Termination::Stationary { radius: self.relative_radius(&proposal), gap: Some(found.bound) };
+        let uncertain = Termination::NoiseLimit { estimate: found.bound.max(self.state.rounding()) };
+        Break(self.word((found.bound, MAX_BOUND_DECREASES), confirmed).unwrap_or(uncertain))
+    }
+
+    /// Looks, without evaluations, for the weight at which the cuts bound the decrease within reach best; leaves the last weight tried.
+    fn look_within_reach(&mut self, mut proposal: Proposal, limit: f64) -> WithinReach {
+        let small = self.small();
+        let worthwhile = |proposal: &Proposal| (proposal.predicted_decrease > small).then_some(proposal.weight);
+        let mut found = WithinReach {
+            bound: self.meaningful_bound(&proposal, limit),
+            weight: proposal.weight,
+            worthwhile: worthwhile(&proposal),
+        };
         let farthest = self.state.norm.length(&self.state.reach());
         for _ in 0..self.method.config.attenuation_steps {
-            if proposal.step_length >= farthest && least.0.is_finite() {
+            if proposal.step_length >= farthest && found.bound.is_finite() {
                 break;
             }
             let Some(next) = self.lower_weight() else { break };
             proposal = next;
             let bound = self.meaningful_bound(&proposal, limit);
-            if bound < least.0 {
-                least = (bound, self.state.weight);
+            if bound < found.bound {
+                (found.bound, found.weight) = (bound, proposal.weight);
             }
-            if proposal.predicted_decrease > small && worthwhile.is_none() {
-                worthwhile = Some(self.state.weight);
-            }
+            found.worthwhile = found.worthwhile.or_else(|| worthwhile(&proposal));
         }
-        let certified = least.0 <= limit;
-        self.state.weight = if certified { least.1 } else { worthwhile.unwrap_or(self.state.weight) };
-        let proposal = self.solve_subproblem()?;
-        if !certified {
-            return Continue(proposal);
-        }
-        let confirmed = Termination::Stationary { radius: self.relative_radius(&proposal), gap: Some(least.0) };
-        let uncertain = Termination::NoiseLimit { estimate: least.0.max(self.state.rounding()) };
-        Break(self.word((least.0, 2.0 * MAX_CONVEX_DECREASES), confirmed).unwrap_or(uncertain))
+        found
     }
 
     /// The bound of the decrease within reach; ∞ where the linearizations do not vary by much more than the limit over that reach: a
@@ -182,8 +204,13 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let radius = self.relative_radius(proposal);
         let near = radius <= CONFIRMING_RADIUS;
         let confirmed = Termination::Stationary { radius, gap: None };
-        if let Some(word) =
-            self.word((self.state.decrease_bound(proposal, &self.set), MAX_REMAINING_DECREASES), confirmed)
+        let remaining = match self.noise_above(UNMENTIONED_NOISE) {
+            // Where Θ is not convex, the cuts bound nothing.
+            Some(_) if self.state.nonconvex => proposal.predicted_decrease,
+            Some(noise) => self.look_within_reach(proposal.clone(), noise).bound,
+            None => self.state.decrease_bound(proposal, &self.set),
+        };
+        if let Some(word) = self.word((remaining, MAX_REMAINING_DECREASES), confirmed)
             && (near || matches!(word, Termination::NoiseLimit { .. }))
         {
             return Break(word);
