@@ -1,7 +1,7 @@
 //! The command line of the study.
 
 use crate::stability::record::{Outcome, Record, Report};
-use crate::stability::{matrix, table};
+use crate::stability::{matrix, optimizer_words, table};
 use clap::Parser;
 use problems::commands::Failure;
 use std::process::ExitCode;
@@ -16,6 +16,9 @@ pub struct Arguments {
     /// Only cases whose group or name contains this text.
     #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
+    /// What the optimizer says at the end of its runs, over the collection of test problems in all its variants; minutes.
+    #[arg(long, conflicts_with_all = ["quick", "only"])]
+    pub optimizer: bool,
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
@@ -40,6 +43,9 @@ pub fn run() -> ExitCode {
 /// Runs the cases that the arguments select; the text belongs on stdout, also when cases are broken.
 fn execute(arguments: &Arguments) -> Result<String, (String, Failure)> {
     let bare = |failure| (String::new(), failure);
+    if arguments.optimizer {
+        return optimizer_words::page(arguments.json);
+    }
     let records = select(arguments).map_err(bare)?;
     let report = Report::new(records);
     let text = if arguments.json {

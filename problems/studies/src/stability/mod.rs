@@ -4,6 +4,7 @@
 //! cli ─ matrix of cases ─┬─ judge ─ contact: scene → TotalFeti, DirectSolver, (successive approximations) → Record
 //!                        ├─ units, locking: scenes and fields compared with each other → Record
 //!                        └─ optimizer: bundle method on hostile oracles → Record
+//!     └ optimizer_words: the optimizer's last word on the collection in all its variants, held against what is true
 //! Records ─ table (Markdown) or JSON
 //! ```
 //! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a named
@@ -24,6 +25,9 @@ mod locking;
 mod materials;
 mod matrix;
 mod optimizer;
+mod optimizer_stationarity;
+mod optimizer_variants;
+mod optimizer_words;
 mod oracle;
 mod record;
 mod scenes;
@@ -35,4 +39,6 @@ pub use case::Case;
 pub use cli::{Arguments, run};
 pub use locking::{LockingError, field_error};
 pub use matrix::all;
+pub use optimizer_variants::Variant;
+pub use optimizer_words::{Word, WordRecord, WordReport, words};
 pub use record::{Counts, Outcome, Path, Record, Report};

@@ -4,7 +4,7 @@
 //! r = min |Σ λ_j g_j + Aᵀμ + ν| / max |g_j|       over the gradients at random points within ρ of x,  λ ≥ 0, Σ λ = 1
 //! ```
 
-use super::optimizer_variants::Changed;
+use crate::stability::optimizer_variants::Changed;
 use nonsmooth::qp::{EpigraphQp, EpigraphQpSolver, Metric};
 use nonsmooth::{InputError, Vector};
 use testset::kit::Random;

@@ -1,17 +1,16 @@
 //! What the optimizer says at the end of a run, held against what is true: the collection in all its variants.
 //!
-//! A word is false if it is *confirmed* above the gap and the point is not shown to be Clarke stationary, or *confirmed* or
-//! *unconfirmed* where the oracle is noisy and said so, or a *noise limit* of a convex function above ten times the noise; and
-//! if a run ends by a failure of the oracle or the subproblem above the gap although the oracle answers at the best point.
+//! A word is false if it is *confirmed* above the gap and the point is not shown to be Clarke stationary, *confirmed* where the
+//! oracle is noisy and says so, or a *noise limit* of a convex function above ten times the noise; and if a run ends by a failure of the oracle or the subproblem above the gap although the oracle answers at the best point.
 
-use super::optimizer_stationarity::is_clarke_stationary;
-use super::optimizer_variants::{Changed, Variant, variants};
+use crate::stability::optimizer_stationarity::is_clarke_stationary;
+use crate::stability::optimizer_variants::{Changed, Variant, variants};
 use nonsmooth::{
     BundleTrust, BundleTrustConfig, Convexity, InputError, NonsmoothObjective, Report, Request, Termination,
 };
+use problems::commands::Failure;
+use rayon::prelude::*;
 use serde::Serialize;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
 use testset::Problem;
 
 /// Evaluations of a run.
@@ -153,21 +152,8 @@ pub fn words(take: impl Fn(usize) -> bool) -> Result<WordReport, InputError> {
     let jobs: Vec<(&Problem, Variant)> =
         problems.iter().flat_map(|problem| variants().into_iter().map(move |variant| (problem, variant))).collect();
     let jobs: Vec<_> = jobs.into_iter().enumerate().filter(|(number, _)| take(*number)).map(|(_, job)| job).collect();
-    let (next, done) = (AtomicUsize::new(0), Mutex::new(vec![]));
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(|| {
-                while let Some((problem, variant)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)).copied() {
-                    let index = jobs.iter().position(|job| std::ptr::eq(job.0, problem) && job.1 == variant);
-                    let record = run_one(problem, variant);
-                    done.lock().unwrap_or_else(PoisonError::into_inner).push((index, record));
-                }
-            });
-        }
-    });
-    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
-    done.sort_by_key(|(index, _)| *index);
-    Ok(summarize(done.into_iter().map(|(_, record)| record).collect::<Result<_, _>>()?))
+    let records = jobs.into_par_iter().map(|(problem, variant)| run_one(problem, variant));
+    Ok(summarize(records.collect::<Result<_, _>>()?))
 }
 
 fn summarize(records: Vec<WordRecord>) -> WordReport {
@@ -194,8 +180,26 @@ fn summarize(records: Vec<WordRecord>) -> WordReport {
     }
 }
 
-/// The page of the study: totals, and how the runs of each kind of change ended.
-pub fn markdown(report: &WordReport) -> String {
+/// The page of the study, or one JSON object; a false word is a failure that keeps the text.
+///
+/// # Errors
+/// The text with the failure.
+pub fn page(json: bool) -> Result<String, (String, Failure)> {
+    let computation = |error: &dyn std::fmt::Display| (String::new(), Failure::Computation(error.to_string()));
+    let report = words(|_| true).map_err(|error| computation(&error))?;
+    let text = if json {
+        serde_json::to_string_pretty(&report).map_err(|error| computation(&error))? + "\n"
+    } else {
+        markdown(&report)
+    };
+    if report.offenders.is_empty() {
+        return Ok(text);
+    }
+    Err((text, Failure::Computation(format!("{} false words", report.offenders.len()))))
+}
+
+/// Totals, and how the runs of each kind of change ended.
+fn markdown(report: &WordReport) -> String {
     let mut text = format!(
         "{} runs, {} false confirmed, {} false failures. As they are: {} of {} convex problems confirmed, {} of {} of all; \
          evaluations of the convex ones {:.3} × those to 1e-6.\n\n",
