@@ -28,7 +28,7 @@ const MAX_NOISY_DECREASES: f64 = 4.0;
 /// Times the bound that the linearizations of active cuts must vary within reach.
 const LEAST_SEEN_VARIATION: f64 = 10.0;
 /// Noise below this share of the wanted decrease does not matter.
-const NEGLIGIBLE_NOISE: f64 = 1e-2;
+const NEGLIGIBLE_NOISE: f64 = 1e-3;
 /// Noise below this share of the wanted decrease is not worth a word.
 const UNMENTIONED_NOISE: f64 = 1e-4;
 
@@ -83,10 +83,10 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.method.config.tolerance * self.state.natural_scale(&self.method.config)
     }
 
-    /// Noise of the oracle beyond this share of the wanted decrease, or rounding where that hides more.
+    /// Noise of the oracle beyond this share of the wanted decrease.
     fn noise_above(&self, share: f64) -> Option<f64> {
         let noise = self.noise_level();
-        (noise > share * self.wanted_decrease()).then(|| noise.max(self.state.rounding()))
+        (noise > share * self.wanted_decrease()).then_some(noise)
     }
 
     /// The word for a point that the model calls stationary up to what remains, if there is one.

@@ -8,7 +8,8 @@ use std::fmt;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Termination {
-    /// The model promises less than the tolerance and every active cut lies next to the center.
+    /// Aggregate subgradient and aggregate error are small, and every active cut lies next to the center or Θ is declared
+    /// convex.
     Stationary {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
@@ -24,7 +25,7 @@ pub enum Termination {
     },
     /// What the model promises is below the noise of the oracle.
     NoiseLimit {
-        /// Level of the noise, in units of Θ.
+        /// What noise and model leave open, in units of Θ: a bound of Θ(x̂) − min Θ within reach if Θ is convex.
         estimate: f64,
     },
     /// The step has become too short to change the variables while the model still promises decrease: values and
