@@ -102,18 +102,21 @@ fn config(args: &[String]) -> Result<BundleTrustConfig, String> {
 /// The row of the problem with the medians of its counts over 2·`perturb` + 1 runs from starts that differ by rounding.
 fn median_run(problem: &Problem, perturb: u64, scale: f64, config: &BundleTrustConfig) -> Row {
     let mut row = run(problem, scale, config);
-    let others = (1..=2 * perturb).map(|seed| run(&moved(problem, seed, PERTURBATION), scale, config));
-    let mut counts = vec![(row.evaluations, row.total)];
-    counts.extend(others.map(|row| (row.evaluations, row.total)));
-    let median = |of: &dyn Fn(&([Option<usize>; 4], usize)) -> Option<usize>| {
-        // A level that is not reached counts as beyond all others.
-        let mut sorted: Vec<usize> = counts.iter().map(|run| of(run).unwrap_or(usize::MAX)).collect();
-        sorted.sort_unstable();
-        Some(sorted[perturb as usize]).filter(|count| *count < usize::MAX)
+    let others: Vec<Row> =
+        (1..=2 * perturb).map(|seed| run(&moved(problem, seed, PERTURBATION), scale, config)).collect();
+    let levels = row.evaluations;
+    let with = |first, of: fn(&Row, usize) -> Option<usize>, level| {
+        median(std::iter::once(first).chain(others.iter().map(|row| of(row, level))).collect())
     };
-    row.evaluations = std::array::from_fn(|level| median(&|run| run.0[level]));
-    row.total = median(&|run| Some(run.1)).unwrap_or(row.total);
+    row.evaluations = std::array::from_fn(|level| with(levels[level], |row, level| row.evaluations[level], level));
+    row.total = with(Some(row.total), |row, _| Some(row.total), 0).unwrap_or(row.total);
     row
+}
+
+/// The median count; a level that is not reached counts as beyond all others.
+fn median(mut counts: Vec<Option<usize>>) -> Option<usize> {
+    counts.sort_by_key(|count| count.unwrap_or(usize::MAX));
+    counts[counts.len() / 2]
 }
 
 /// The problem with another start, moved by a share of its size; the original one for seed 0.

@@ -108,8 +108,11 @@ fn stated_noise_ends_in_a_noise_limit_that_bounds_the_gap() {
     }
 }
 
+/// An answer of a function that may have none.
+type Wild = Result<(f64, Vector), String>;
+
 /// Θ(x) = max(|x|, 10 |y|), whose calls fail or answer hugely where `wild` says so.
-fn wild(wild: impl Fn(&Vector) -> bool, answer: fn() -> Result<(f64, Vector), String>) -> Report {
+fn wild(wild: impl Fn(&Vector) -> bool, answer: fn() -> Wild) -> Report {
     let theta = FnObjective::new(2, |x: &Vector| {
         if wild(x) {
             return answer();
@@ -126,7 +129,7 @@ fn wild(wild: impl Fn(&Vector) -> bool, answer: fn() -> Result<(f64, Vector), St
 
 #[test]
 fn huge_answers_count_as_failed_evaluations() {
-    let answers: [fn() -> Result<(f64, Vector), String>; 3] =
+    let answers: [fn() -> Wild; 3] =
         [|| Ok((1e200, v(&[1e200, 0.0]))), || Ok((1e40, v(&[1e40, -1e40]))), || Err("outside".to_owned())];
     for answer in answers {
         let calls = Cell::new(0);
@@ -143,7 +146,7 @@ fn huge_answers_count_as_failed_evaluations() {
 
 #[test]
 fn repeated_failures_end_the_run_only_close_to_the_best_point() {
-    // Nothing answers farther than 1e-3 from the start: thousands of first steps too long.
+    // Nothing answers farther than 1e-12 from the start: the first steps are far too long.
     let start = v(&[30.0, 4.0]);
     let report = wild(|x| (x - &start).norm() > 1e-12, || Err("no answer".to_owned()));
     let Termination::OracleFailing { failures, last } = &report.termination else { panic!("{report}") };

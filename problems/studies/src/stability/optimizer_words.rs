@@ -45,16 +45,23 @@ pub enum Word {
 /// One run and its judgement.
 #[derive(Debug, Clone, Serialize)]
 pub struct WordRecord {
+    /// Name of the problem.
     pub problem: String,
+    /// What was changed.
     pub variant: Variant,
+    /// Whether it is convex, and declared so.
     pub convex: bool,
+    /// The word at the end.
     pub word: Word,
     /// (value − a f* − s)/a, relative to 1 + |f*|.
     pub gap: f64,
+    /// Evaluations of the run.
     pub evaluations: usize,
     /// Evaluations to a gap of 1e-6.
     pub evaluations_to_gap: Option<usize>,
+    /// Whether the word claims what is not so.
     pub false_confirmed: bool,
+    /// Whether it failed where the oracle answers.
     pub false_failure: bool,
     /// The end in words.
     pub termination: String,
@@ -63,8 +70,11 @@ pub struct WordRecord {
 /// What all runs came to.
 #[derive(Debug, Clone, Serialize)]
 pub struct WordReport {
+    /// Runs whose start has a value.
     pub runs: usize,
+    /// Words that claim what is not so.
     pub false_confirmed: usize,
+    /// Failures where the oracle answers.
     pub false_failures: usize,
     /// Confirmed ends of the convex problems as they are, and their number.
     pub convex_confirmed: (usize, usize),
@@ -74,18 +84,14 @@ pub struct WordReport {
     pub convex_cost: f64,
     /// Runs with a false word.
     pub offenders: Vec<WordRecord>,
+    /// All runs, in the order of the problems.
     #[serde(skip)]
     pub records: Vec<WordRecord>,
 }
 
-/// Whether the problem is convex wherever a run may go.
-fn is_convex(problem: &Problem) -> bool {
-    problem.convex
-}
-
 fn run_one(problem: &Problem, variant: Variant) -> Result<WordRecord, InputError> {
     let changed = Changed::new(problem, variant);
-    let convex = is_convex(problem);
+    let convex = problem.convex;
     let convexity = if convex { Convexity::Convex } else { Convexity::Unknown };
     let config = BundleTrustConfig { max_evaluations: MAX_EVALUATIONS, convexity, ..BundleTrustConfig::default() };
     let mut record = WordRecord {
@@ -102,13 +108,13 @@ fn run_one(problem: &Problem, variant: Variant) -> Result<WordRecord, InputError
     };
     let mut method = BundleTrust::new(config)?.constraints(changed.set()?);
     match method.minimize(&changed, changed.start()) {
-        Ok(report) => judge(&mut record, &changed, convex, &report)?,
+        Ok(report) => judge(&mut record, &changed, &report)?,
         Err(error) => record.termination = error.to_string(),
     }
     Ok(record)
 }
 
-fn judge(record: &mut WordRecord, changed: &Changed<'_>, convex: bool, report: &Report) -> Result<(), InputError> {
+fn judge(record: &mut WordRecord, changed: &Changed<'_>, report: &Report) -> Result<(), InputError> {
     let (problem, variant) = (changed.problem, changed.variant);
     let size = 1.0 + problem.optimal_value.abs();
     let rounding = 4.0 * f64::EPSILON * variant.shift.abs() / variant.factor / size;
@@ -133,9 +139,9 @@ fn judge(record: &mut WordRecord, changed: &Changed<'_>, convex: bool, report: &
     };
     let above = record.gap > GAP + rounding;
     record.false_confirmed = match record.word {
-        Word::Confirmed if !noisy => above && (convex || !is_clarke_stationary(changed, &report.solution)?),
+        Word::Confirmed if !noisy => above && (record.convex || !is_clarke_stationary(changed, &report.solution)?),
         Word::Confirmed => noisy,
-        Word::Noise => noisy && convex && record.gap > NOISE_GAP * variant.noise,
+        Word::Noise => noisy && record.convex && record.gap > NOISE_GAP * variant.noise,
         _ => false,
     };
     let answers = || (0..2).any(|_| changed.evaluate(&Request::tight(&report.solution)).is_ok());
