@@ -14,8 +14,10 @@ use testset::{Family, Problem};
 /// Evaluations that an unsolved run counts as in the penalised mean.
 const UNSOLVED: usize = 1000;
 
-/// Relative size of the perturbations of `--perturb`.
-const PERTURBATION: f64 = 1e-13;
+/// Share of the entries, and the least size they count for, by which `--jitter` moves a start.
+const JITTER: (f64, f64) = (0.1, 1.0);
+/// The same for `--perturb`.
+const PERTURBATION: (f64, f64) = (1e-13, 0.0);
 
 const LEVELS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 
@@ -73,7 +75,7 @@ fn main() {
     let jitter: u64 = value("--jitter").and_then(|text| text.parse().ok()).unwrap_or(0);
     let perturb: u64 = value("--perturb").and_then(|text| text.parse().ok()).unwrap_or(0);
     let rows: Vec<Row> = problems
-        .flat_map(|problem| (0..=jitter).map(move |seed| moved(&problem, seed, 0.1)))
+        .flat_map(|problem| (0..=jitter).map(move |seed| moved(&problem, seed, JITTER)))
         .map(|problem| median_run(&problem, perturb, scale, &config))
         .collect();
     let summary = summarize(&rows, scale);
@@ -120,13 +122,13 @@ fn median(mut counts: Vec<Option<usize>>) -> Option<usize> {
 }
 
 /// The problem with another start, moved by a share of its size; the original one for seed 0.
-fn moved(problem: &Problem, seed: u64, share: f64) -> Problem {
+fn moved(problem: &Problem, seed: u64, (share, least): (f64, f64)) -> Problem {
     let mut moved = problem.clone();
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ problem.dimension as u64;
     for x in moved.start.iter_mut().filter(|_| seed > 0) {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let uniform = (state >> 11) as f64 / (1_u64 << 53) as f64;
-        *x += share * (2.0 * uniform - 1.0) * x.abs().max(1.0);
+        *x += share * (2.0 * uniform - 1.0) * x.abs().max(least);
     }
     moved
 }

@@ -29,9 +29,6 @@ const MAX_NOISY_DECREASES: f64 = 4.0;
 const LEAST_SEEN_VARIATION: f64 = 10.0;
 /// Noise below this share of the wanted decrease does not matter.
 const NEGLIGIBLE_NOISE: f64 = 1e-3;
-/// Noise below this share of the wanted decrease is not worth a word.
-const UNMENTIONED_NOISE: f64 = 1e-4;
-
 /// What the cuts say about the decrease within reach.
 struct WithinReach {
     /// The least bound.
@@ -71,7 +68,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
 
     /// Predicted decrease that counts as small: the tolerance, or the noise of the oracle where that hides more.
     pub(super) fn small(&self) -> f64 {
-        self.noise_above(NEGLIGIBLE_NOISE).unwrap_or_else(|| self.tolerance())
+        self.noise().unwrap_or_else(|| self.tolerance())
     }
 
     /// The tolerance in units of Θ, and what rounding hides.
@@ -83,16 +80,16 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.method.config.tolerance * self.state.natural_scale(&self.method.config)
     }
 
-    /// Noise of the oracle beyond this share of the wanted decrease.
-    fn noise_above(&self, share: f64) -> Option<f64> {
+    /// Noise of the oracle, where it is not negligible beside the wanted decrease.
+    fn noise(&self) -> Option<f64> {
         let noise = self.noise_level();
-        (noise > share * self.wanted_decrease()).then_some(noise)
+        (noise > NEGLIGIBLE_NOISE * self.wanted_decrease()).then_some(noise)
     }
 
     /// The word for a point that the model calls stationary up to what remains, if there is one.
     fn word(&self, (remaining, allowed): (f64, f64), confirmed: Termination) -> Option<Termination> {
         let (wanted, rounding) = (self.wanted_decrease(), self.state.rounding());
-        if let Some(noise) = self.noise_above(UNMENTIONED_NOISE) {
+        if let Some(noise) = self.noise() {
             let bound = if remaining.is_finite() { remaining } else { 0.0 };
             Some(Termination::NoiseLimit { estimate: noise.max(bound) })
         } else if remaining == 0.0 || remaining + rounding <= allowed * wanted {
@@ -148,7 +145,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// Convex Θ: the cuts bound what Θ can still fall. Ends the run if that is little; otherwise the trial point comes from the
     /// largest weight at which the decrease is not small.
     fn bound_decrease(&mut self, proposal: Proposal) -> ControlFlow<Termination, Proposal> {
-        let noise = self.noise_above(NEGLIGIBLE_NOISE);
+        let noise = self.noise();
         let limit = noise.map_or_else(|| MAX_CONVEX_DECREASES * self.small(), |noise| MAX_NOISY_DECREASES * noise);
         if proposal.predicted_decrease > limit {
             return Continue(proposal);
@@ -204,7 +201,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let radius = self.relative_radius(proposal);
         let near = radius <= CONFIRMING_RADIUS;
         let confirmed = Termination::Stationary { radius, gap: None };
-        let remaining = match self.noise_above(UNMENTIONED_NOISE) {
+        let remaining = match self.noise() {
             // Where Θ is not convex, the cuts bound nothing.
             Some(_) if self.state.nonconvex => proposal.predicted_decrease,
             Some(noise) => self.look_within_reach(proposal.clone(), noise).bound,
