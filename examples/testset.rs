@@ -1,8 +1,9 @@
 //! Runs the collection of test problems with one setting and prints evaluations beside the best peers.
 //!
-//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--without PROPOSER]`
+//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--perturb K] [--without PROPOSER]`
 //!
-//! `--jitter K` adds K runs per problem from starts moved by about a tenth of their size. `--without` switches off a proposer of
+//! `--perturb K` replaces every count by the median over 2K + 1 runs whose starts differ by a relative 1e-13: a single count hangs on
+//! the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size. `--without` switches off a proposer of
 //! trial points, `curved-model` or `exploration`; it may be given twice.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
@@ -12,6 +13,11 @@ use testset::{Family, Problem};
 
 /// Evaluations that an unsolved run counts as in the penalised mean.
 const UNSOLVED: usize = 1000;
+
+/// Share of the entries, and the least size they count for, by which `--jitter` moves a start.
+const JITTER: (f64, f64) = (0.1, 1.0);
+/// The same for `--perturb`.
+const PERTURBATION: (f64, f64) = (1e-13, 0.0);
 
 const LEVELS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 
@@ -67,9 +73,10 @@ fn main() {
         }
     };
     let jitter: u64 = value("--jitter").and_then(|text| text.parse().ok()).unwrap_or(0);
+    let perturb: u64 = value("--perturb").and_then(|text| text.parse().ok()).unwrap_or(0);
     let rows: Vec<Row> = problems
-        .flat_map(|problem| (0..=jitter).map(move |seed| jittered(&problem, seed)))
-        .map(|problem| run(&problem, scale, &config))
+        .flat_map(|problem| (0..=jitter).map(move |seed| moved(&problem, seed, JITTER)))
+        .map(|problem| median_run(&problem, perturb, scale, &config))
         .collect();
     let summary = summarize(&rows, scale);
     if args.iter().any(|arg| arg == "--json") {
@@ -94,14 +101,34 @@ fn config(args: &[String]) -> Result<BundleTrustConfig, String> {
     Ok(config)
 }
 
-/// The problem with another start; the original one for seed 0.
-fn jittered(problem: &Problem, seed: u64) -> Problem {
+/// The row of the problem with the medians of its counts over 2·`perturb` + 1 runs from starts that differ by rounding.
+fn median_run(problem: &Problem, perturb: u64, scale: f64, config: &BundleTrustConfig) -> Row {
+    let mut row = run(problem, scale, config);
+    let others: Vec<Row> =
+        (1..=2 * perturb).map(|seed| run(&moved(problem, seed, PERTURBATION), scale, config)).collect();
+    let levels = row.evaluations;
+    let with = |first, of: fn(&Row, usize) -> Option<usize>, level| {
+        median(std::iter::once(first).chain(others.iter().map(|row| of(row, level))).collect())
+    };
+    row.evaluations = std::array::from_fn(|level| with(levels[level], |row, level| row.evaluations[level], level));
+    row.total = with(Some(row.total), |row, _| Some(row.total), 0).unwrap_or(row.total);
+    row
+}
+
+/// The median count; a level that is not reached counts as beyond all others.
+fn median(mut counts: Vec<Option<usize>>) -> Option<usize> {
+    counts.sort_by_key(|count| count.unwrap_or(usize::MAX));
+    counts[counts.len() / 2]
+}
+
+/// The problem with another start, moved by a share of its size; the original one for seed 0.
+fn moved(problem: &Problem, seed: u64, (share, least): (f64, f64)) -> Problem {
     let mut moved = problem.clone();
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ problem.dimension as u64;
     for x in moved.start.iter_mut().filter(|_| seed > 0) {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let uniform = (state >> 11) as f64 / (1_u64 << 53) as f64;
-        *x += 0.1 * (2.0 * uniform - 1.0) * x.abs().max(1.0);
+        *x += share * (2.0 * uniform - 1.0) * x.abs().max(least);
     }
     moved
 }

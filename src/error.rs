@@ -79,6 +79,16 @@ pub enum OracleError {
         /// `value`, or the name of the vector.
         what: &'static str,
     },
+    /// Value or subgradient is finite, but too large to compute with beside the others.
+    #[error("{what} of size {size:.1e} is too large to compute with; allowed: {allowed:.1e}")]
+    TooLarge {
+        /// `value` or `subgradient`.
+        what: &'static str,
+        /// Its size.
+        size: f64,
+        /// The largest size that is allowed.
+        allowed: f64,
+    },
     /// The user's code panicked; the payload's text is kept.
     #[error("the objective panicked: {message}")]
     Panicked {

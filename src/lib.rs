@@ -204,7 +204,7 @@ pub use constraints::Polyhedron;
 pub use error::{InputError, OptimizeError, OracleError};
 pub use journal::{Journal, JournalError, Journaled};
 pub use linalg::{Matrix, Vector};
-pub use objective::{Answer, Evaluation, FnObjective, NonsmoothObjective, Request};
+pub use objective::{Answer, Evaluation, FnAnswer, FnObjective, NonsmoothObjective, Request};
 pub use problem::{Coderivative, Cost, CostGradient, StateSolver};
 pub use reduced::ReducedObjective;
 pub use report::{

@@ -94,7 +94,33 @@ impl<O: NonsmoothObjective + ?Sized> NonsmoothObjective for &O {
     }
 }
 
-/// A closure `x ↦ (Θ(x), one subgradient)` as an objective.
+/// What a closure behind [`FnObjective`] may return: the pair (Θ(x), one subgradient), or a `Result` of it with any error that fits
+/// into a box, text included.
+pub trait FnAnswer {
+    /// The pair, or why there is none.
+    ///
+    /// # Errors
+    /// The closure's own error, as an [`OracleError`].
+    fn into_pair(self) -> Result<(f64, Vector), OracleError>;
+}
+
+impl FnAnswer for (f64, Vector) {
+    fn into_pair(self) -> Result<(f64, Vector), OracleError> {
+        Ok(self)
+    }
+}
+
+impl<E: Into<Box<dyn std::error::Error + Send + Sync>>> FnAnswer for Result<(f64, Vector), E> {
+    fn into_pair(self) -> Result<(f64, Vector), OracleError> {
+        self.map_err(|error| match error.into().downcast::<OracleError>() {
+            Ok(own) => *own,
+            Err(other) => OracleError::Failed(other),
+        })
+    }
+}
+
+/// A closure `x ↦ (Θ(x), one subgradient)` as an objective. A closure that may fail returns a `Result` of the pair; a failure
+/// shortens the step.
 ///
 /// ```
 /// use nonsmooth::{FnObjective, NonsmoothObjective, Request, Vector};
@@ -102,6 +128,12 @@ impl<O: NonsmoothObjective + ?Sized> NonsmoothObjective for &O {
 /// let answer = theta.evaluate(&Request::tight(&Vector::from_element(1, -2.0))).unwrap();
 /// assert_eq!(answer.evaluation().value, 2.0);
 /// assert_eq!(answer.evaluation().subgradient[0], -1.0);
+///
+/// let guarded = FnObjective::new(1, |x: &Vector| {
+///     if x[0] > 0.0 { Ok((-x[0].ln(), Vector::from_element(1, -1.0 / x[0]))) } else { Err(format!("ln of {}", x[0])) }
+/// });
+/// let error = guarded.evaluate(&Request::tight(&Vector::from_element(1, -2.0))).unwrap_err();
+/// assert_eq!(error.to_string(), "ln of -2");
 /// ```
 #[derive(Debug, Clone)]
 pub struct FnObjective<F> {
@@ -109,14 +141,14 @@ pub struct FnObjective<F> {
     function: F,
 }
 
-impl<F: Fn(&Vector) -> (f64, Vector)> FnObjective<F> {
+impl<F: Fn(&Vector) -> A, A: FnAnswer> FnObjective<F> {
     /// An objective of `dimension` variables.
     pub fn new(dimension: usize, function: F) -> Self {
         Self { dimension, function }
     }
 }
 
-impl<F: Fn(&Vector) -> (f64, Vector)> NonsmoothObjective for FnObjective<F> {
+impl<F: Fn(&Vector) -> A, A: FnAnswer> NonsmoothObjective for FnObjective<F> {
     type WarmStart = ();
 
     fn dimension(&self) -> usize {
@@ -124,7 +156,7 @@ impl<F: Fn(&Vector) -> (f64, Vector)> NonsmoothObjective for FnObjective<F> {
     }
 
     fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
-        let (value, subgradient) = (self.function)(request.point);
+        let (value, subgradient) = (self.function)(request.point).into_pair()?;
         Ok(Answer::Accurate(Evaluation { value, subgradient, error_bound: 0.0, warm_start: () }))
     }
 }

@@ -13,7 +13,7 @@ const NOISE_STEP: f64 = 1e-4;
 /// A change of Θ beyond this many times the steepest slope along the step is noise.
 const STEEPNESS_MARGIN: f64 = 4.0;
 /// Times the promised errors and rounding that a change must exceed to be noise.
-const NOISE_MARGIN: f64 = 8.0;
+pub(super) const NOISE_MARGIN: f64 = 8.0;
 /// Cuts in the bundle beyond the number of variables, unless `bundle_size` is set.
 const EXTRA_CUTS: usize = 15;
 /// Largest number of cuts, unless `bundle_size` is set.

@@ -15,7 +15,8 @@ pub enum Convexity {
     /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex.
     #[default]
     Unknown,
-    /// Θ is convex. Linearization errors below zero are noise of the oracle and end in a noise limit.
+    /// Θ is convex. The cuts bound Θ(x̂) − min Θ, the bound decides the end, and no restart is made; linearization errors below
+    /// zero are noise of the oracle and end in a noise limit.
     Convex,
 }
 
@@ -24,7 +25,8 @@ pub enum Convexity {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum VariableScaling {
-    /// Dᵢ proportional to the width of the box if every variable has a finite one, otherwise Dᵢ = 1.
+    /// Dᵢ proportional to the width of the box, at most 1000 times the median width, if every variable has a finite one,
+    /// otherwise Dᵢ = 1.
     #[default]
     FromBox,
     /// Dᵢ = 1.
@@ -75,8 +77,8 @@ pub struct BundleTrustConfig {
     /// Predicted decrease, relative to the size of Θ, that counts as small. Default 1e-7; in (0, 1). Larger stops
     /// earlier; the value reached is usually ten times better than this.
     pub tolerance: f64,
-    /// The size of Θ that `tolerance` refers to, in units of Θ. Default none: |Θ| at the center, and at least 1e-5 of the
-    /// decrease since the start. Positive. Larger stops earlier.
+    /// The size of Θ that `tolerance` refers to, in units of Θ. Default none: |Θ| at the center, at most what values and
+    /// linearizations vary near it. Positive. Larger stops earlier.
     pub objective_scale: Option<f64>,
     /// Largest number of evaluations, failed ones included. Default 2000; ≥ 1.
     pub max_evaluations: usize,
@@ -84,8 +86,8 @@ pub struct BundleTrustConfig {
     pub max_iterations: usize,
     /// Largest time in seconds. Default none. Positive.
     pub max_seconds: Option<f64>,
-    /// Length of the first step in scaled variables. Default none: the length of the start vector, or where that is zero the
-    /// distance |Θ|/|ξ| at which a linear Θ would vanish. Positive. A typical change of the variables is the best value; too
+    /// Length of the first step in scaled variables. Default none: the length of the start vector, but at least
+    /// 1e-6 of the distance |Θ|/|ξ| at which a linear Θ would vanish, and that distance where the start is zero. Positive. A typical change of the variables is the best value; too
     /// small or too large costs some evaluations.
     pub first_step: Option<f64>,
     /// What is known about convexity. Default unknown.
@@ -117,7 +119,7 @@ pub struct BundleTrustConfig {
     pub max_restarts: usize,
     /// Part of the radius of the active cuts that a restart keeps. Default 0.1; in (0, 1).
     pub restart_radius: f64,
-    /// Failed evaluations in a row after which the run ends. Default 10; ≥ 1.
+    /// Failed evaluations in a row after which the run ends once its steps are short beside the variables. Default 10; ≥ 1.
     pub max_failures: usize,
     /// The curved model as a second proposer of trial points; none switches it off. Default on, with its own defaults.
     pub curved_model: Option<CurvedModelConfig>,

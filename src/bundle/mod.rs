@@ -21,6 +21,7 @@ pub(crate) mod norm;
 mod oracle;
 mod proposers;
 mod run;
+mod scales;
 mod small_decrease;
 mod start;
 mod state;

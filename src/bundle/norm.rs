@@ -11,6 +11,9 @@ use crate::qp::Metric;
 use crate::{InputError, Matrix, Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 
+/// Widths beyond this many times the median width count as no wider.
+const MAX_WIDTH_RATIO: f64 = 1e3;
+
 /// The norm of a run: that of the scaled variables, with a diagonal or a dense W.
 ///
 /// All lengths of a run are in this norm: radii, steps, the aggregate subgradient (in the dual norm), curvatures and the
@@ -71,9 +74,14 @@ impl ScaledNorm {
         if widths.iter().any(|width| !width.is_finite()) {
             return Self::euclidean(set.dimension());
         }
-        let logs: Vec<f64> = widths.iter().filter(|width| **width > 0.0).map(|width| width.ln()).collect();
-        let mean = (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp();
-        Self(Scale::Weights(widths.map(|width| if width > 0.0 { (mean / width).powi(2) } else { 1.0 })))
+        let mut positive: Vec<f64> = widths.iter().copied().filter(|width| *width > 0.0).collect();
+        positive.sort_by(f64::total_cmp);
+        // A side that is wide beyond all others is an open one, and tells no unit.
+        let widest = positive.get(positive.len().saturating_sub(1) / 2).map_or(f64::INFINITY, |w| w * MAX_WIDTH_RATIO);
+        let mean =
+            (positive.iter().map(|width| width.min(widest).ln()).sum::<f64>() / positive.len().max(1) as f64).exp();
+        let weight = |width: f64| if width > 0.0 { (mean / width.min(widest)).powi(2) } else { 1.0 };
+        Self(Scale::Weights(widths.map(weight)))
     }
 
     /// The matrix W, symmetric and positive definite.

@@ -4,6 +4,9 @@ use crate::linalg::first_non_finite;
 use crate::panics::evaluate_without_panic;
 use crate::{Answer, NonsmoothObjective, OracleError, Request};
 
+/// Numbers beyond this cannot be squared.
+const LARGEST: f64 = 1e150;
+
 /// What an evaluation can end with.
 pub(crate) enum Outcome<W> {
     Answer(Answer<W>),
@@ -36,6 +39,10 @@ fn check<W>(answer: Answer<W>, request: &Request<'_, W>) -> Outcome<W> {
     let failure = finite("value", evaluation.value.is_finite())
         .or_else(|| finite("subgradient", first_non_finite(evaluation.subgradient.as_slice()).is_none()))
         .or_else(|| finite("error bound", evaluation.error_bound.is_finite()));
+    let small = |what, size: f64| (size > LARGEST).then_some(OracleError::TooLarge { what, size, allowed: LARGEST });
+    let failure = failure
+        .or_else(|| small("value", evaluation.value.abs()))
+        .or_else(|| small("subgradient", evaluation.subgradient.amax()));
     match failure {
         Some(error) => Outcome::Failure(error),
         None => Outcome::Answer(answer),

@@ -9,7 +9,7 @@ use super::proposers::proposal::{Proposal, SubproblemError};
 use super::proposers::proposer::Position;
 use super::state::State;
 use crate::qp::{EpigraphQpSolver, QpCounts};
-use crate::report::{IterationRecord, StepKind, Termination};
+use crate::report::{IterationRecord, Origin, StepKind, Termination};
 use crate::{Accuracy, Answer, NonsmoothObjective, OracleError, Polyhedron, Request, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
@@ -18,6 +18,10 @@ use std::time::Instant;
 const REFINEMENT_SHARE: f64 = 0.03;
 /// A trial point that differs from the center by less than this share of every variable cannot be told from it.
 const SHORTEST_MOVE: f64 = 4.0 * f64::EPSILON;
+/// Failures end the run only where the oracle fails within this relative distance of the center.
+const CLOSE: f64 = 1e-6;
+/// A subgradient this many times longer than all before cannot be held beside them in double precision.
+const MAX_RELATIVE_SLOPE: f64 = 1e15;
 /// Weights tried before a subproblem counts as unsolvable.
 const MAX_SUBPROBLEM_TRIALS: usize = 4;
 
@@ -104,8 +108,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         if moved.into_iter().any(|(y, x)| (y - x).abs() > SHORTEST_MOVE * x.abs()) {
             return Continue(());
         }
-        Break(if self.state.noise > 0.0 {
-            Termination::NoiseLimit { estimate: self.noise_level() }
+        Break(if self.noise_level() > 0.0 {
+            Termination::NoiseLimit { estimate: self.noise_level().max(self.state.decrease_bound(proposal, &self.set)) }
         } else {
             Termination::StepTooShort { predicted_decrease: proposal.predicted_decrease }
         })
@@ -114,7 +118,23 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>) -> Outcome<O::WarmStart> {
         self.state.counts.evaluations += 1;
         let request = Request { point, warm_start: self.warm_start.as_ref(), accuracy, descent_target: target };
-        evaluate(self.objective, &request)
+        match evaluate(self.objective, &request) {
+            Outcome::Answer(answer) => self.check_slope(answer),
+            other => other,
+        }
+    }
+
+    /// An answer that drowns all others in rounding is none.
+    fn check_slope(&self, answer: Answer<O::WarmStart>) -> Outcome<O::WarmStart> {
+        let state = &self.state;
+        let slopes = state.bundle.cuts().iter().map(|cut| state.norm.dual_length(&cut.subgradient));
+        let allowed = MAX_RELATIVE_SLOPE * slopes.fold(state.first_weight * state.first_step, f64::max);
+        let size = state.norm.dual_length(&answer.evaluation().subgradient);
+        if size <= allowed || allowed == 0.0 {
+            Outcome::Answer(answer)
+        } else {
+            Outcome::Failure(OracleError::TooLarge { what: "subgradient", size, allowed })
+        }
     }
 
     /// Solves the subproblem; where it fails, shorter steps are tried before the run ends.
@@ -208,17 +228,17 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.after_evaluation()
     }
 
-    /// A failed evaluation: shorter step next, no cut.
+    /// A failed evaluation: no cut, and the model that proposed the point is shortened. Rivals that fail fall silent for a while,
+    /// so that after repeated failures the plain cuts decide whether the run has come close to the center.
     fn shorten(&mut self, proposal: &Proposal, accuracy: Accuracy, error: &OracleError) -> ControlFlow<Termination> {
         let state = &mut self.state;
         state.counts.failed += 1;
         state.failures += 1;
-        state.streak = -1;
-        let weight = state.weight.max(proposal.weight) * self.method.config.weight_increase;
-        state.set_weight(weight, &self.method.config);
         let failures = state.failures;
+        let close = proposal.step_length <= CLOSE * state.length_scale().max(state.first_step);
+        self.proposers.shorten(state, &self.method.config, proposal);
         self.record(StepKind::Failed, proposal, accuracy, None, Some(error.to_string()));
-        if failures >= self.method.config.max_failures {
+        if failures >= self.method.config.max_failures && proposal.origin == Origin::Cuts && close {
             return Break(Termination::OracleFailing { failures, last: error.to_string() });
         }
         Continue(())

@@ -1,30 +1,56 @@
 //! What to do when the model promises almost nothing: lower the weight, stop, or restart locally.
 //!
 //! A small predicted decrease at a large weight is not stationarity (a flat valley), and one that rests on cuts far from
-//! the center is none either (a nonconvex function): both are checked before a run ends.
+//! the center is none either (a nonconvex function): both are checked before a run ends. For a function declared convex the cuts
+//! bound Θ(x̂) − Θ(y) within reach, wherever they lie: the bound decides, and no restart is made.
 
-use super::config::AccuracyPolicy;
+use super::config::{AccuracyPolicy, Convexity};
 use super::cut::{Cut, LEAST_ACTIVE_MULTIPLIER};
 use super::proposers::proposal::Proposal;
 use super::run::Run;
+use crate::NonsmoothObjective;
 use crate::report::Termination;
-use crate::{NonsmoothObjective, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Active cuts within this relative distance confirm stationarity.
 const CONFIRMING_RADIUS: f64 = 1e-5;
-/// Largest share of the aggregate subgradient that may stem from convexification in a confirmed end: more means that
-/// subgradients and values contradict each other, or that the cuts lie on both sides of a ridge.
-const MAX_CONVEXIFIED_SHARE: f64 = 0.1;
 /// The weight is lowered until the step has this relative length.
 const LEAST_STEP_LENGTH: f64 = 1e-2;
+/// What may be left within reach at a confirmed end, in small decreases: a decrease that is small at the least step length is at
+/// most 1/[`LEAST_STEP_LENGTH`] times as large within reach.
+const MAX_REMAINING_DECREASES: f64 = 1.0 / LEAST_STEP_LENGTH;
+/// The same where Θ is convex, so that the bound itself ends the run.
+const MAX_CONVEX_DECREASES: f64 = 10.0;
+/// The bound of a convex Θ, rounding included, up to which its end counts as confirmed, in wanted decreases.
+const MAX_BOUND_DECREASES: f64 = 2.0 * MAX_CONVEX_DECREASES;
+/// The bound of a convex Θ that ends a run with noise, in units of the noise of two values.
+const MAX_NOISY_DECREASES: f64 = 4.0;
+/// Times the bound that the linearizations of active cuts must vary within reach.
+const LEAST_SEEN_VARIATION: f64 = 10.0;
+/// Noise below this share of the wanted decrease does not matter.
+const NEGLIGIBLE_NOISE: f64 = 1e-3;
+/// What the cuts say about the decrease within reach.
+struct WithinReach {
+    /// The least bound.
+    bound: f64,
+    /// The weight that gave it.
+    weight: f64,
+    /// The largest weight at which the predicted decrease is not small.
+    worthwhile: Option<f64>,
+}
 
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// A trial point worth an evaluation, or the reason to end.
     pub(super) fn next_trial(&mut self) -> ControlFlow<Termination, Proposal> {
         loop {
             let proposal = self.solve_subproblem()?;
-            if proposal.predicted_decrease > self.small() || self.center_is_too_coarse(&proposal) {
+            if self.center_is_too_coarse(&proposal) {
+                return Continue(proposal);
+            }
+            if self.method.config.convexity == Convexity::Convex {
+                return self.bound_decrease(proposal);
+            }
+            if proposal.predicted_decrease > self.small() {
                 return Continue(proposal);
             }
             let kept = self.state.weight;
@@ -40,14 +66,37 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
     }
 
-    /// Predicted decrease that counts as small: tolerance, rounding or noise.
+    /// Predicted decrease that counts as small: the tolerance, or the noise of the oracle where that hides more.
     pub(super) fn small(&self) -> f64 {
-        self.tolerance().max(self.noise_level())
+        self.noise().unwrap_or_else(|| self.tolerance())
     }
 
+    /// The tolerance in units of Θ, and what rounding hides.
     pub(super) fn tolerance(&self) -> f64 {
-        let config = &self.method.config;
-        config.tolerance * self.state.value_scale(config) + self.state.rounding()
+        self.wanted_decrease() + self.state.rounding()
+    }
+
+    fn wanted_decrease(&self) -> f64 {
+        self.method.config.tolerance * self.state.natural_scale(&self.method.config)
+    }
+
+    /// Noise of the oracle, where it is not negligible beside the wanted decrease.
+    fn noise(&self) -> Option<f64> {
+        let noise = self.noise_level();
+        (noise > NEGLIGIBLE_NOISE * self.wanted_decrease()).then_some(noise)
+    }
+
+    /// The word for a point that the model calls stationary up to what remains, if there is one.
+    fn word(&self, (remaining, allowed): (f64, f64), confirmed: Termination) -> Option<Termination> {
+        let (wanted, rounding) = (self.wanted_decrease(), self.state.rounding());
+        if let Some(noise) = self.noise() {
+            let bound = if remaining.is_finite() { remaining } else { 0.0 };
+            Some(Termination::NoiseLimit { estimate: noise.max(bound) })
+        } else if remaining == 0.0 || remaining + rounding <= allowed * wanted {
+            Some(confirmed)
+        } else {
+            (rounding > wanted).then(|| Termination::NoiseLimit { estimate: rounding.max(remaining) })
+        }
     }
 
     /// Noise seen in the values, or promised by the oracle and not to be improved by asking for more.
@@ -67,21 +116,25 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.state.noise.max(promised)
     }
 
+    /// Lowers the weight tenfold; the answer at the lower weight, or none if the subproblem cannot be solved there.
+    fn lower_weight(&mut self) -> Option<Proposal> {
+        let kept = self.state.weight;
+        self.state.weight = kept / 10.0;
+        let lower = self.try_subproblem().ok();
+        if lower.is_none() {
+            self.state.weight = kept;
+        }
+        lower
+    }
+
     /// Lowers the weight, without evaluations, until the step is long enough to tell or the decrease is not small.
     fn decrease_weight(&mut self, mut proposal: Proposal) -> Proposal {
         for _ in 0..self.method.config.attenuation_steps {
             if proposal.step_length >= LEAST_STEP_LENGTH * self.state.length_scale() {
                 break;
             }
-            let kept = self.state.weight;
-            self.state.weight = kept / 10.0;
-            match self.try_subproblem() {
-                Ok(next) => proposal = next,
-                Err(_) => {
-                    self.state.weight = kept;
-                    break;
-                }
-            }
+            let Some(next) = self.lower_weight() else { break };
+            proposal = next;
             if proposal.predicted_decrease > self.small() {
                 break;
             }
@@ -89,39 +142,86 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         proposal
     }
 
+    /// Convex Θ: the cuts bound what Θ can still fall. Ends the run if that is little; otherwise the trial point comes from the
+    /// largest weight at which the decrease is not small.
+    fn bound_decrease(&mut self, proposal: Proposal) -> ControlFlow<Termination, Proposal> {
+        let noise = self.noise();
+        let limit = noise.map_or_else(|| MAX_CONVEX_DECREASES * self.small(), |noise| MAX_NOISY_DECREASES * noise);
+        if proposal.predicted_decrease > limit {
+            return Continue(proposal);
+        }
+        let found = self.look_within_reach(proposal, limit);
+        let certified = found.bound <= limit;
+        self.state.weight = if certified { found.weight } else { found.worthwhile.unwrap_or(self.state.weight) };
+        let proposal = self.solve_subproblem()?;
+        if !certified {
+            return Continue(proposal);
+        }
+        let confirmed = Termination::Stationary { radius: self.relative_radius(&proposal), gap: Some(found.bound) };
+        let uncertain = Termination::NoiseLimit { estimate: found.bound.max(self.state.rounding()) };
+        Break(self.word((found.bound, MAX_BOUND_DECREASES), confirmed).unwrap_or(uncertain))
+    }
+
+    /// Looks, without evaluations, for the weight at which the cuts bound the decrease within reach best; leaves the last weight tried.
+    fn look_within_reach(&mut self, mut proposal: Proposal, limit: f64) -> WithinReach {
+        let small = self.small();
+        let worthwhile = |proposal: &Proposal| (proposal.predicted_decrease > small).then_some(proposal.weight);
+        let mut found = WithinReach {
+            bound: self.meaningful_bound(&proposal, limit),
+            weight: proposal.weight,
+            worthwhile: worthwhile(&proposal),
+        };
+        let farthest = self.state.norm.length(&self.state.reach());
+        for _ in 0..self.method.config.attenuation_steps {
+            if proposal.step_length >= farthest && found.bound.is_finite() {
+                break;
+            }
+            let Some(next) = self.lower_weight() else { break };
+            proposal = next;
+            let bound = self.meaningful_bound(&proposal, limit);
+            if bound < found.bound {
+                (found.bound, found.weight) = (bound, proposal.weight);
+            }
+            found.worthwhile = found.worthwhile.or_else(|| worthwhile(&proposal));
+        }
+        found
+    }
+
+    /// The bound of the decrease within reach; ∞ where the linearizations do not vary by much more than the limit over that reach: a
+    /// reach that is a rounding of zero proves nothing.
+    fn meaningful_bound(&self, proposal: &Proposal, limit: f64) -> f64 {
+        let bound = self.state.decrease_bound(proposal, &self.set);
+        let seen = self.state.active_variation(&self.state.reach());
+        let meaningful = proposal.aggregate_norm == 0.0 || seen >= LEAST_SEEN_VARIATION * limit;
+        if meaningful { bound } else { f64::INFINITY }
+    }
+
     /// Ends the run if nothing is left to try.
     fn stopping_test(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
-        let noise = self.noise_level();
-        if noise > self.tolerance() && proposal.predicted_decrease > 0.0 {
-            return Break(Termination::NoiseLimit { estimate: noise });
-        }
-        let radius = self.active_radius(proposal) / self.state.length_scale().max(f64::MIN_POSITIVE);
+        let radius = self.relative_radius(proposal);
         let near = radius <= CONFIRMING_RADIUS;
-        let trusted = self.convexified_share(proposal) <= MAX_CONVEXIFIED_SHARE;
-        if near && trusted {
-            return Break(Termination::Stationary { radius });
+        let confirmed = Termination::Stationary { radius, gap: None };
+        let remaining = match self.noise() {
+            // Where Θ is not convex, the cuts bound nothing.
+            Some(_) if self.state.nonconvex => proposal.predicted_decrease,
+            Some(noise) => self.look_within_reach(proposal.clone(), noise).bound,
+            None => self.state.decrease_bound(proposal, &self.set),
+        };
+        if let Some(word) = self.word((remaining, MAX_REMAINING_DECREASES), confirmed)
+            && (near || matches!(word, Termination::NoiseLimit { .. }))
+        {
+            return Break(word);
         }
         let allowed = if self.state.nonconvex { self.method.config.max_restarts } else { 1 };
         if self.state.restarts >= allowed.min(self.method.config.max_restarts) {
-            return Break(if near {
-                Termination::StepTooShort { predicted_decrease: proposal.predicted_decrease }
-            } else {
-                Termination::StationaryUnconfirmed { radius }
-            });
+            return Break(Termination::StationaryUnconfirmed { radius });
         }
         Continue(())
     }
 
-    /// Norm of what convexification added to the aggregate subgradient, relative to the active subgradients.
-    fn convexified_share(&self, proposal: &Proposal) -> f64 {
-        let state = &self.state;
-        let (mut added, mut slopes) = (Vector::zeros(state.center.len()), 0.0);
-        for (cut, &multiplier) in state.bundle.cuts().iter().zip(&proposal.cut_multipliers) {
-            added +=
-                state.norm.lower_index(&(&state.center - &cut.point)) * (2.0 * proposal.convexification * multiplier);
-            slopes += multiplier * state.norm.dual_length(&cut.subgradient);
-        }
-        if slopes > 0.0 { state.norm.dual_length(&added) / slopes } else { 0.0 }
+    /// The radius of the active cuts relative to the size of the variables.
+    fn relative_radius(&self, proposal: &Proposal) -> f64 {
+        self.active_radius(proposal) / self.state.local_length().max(f64::MIN_POSITIVE)
     }
 
     /// Largest distance of a cut with a positive multiplier.

@@ -18,6 +18,8 @@ use std::time::Instant;
 
 /// Relative violation that a projected start may keep.
 const MAX_START_VIOLATION: f64 = 1e-9;
+/// A start shorter than this share of the distance at which a linear Θ would vanish says nothing about lengths.
+const LEAST_START_SHARE: f64 = 1e-6;
 
 impl<'o> BundleTrust<'o> {
     /// Minimises the objective from a start that need not be admissible.
@@ -144,13 +146,14 @@ fn first_evaluation<O: NonsmoothObjective>(
     Ok((state, warm_start))
 }
 
-/// A first step length that follows the units of variables and values: the size of the start, or the distance at which a
-/// linear Θ would vanish if the start is zero.
+/// A first step length that follows the units of variables and values: the size of the start, or where that is zero the distance
+/// at which a linear Θ would vanish. A size below a small share of that distance is a rounding of zero and does not count.
 fn natural_step(size: f64, value: f64, slope: f64) -> f64 {
+    let vanishing = if slope > 0.0 { value.abs() / slope } else { 0.0 };
     if size > 0.0 {
-        size
-    } else if value != 0.0 && slope > 0.0 {
-        value.abs() / slope
+        size.max(LEAST_START_SHARE * vanishing)
+    } else if vanishing > 0.0 {
+        vanishing
     } else {
         1.0
     }

@@ -55,7 +55,7 @@ impl State {
     /// The length that relative distances refer to.
     pub(crate) fn length_scale(&self) -> f64 {
         let travelled = self.norm.squared_distance(&self.center, &self.start).sqrt();
-        self.norm.length(&self.center).max(travelled).max(self.first_step)
+        self.norm.length(&self.center).max(travelled).max(self.norm.length(&self.start))
     }
 
     /// Linearization errors of all cuts at the center, in their order.

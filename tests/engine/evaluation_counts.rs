@@ -43,7 +43,7 @@ const MEASURED: [(&str, usize); 42] = [
     ("PENTAGON", 13),
     ("EQUIL", 46),
     ("Wong3lin", 137),
-    ("HS114", 59),
+    ("HS114", 101),
     ("Dembo5", 69),
     ("GenMXHILB", 13),
     ("ChainedLQ", 117),

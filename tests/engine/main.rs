@@ -14,3 +14,4 @@ mod linear_scaling;
 mod proposers;
 mod restart;
 mod terminations;
+mod words;

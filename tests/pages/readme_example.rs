@@ -1,6 +1,6 @@
 //! The README's example of the framework, as it stands there.
 
-use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Polyhedron, Vector};
+use nonsmooth::{BundleTrust, BundleTrustConfig, Convexity, FnObjective, Polyhedron, Vector};
 
 #[test]
 fn closure_over_a_box() -> Result<(), Box<dyn std::error::Error>> {
@@ -9,8 +9,10 @@ fn closure_over_a_box() -> Result<(), Box<dyn std::error::Error>> {
         if bowl > plane { (bowl, x * 2.0) } else { (plane, Vector::from_element(2, -1.0)) }
     });
     let set = Polyhedron::boxed(Vector::zeros(2), Vector::from_element(2, 3.0))?;
-    let report = BundleTrust::new(BundleTrustConfig::default())?.constraints(set).minimize(&theta, Vector::zeros(2))?;
+    let config = BundleTrustConfig { convexity: Convexity::Convex, ..BundleTrustConfig::default() };
+    let report = BundleTrust::new(config)?.constraints(set).minimize(&theta, Vector::zeros(2))?;
     // x = y with 2x² = 4 − 2x: x = 1, Θ = 2.
     assert!((report.value - 2.0).abs() < 1e-6, "{report}");
+    assert!(report.termination.is_confirmed(), "{report}");
     Ok(())
 }

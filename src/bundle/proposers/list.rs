@@ -45,6 +45,14 @@ impl Proposers {
         chosen
     }
 
+    /// Tells all of them that the oracle failed at a trial point.
+    pub(crate) fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
+        for rival in &mut self.rivals {
+            rival.shorten(state, config, proposal);
+        }
+        self.cuts.shorten(state, config, proposal);
+    }
+
     /// Tells all of them what came of a trial point.
     pub(crate) fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
         for rival in &mut self.rivals {

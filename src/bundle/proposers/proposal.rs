@@ -17,6 +17,10 @@ pub(crate) struct Proposal {
     pub predicted_decrease: f64,
     /// The change that the plain cuts predict at the trial point.
     pub cut_change: f64,
+    /// |Σ λ_i g_i + Aᵀμ + ν| of the subgradients as they are, entry by entry, and what rounding of the sum can hide.
+    pub aggregate_sizes: Vector,
+    /// Σ slack·|multiplier| of the active rows and bounds, the other part of ẽ.
+    pub slack_error: f64,
     /// ‖z̃‖*.
     pub aggregate_norm: f64,
     /// ẽ.
@@ -45,7 +49,7 @@ const SHORTEST_SHARE: f64 = 1e-3;
 /// Why there is no trial point.
 #[derive(Debug, Clone, thiserror::Error)]
 pub(crate) enum SubproblemError {
-    #[error("the quadratic program was not solved: {0}")]
+    #[error(transparent)]
     Qp(#[from] QpError),
     #[error("its solution violates the constraints by {violation:.1e} and cannot be repaired")]
     Infeasible { violation: f64 },

@@ -20,6 +20,9 @@ pub(crate) trait Proposer {
         proposed: &[Proposal],
     ) -> Result<Option<Proposal>, SubproblemError>;
 
+    /// Takes note that the oracle failed at a trial point, its own or another's: its own next one is shorter, or waits.
+    fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal);
+
     /// Takes note of a trial point that was evaluated, its own or another's; the center has not moved yet.
     fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>);
 }

@@ -1,7 +1,7 @@
 //! The command line of the study.
 
 use crate::stability::record::{Outcome, Record, Report};
-use crate::stability::{case, random, table};
+use crate::stability::{case, optimizer_words, random, table};
 use clap::Parser;
 use problems::commands::{Failure, Folder, finish, json};
 use std::path::PathBuf;
@@ -26,6 +26,9 @@ pub struct Arguments {
     /// Folder for the files of random scenes that fell short.
     #[arg(long, value_name = "DIR", requires = "random")]
     pub out: Option<PathBuf>,
+    /// What the optimizer says at the end of its runs, over the collection of test problems in all its variants; minutes.
+    #[arg(long, conflicts_with_all = ["quick", "only"])]
+    pub optimizer: bool,
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
@@ -38,6 +41,9 @@ pub fn run() -> ExitCode {
 
 /// Runs the cases that the arguments select; the text belongs on stdout, also when cases are broken.
 fn execute(arguments: &Arguments) -> Result<String, Failure> {
+    if arguments.optimizer {
+        return optimizer_words::page(arguments.json);
+    }
     if let Some(count) = arguments.random {
         return at_random(arguments, count);
     }

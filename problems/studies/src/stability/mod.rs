@@ -4,6 +4,7 @@
 //! cli ─ matrix of cases ─┬─ judge ─ contact: scene → TotalFeti, DirectSolver, (successive approximations) → Record
 //!                        ├─ units, locking: scenes and fields compared with each other → Record
 //!                        └─ optimizer: bundle method on hostile oracles → Record
+//!     └ optimizer_words: the optimizer's last word on the collection in all its variants, held against what is true
 //! Records ─ table (Markdown) or JSON
 //! ```
 //! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a named
@@ -22,6 +23,9 @@ mod loads;
 mod locking;
 mod materials;
 mod optimizer;
+mod optimizer_stationarity;
+mod optimizer_variants;
+mod optimizer_words;
 mod oracle;
 mod random;
 mod record;
@@ -33,5 +37,7 @@ mod units;
 pub use case::{Case, all};
 pub use cli::{Arguments, run};
 pub use locking::field_error;
+pub use optimizer_variants::Variant;
+pub use optimizer_words::{Word, WordRecord, WordReport, words};
 pub use random::run as random_scenes;
 pub use record::{Counts, Outcome, Path, Record, Report};

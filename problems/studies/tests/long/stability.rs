@@ -1,6 +1,6 @@
 //! The whole matrix of stiff and extreme cases.
 
-use studies::stability::{Case, Counts, Outcome, Report, all, random_scenes};
+use studies::stability::{Case, Counts, Outcome, Report, all, random_scenes, words};
 
 #[test]
 fn every_case_is_solved_refused_or_a_known_limit_as_expected() {
@@ -23,4 +23,19 @@ fn random_scenes_have_states_that_the_default_finds() {
     );
     assert_eq!([counts.solvable, counts.solved], [1788; 2]);
     assert_eq!([counts.frictionless_solvable, counts.frictionless_solved], [663; 2]);
+}
+
+#[test]
+fn the_optimizers_words_are_true() {
+    let report = words(|_| true).unwrap();
+    assert!(report.runs >= 3000, "{}", report.runs);
+    assert!(report.offenders.is_empty(), "{:#?}", report.offenders);
+    // 30 of 32 and 34 of 44, as shares of what the collection holds.
+    assert!(report.convex_confirmed.0 * 32 >= report.convex_confirmed.1 * 30, "{:?}", report.convex_confirmed);
+    assert!(
+        report.all_confirmed.0 >= 34 && report.convex_cost <= 1.15,
+        "{:?} {}",
+        report.all_confirmed,
+        report.convex_cost
+    );
 }

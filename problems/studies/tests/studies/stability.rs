@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
 use std::sync::Arc;
-use studies::stability::{Counts, Outcome, Report, all, field_error, random_scenes};
+use studies::stability::{Counts, Outcome, Report, all, field_error, random_scenes, words};
 
 fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
     let method = DualMethod::Newton(Recycling::default());
@@ -33,6 +33,14 @@ fn outcomes(groups: &[&str]) -> [usize; 4] {
 #[test]
 fn supports_kinks_units_and_hostile_oracles_are_as_expected() {
     assert_eq!(outcomes(&["supports", "kinks", "units", "optimizer"]), [35, 5, 0, 0]);
+}
+
+/// Every 23rd run; all of them are in the test `long`.
+#[test]
+fn the_optimizers_words_are_true_on_a_sample() {
+    let report = words(|number| number % 23 == 0).unwrap();
+    assert!(report.runs > 120, "{}", report.runs);
+    assert!(report.offenders.is_empty(), "{:#?}", report.offenders);
 }
 
 #[test]

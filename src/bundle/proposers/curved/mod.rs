@@ -114,6 +114,13 @@ impl Proposer for Curved {
         Ok(Some(better).filter(|better| better.predicted_decrease > at.small))
     }
 
+    fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
+        if proposal.origin == Origin::CurvedModel {
+            self.pause.fail(self.settings.max_pause);
+            self.weight = (self.weight * config.weight_increase).min(state.first_weight * config.weight_range);
+        }
+    }
+
     fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
         if trial.accurate {
             let curved = self.model.change(&trial.proposal.step);

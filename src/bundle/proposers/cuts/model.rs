@@ -8,6 +8,7 @@
 //! References: \[SchrammZowe1992\] (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
 
 use crate::Vector;
+use crate::bundle::acceptance::NOISE_MARGIN;
 use crate::bundle::config::{BundleTrustConfig, Convexity};
 use crate::bundle::proposers::subproblem::Cuts;
 use crate::bundle::state::State;
@@ -42,6 +43,7 @@ impl Model {
         let errors: Vec<f64> = state.errors_at_center();
         let distances: Vec<f64> =
             state.bundle.cuts().iter().map(|cut| state.norm.squared_distance(&state.center, &cut.point)).collect();
+        let rounding = state.rounding();
         let c = match config.convexity {
             Convexity::Unknown => convexification(state, config, &errors, &distances),
             Convexity::Convex => 0.0,
@@ -52,7 +54,17 @@ impl Model {
         for (cut, (&error, &distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(&distances)) {
             // A value that may be too high by its promised error must not put the cut above Θ.
             let promised = if cut.id == state.center_id { 0.0 } else { cut.excess() + state.center_error_bound() };
-            let offset = (error + c * distance).max(error.abs()) + promised;
+            let offset = match config.convexity {
+                // A cut above a convex Θ by what its value leaves open is put back to it; more than that is noise.
+                Convexity::Convex => {
+                    let excess = -(error + promised);
+                    if excess > NOISE_MARGIN * (promised + rounding) {
+                        state.noise = state.noise.max(excess);
+                    }
+                    excess.abs()
+                }
+                Convexity::Unknown => (error + c * distance).max(error.abs()) + promised,
+            };
             let tilt = state.norm.lower_index(&(&state.center - &cut.point));
             model.slopes.push(if c > 0.0 { &cut.subgradient - tilt * (2.0 * c) } else { cut.subgradient.clone() });
             model.offsets.push(offset);

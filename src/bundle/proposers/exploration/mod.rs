@@ -97,7 +97,14 @@ impl Proposer for Exploration {
         Ok(None)
     }
 
-    fn learn(&mut self, _state: &mut State, _config: &BundleTrustConfig, trial: &Trial<'_>) {
+    fn shorten(&mut self, _state: &mut State, _config: &BundleTrustConfig, proposal: &Proposal) {
+        if proposal.origin == Origin::Exploration {
+            self.weight = proposal.weight * self.settings.weight_factor;
+            self.pause.fail(self.settings.max_pause);
+        }
+    }
+
+    fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
         if trial.proposal.origin != Origin::Exploration {
             return;
         }
@@ -105,8 +112,7 @@ impl Proposer for Exploration {
             self.weight = trial.proposal.weight / self.settings.weight_factor;
             self.pause.succeed();
         } else {
-            self.weight = trial.proposal.weight * self.settings.weight_factor;
-            self.pause.fail(self.settings.max_pause);
+            self.shorten(state, config, trial.proposal);
         }
     }
 }

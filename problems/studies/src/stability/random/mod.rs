@@ -7,13 +7,12 @@ mod scenes;
 use crate::markdown;
 use contact::contact_shape::SolverKind;
 use paths::{Examined, Found, Outcome};
+use rayon::prelude::*;
 use scene_file::{Case, SceneFile};
 use scenes::Family;
 use serde::Serialize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// Largest residual of a state.
@@ -130,27 +129,8 @@ struct Paths {
 /// Examines scenes 0 … count − 1 of a seed on all threads; the counts do not depend on their number.
 pub fn run(seed: u64, count: usize) -> Report {
     let clock = Instant::now();
-    let next = AtomicUsize::new(0);
-    let done: Mutex<Vec<(usize, Examination)>> = Mutex::new(Vec::with_capacity(count));
-    let work = || {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            if index >= count {
-                return;
-            }
-            let examination = examine(seed, index);
-            if let Ok(mut done) = done.lock() {
-                done.push((index, examination));
-            }
-        }
-    };
-    std::thread::scope(|scope| {
-        for _thread in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(work);
-        }
-    });
-    let mut done = done.into_inner().unwrap_or_default();
-    done.sort_by_key(|(index, _)| *index);
+    let done: Vec<(usize, Examination)> =
+        (0..count).into_par_iter().map(|index| (index, examine(seed, index))).collect();
     collect(&done, clock.elapsed().as_secs_f64())
 }
 

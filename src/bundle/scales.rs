@@ -1,0 +1,85 @@
+//! The sizes that "small" refers to, from the data seen: values, subgradients, distances travelled.
+//!
+//! ```text
+//! reach_i = max(|x̂_i|, |x̂_i − x⁰_i|)        size_i = max(|x̂_i|, ε reach_i)
+//! variation = min( highest value seen − Θ(x̂),  median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂ )
+//! scale     = |Θ(x̂)| clamped to [ε min(highest − Θ(x̂), Σ_j λ_j Σ_i |g_ji| reach_i), variation]
+//! bound     = ẽ + Σ_i |z̃_i| reach_i ≥ Θ(x̂) − Θ(y)        if Θ is convex and |y_i − x̂_i| ≤ reach_i
+//! ```
+//! The variation does not change if Θ is shifted; the sums Σ |g_i| size_i and the bound do not depend on the units of the
+//! variables; cuts farther away than the variables are large tell nothing about the values near x̂. A run that has not gone
+//! anywhere has seen no variation: nothing is small yet.
+
+use super::config::BundleTrustConfig;
+use super::cut::Cut;
+use super::proposers::proposal::Proposal;
+use super::state::State;
+use crate::{Polyhedron, Vector};
+
+/// ε: sizes below this share of what a variable has passed through are not told from zero.
+const LEAST_SHARE: f64 = 1e-8;
+/// The same for the length of all variables together.
+const LEAST_LENGTH_SHARE: f64 = 1e-2;
+/// The same for values, as a share of their variation.
+const LEAST_VALUE_SHARE: f64 = 1e-6;
+/// Values beyond this many times their variation carry a shift.
+const MAX_VALUE_SHARE: f64 = 10.0;
+/// Where values carry a shift, the variation alone tells the scale, and only this share of it counts: without a shift the values
+/// near a minimum are that much smaller than the terms of their linearizations.
+const SHIFTED_SHARE: f64 = 0.02;
+
+impl State {
+    /// How far each variable has been from zero or from its start.
+    pub(crate) fn reach(&self) -> Vector {
+        self.center.zip_map(&self.start, |x, start| x.abs().max((x - start).abs()))
+    }
+
+    /// The size of each variable near the center.
+    fn size(&self) -> Vector {
+        self.center.zip_map(&self.reach(), |x, reach| x.abs().max(LEAST_SHARE * reach))
+    }
+
+    /// The length of the variables near the center.
+    pub(crate) fn local_length(&self) -> f64 {
+        self.norm.length(&self.center).max(LEAST_LENGTH_SHARE * self.length_scale())
+    }
+
+    /// The scale of Θ near the center that relative tolerances refer to.
+    pub(crate) fn natural_scale(&self, config: &BundleTrustConfig) -> f64 {
+        config.objective_scale.unwrap_or_else(|| {
+            let highest = self.bundle.cuts().iter().map(|cut| cut.value).fold(self.start_value, f64::max);
+            let drop = (highest - self.center_value).max(0.0);
+            let mut variation = drop.min(self.linear_variation(&self.size()));
+            let size = self.center_value.abs();
+            if size > 0.0 {
+                variation *= (MAX_VALUE_SHARE * variation / size).clamp(SHIFTED_SHARE, 1.0);
+            }
+            let least = LEAST_VALUE_SHARE * drop.min(self.active_variation(&self.reach()));
+            size.clamp(least.min(variation), variation)
+        })
+    }
+
+    /// Median of Σ |g_i| length_i over the cuts within the size of the variables.
+    fn linear_variation(&self, lengths: &Vector) -> f64 {
+        let radius = self.norm.squared(&self.size());
+        let near = |cut: &&Cut| self.norm.squared_distance(&self.center, &cut.point) <= radius;
+        let mut terms: Vec<f64> =
+            self.bundle.cuts().iter().filter(near).map(|cut| cut.subgradient.abs().dot(lengths)).collect();
+        terms.sort_by(f64::total_cmp);
+        terms.get(terms.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// Σ λ_j Σ |g_ji| length_i: the terms that cancel in the aggregate subgradient.
+    pub(crate) fn active_variation(&self, lengths: &Vector) -> f64 {
+        let cuts = self.bundle.cuts().iter().filter(|cut| cut.is_active());
+        cuts.map(|cut| cut.multiplier * cut.subgradient.abs().dot(lengths)).sum()
+    }
+
+    /// ẽ + Σ |z̃_i| reach_i: what a convex Θ can still fall within reach and in the box.
+    pub(crate) fn decrease_bound(&self, proposal: &Proposal, set: &Polyhedron) -> f64 {
+        let farthest = |i: usize| (set.upper()[i] - self.center[i]).max(self.center[i] - set.lower()[i]);
+        let reach = self.reach();
+        let falls = proposal.aggregate_sizes.iter().enumerate().map(|(i, slope)| slope * reach[i].min(farthest(i)));
+        proposal.cut_error + proposal.slack_error + falls.sum::<f64>()
+    }
+}

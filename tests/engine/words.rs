@@ -1,0 +1,168 @@
+//! The last word of a run is true, whatever the start, a shift, units, a wide side, failures and huge answers.
+use crate::common::v;
+use nonsmooth::{
+    Answer, BundleTrust, BundleTrustConfig, Convexity, Evaluation, FnObjective, NonsmoothObjective, OracleError,
+    Polyhedron, Report, Request, Termination, Vector,
+};
+use std::cell::Cell;
+use testset::{Family, Problem};
+
+fn method(problem: &Problem) -> BundleTrust<'static> {
+    let convexity = if problem.convex { Convexity::Convex } else { Convexity::Unknown };
+    BundleTrust::new(BundleTrustConfig { convexity, max_evaluations: 1000, ..Default::default() }).unwrap()
+}
+
+/// Minimises a·f(x) + s from a multiple of the start.
+fn run(problem: &Problem, (start, shift, factor): (f64, f64, f64), set: Option<Polyhedron>) -> Report {
+    let theta = FnObjective::new(problem.dimension, |x: &Vector| {
+        let (value, gradient) = problem.evaluate(x.as_slice());
+        (factor * value + shift, Vector::from_vec(gradient) * factor)
+    });
+    let method = method(problem);
+    let mut method = if let Some(set) = set { method.constraints(set) } else { method };
+    method.minimize(&theta, v(&problem.start) * start).unwrap()
+}
+
+/// (value − a f* − s)/a relative to 1 + |f*|.
+fn gap(problem: &Problem, report: &Report, (shift, factor): (f64, f64)) -> f64 {
+    ((report.value - shift) / factor - problem.optimal_value) / (1.0 + problem.optimal_value.abs())
+}
+
+fn convex() -> Vec<Problem> {
+    testset::all().into_iter().filter(|problem| problem.convex && problem.family == Family::Unconstrained).collect()
+}
+
+#[test]
+fn a_convex_function_is_confirmed_by_its_bound_without_restarts() {
+    let (mut evaluations, mut needed) = (0, 0);
+    for problem in convex() {
+        let report = run(&problem, (1.0, 0.0, 1.0), None);
+        let Termination::Stationary { gap: Some(bound), .. } = report.termination else { panic!("{report}") };
+        // The optimal values of the table have twelve digits.
+        let above = report.value - problem.optimal_value - 1e-8 * (1.0 + problem.optimal_value.abs());
+        assert!(above <= bound && report.counts.restarts == 0, "{}: {above:.1e} {report}", problem.name);
+        let level = problem.optimal_value + 1e-6 * (1.0 + problem.optimal_value.abs());
+        evaluations += report.counts.evaluations;
+        needed += report.history.iter().find(|record| record.center_value <= level).unwrap().evaluation;
+    }
+    assert!(evaluations as f64 <= 1.15 * needed as f64, "{evaluations} {needed}");
+}
+
+#[test]
+fn start_shift_and_units_never_confirm_what_is_far_from_stationary() {
+    for problem in convex().iter().filter(|problem| problem.dimension <= 10) {
+        for start in [1e-12, 1e-8, 1e-4, 1e3] {
+            for (shift, factor) in [(0.0, 1.0), (1e8, 1.0), (-1e8, 1.0), (0.0, 1e6), (1e8, 1e-6)] {
+                let report = run(problem, (start, shift, factor), None);
+                let above = gap(problem, &report, (shift, factor));
+                let allowed = 1e-5 + 4.0 * f64::EPSILON * shift.abs() / factor;
+                let name = format!("{} start × {start:e}, {factor:e} f + {shift:e}", problem.name);
+                assert!(above <= allowed || !report.termination.is_confirmed(), "{name}: {above:.1e} {report}");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_wide_side_confirms_nothing_false() {
+    for problem in convex().iter().filter(|problem| problem.dimension <= 10) {
+        let mut upper = Vector::from_element(problem.dimension, 100.0);
+        upper[0] = 1e8;
+        let set = Polyhedron::boxed(Vector::from_element(problem.dimension, -100.0), upper).unwrap();
+        for start in [1.0, 1e-8] {
+            let report = run(problem, (start, 0.0, 1.0), Some(set.clone()));
+            let above = gap(problem, &report, (0.0, 1.0));
+            assert!(above <= 1e-5 || !report.termination.is_confirmed(), "{}: {above:.1e} {report}", problem.name);
+        }
+    }
+}
+
+/// |x − 1| + |y| with the noise that it states.
+struct Stated(f64);
+
+impl NonsmoothObjective for Stated {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        2
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let x = request.point;
+        let value = (x[0] - 1.0).abs() + x[1].abs() + self.0 * testset::kit::jitter(x.as_slice(), 0);
+        let subgradient = v(&[(x[0] - 1.0).signum(), x[1].signum()]);
+        Ok(Answer::Accurate(Evaluation { value, subgradient, error_bound: self.0, warm_start: () }))
+    }
+}
+
+#[test]
+fn stated_noise_ends_in_a_noise_limit_that_bounds_the_gap() {
+    for noise in [1e-8, 1e-4] {
+        for start in [[0.0, 0.0], [3.0, -2.0], [1e-9, 1e-9], [1e3, 1e3]] {
+            let config = BundleTrustConfig { convexity: Convexity::Convex, ..Default::default() };
+            let report = BundleTrust::new(config).unwrap().minimize(&Stated(noise), v(&start)).unwrap();
+            let Termination::NoiseLimit { estimate } = report.termination else { panic!("{noise}: {report}") };
+            let exact = (report.solution[0] - 1.0).abs() + report.solution[1].abs();
+            assert!(exact <= estimate && exact <= 10.0 * noise, "{exact:.1e} {report}");
+        }
+    }
+}
+
+/// An answer of a function that may have none.
+type Wild = Result<(f64, Vector), String>;
+
+/// Θ(x) = max(|x|, 10 |y|), whose calls fail or answer hugely where `wild` says so.
+fn wild(wild: impl Fn(&Vector) -> bool, answer: fn() -> Wild) -> Report {
+    let theta = FnObjective::new(2, |x: &Vector| {
+        if wild(x) {
+            return answer();
+        }
+        let pair = if x[0].abs() > 10.0 * x[1].abs() {
+            (x[0].abs(), v(&[x[0].signum(), 0.0]))
+        } else {
+            (10.0 * x[1].abs(), v(&[0.0, 10.0 * x[1].signum()]))
+        };
+        Ok::<_, String>(pair)
+    });
+    BundleTrust::new(BundleTrustConfig::default()).unwrap().minimize(&theta, v(&[30.0, 4.0])).unwrap()
+}
+
+#[test]
+fn huge_answers_count_as_failed_evaluations() {
+    let answers: [fn() -> Wild; 3] =
+        [|| Ok((1e200, v(&[1e200, 0.0]))), || Ok((1e40, v(&[1e40, -1e40]))), || Err("outside".to_owned())];
+    for answer in answers {
+        let calls = Cell::new(0);
+        let report = wild(
+            |x| {
+                calls.set(calls.get() + 1);
+                calls.get() > 1 && x[1] < -1.0 || calls.get() == 4
+            },
+            answer,
+        );
+        assert!(report.value < 1e-5 && report.counts.failed >= 1, "{report}");
+    }
+}
+
+#[test]
+fn repeated_failures_end_the_run_only_close_to_the_best_point() {
+    // Nothing answers farther than 1e-12 from the start: the first steps are far too long.
+    let start = v(&[30.0, 4.0]);
+    let report = wild(|x| (x - &start).norm() > 1e-12, || Err("no answer".to_owned()));
+    let Termination::OracleFailing { failures, last } = &report.termination else { panic!("{report}") };
+    assert!(*failures >= 10 && last == "no answer", "{report}");
+    let shortest = report.history.iter().skip(1).map(|record| record.step_length).fold(f64::INFINITY, f64::min);
+    assert!(shortest <= 1e-6 * start.norm(), "{shortest:.1e}");
+}
+
+#[test]
+fn a_report_prints_its_solution() {
+    let report = wild(|_| false, || Err(String::new()));
+    assert!(report.to_string().contains(&format!("solution:    [{:.6e}, ", report.solution[0])), "{report}");
+    let theta = FnObjective::new(40, |x: &Vector| (x.norm_squared(), x * 2.0));
+    let report =
+        BundleTrust::new(BundleTrustConfig::default()).unwrap().minimize(&theta, Vector::from_element(40, 1.0));
+    let text = report.unwrap().to_string();
+    let line = text.lines().find(|line| line.starts_with("solution:")).unwrap();
+    assert!(line.contains("…") && line.len() < 160, "{line}");
+}
