@@ -97,9 +97,15 @@ pub struct Arguments {
     /// Folder for the report, controls, history and pressures; an optimization can be resumed from there.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --json only).
+    /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --new-version, --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
+    /// With --resume: continue a run that another version of the program has begun.
+    #[arg(long, requires = "resume")]
+    pub new_version: bool,
     /// Threads for the work on subdomains.
     #[arg(long, value_name = "T")]
     pub threads: Option<usize>,
@@ -196,13 +202,14 @@ impl Arguments {
             max_evaluations: self.max_evaluations,
             time_limit: self.time_limit,
             threads: self.threads,
+            new_version: self.new_version,
             json: self.json,
             ..nothing
         };
         if *self == allowed {
             return Ok(());
         }
-        let allowed = "with --max-evaluations, --time-limit, --threads, --json only: all else is in the folder";
+        let allowed = "with --max-evaluations, --time-limit, --threads, --new-version, --json only: all else is in the folder";
         Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
 

@@ -4,8 +4,11 @@ use crate::commands::folder::file_error;
 use contact::contact_shape::ContactShape;
 use contact::error::SceneError;
 use nonsmooth::{StateSolver, Vector};
-use scene_file::Case;
+use scene_file::{Case, read_text};
 use std::path::Path;
+
+/// Largest control file, bytes.
+const LARGEST_FILE: u64 = 1 << 20;
 
 /// The controls of a file, or those the case starts from; checked against the admissible set.
 ///
@@ -26,7 +29,7 @@ pub fn load(shape: &ContactShape, case: &Case, file: Option<&Path>) -> Result<Ve
 /// # Errors
 /// [`SceneError`] for an unreadable file; as [`parse`].
 pub fn read(file: &Path, expected: usize) -> Result<Vector, SceneError> {
-    let text = std::fs::read_to_string(file).map_err(|error| file_error(file, error))?;
+    let text = read_text(file, LARGEST_FILE)?;
     parse(&text, &file.display().to_string(), expected)
 }
 

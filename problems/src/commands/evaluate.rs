@@ -4,9 +4,8 @@ use crate::commands::arguments::Arguments;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::json;
+use crate::commands::folder::{Folder, json};
 use crate::commands::loaded_scene::LoadedScene;
-use crate::commands::long_run::RunFolder;
 use crate::commands::report::files;
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
 use serde::Serialize;
@@ -40,9 +39,9 @@ struct Seconds {
 
 /// The command.
 pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = RunFolder::folder_for_results(loaded.case.output.folder.as_deref())?;
     let solver = objective.solver();
     let controls = controls::load(solver, &loaded.case, arguments.controls.as_deref())?;
+    let folder = Folder::of_command(&loaded.case, arguments)?;
     let clock = Instant::now();
     let shape = SolvedShape::at(objective, &controls)?;
     let state_seconds = clock.elapsed().as_secs_f64();
@@ -65,9 +64,9 @@ pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Argum
         left_out: solver.left_out(),
     };
     let object = json(&result)?;
-    let write = |folder| files::write_evaluation(&folder, loaded, objective, &shape, &object);
-    let written = folder.map_or(Ok(()), write);
-    Failure::printed_with_files(arguments.printed(result.to_string(), object), written)
+    let write = |folder: &Folder| files::write_evaluation(folder, loaded, objective, &shape, &object);
+    let printed = arguments.printed(result.to_string(), object.clone());
+    Failure::printed_with_files(printed, arguments.json, folder.as_ref(), write)
 }
 
 impl fmt::Display for EvaluationJson {

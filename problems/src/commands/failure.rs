@@ -1,8 +1,9 @@
 //! The failures of a command, each with its exit status.
 
+use crate::commands::folder::Folder;
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
-use nonsmooth::{InputError, JournalError, OptimizeError, OracleError};
+use nonsmooth::{InputError, JournalError, OptimizeError, OracleError, Termination};
 use std::io::{self, Write};
 use std::process::ExitCode;
 use thiserror::Error;
@@ -44,13 +45,21 @@ impl Failure {
         }
     }
 
-    /// The text for stdout after files were written; a file that could not be written does not lose the text.
+    /// The text for stdout after the files of a command were written into its folder, if it has one. A text for people names
+    /// them; files that could not be written do not lose the text.
     ///
     /// # Errors
     /// [`Failure::Incomplete`] with the text if a file could not be written.
-    pub fn printed_with_files(text: String, written: Result<(), Self>) -> Result<String, Self> {
-        match written {
-            Ok(()) => Ok(text),
+    pub fn printed_with_files(
+        text: String,
+        as_json: bool,
+        folder: Option<&Folder>,
+        write: impl FnOnce(&Folder) -> Result<(), Self>,
+    ) -> Result<String, Self> {
+        let Some(folder) = folder else { return Ok(text) };
+        match write(folder) {
+            Ok(()) if as_json => Ok(text),
+            Ok(()) => Ok(format!("{text}files:       {}\n", folder.page().display())),
             Err(failure) => {
                 let reason = format!("{failure}; the report above is complete");
                 Err(Self::Incomplete { text, reason, status: 1 })
@@ -72,17 +81,33 @@ impl Failure {
     }
 }
 
+/// Why a run failed, if it ended neither at a point that the optimizer vouches for nor at a limit.
+pub fn failed(termination: &Termination) -> Option<String> {
+    let failed = matches!(termination, Termination::OracleFailing { .. } | Termination::SubproblemFailed { .. });
+    failed.then(|| termination.to_string())
+}
+
 /// Prints the text of a command on stdout and the message of its failure on stderr; the exit status that belongs to them.
 pub fn finish(result: Result<String, Failure>) -> ExitCode {
-    let text = match &result {
-        Ok(text) | Err(Failure::Incomplete { text, .. }) => text,
-        Err(_) => "",
+    let (text, mut status) = match &result {
+        Ok(text) => (text.as_str(), 0),
+        Err(Failure::Incomplete { text, status, .. }) => (text.as_str(), *status),
+        Err(failure) => ("", failure.status()),
     };
-    // A reader that closes the pipe early has seen what it wanted; then the exit status is the message.
-    let _ = io::stdout().write_all(text.as_bytes());
-    let Err(failure) = result else { return ExitCode::SUCCESS };
-    let _ = writeln!(io::stderr(), "error: {failure}");
-    ExitCode::from(failure.status())
+    let printed = io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush());
+    if let Err(failure) = &result {
+        notice(&format!("error: {failure}"));
+    }
+    if let Err(error) = printed {
+        notice(&format!("error: stdout: {error}; the result was not printed"));
+        status = if status == 0 { 1 } else { status };
+    }
+    ExitCode::from(status)
+}
+
+/// A line on stderr. Where nobody listens there is nothing to be done.
+pub fn notice(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 impl From<SceneError> for Failure {
@@ -93,7 +118,10 @@ impl From<SceneError> for Failure {
 
 impl From<JournalError> for Failure {
     fn from(error: JournalError) -> Self {
-        Self::Input(error.to_string())
+        match error {
+            JournalError::File { .. } => Self::Computation(error.to_string()),
+            _ => Self::Input(error.to_string()),
+        }
     }
 }
 

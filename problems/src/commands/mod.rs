@@ -16,6 +16,7 @@ mod loaded_scene;
 pub mod long_run;
 mod optimize;
 mod recheck;
+mod register;
 mod report;
 mod verify;
 
@@ -23,7 +24,7 @@ pub use arguments::Arguments;
 pub use command_line::{execute, run, run_any};
 pub use contact_objective::{ContactObjective, SolvedShape, objective};
 pub use controls::parse as parse_controls;
-pub use failure::{Failure, finish};
+pub use failure::{Failure, failed, finish};
 pub use folder::{Folder, json};
 pub use optimize::mesh_run::{first_step, mean_height_coordinates};
 pub use verify::{DIRECTION_SEED, smooth_taylor_test, taylor_steps};

@@ -5,7 +5,6 @@ use crate::commands::contact_objective::ContactObjective;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json};
-use crate::commands::long_run::RunFolder;
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactStatus, Residuals};
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
@@ -39,9 +38,9 @@ struct VerificationJson {
 
 /// The command.
 pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = RunFolder::folder_for_results(case.output.folder.as_deref())?;
     let shape = objective.solver();
     let control = controls::load(shape, case, arguments.controls.as_deref())?;
+    let folder = Folder::of_command(case, arguments)?;
     let (here, step, test) = smooth_taylor_test(objective, &control)?;
     let result = VerificationJson {
         test,
@@ -56,12 +55,12 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
          relative residuals of the state: {}\n",
         result.test, step, result.smallest_margin, result.weakly_active, result.residuals
     );
-    let write = |folder: Folder| {
+    let write = |folder: &Folder| {
         folder.write("verification.json", &object)?;
         folder.write("verification.txt", &text)
     };
-    let written = folder.map_or(Ok(()), write);
-    Failure::printed_with_files(arguments.printed(text, object), written)
+    let printed = arguments.printed(text.clone(), object.clone());
+    Failure::printed_with_files(printed, arguments.json, folder.as_ref(), write)
 }
 
 /// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the largest step.

@@ -3,9 +3,9 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, PICTURE_ENDINGS, json};
+use crate::commands::folder::{COMPARED, Folder, PICTURE_ENDINGS, json};
 use crate::commands::loaded_scene::LoadedScene;
-use crate::commands::long_run::{COMPARED, RunFolder};
+use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::{gallery, pages, sections, tables};
