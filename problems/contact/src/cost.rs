@@ -32,7 +32,7 @@ impl PressureCost {
     pub fn new(measure: PressureMeasure, boundary: &ContactBoundary) -> Result<Self, SceneError> {
         if let PressureMeasure::Norm { exponent } = measure {
             let valid = exponent > 1.0 && exponent.is_finite();
-            SceneError::require(valid, "exponent of the pressure norm", exponent, "a finite number > 1")?;
+            SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
         }
         let areas = boundary.points.iter().map(|point| point.area).collect();
         Ok(Self { measure, areas, dual_dimension: boundary.dual_dimension() })

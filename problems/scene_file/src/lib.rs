@@ -18,6 +18,7 @@ mod surfaces;
 mod table;
 mod text;
 
+pub use allowed::number;
 pub use bodies::{BodySection, Component, LoadSection, MaterialSection, SupportSection, UpperSection};
 pub use case::{Case, default_subdomains};
 pub use grid_file::read_grid;
@@ -100,6 +101,18 @@ impl SceneFile {
     pub fn read(file: &Path) -> Result<Self, SceneError> {
         let path = file.display().to_string();
         Self::parse(&read_text(file, LARGEST_FILE)?, &path)
+    }
+
+    /// The value of the field at a path such as `mesh.bricks`, as it stands in a file; for a field that is not set, what its
+    /// documentation says of that.
+    pub fn value(&self, path: &str) -> String {
+        let table = toml::Table::try_from(self).unwrap_or_default();
+        let mut names = path.split('.');
+        let first = names.next().and_then(|name| table.get(name));
+        match names.try_fold(first, |value, name| value.map(|value| value.get(name))) {
+            Some(Some(value)) => value.to_string(),
+            _ => allowed::default(path),
+        }
     }
 
     /// The complete file with a comment on every field; reads back as the same scene.

@@ -18,5 +18,8 @@ pub fn read_text(file: &Path, largest: u64) -> Result<String, SceneError> {
         return Err(failed(format!("the file is too long; allowed: at most {} MiB", largest >> 20)));
     }
     let text = String::from_utf8(bytes).map_err(|error| failed(format!("the file is no text in UTF-8: {error}")))?;
-    Ok(text.strip_prefix('\u{feff}').map_or_else(|| text.clone(), str::to_owned))
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
+    })
 }

@@ -20,8 +20,8 @@ struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 48, value_parser = clap::value_parser!(u16).range(2..=512))]
     cells: u16,
     /// Evaluations allowed
-    #[arg(long, value_name = "K", default_value_t = 400)]
-    max_evaluations: usize,
+    #[arg(long, value_name = "K", default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    max_evaluations: u32,
     /// Print one line per evaluation on stderr
     #[arg(long)]
     table: bool,
@@ -43,7 +43,7 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<String, Failure> {
     let folder = arguments.out.as_deref().map(|path| Folder::create(path, 1 << 20, arguments.overwrite)).transpose()?;
     let theta = example(usize::from(arguments.cells)).map_err(Failure::computation)?;
-    let config = BundleTrustConfig { max_evaluations: arguments.max_evaluations, ..Default::default() };
+    let config = BundleTrustConfig { max_evaluations: arguments.max_evaluations as usize, ..Default::default() };
     let mut method = BundleTrust::new(config)?.constraints(admissible_loads());
     if arguments.table {
         method = method.observer(TablePrinter::new(io::stderr()));

@@ -20,8 +20,8 @@ struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     starts: u32,
     /// Seed of the random starts
-    #[arg(long, value_name = "S", default_value_t = 1)]
-    seed: u64,
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..))]
+    seed: u32,
     /// Print one JSON object instead of the page
     #[arg(long)]
     json: bool,
@@ -44,7 +44,7 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
     let folder = arguments.out.as_deref().map(|path| Folder::create(path, 1, arguments.overwrite)).transpose()?;
     let starts = match arguments.start {
         Some(start) => vec![start],
-        None => toy::random_starts(arguments.seed, arguments.starts as usize),
+        None => toy::random_starts(arguments.seed.into(), arguments.starts as usize),
     };
     let study = toy::run_study(&starts)?.ok_or_else(|| Failure::computation("no start"))?;
     let text =

@@ -40,7 +40,7 @@ struct Seconds {
 /// The command.
 pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
     let solver = objective.solver();
-    let controls = controls::load(solver, &loaded.case, arguments.controls.as_deref())?;
+    let controls = controls::load(solver, &loaded.case, ("--controls", arguments.controls.as_deref()))?;
     let folder = Folder::of_command(&loaded.case, arguments)?;
     let clock = Instant::now();
     let shape = SolvedShape::at(objective, &controls)?;

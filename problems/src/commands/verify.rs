@@ -39,7 +39,7 @@ struct VerificationJson {
 /// The command.
 pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
     let shape = objective.solver();
-    let control = controls::load(shape, case, arguments.controls.as_deref())?;
+    let control = controls::load(shape, case, ("--controls", arguments.controls.as_deref()))?;
     let folder = Folder::of_command(case, arguments)?;
     let (here, step, test) = smooth_taylor_test(objective, &control)?;
     let result = VerificationJson {

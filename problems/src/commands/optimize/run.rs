@@ -8,7 +8,7 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, interrupted, watch_interrupts};
 use crate::commands::optimize::mesh_run::{MeshRun, first_step, run_on_mesh};
 use crate::commands::optimize::stages::{MeshStage, stages};
-use nonsmooth::{StateSolver, Termination, Vector};
+use nonsmooth::{Termination, Vector};
 use std::path::Path;
 
 /// First step on every mesh but the first, in first steps of the first mesh. The gap at a coarse optimum says nothing about the
@@ -111,7 +111,7 @@ pub fn begin(
         let controls = folder.initial_controls().clone();
         return Ok((Some(folder), controls));
     }
-    let load = || controls::load(shape, &loaded.case, arguments.start_controls.as_deref());
+    let load = || controls::load(shape, &loaded.case, ("--start-controls", arguments.start_controls.as_deref()));
     let controls = given.cloned().map_or_else(load, Ok)?;
     let begin = |path| RunFolder::begin(Folder::create(path, bytes, arguments.overwrite)?, loaded, &controls, parts);
     Ok((path.map(begin).transpose()?, controls))
