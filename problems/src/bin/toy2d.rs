@@ -50,9 +50,8 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
     let text =
         if arguments.json { serde_json::to_string(&study).map_err(Failure::computation)? } else { study.to_string() };
     let text = text.trim_end().to_owned() + "\n";
-    let draw = |folder: &Folder| {
-        starts.first().map_or(Ok(()), |start| pictures(folder, *start, arguments.cells as usize))
-    };
+    let draw =
+        |folder: &Folder| starts.first().map_or(Ok(()), |start| pictures(folder, *start, arguments.cells as usize));
     let text = Failure::printed_with_files(text, arguments.json, folder.as_ref(), draw)?;
     if study.all_found() {
         return Ok(text);

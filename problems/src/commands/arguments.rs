@@ -201,7 +201,8 @@ impl Arguments {
         if *self == allowed {
             return Ok(());
         }
-        let allowed = "with --max-evaluations, --time-limit, --threads, --new-version, --json only: all else is in the folder";
+        let allowed =
+            "with --max-evaluations, --time-limit, --threads, --new-version, --json only: all else is in the folder";
         Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
 
@@ -285,7 +286,8 @@ impl Arguments {
                 for traction in &mut load.traction {
                     let scaled = factor * *traction;
                     if scaled.abs() > LARGEST_TRACTION {
-                        let allowed = format!("|traction| ≤ {LARGEST_TRACTION:e} MPa, here {factor:e} times {traction:e}");
+                        let allowed =
+                            format!("|traction| ≤ {LARGEST_TRACTION:e} MPa, here {factor:e} times {traction:e}");
                         return Err(SceneError::out_of_range("--load-factor", factor, allowed));
                     }
                     *traction = scaled;

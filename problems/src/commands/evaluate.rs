@@ -16,6 +16,10 @@ use std::time::Instant;
 #[derive(Debug, Serialize)]
 struct EvaluationJson {
     objective: f64,
+    /// log₁₀ of Σσ^p or of max σ.
+    log10_objective: f64,
+    /// p where objective and subgradient are those of (Σσ^p)^{1/p}, since those of Σσ^p are no doubles; else 1.
+    objective_root: f64,
     subgradient: Vec<f64>,
     peak_pressure: f64,
     total_normal_force: f64,
@@ -49,9 +53,17 @@ pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Argum
     let evaluation = objective.differentiate(&controls, &shape.state)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
     let (state, forces) = (&shape.state, &shape.state.forces);
+    let root = objective.cost().root();
+    // The root r as Θ = r^p, with ∂Θ = p r^{p−1} ∂r.
+    let (power, slope) = (evaluation.value.powf(root), root * evaluation.value.powf(root - 1.0));
+    let representable = power.is_normal() && (slope * evaluation.subgradient.amax()).is_finite();
+    let (value, slope, objective_root) =
+        if representable { (power, slope, 1.0) } else { (evaluation.value, 1.0, root) };
     let result = EvaluationJson {
-        objective: evaluation.value,
-        subgradient: evaluation.subgradient.as_slice().to_vec(),
+        objective: value,
+        log10_objective: root * evaluation.value.log10(),
+        objective_root,
+        subgradient: (&evaluation.subgradient * slope).as_slice().to_vec(),
         peak_pressure: shape.peak_pressure,
         total_normal_force: forces.total_normal_force(),
         status: forces.counts(),
@@ -71,8 +83,14 @@ pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Argum
 
 impl fmt::Display for EvaluationJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let norm = self.subgradient.iter().map(|x| x * x).sum::<f64>().sqrt();
-        writeln!(f, "objective            {:.10e}", self.objective)?;
+        // Squares of entries above 1e154 are no doubles.
+        let largest = self.subgradient.iter().fold(f64::MIN_POSITIVE, |largest, x| largest.max(x.abs()));
+        let norm = largest * self.subgradient.iter().map(|x| (x / largest).powi(2)).sum::<f64>().sqrt();
+        let power = match self.objective_root {
+            1.0 => String::new(),
+            root => format!(" = (Σσ^{root})^(1/{root}); Σσ^{root} = 10^{:.10}", self.log10_objective),
+        };
+        writeln!(f, "objective            {:.10e}{power}", self.objective)?;
         writeln!(f, "|subgradient|        {norm:.6e} ({} controls)", self.subgradient.len())?;
         writeln!(f, "peak pressure        {:.6} MPa", self.peak_pressure)?;
         writeln!(f, "total normal force   {:.10e} N", self.total_normal_force)?;

@@ -116,8 +116,9 @@ impl Folder {
 
     /// Proves that files of so many bytes can be written.
     fn with_room(path: &Path, bytes: u64, register: Register) -> Result<Self, Failure> {
-        let failed =
-            |error: io::Error| Failure::Computation(format!("{}: cannot write {bytes} bytes there: {error}", path.display()));
+        let failed = |error: io::Error| {
+            Failure::Computation(format!("{}: cannot write {bytes} bytes there: {error}", path.display()))
+        };
         register.claim(PROBE).map_err(failed)?;
         let probe = path.join(PROBE);
         let written = std::fs::File::create(&probe).and_then(|mut file| {
@@ -228,7 +229,8 @@ pub fn resume_command(folder: &Path, comparison: bool) -> String {
 
 /// The first free `DIR.1`, `DIR.2`, …
 fn free_name(path: &Path) -> Result<PathBuf, Failure> {
-    let unnamed = || Failure::Input(format!("{}: --overwrite renames the folder, which needs its name", path.display()));
+    let unnamed =
+        || Failure::Input(format!("{}: --overwrite renames the folder, which needs its name", path.display()));
     let name = path.file_name().ok_or_else(unnamed)?;
     let numbered = |number: u32| {
         let mut name = name.to_owned();

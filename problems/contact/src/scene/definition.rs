@@ -96,7 +96,12 @@ impl Scene {
     /// [`SceneError`] naming the field, its value and what is allowed.
     pub fn validate(&self) -> Result<(), SceneError> {
         for (axis, (&mesh, &subdomains)) in self.mesh.iter().zip(&self.subdomains).enumerate() {
-            SceneError::require((1..=400).contains(&mesh), format!("mesh.bricks[{axis}]"), mesh, "1 … 400 bricks per edge")?;
+            SceneError::require(
+                (1..=400).contains(&mesh),
+                format!("mesh.bricks[{axis}]"),
+                mesh,
+                "1 … 400 bricks per edge",
+            )?;
             let divides = subdomains > 0 && mesh.is_multiple_of(subdomains);
             let allowed = format!("a divisor of the {mesh} bricks per edge");
             SceneError::require(divides, format!("mesh.subdomains[{axis}]"), subdomains, allowed)?;
@@ -128,7 +133,12 @@ impl Scene {
             SceneError::require(height >= minimum_height, place(x1, x2), height, allowed)?;
         }
         let volume = format!("[{least}, {largest}]");
-        SceneError::require(least <= largest, "admissible.volume", volume, "the smallest volume, then the largest (mm³)")?;
+        SceneError::require(
+            least <= largest,
+            "admissible.volume",
+            volume,
+            "the smallest volume, then the largest (mm³)",
+        )?;
         let grid = self.grid();
         for [x1, x2] in grid.columns().map(|(i, j)| grid.position(i, j)) {
             let height = self.counter_surface.height(x1, x2);
@@ -161,6 +171,19 @@ impl Scene {
             "u₃ held on a vertical face",
             "u₃ held on the face opposite to the contact boundary only (it would hold the contact normal)",
         )
+    }
+
+    /// Sum of the magnitudes of all loads, N, with the sides of all bodies as high as the lower body at the start.
+    pub fn load(&self) -> f64 {
+        let ([a, b], height) = (self.size, self.start_height);
+        let area = |face: Face| match face {
+            Face::X1Min | Face::X1Max => b * height,
+            Face::X2Min | Face::X2Max => a * height,
+            Face::Bottom | Face::Top => a * b,
+        };
+        let bodies = std::iter::once(&self.lower).chain(self.upper.as_ref().map(|upper| &upper.body));
+        let loads = bodies.flat_map(|body| &body.loads);
+        loads.map(|load| area(load.face) * load.traction.iter().map(|t| t * t).sum::<f64>().sqrt()).sum()
     }
 
     /// The bodies, lower first, for changes.

@@ -63,10 +63,18 @@ impl AdmissibleSet {
         }
         let area = grid.size[0] * grid.size[1];
         let measure = surface.integrals().iter().map(|value| value * area).collect::<Vec<_>>();
-        rows.push(("volume under the surface (admissible.volume)".into(), measure.into_iter().enumerate().collect(), bounds.volume));
+        rows.push((
+            "volume under the surface (admissible.volume)".into(),
+            measure.into_iter().enumerate().collect(),
+            bounds.volume,
+        ));
         let areas: Vec<f64> = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
         let bricks = surface.height_map(grid).pull_back(&areas);
-        rows.push(("volume of the bricks (admissible.volume)".into(), bricks.into_iter().enumerate().collect(), bounds.volume));
+        rows.push((
+            "volume of the bricks (admissible.volume)".into(),
+            bricks.into_iter().enumerate().collect(),
+            bounds.volume,
+        ));
         let polyhedron = Polyhedron::boxed(Vector::from_element(dimension, bounds.minimum_height), upper)?;
         let mut matrix = Matrix::zeros(rows.len(), dimension);
         for (row, (_, entries, _)) in rows.iter().enumerate() {
@@ -88,7 +96,8 @@ impl AdmissibleSet {
     fn expressions(&self, controls: &Vector) -> Vec<(String, f64, f64, f64)> {
         let set = &self.polyhedron;
         let products = set.rows() * controls;
-        let bounds = (0..controls.len()).map(|i| (format!("height of control {i}, α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
+        let bounds = (0..controls.len())
+            .map(|i| (format!("height of control {i}, α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
         let rows = (0..products.len())
             .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
         bounds.chain(rows).collect()

@@ -20,7 +20,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let friction = loaded.case.scene.friction;
     if friction == 0.0 {
         let allowed = "a coefficient > 0 to compare with no friction at all";
-        return Err(SceneError::out_of_range("friction", 0, allowed).into());
+        return Err(session.arguments.blame(SceneError::out_of_range("friction", 0, allowed)).into());
     }
     let (folder, initial_controls) = begin(&objective(&loaded.case)?, loaded, None, &COMPARED, session)?;
     let folder = folder.as_ref();

@@ -195,16 +195,20 @@ impl RunFolder {
         }
         let expected = Identity { stage: stage.map(str::to_owned), ..self.identity.clone() };
         let found = journal.map_or("", |journal| &journal.identity);
-        let version = serde_json::from_str(found).map_or_else(|_| expected.version.clone(), |Written { version }| version);
+        let version =
+            serde_json::from_str(found).map_or_else(|_| expected.version.clone(), |Written { version }| version);
         if version == expected.version {
             return expected.text();
         }
         if !self.new_version {
             let here = &expected.version;
-            let words = format!("the run was begun by version {version} of the program, this is version {here}; --new-version continues it");
+            let words = format!(
+                "the run was begun by version {version} of the program, this is version {here}; --new-version continues it"
+            );
             return Err(file_error(&self.place(stage).join(JOURNAL), words).into());
         }
-        let same = serde_json::from_str(found).is_ok_and(|found: Identity| found == Identity { version, ..expected.clone() });
+        let same =
+            serde_json::from_str(found).is_ok_and(|found: Identity| found == Identity { version, ..expected.clone() });
         if same { Ok(found.to_owned()) } else { expected.text() }
     }
 

@@ -124,7 +124,7 @@ pub fn write_optimization(
     out.write("history.csv", &tables::history(report), "one line per evaluation")?;
     out.show(&[("initial", "start, ", &shapes[0]), ("optimal", "optimum, ", &shapes[1])])?;
     if out.wanted().pictures {
-        let figure = gallery::convergence(objective, loaded.case.measure, report, &shapes[1]);
+        let figure = gallery::convergence(objective, report, &shapes[1]);
         out.draw(figure, "objective of every evaluation and kinds of steps")?;
     }
     out.finish(|figures| pages::optimization(figures, runs, last, shapes), &report.warnings)

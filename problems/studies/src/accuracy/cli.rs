@@ -14,7 +14,7 @@ use std::time::Instant;
 
 /// Error against run time: discretisation, contact solvers, subgradient, optimization.
 #[derive(Debug, Clone, Parser)]
-#[command(version)]
+#[command(name = "accuracy", version)]
 pub struct Arguments {
     /// About two minutes (the default).
     #[arg(long, conflicts_with_all = ["full", "smoke"])]

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 /// What the solvers and the optimizer do with stiff and extreme cases.
 #[derive(Debug, Clone, Parser)]
-#[command(version)]
+#[command(name = "stability", version)]
 pub struct Arguments {
     /// The fast subset only.
     #[arg(long)]
