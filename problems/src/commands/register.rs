@@ -42,7 +42,9 @@ impl Register {
         let path = root.join(REGISTER);
         let failed = |error: io::Error| Failure::Computation(format!("{}: {error}", path.display()));
         let mut file = match OpenOptions::new().read(true).append(true).create(begun).open(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound && !begun => return Ok(None),
+            Err(error) if !begun && [io::ErrorKind::NotFound, io::ErrorKind::NotADirectory].contains(&error.kind()) => {
+                return Ok(None);
+            }
             opened => opened.map_err(failed)?,
         };
         match file.try_lock() {
