@@ -5,7 +5,7 @@ use figures::{Map, MapPanel};
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
 };
-use problems::commands::{Failure, Folder, failed, finish, json};
+use problems::commands::{Failure, Folder, failed, finish, json, printed_with_files};
 use problems::membrane::{MembraneObjective, MembraneState, PATCHES, admissible_loads, example};
 use std::io;
 use std::path::PathBuf;
@@ -57,7 +57,7 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
         let states = [solve(&theta, &start)?, solve(&theta, &report.solution)?];
         pictures(folder, &theta, &states)
     };
-    let text = Failure::printed_with_files(text, arguments.json, folder.as_ref(), write)?;
+    let text = printed_with_files(text, arguments.json, folder.as_ref(), write)?;
     match failed(&report.termination) {
         Some(reason) => Err(Failure::Incomplete { text, reason, status: 1 }),
         None => Ok(text),

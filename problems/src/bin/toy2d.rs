@@ -3,7 +3,7 @@
 use clap::Parser;
 use figures::{self, Convergence, Step, Visit};
 use nonsmooth::IterationRecord;
-use problems::commands::{Failure, Folder, finish};
+use problems::commands::{Failure, Folder, finish, printed_with_files};
 use problems::toy;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -52,7 +52,7 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
     let text = text.trim_end().to_owned() + "\n";
     let draw =
         |folder: &Folder| starts.first().map_or(Ok(()), |start| pictures(folder, *start, arguments.cells as usize));
-    let text = Failure::printed_with_files(text, arguments.json, folder.as_ref(), draw)?;
+    let text = printed_with_files(text, arguments.json, folder.as_ref(), draw)?;
     if study.all_found() {
         return Ok(text);
     }

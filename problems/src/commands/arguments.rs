@@ -288,7 +288,7 @@ impl Arguments {
                     if scaled.abs() > LARGEST_TRACTION {
                         let allowed =
                             format!("|traction| ≤ {LARGEST_TRACTION:e} MPa, here {factor:e} times {traction:e}");
-                        return Err(SceneError::out_of_range("--load-factor", factor, allowed));
+                        return Err(SceneError::out_of_range("--load-factor", format!("{factor:e}"), allowed));
                     }
                     *traction = scaled;
                 }

@@ -4,7 +4,7 @@ use crate::commands::arguments::Arguments;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, json};
+use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::report::files;
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
@@ -78,7 +78,7 @@ pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Argum
     let object = json(&result)?;
     let write = |folder: &Folder| files::write_evaluation(folder, loaded, objective, &shape, &object);
     let printed = arguments.printed(result.to_string(), object.clone());
-    Failure::printed_with_files(printed, arguments.json, folder.as_ref(), write)
+    printed_with_files(printed, arguments.json, folder.as_ref(), write)
 }
 
 impl fmt::Display for EvaluationJson {

@@ -1,6 +1,5 @@
 //! The failures of a command, each with its exit status.
 
-use crate::commands::folder::Folder;
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
 use nonsmooth::{InputError, JournalError, OptimizeError, OracleError, Termination};
@@ -42,28 +41,6 @@ impl Failure {
             Self::Input(_) => 2,
             Self::Computation(_) => 1,
             Self::Incomplete { status, .. } => *status,
-        }
-    }
-
-    /// The text for stdout after the files of a command were written into its folder, if it has one. A text for people names
-    /// them; files that could not be written do not lose the text.
-    ///
-    /// # Errors
-    /// [`Failure::Incomplete`] with the text if a file could not be written.
-    pub fn printed_with_files(
-        text: String,
-        as_json: bool,
-        folder: Option<&Folder>,
-        write: impl FnOnce(&Folder) -> Result<(), Self>,
-    ) -> Result<String, Self> {
-        let Some(folder) = folder else { return Ok(text) };
-        match write(folder) {
-            Ok(()) if as_json => Ok(text),
-            Ok(()) => Ok(format!("{text}files:       {}\n", folder.page().display())),
-            Err(failure) => {
-                let reason = format!("{failure}; the report above is complete");
-                Err(Self::Incomplete { text, reason, status: 1 })
-            }
         }
     }
 
@@ -164,5 +141,20 @@ impl From<VerifyError> for Failure {
             VerifyError::Oracle(error) => error.into(),
             _ => Self::Computation(error.to_string()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_an_end_by_a_failure_is_one() {
+        let last = "an element is inverted".to_owned();
+        let words = failed(&Termination::OracleFailing { failures: 10, last: last.clone() }).expect("a failure");
+        assert!(words.contains(&last), "{words}");
+        assert!(failed(&Termination::SubproblemFailed { reason: last }).is_some());
+        let limits = [Termination::EvaluationLimit, Termination::TimeLimit, Termination::Stationary { radius: 0.0 }];
+        assert!(limits.iter().all(|end| failed(end).is_none()));
     }
 }

@@ -195,6 +195,28 @@ impl Folder {
     }
 }
 
+/// The text for stdout after the files of a command were written into its folder, if it has one. A text for people names them;
+/// files that could not be written do not lose the text.
+///
+/// # Errors
+/// [`Failure::Incomplete`] with the text if a file could not be written.
+pub fn printed_with_files(
+    text: String,
+    as_json: bool,
+    folder: Option<&Folder>,
+    write: impl FnOnce(&Folder) -> Result<(), Failure>,
+) -> Result<String, Failure> {
+    let Some(folder) = folder else { return Ok(text) };
+    match write(folder) {
+        Ok(()) if as_json => Ok(text),
+        Ok(()) => Ok(format!("{text}files:       {}\n", folder.page().display())),
+        Err(failure) => {
+            let reason = format!("{failure}; the report above is complete");
+            Err(Failure::Incomplete { text, reason, status: 1 })
+        }
+    }
+}
+
 /// Whether a file on the list of a folder is more than a preparation.
 fn is_result(name: &str) -> bool {
     name != REGISTER && name != START && name != PROBE && !GRIDS.contains(&name)

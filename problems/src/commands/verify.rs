@@ -4,7 +4,7 @@ use crate::commands::arguments::Arguments;
 use crate::commands::contact_objective::ContactObjective;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, json};
+use crate::commands::folder::{Folder, json, printed_with_files};
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactStatus, Residuals};
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
@@ -60,7 +60,7 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
         folder.write("verification.txt", &text)
     };
     let printed = arguments.printed(text.clone(), object.clone());
-    Failure::printed_with_files(printed, arguments.json, folder.as_ref(), write)
+    printed_with_files(printed, arguments.json, folder.as_ref(), write)
 }
 
 /// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the largest step.

@@ -116,6 +116,7 @@ fn an_interrupted_run_reports_says_how_to_resume_and_resumes() {
     assert!(message.contains(&format!("--resume {}", text(&folder))), "{message}");
     let report = printed(&output);
     assert_eq!(report["termination"]["reason"], "stopped_by_observer");
+    assert_eq!(report["termination"]["text"], "interrupted on request");
     assert_eq!(std::fs::read(folder.join("report.json")).unwrap(), output.stdout);
     let journal = Journal::read(&folder).unwrap().unwrap();
     assert_eq!(journal.entries.len() as u64, report["evaluations"].as_u64().unwrap());

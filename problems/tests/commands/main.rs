@@ -20,6 +20,7 @@ mod compare;
 mod contact3d;
 mod fuzz;
 mod long_runs;
+mod messages;
 mod nothing_lost;
 mod pages_run;
 mod pictures;

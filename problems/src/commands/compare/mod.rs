@@ -6,7 +6,7 @@ pub mod comparison;
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{SolvedShape, objective};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{COMPARED, Folder, REPORT, json, resume_command};
+use crate::commands::folder::{COMPARED, Folder, REPORT, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS};
 use crate::commands::optimize::run::{OptimizationRun, begin, optimize};
@@ -54,7 +54,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         folder.write(REPORT, &object)
     };
     let printed = session.arguments.printed(format!("{printed}\n{text}"), object.clone());
-    let text = Failure::printed_with_files(printed, as_json, folder.map(RunFolder::folder), write)?;
+    let text = printed_with_files(printed, as_json, folder.map(RunFolder::folder), write)?;
     let failed = runs.iter().find_map(|(run, _)| run.failure());
     match (interruption(continued.as_deref()), failed) {
         (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),

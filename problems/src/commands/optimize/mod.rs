@@ -7,7 +7,7 @@ pub mod summary;
 
 use crate::commands::contact_objective::SolvedShape;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, REPORT, json, resume_command};
+use crate::commands::folder::{Folder, REPORT, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS, interrupted};
 use crate::commands::optimize::run::{OptimizationRun, optimize};
@@ -66,7 +66,7 @@ pub fn report(
     let folder = optimization.folder.as_ref().map(RunFolder::folder);
     let json = session.arguments.json;
     let printed = session.arguments.printed(text.clone(), object.clone());
-    Ok((Failure::printed_with_files(printed, json, folder, write)?, shapes))
+    Ok((printed_with_files(printed, json, folder, write)?, shapes))
 }
 
 /// The sentence about an interruption, with the command that continues the run; none if the run was not interrupted.
