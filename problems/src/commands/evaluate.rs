@@ -47,10 +47,11 @@ pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Argum
     let controls = controls::load(solver, &loaded.case, ("--controls", arguments.controls.as_deref()))?;
     let folder = Folder::of_command(&loaded.case, arguments)?;
     let clock = Instant::now();
-    let shape = SolvedShape::at(objective, &controls)?;
+    let abandon = |_: &Failure| folder.iter().for_each(Folder::abandon);
+    let shape = SolvedShape::at(objective, &controls).inspect_err(abandon)?;
     let state_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let evaluation = objective.differentiate(&controls, &shape.state)?;
+    let evaluation = objective.differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
     let (state, forces) = (&shape.state, &shape.state.forces);
     let root = objective.cost().root();

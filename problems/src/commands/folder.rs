@@ -40,8 +40,8 @@ pub struct Folder {
     /// The path below the folder with the list, with the last `/`.
     prefix: String,
     register: Arc<Register>,
-    /// The list of the folder that was renamed; it stays locked, since a process may have found it under the old name.
-    _renamed: Option<Register>,
+    /// The folder that was renamed, with its list, which stays locked: a process may have found it under the old name.
+    renamed: Option<(PathBuf, Register)>,
 }
 
 impl Folder {
@@ -73,7 +73,7 @@ impl Folder {
         match Self::begin(path, bytes) {
             Ok(folder) => {
                 notice(&format!("{} was renamed to {}", path.display(), elsewhere.display()));
-                Ok(Self { _renamed: Some(held), ..folder })
+                Ok(Self { renamed: Some((elsewhere, held)), ..folder })
             }
             Err(failure) => {
                 std::fs::rename(&elsewhere, path).map_err(unwritable(path))?;
@@ -98,6 +98,19 @@ impl Folder {
     pub fn reopen(path: &Path, bytes: u64) -> Result<Self, Failure> {
         let missing = || Failure::Input(format!("{}: {REGISTER} is missing or changed", path.display()));
         Self::with_room(path, bytes, Register::lock(path, false)?.ok_or_else(missing)?)
+    }
+
+    /// Takes back what was begun in a new folder, as far as the system lets it.
+    pub fn abandon(&self) {
+        let names = self.register.names();
+        let folders: BTreeSet<&Path> = names.iter().filter_map(|name| Path::new(name).parent()).collect();
+        if self.register.clear().and_then(|()| std::fs::remove_file(self.path.join(REGISTER))).is_ok() {
+            // The folders below come first; those that were not made yet are not there.
+            folders.into_iter().rev().for_each(|folder| drop(std::fs::remove_dir(self.path.join(folder))));
+            if let Some((elsewhere, _)) = &self.renamed {
+                let _ = std::fs::rename(elsewhere, &self.path);
+            }
+        }
     }
 
     /// Makes a folder that is empty or does not exist; none is left if it cannot be written.
@@ -133,7 +146,7 @@ impl Folder {
         });
         let removed = std::fs::remove_file(&probe);
         written.and(removed).map_err(failed)?;
-        Ok(Self { path: path.to_owned(), prefix: String::new(), register: Arc::new(register), _renamed: None })
+        Ok(Self { path: path.to_owned(), prefix: String::new(), register: Arc::new(register), renamed: None })
     }
 
     /// The path of the folder.
@@ -154,7 +167,7 @@ impl Folder {
     pub fn within(&self, name: &str) -> Result<Self, Failure> {
         let (path, prefix) = (self.path.join(name), format!("{}{name}/", self.prefix));
         std::fs::create_dir_all(&path).map_err(unwritable(&path))?;
-        Ok(Self { path, prefix, register: Arc::clone(&self.register), _renamed: None })
+        Ok(Self { path, prefix, register: Arc::clone(&self.register), renamed: None })
     }
 
     /// Says that the program is about to write a file, by its path below this folder.

@@ -41,7 +41,8 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
     let shape = objective.solver();
     let control = controls::load(shape, case, ("--controls", arguments.controls.as_deref()))?;
     let folder = Folder::of_command(case, arguments)?;
-    let (here, step, test) = smooth_taylor_test(objective, &control)?;
+    let found = smooth_taylor_test(objective, &control);
+    let (here, step, test) = found.inspect_err(|_| folder.iter().for_each(Folder::abandon))?;
     let result = VerificationJson {
         test,
         smooth_step: step,

@@ -220,6 +220,16 @@ fn folders_with_files_of_others_are_refused_and_results_are_renamed() {
     // What is wrong with the input is found before a folder is touched.
     refused(&[&evaluate[..], &["--controls", "none.json"]].concat(), &["--controls", "none.json"]);
     assert!(!scratch.path().join("run.3").exists() && folder.join("evaluation.json").exists());
+    // So is a scene without equilibrium, or what was begun is taken back.
+    let before = everything(scratch.path());
+    let loose = ["--mesh", "3", "--load-factor", "-1"];
+    let new = scratch.path().join("new");
+    for command in [&["compare"][..], &["--continuation", "2,3"], &["evaluate"]] {
+        let options = if command[0] == "--continuation" { &loose[2..] } else { &loose[..] };
+        refused(&[command, options, &["--overwrite", "--out", text(&folder)]].concat(), &["no equilibrium"]);
+        refused(&[command, options, &["--out", text(&new)]].concat(), &["no equilibrium"]);
+        assert!(everything(scratch.path()) == before && !new.exists(), "{command:?}");
+    }
 }
 
 #[test]

@@ -32,7 +32,12 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     }
     let (mut printed, mut runs) = (String::new(), Vec::new());
     for part in parts {
-        let run = optimize(&part, Some(&initial_controls), session).map_err(|failure| failure.after(&printed))?;
+        let run = optimize(&part, Some(&initial_controls), session).map_err(|failure| {
+            if let (Some(folder), 2, true) = (folder, failure.status(), runs.is_empty()) {
+                folder.abandon();
+            }
+            failure.after(&printed)
+        })?;
         let (text, shapes) = report(&run, &part, session, None)
             .map_err(|failure| if as_json { failure } else { failure.after(&printed) })?;
         // One JSON object at most stands on stdout.

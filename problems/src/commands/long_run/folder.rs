@@ -163,6 +163,13 @@ impl RunFolder {
         keep_scene(&self.folder, loaded.file.clone())
     }
 
+    /// Takes a run back that its input does not let begin, unless it is an older one.
+    pub fn abandon(&self) {
+        if !self.resumed {
+            self.folder.abandon();
+        }
+    }
+
     /// An objective with the journal of the run or of one of its stages.
     ///
     /// # Errors

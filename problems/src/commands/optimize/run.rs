@@ -74,8 +74,13 @@ pub fn optimize(
         let objective = first.take().map_or_else(|| objective(&stage.case), Ok)?;
         let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
         let start = (controls, step);
-        let run =
-            run_on_mesh(objective, stage, start, optimizer.time_limit.map(left), folder.as_ref(), &session.status)?;
+        let limit = optimizer.time_limit.map(left);
+        let run = run_on_mesh(objective, stage, start, limit, folder.as_ref(), &session.status);
+        let run = run.inspect_err(|failure| {
+            if let (Some(folder), 2, true) = (&folder, failure.status(), mesh_runs.is_empty()) {
+                folder.abandon();
+            }
+        })?;
         if mesh_runs.is_empty() {
             step *= LATER_FIRST_STEP;
         }
