@@ -238,11 +238,14 @@ fn is_result(name: &str) -> bool {
 /// Why a folder with results is refused.
 fn what_it_holds(path: &Path, names: &BTreeSet<String>) -> String {
     let beside = "--out with another folder keeps it, --overwrite renames it";
-    if path.join(SCENE).exists() && !path.join(REPORT).exists() {
-        let command = resume_command(path, is_comparison(names));
-        return format!("holds a run that has not ended; continue it with `{command}` ({beside})");
+    if !path.join(SCENE).exists() {
+        return format!("holds results ({beside})");
     }
-    format!("holds results ({beside})")
+    let command = resume_command(path, is_comparison(names));
+    match path.join(REPORT).exists() {
+        true => format!("holds results of a run; `{command}` continues it with larger limits ({beside})"),
+        false => format!("holds a run that has not ended; continue it with `{command}` ({beside})"),
+    }
 }
 
 /// Whether a list is that of a comparison.
