@@ -77,6 +77,11 @@ impl<O> Journaled<O> {
         self.state.borrow().held
     }
 
+    /// Whether every evaluation so far is on disk.
+    pub fn is_complete(&self) -> bool {
+        !self.state.borrow().is_failing
+    }
+
     /// What could not be kept or continued so far, in words.
     pub fn warnings(&self) -> Vec<String> {
         self.state.borrow().warnings.clone()

@@ -114,18 +114,3 @@ fn begin(folder: &Path, path: &Path, identity: &str, dimension: usize) -> io::Re
     restart_files::synchronise(folder);
     Ok((file, line.len() as u64))
 }
-
-impl Journal {
-    /// Removes the journal of a folder with its restart data, if there is one; the folder stays.
-    ///
-    /// # Errors
-    /// [`JournalError::File`].
-    pub fn remove(folder: impl AsRef<Path>) -> Result<(), JournalError> {
-        let (folder, path) = (folder.as_ref(), Self::file(folder.as_ref()));
-        if !Self::exists(folder) {
-            return Ok(());
-        }
-        restart_files::remove_all(folder).map_err(JournalError::file(folder))?;
-        fs::remove_file(&path).map_err(JournalError::file(&path))
-    }
-}

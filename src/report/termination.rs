@@ -116,7 +116,7 @@ impl fmt::Display for Termination {
             Self::IterationLimit => write!(f, "iteration limit reached"),
             Self::TimeLimit => write!(f, "time limit reached"),
             Self::Unfinished => write!(f, "not ended: the caller stopped asking for steps"),
-            Self::StoppedByObserver => write!(f, "stopped by an observer"),
+            Self::StoppedByObserver => write!(f, "interrupted on request"),
             Self::StopRule { rule } => write!(f, "stopping rule holds: {rule}"),
             Self::UnboundedBelow => write!(f, "the objective is unbounded below"),
             Self::OracleFailing { failures, last } => {

@@ -2,6 +2,7 @@
 
 use crate::equilibrium::{ContactBoundary, ContactState};
 use crate::error::SceneError;
+use crate::scene::Scene;
 use nonsmooth::{Cost, CostGradient, Vector};
 
 /// A function of the contact pressures.
@@ -20,9 +21,17 @@ pub enum PressureMeasure {
 #[derive(Debug, Clone)]
 pub struct PressureCost {
     measure: PressureMeasure,
+    /// Whether the value is the p-th root of Σσ^p.
+    is_root: bool,
     areas: Vec<f64>,
     dual_dimension: usize,
 }
+
+/// Decades of Σσ^p at the typical pressure of a scene beyond which its root is taken. Squares of subgradients at pressures far
+/// above that must still be doubles, which end at 308 decades.
+const MAX_DECADES: f64 = 100.0;
+/// Largest pressure over the mean pressure, roughly: those of the paper's scenes are at 4 to 10.
+const TYPICAL_PEAK: f64 = 10.0;
 
 impl PressureCost {
     /// The cost on a contact boundary.
@@ -32,10 +41,35 @@ impl PressureCost {
     pub fn new(measure: PressureMeasure, boundary: &ContactBoundary) -> Result<Self, SceneError> {
         if let PressureMeasure::Norm { exponent } = measure {
             let valid = exponent > 1.0 && exponent.is_finite();
-            SceneError::require(valid, "exponent of the pressure norm", exponent, "a finite number > 1")?;
+            SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
         }
         let areas = boundary.points.iter().map(|point| point.area).collect();
-        Ok(Self { measure, areas, dual_dimension: boundary.dual_dimension() })
+        Ok(Self { measure, is_root: false, areas, dual_dimension: boundary.dual_dimension() })
+    }
+
+    /// The same cost in a form that can be computed for the pressures of a scene: where Σσ^p may be no double, its root
+    /// (Σσ^p)^{1/p}, which has the same minimisers. Meshes and shapes have no say in that.
+    #[must_use]
+    pub fn normalised_for(self, scene: &Scene) -> Self {
+        let PressureMeasure::Norm { exponent } = self.measure else { return self };
+        let typical = TYPICAL_PEAK * scene.load() / (scene.size[0] * scene.size[1]);
+        Self { is_root: typical > 0.0 && exponent * typical.log10().abs() > MAX_DECADES, ..self }
+    }
+
+    /// p where the value is (Σσ^p)^{1/p}, else 1.
+    pub fn root(&self) -> f64 {
+        match self.measure {
+            PressureMeasure::Norm { exponent } if self.is_root => exponent,
+            _ => 1.0,
+        }
+    }
+
+    /// The unit of the value, such as `MPa^{4}`.
+    pub fn unit(&self) -> String {
+        match self.measure {
+            PressureMeasure::Norm { exponent } if !self.is_root => format!("MPa^{{{exponent}}}"),
+            _ => "MPa".into(),
+        }
     }
 
     /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that carries
@@ -48,7 +82,10 @@ impl PressureCost {
                 // Relative to the largest area, so that the sum is at least 1 for every p.
                 let largest = self.areas.iter().copied().fold(0.0, f64::max);
                 let weights: f64 = self.areas.iter().map(|area| (area / largest).powf(p / (p - 1.0))).sum();
-                (total_force / largest).powf(p) / weights.powf(p - 1.0)
+                match self.is_root {
+                    false => (total_force / largest).powf(p) / weights.powf(p - 1.0),
+                    true => total_force / largest / weights.powf((p - 1.0) / p),
+                }
             }
             PressureMeasure::Peak => total_force / self.areas.iter().sum::<f64>(),
         }
@@ -64,6 +101,10 @@ impl<S> Cost<ContactState<S>> for PressureCost {
     fn value(&self, _control: &Vector, state: &ContactState<S>) -> f64 {
         let pressures = self.pressures(state);
         match self.measure {
+            PressureMeasure::Norm { exponent } if self.is_root => {
+                let (largest, sum) = relative_sum(&pressures, exponent);
+                largest * sum.powf(1.0 / exponent)
+            }
             PressureMeasure::Norm { exponent } => pressures.iter().map(|p| p.max(0.0).powf(exponent)).sum(),
             PressureMeasure::Peak => pressures.into_iter().fold(f64::NEG_INFINITY, f64::max),
         }
@@ -74,8 +115,15 @@ impl<S> Cost<ContactState<S>> for PressureCost {
         let mut dual = Vector::zeros(self.dual_dimension);
         match self.measure {
             PressureMeasure::Norm { exponent } => {
+                let (largest, factor) = match self.is_root {
+                    false => (1.0, exponent),
+                    true => {
+                        let (largest, sum) = relative_sum(&pressures, exponent);
+                        (largest, sum.powf(1.0 / exponent - 1.0))
+                    }
+                };
                 for (index, (pressure, area)) in pressures.iter().zip(&self.areas).enumerate() {
-                    dual[index] = exponent * pressure.max(0.0).powf(exponent - 1.0) / area;
+                    dual[index] = factor * (pressure.max(0.0) / largest).powf(exponent - 1.0) / area;
                 }
             }
             PressureMeasure::Peak => {
@@ -86,6 +134,13 @@ impl<S> Cost<ContactState<S>> for PressureCost {
         }
         CostGradient { control: Vector::zeros(control.len()), state: dual }
     }
+}
+
+/// The largest pressure m, and Σ(σ/m)^p; m is positive, also where no pressure is.
+fn relative_sum(pressures: &[f64], exponent: f64) -> (f64, f64) {
+    let largest = pressures.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    // At least 1, which it is unless there is no pressure at all.
+    (largest, pressures.iter().map(|p| (p.max(0.0) / largest).powf(exponent)).sum::<f64>().max(1.0))
 }
 
 #[cfg(test)]
@@ -102,7 +157,7 @@ mod tests {
         let areas = vec![1.0, 2.0, 4.0, 0.5];
         for p in [1.02, 1.5, 4.0, 12.0] {
             let measure = PressureMeasure::Norm { exponent: p };
-            let cost = PressureCost { measure, areas: areas.clone(), dual_dimension: 4 };
+            let cost = PressureCost { is_root: false, measure, areas: areas.clone(), dual_dimension: 4 };
             let weights: Vec<f64> = areas.iter().map(|area: &f64| area.powf(p / (p - 1.0))).collect();
             let forces: Vec<f64> = weights.iter().map(|w| 30.0 * w / weights.iter().sum::<f64>()).collect();
             let bound = cost.lower_bound(30.0);
@@ -113,9 +168,9 @@ mod tests {
         }
         // Near p = 1 everything goes to the largest area: (30/4)^p.
         let nearly = PressureMeasure::Norm { exponent: 1.001 };
-        let cost = PressureCost { measure: nearly, areas: areas.clone(), dual_dimension: 4 };
+        let cost = PressureCost { is_root: false, measure: nearly, areas: areas.clone(), dual_dimension: 4 };
         assert!((cost.lower_bound(30.0) / 7.5_f64.powf(1.001) - 1.0).abs() < 1e-12);
-        let cost = PressureCost { measure: PressureMeasure::Peak, areas, dual_dimension: 4 };
+        let cost = PressureCost { is_root: false, measure: PressureMeasure::Peak, areas, dual_dimension: 4 };
         assert!((cost.lower_bound(30.0) - 4.0).abs() < 1e-14);
     }
 
@@ -124,7 +179,12 @@ mod tests {
         // method.md (9.1): (3e7)⁴/(Σ A^{4/3})³ = 1.294e16 on 12 × 12 bricks of a 100 mm square.
         let grid = crate::body::mesh::Grid { cells: [12, 12, 12], size: [100.0, 100.0] };
         let areas = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
-        let cost = PressureCost { measure: PressureMeasure::Norm { exponent: 4.0 }, areas, dual_dimension: 169 };
+        let cost = PressureCost {
+            is_root: false,
+            measure: PressureMeasure::Norm { exponent: 4.0 },
+            areas,
+            dual_dimension: 169,
+        };
         assert!((cost.lower_bound(3e7) / 1.294e16 - 1.0).abs() < 5e-4);
     }
 }

@@ -50,7 +50,7 @@ pub fn check(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind
     let needed = estimate(scene, kind, preconditioner);
     match available() {
         Some(available) if needed > USABLE * available => Err(SceneError::out_of_range(
-            "mesh",
+            "mesh.bricks",
             format!(
                 "{} bricks with {} subdomains (about {:.1} GB)",
                 scene.mesh.map(|count| count.to_string()).join("x"),

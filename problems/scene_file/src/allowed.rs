@@ -54,6 +54,29 @@ fn short(value: f64) -> String {
     if value.abs() >= 1e6 || (value != 0.0 && value.abs() < 1e-3) { format!("{value:e}") } else { value.to_string() }
 }
 
+/// The number that a text gives to the field at a path such as `mesh.bricks`, or to an entry of it where it is a list.
+///
+/// # Errors
+/// What is allowed, in words.
+pub fn number(path: &str, text: &str) -> Result<f64, String> {
+    let node = field(path).ok_or_else(|| format!("there is no field {path}"))?;
+    let node = node.items().unwrap_or(node);
+    let number = if node.is("integer") { text.parse().ok().map(|n: u32| f64::from(n)) } else { text.parse().ok() };
+    number.filter(|number| contains(&node, *number)).ok_or_else(|| format!("allowed: {}", words(&node)))
+}
+
+/// What the documentation of a field says of its default.
+pub(super) fn default(path: &str) -> String {
+    let meaning = field(path).and_then(|node| node.text("description")).unwrap_or_default();
+    meaning.split_once("Default ").map_or("none", |(_, words)| words.trim_end_matches('.')).to_owned()
+}
+
+/// The field at a path.
+fn field(path: &str) -> Option<Node<'static>> {
+    let inner = |node: Node<'static>, name: &str| node.fields().and_then(|fields| fields.get(name)).map(Node::new);
+    path.split('.').try_fold(Node::root(), inner)
+}
+
 /// Whether a number lies in the range of a place.
 pub(super) fn contains(node: &Node<'_>, value: f64) -> bool {
     let bound = |word: &str| node.keyword(word).and_then(Value::as_f64);

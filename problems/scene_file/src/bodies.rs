@@ -43,7 +43,7 @@ pub struct UpperSection {
 #[serde(deny_unknown_fields)]
 pub struct MaterialSection {
     /// Young's modulus E.
-    #[schemars(range(max = 1e15), extend("x-unit" = "MPa", "exclusiveMinimum" = 0.0))]
+    #[schemars(range(min = 1e-9, max = 1e15), extend("x-unit" = "MPa"))]
     pub young_modulus: f64,
     /// Poisson's ratio.
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = -1.0, "exclusiveMaximum" = 0.5))]

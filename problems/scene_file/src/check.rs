@@ -80,6 +80,7 @@ impl Checker<'_> {
             }
             Value::Float(number) if node.is("number") && allowed::contains(node, *number) => Ok(()),
             Value::Boolean(_) if node.is("boolean") => Ok(()),
+            Value::Float(number) if number.is_finite() => self.refuse(path, format!("{number:?}"), node),
             _ => self.refuse(path, value, node),
         }
     }

@@ -1,5 +1,6 @@
 //! Grids of heights from CSV files.
 
+use crate::text::read_text;
 use contact::error::SceneError;
 use contact::scene::HeightGrid;
 use std::path::Path;
@@ -7,10 +8,21 @@ use std::path::Path;
 /// Longest edge of a grid, numbers.
 const LARGEST: usize = 2000;
 
+/// Largest file of a grid, bytes.
+const LARGEST_FILE: u64 = 128 << 20;
+
+/// The text of a grid file.
+///
+/// # Errors
+/// As [`read_text`].
+pub fn read_grid(file: &Path) -> Result<String, SceneError> {
+    read_text(file, LARGEST_FILE)
+}
+
 /// Heights of a file over a base of the given size: one line per x₁, one column per x₂.
 pub(super) fn read(file: &Path, size: [f64; 2]) -> Result<HeightGrid, SceneError> {
     let failed = |reason: String| SceneError::File { path: file.display().to_string(), reason };
-    let text = std::fs::read_to_string(file).map_err(|error| failed(error.to_string()))?;
+    let text = read_grid(file)?;
     let mut heights = Vec::new();
     let mut counts = [0, 0];
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.trim().starts_with('#'));

@@ -16,20 +16,27 @@ mod schema;
 mod settings;
 mod surfaces;
 mod table;
+mod text;
 
+pub use allowed::number;
 pub use bodies::{BodySection, Component, LoadSection, MaterialSection, SupportSection, UpperSection};
 pub use case::{Case, default_subdomains};
+pub use grid_file::read_grid;
 pub use schema::schema;
 pub use settings::{
     AccuracyName, MeasureName, MeshSection, ObjectiveSection, OptimizerSection, OutputSection, SolverSection,
 };
 pub use surfaces::{AdmissibleSection, CounterSection, SplineName, StartSection, SurfaceSection};
 pub use table::field_table;
+pub use text::read_text;
 
 use contact::error::SceneError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+
+/// Largest scene file, bytes.
+const LARGEST_FILE: u64 = 1 << 20;
 
 /// A contact shape optimization problem: an elastic body with an optimized upper surface below a rigid obstacle or a second
 /// elastic body. Units: N, mm, MPa. x1, x2 span the base, x3 points upwards; the lower body stands on x3 = 0.
@@ -93,9 +100,19 @@ impl SceneFile {
     /// [`SceneError::File`] for a file that cannot be read, and as [`parse`](Self::parse).
     pub fn read(file: &Path) -> Result<Self, SceneError> {
         let path = file.display().to_string();
-        let text = std::fs::read_to_string(file)
-            .map_err(|error| SceneError::File { path: path.clone(), reason: error.to_string() })?;
-        Self::parse(&text, &path)
+        Self::parse(&read_text(file, LARGEST_FILE)?, &path)
+    }
+
+    /// The value of the field at a path such as `mesh.bricks`, as it stands in a file; for a field that is not set, what its
+    /// documentation says of that.
+    pub fn value(&self, path: &str) -> String {
+        let table = toml::Table::try_from(self).unwrap_or_default();
+        let mut names = path.split('.');
+        let first = names.next().and_then(|name| table.get(name));
+        match names.try_fold(first, |value, name| value.map(|value| value.get(name))) {
+            Some(Some(value)) => value.to_string(),
+            _ => allowed::default(path),
+        }
     }
 
     /// The complete file with a comment on every field; reads back as the same scene.

@@ -5,7 +5,7 @@ use figures::{Map, MapPanel};
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
 };
-use problems::commands::{Failure, Folder, finish, json};
+use problems::commands::{Failure, Folder, failed, finish, json, printed_with_files};
 use problems::membrane::{MembraneObjective, MembraneState, PATCHES, admissible_loads, example};
 use std::io;
 use std::path::PathBuf;
@@ -20,8 +20,8 @@ struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 48, value_parser = clap::value_parser!(u16).range(2..=512))]
     cells: u16,
     /// Evaluations allowed
-    #[arg(long, value_name = "K", default_value_t = 400)]
-    max_evaluations: usize,
+    #[arg(long, value_name = "K", default_value_t = 400, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    max_evaluations: u32,
     /// Print one line per evaluation on stderr
     #[arg(long)]
     table: bool,
@@ -31,6 +31,9 @@ struct Arguments {
     /// Write report and pictures of displacement and reaction before and after
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
+    #[arg(long)]
+    overwrite: bool,
 }
 
 fn main() -> ExitCode {
@@ -38,9 +41,9 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let folder = arguments.out.as_deref().map(|path| Folder::with_room(path, 1 << 20)).transpose()?;
+    let folder = arguments.out.as_deref().map(|path| Folder::create(path, 1 << 20, arguments.overwrite)).transpose()?;
     let theta = example(usize::from(arguments.cells)).map_err(Failure::computation)?;
-    let config = BundleTrustConfig { max_evaluations: arguments.max_evaluations, ..Default::default() };
+    let config = BundleTrustConfig { max_evaluations: arguments.max_evaluations as usize, ..Default::default() };
     let mut method = BundleTrust::new(config)?.constraints(admissible_loads());
     if arguments.table {
         method = method.observer(TablePrinter::new(io::stderr()));
@@ -54,7 +57,11 @@ fn run(arguments: &Arguments) -> Result<String, Failure> {
         let states = [solve(&theta, &start)?, solve(&theta, &report.solution)?];
         pictures(folder, &theta, &states)
     };
-    Failure::printed_with_files(text, folder.as_ref().map_or(Ok(()), write))
+    let text = printed_with_files(text, arguments.json, folder.as_ref(), write)?;
+    match failed(&report.termination) {
+        Some(reason) => Err(Failure::Incomplete { text, reason, status: 1 }),
+        None => Ok(text),
+    }
 }
 
 fn page(theta: &MembraneObjective, report: &Report) -> Result<String, Failure> {

@@ -3,7 +3,7 @@
 use clap::Parser;
 use figures::{self, Convergence, Step, Visit};
 use nonsmooth::IterationRecord;
-use problems::commands::{Failure, Folder, finish};
+use problems::commands::{Failure, Folder, finish, printed_with_files};
 use problems::toy;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -20,14 +20,17 @@ struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     starts: u32,
     /// Seed of the random starts
-    #[arg(long, value_name = "S", default_value_t = 1)]
-    seed: u64,
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = clap::value_parser!(u32).range(0..))]
+    seed: u32,
     /// Print one JSON object instead of the page
     #[arg(long)]
     json: bool,
     /// Folder for pictures of the landscape with the points of the first run, and of its course
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
+    #[arg(long)]
+    overwrite: bool,
     /// Grid cells per edge of the landscape
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=4096))]
     cells: u32,
@@ -38,18 +41,18 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let folder = arguments.out.as_deref().map(|path| Folder::with_room(path, 1)).transpose()?;
+    let folder = arguments.out.as_deref().map(|path| Folder::create(path, 1, arguments.overwrite)).transpose()?;
     let starts = match arguments.start {
         Some(start) => vec![start],
-        None => toy::random_starts(arguments.seed, arguments.starts as usize),
+        None => toy::random_starts(arguments.seed.into(), arguments.starts as usize),
     };
     let study = toy::run_study(&starts)?.ok_or_else(|| Failure::computation("no start"))?;
     let text =
         if arguments.json { serde_json::to_string(&study).map_err(Failure::computation)? } else { study.to_string() };
     let text = text.trim_end().to_owned() + "\n";
-    if let (Some(folder), Some(start)) = (&folder, starts.first()) {
-        pictures(folder, *start, arguments.cells as usize).map_err(|failure| failure.after(&text))?;
-    }
+    let draw =
+        |folder: &Folder| starts.first().map_or(Ok(()), |start| pictures(folder, *start, arguments.cells as usize));
+    let text = printed_with_files(text, arguments.json, folder.as_ref(), draw)?;
     if study.all_found() {
         return Ok(text);
     }

@@ -13,6 +13,9 @@ use serde::de::value::Error as NameError;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::path::PathBuf;
 
+/// Largest traction of a scene, MPa.
+const LARGEST_TRACTION: f64 = 1e15;
+
 /// What to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Command {
@@ -40,14 +43,14 @@ pub struct Arguments {
     #[arg(value_name = "DIR")]
     pub certified: Option<PathBuf>,
     /// Bricks per edge of each body.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count("mesh.bricks"))]
     pub mesh: Option<usize>,
-    /// Subdomains per edge of each body; must divide the mesh. Default 2, or, where 2 does not divide the mesh, the divisor
-    /// that leaves closest to 6 bricks per subdomain and edge.
-    #[arg(long, value_name = "S")]
+    /// Subdomains per edge of each body; must divide the mesh. Where neither this option nor the scene says it: 2, or, where 2
+    /// does not divide the mesh, the divisor that leaves closest to 6 bricks per subdomain and edge.
+    #[arg(long, value_name = "S", value_parser = count("mesh.subdomains"))]
     pub subdomains: Option<usize>,
     /// Coulomb friction coefficient.
-    #[arg(long, value_name = "MU")]
+    #[arg(long, value_name = "MU", value_parser = real("friction"))]
     pub friction: Option<f64>,
     /// Spline of the contact surface.
     #[arg(long, value_name = "bspline:DEGREE|bezier", value_parser = parse_surface)]
@@ -56,16 +59,16 @@ pub struct Arguments {
     #[arg(long, value_name = "N1xN2", value_parser = parse_counts)]
     pub control_points: Option<[usize; 2]>,
     /// Poisson's ratio of the lower body.
-    #[arg(long, value_name = "NU")]
+    #[arg(long, value_name = "NU", value_parser = real("lower.material.poisson_ratio"))]
     pub poisson_ratio: Option<f64>,
     /// Young's modulus of the lower body, MPa.
-    #[arg(long, value_name = "E")]
+    #[arg(long, value_name = "E", value_parser = real("lower.material.young_modulus"))]
     pub young_modulus: Option<f64>,
     /// How bricks of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials.
     #[arg(long, value_parser = named::<Formulation>, value_name = "standard|mean-dilatation")]
     pub formulation: Option<Formulation>,
-    /// Factor on all loads (negative: reversed).
-    #[arg(long, value_name = "F")]
+    /// Factor on all loads (negative: reversed) [default: 1].
+    #[arg(long, value_name = "F", value_parser = finite)]
     pub load_factor: Option<f64>,
     /// Contact solver.
     #[arg(long, value_parser = named::<SolverKind>, value_name = "auto|newton|direct|augmented-lagrangian")]
@@ -77,32 +80,38 @@ pub struct Arguments {
     #[arg(long, value_parser = measures())]
     pub objective: Option<MeasureName>,
     /// Exponent p of the pressure norm.
-    #[arg(long, value_name = "P")]
+    #[arg(long, value_name = "P", value_parser = real("objective.exponent"))]
     pub exponent: Option<f64>,
-    /// Control heights to evaluate or verify at: a JSON array, row major, index i*n2 + j with i along x1.
+    /// Control heights to evaluate or verify at: a JSON array, row major, index i*n2 + j with i along x1 [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub controls: Option<PathBuf>,
-    /// Control heights to start the optimization from.
+    /// Control heights to start the optimization from [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
     /// Largest number of evaluations of the optimization.
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", value_parser = count("optimizer.max_evaluations"))]
     pub max_evaluations: Option<usize>,
-    /// Longest time of this run in seconds; the evaluation under way is finished.
-    #[arg(long, value_name = "SECONDS")]
+    /// Longest time of this run in seconds; the evaluation under way is finished [default: that of the scene, or none].
+    #[arg(long, value_name = "SECONDS", value_parser = real("optimizer.time_limit"))]
     pub time_limit: Option<f64>,
     /// Optimize on growing meshes with so many bricks per edge, each starting from the last optimum.
-    #[arg(long, value_name = "N1,N2,...", value_delimiter = ',')]
+    #[arg(long, value_name = "N1,N2,...", value_delimiter = ',', value_parser = count("optimizer.continuation"))]
     pub continuation: Option<Vec<usize>>,
-    /// Folder for the report, controls, history and pressures; an optimization can be resumed from there.
+    /// New folder for the report, controls, history and pressures; an optimization can be resumed from there [default: none].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --json only).
+    /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --new-version, --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
-    /// Threads for the work on subdomains.
-    #[arg(long, value_name = "T")]
-    pub threads: Option<usize>,
+    /// With --resume: continue a run that another version of the program has begun.
+    #[arg(long, requires = "resume")]
+    pub new_version: bool,
+    /// Threads for the work on subdomains [default: one per processor].
+    #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub threads: Option<u16>,
     /// With evaluate: contraction factor and condition at the state (costs some ten adjoint solves; not done unless asked).
     #[arg(long)]
     pub diagnose: bool,
@@ -134,12 +143,6 @@ impl Arguments {
     /// [`Failure::Input`] naming the option.
     pub fn check(&self) -> Result<(), Failure> {
         self.check_command()?;
-        if let Some(limit) = self.time_limit.filter(|limit| !(*limit > 0.0 && limit.is_finite())) {
-            return Err(SceneError::out_of_range("--time-limit", limit, "a finite number of seconds > 0").into());
-        }
-        if let Some(bricks) = self.continuation.iter().flatten().find(|bricks| !(1..=400).contains(*bricks)) {
-            return Err(SceneError::out_of_range("--continuation", bricks, "meshes of 1 to 400 bricks per edge").into());
-        }
         if self.continuation.is_some() && self.mesh.is_some() {
             return refused("--mesh", "without --continuation, which names the meshes");
         }
@@ -149,11 +152,6 @@ impl Arguments {
             }
         }
         self.check_resume()?;
-        for (option, count) in [("--max-evaluations", self.max_evaluations), ("--threads", self.threads)] {
-            if count == Some(0) {
-                return Err(SceneError::out_of_range(option, 0, "a number ≥ 1").into());
-            }
-        }
         if self.exponent.is_some() && self.objective == Some(MeasureName::PeakPressure) {
             return refused("--exponent", "with --objective pressure-norm only");
         }
@@ -206,18 +204,68 @@ impl Arguments {
             max_evaluations: self.max_evaluations,
             time_limit: self.time_limit,
             threads: self.threads,
+            new_version: self.new_version,
             json: self.json,
             ..nothing
         };
         if *self == allowed {
             return Ok(());
         }
-        let allowed = "with --max-evaluations, --time-limit, --threads, --json only: all else is in the folder";
+        let allowed =
+            "with --max-evaluations, --time-limit, --threads, --new-version, --json only: all else is in the folder";
         Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
 
+    /// The options that stand for fields of the scene, with the fields and whether they are given.
+    fn fields(&self) -> [(&'static str, &'static str, bool); 15] {
+        [
+            ("mesh", "mesh.bricks", self.mesh.is_some()),
+            ("subdomains", "mesh.subdomains", self.subdomains.is_some()),
+            ("friction", "friction", self.friction.is_some()),
+            ("surface", "surface.spline", self.surface.is_some()),
+            ("surface", "surface.degree", self.surface.is_some()),
+            ("control_points", "surface.control_points", self.control_points.is_some()),
+            ("poisson_ratio", "lower.material.poisson_ratio", self.poisson_ratio.is_some()),
+            ("young_modulus", "lower.material.young_modulus", self.young_modulus.is_some()),
+            ("formulation", "lower.material.formulation", self.formulation.is_some()),
+            ("solver", "solver.kind", self.solver.is_some()),
+            ("preconditioner", "solver.preconditioner", self.preconditioner.is_some()),
+            ("objective", "objective.measure", self.objective.is_some()),
+            ("exponent", "objective.exponent", self.exponent.is_some()),
+            ("max_evaluations", "optimizer.max_evaluations", self.max_evaluations.is_some()),
+            ("continuation", "optimizer.continuation", self.continuation.is_some()),
+        ]
+    }
+
+    /// Help that says what holds where an option is not given: the field of a scene, or its value in the scene of the binary.
+    pub fn help_with_defaults(mut command: clap::Command, scene: Option<&SceneFile>) -> clap::Command {
+        let Ok(nothing) = Self::try_parse_from(["help"]) else { return command };
+        for (option, field, _) in nothing.fields().into_iter().filter(|(_, field, _)| *field != "surface.degree") {
+            let default = scene.map_or_else(|| format!("{field} of the scene"), |scene| scene.value(field));
+            command = command.mut_arg(option, |argument| {
+                let meaning = argument.get_help().map(ToString::to_string).unwrap_or_default();
+                argument.help(format!("{meaning} [default: {default}]"))
+            });
+        }
+        command
+    }
+
+    /// An error in the words of the command line where an option is at fault.
+    pub fn blame(&self, error: SceneError) -> SceneError {
+        let source = if let SceneError::InFile { source, .. } = &error { source } else { &error };
+        let SceneError::OutOfRange { field, value, allowed } = source else { return error };
+        let fields = self.fields();
+        match fields.iter().find(|(_, path, given)| *given && field.starts_with(path)) {
+            Some((option, ..)) => SceneError::out_of_range(format!("--{}", option.replace('_', "-")), value, allowed),
+            None => error,
+        }
+    }
+
     /// The scene file with the options put in; checked when it becomes a case.
-    pub fn apply(&self, mut file: SceneFile) -> SceneFile {
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for loads beyond what a scene may have.
+    pub fn apply(&self, mut file: SceneFile) -> Result<SceneFile, SceneError> {
         let mesh = &mut file.mesh;
         if let Some(bricks) = self.mesh {
             mesh.bricks = [bricks; 3];
@@ -245,7 +293,15 @@ impl Arguments {
         if let Some(factor) = self.load_factor {
             let upper = file.upper.iter_mut().flat_map(|upper| &mut upper.loads);
             for load in file.lower.loads.iter_mut().chain(upper) {
-                load.traction = load.traction.map(|traction| factor * traction);
+                for traction in &mut load.traction {
+                    let scaled = factor * *traction;
+                    if scaled.abs() > LARGEST_TRACTION {
+                        let allowed =
+                            format!("|traction| ≤ {LARGEST_TRACTION:e} MPa, here {factor:e} times {traction:e}");
+                        return Err(SceneError::out_of_range("--load-factor", format!("{factor:e}"), allowed));
+                    }
+                    *traction = scaled;
+                }
             }
         }
         file.solver.kind = self.solver.unwrap_or(file.solver.kind);
@@ -264,7 +320,7 @@ impl Arguments {
         if let Some(folder) = &self.out {
             file.output.folder = Some(folder.display().to_string());
         }
-        file
+        Ok(file)
     }
 }
 
@@ -275,22 +331,29 @@ fn refused(option: &str, allowed: &str) -> Result<(), Failure> {
 fn parse_surface(text: &str) -> Result<SplineKind, String> {
     match text.split_once(':') {
         None if text == "bezier" => Ok(SplineKind::Bezier),
-        Some(("bspline", degree)) => degree
-            .parse()
-            .map(SplineKind::BSpline)
-            .map_err(|_| format!("the degree {degree:?} is not a number; allowed: bspline:1, bspline:2, …")),
+        Some(("bspline", degree)) => count("surface.degree")(degree).map(SplineKind::BSpline),
         _ => Err("allowed: bspline:DEGREE or bezier".into()),
     }
 }
 
 fn parse_counts(text: &str) -> Result<[usize; 2], String> {
-    let allowed = "allowed: two numbers from 2 to 40 such as 6x6".to_owned();
-    let (first, second) = text.split_once('x').ok_or_else(|| allowed.clone())?;
-    let counts = [first, second].map(|count| count.parse::<usize>().ok().filter(|count| (2..=40).contains(count)));
-    match counts {
-        [Some(first), Some(second)] => Ok([first, second]),
-        _ => Err(allowed),
-    }
+    let (first, second) = text.split_once('x').ok_or("allowed: two numbers such as 6x6")?;
+    let count = count("surface.control_points");
+    Ok([count(first)?, count(second)?])
+}
+
+/// Reads a number for a field of the scene.
+fn real(field: &'static str) -> impl Fn(&str) -> Result<f64, String> + Clone {
+    move |text| scene_file::number(field, text)
+}
+
+/// Reads a count for a field of the scene.
+fn count(field: &'static str) -> impl Fn(&str) -> Result<usize, String> + Clone {
+    move |text| scene_file::number(field, text).map(|count| count as usize)
+}
+
+fn finite(text: &str) -> Result<f64, &'static str> {
+    text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or("allowed: a finite number")
 }
 
 /// A choice by its name in scene files; the error lists all names.

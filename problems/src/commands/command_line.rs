@@ -31,14 +31,17 @@ struct AnyScene {
 
 /// Runs the binary of this name on its own scene, the text of a scene file.
 pub fn run(binary: &'static str, scene: &str) -> ExitCode {
-    let parsed = Arguments::from_arg_matches(&Arguments::command().name(binary).get_matches());
-    let arguments = parsed.unwrap_or_else(|error| error.exit());
-    finish(execute(|| Ok((SceneFile::parse(scene, binary)?, None)), &arguments))
+    let scene = SceneFile::parse(scene, binary);
+    let command = Arguments::help_with_defaults(Arguments::command().name(binary), scene.as_ref().ok());
+    let arguments = Arguments::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit());
+    finish(execute(|| Ok((scene?, None)), &arguments))
 }
 
 /// Runs the binary that takes any scene.
 pub fn run_any() -> ExitCode {
-    let AnyScene { scene, arguments } = AnyScene::parse();
+    let command = Arguments::help_with_defaults(AnyScene::command(), None);
+    let parsed = AnyScene::from_arg_matches(&command.get_matches());
+    let AnyScene { scene, arguments } = parsed.unwrap_or_else(|error| error.exit());
     let missing = || Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into());
     if arguments.resume.is_some() && scene.is_some() {
         let words = "SCENE.toml and --resume together: a resumed run has its scene in its folder";
@@ -67,13 +70,13 @@ pub fn execute(
         Some(folder) => RunFolder::scene(folder, arguments.command == Command::Compare)?,
         None => open()?,
     };
-    let loaded = LoadedScene::new(arguments.apply(file), path)?;
+    let loaded = LoadedScene::new(arguments.apply(file)?, path).map_err(|error| arguments.blame(error))?;
     if arguments.print_scene {
         return Ok(loaded.file.print()?);
     }
     if let Some(threads) = arguments.threads {
         // A second call in one process keeps the first pool; results do not depend on it.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
     }
     let session = Session { arguments, clock: Instant::now(), status };
     let result = match arguments.command {

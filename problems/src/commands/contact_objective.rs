@@ -8,7 +8,8 @@ use contact::plausibility::Warning;
 use nonsmooth::{Accuracy, Cost, ReducedObjective, StateSolver, Vector};
 use scene_file::Case;
 
-/// Θ of a scene: the pressure measure of the contact state that the control heights lead to.
+/// Θ of a scene: the pressure measure of the contact state that the control heights lead to. Where Σσ^p may be no double, its
+/// p-th root.
 pub type ContactObjective = ReducedObjective<ContactShape, PressureCost>;
 
 /// Θ of a case.
@@ -17,7 +18,7 @@ pub type ContactObjective = ReducedObjective<ContactShape, PressureCost>;
 /// [`Failure::Input`] naming the field.
 pub fn objective(case: &Case) -> Result<ContactObjective, Failure> {
     let shape = ContactShape::with_preconditioner(case.scene.clone(), case.solver, case.preconditioner)?;
-    let cost = PressureCost::new(case.measure, &shape.problem().boundary)?;
+    let cost = PressureCost::new(case.measure, &shape.problem().boundary)?.normalised_for(&case.scene);
     Ok(ReducedObjective::new(shape, cost))
 }
 

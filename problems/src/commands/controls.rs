@@ -4,20 +4,25 @@ use crate::commands::folder::file_error;
 use contact::contact_shape::ContactShape;
 use contact::error::SceneError;
 use nonsmooth::{StateSolver, Vector};
-use scene_file::Case;
+use scene_file::{Case, read_text};
 use std::path::Path;
 
-/// The controls of a file, or those the case starts from; checked against the admissible set.
+/// Largest control file, bytes.
+const LARGEST_FILE: u64 = 1 << 20;
+
+/// The controls of a file that an option names, or those the case starts from; checked against the admissible set.
 ///
 /// # Errors
 /// [`SceneError`] for an unreadable file, a wrong count, numbers that are not finite, controls outside U.
-pub fn load(shape: &ContactShape, case: &Case, file: Option<&Path>) -> Result<Vector, SceneError> {
+pub fn load(shape: &ContactShape, case: &Case, (option, file): (&str, Option<&Path>)) -> Result<Vector, SceneError> {
+    let place = file.map_or_else(|| "surface.start".to_owned(), |_| option.to_owned());
+    let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
     let controls = match (file, &case.start) {
-        (Some(file), _) => read(file, shape.control_dimension())?,
+        (Some(file), _) => read(file, shape.control_dimension()).map_err(within)?,
         (None, Some(controls)) => Vector::from_column_slice(controls),
         (None, None) => shape.start(),
     };
-    shape.problem().admissible.check(&controls)?;
+    shape.problem().admissible.check(&controls).map_err(within)?;
     Ok(controls)
 }
 
@@ -26,7 +31,7 @@ pub fn load(shape: &ContactShape, case: &Case, file: Option<&Path>) -> Result<Ve
 /// # Errors
 /// [`SceneError`] for an unreadable file; as [`parse`].
 pub fn read(file: &Path, expected: usize) -> Result<Vector, SceneError> {
-    let text = std::fs::read_to_string(file).map_err(|error| file_error(file, error))?;
+    let text = read_text(file, LARGEST_FILE)?;
     parse(&text, &file.display().to_string(), expected)
 }
 

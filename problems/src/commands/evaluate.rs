@@ -4,9 +4,8 @@ use crate::commands::arguments::Arguments;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape, checks};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::json;
+use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::LoadedScene;
-use crate::commands::long_run::RunFolder;
 use crate::commands::report::files;
 use contact::contact_shape::SolverKind;
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
@@ -19,6 +18,10 @@ use std::time::Instant;
 #[derive(Debug, Serialize)]
 struct EvaluationJson {
     objective: f64,
+    /// log₁₀ of Σσ^p or of max σ.
+    log10_objective: f64,
+    /// p where objective and subgradient are those of (Σσ^p)^{1/p}, since those of Σσ^p are no doubles; else 1.
+    objective_root: f64,
     subgradient: Vec<f64>,
     peak_pressure: f64,
     total_normal_force: f64,
@@ -46,19 +49,28 @@ struct Seconds {
 
 /// The command.
 pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = RunFolder::folder_for_results(loaded.case.output.folder.as_deref())?;
     let solver = objective.solver();
-    let controls = controls::load(solver, &loaded.case, arguments.controls.as_deref())?;
+    let controls = controls::load(solver, &loaded.case, ("--controls", arguments.controls.as_deref()))?;
+    let folder = Folder::of_command(&loaded.case, arguments)?;
     let clock = Instant::now();
-    let shape = SolvedShape::at(objective, &controls)?;
+    let abandon = |_: &Failure| folder.iter().for_each(Folder::abandon);
+    let shape = SolvedShape::at(objective, &controls).inspect_err(abandon)?;
     let state_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let evaluation = objective.differentiate(&controls, &shape.state)?;
+    let evaluation = objective.differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
     let (state, forces) = (&shape.state, &shape.state.forces);
+    let root = objective.cost().root();
+    // The root r as Θ = r^p, with ∂Θ = p r^{p−1} ∂r.
+    let (power, slope) = (evaluation.value.powf(root), root * evaluation.value.powf(root - 1.0));
+    let representable = power.is_normal() && (slope * evaluation.subgradient.amax()).is_finite();
+    let (value, slope, objective_root) =
+        if representable { (power, slope, 1.0) } else { (evaluation.value, 1.0, root) };
     let result = EvaluationJson {
-        objective: evaluation.value,
-        subgradient: evaluation.subgradient.as_slice().to_vec(),
+        objective: value,
+        log10_objective: root * evaluation.value.log10(),
+        objective_root,
+        subgradient: (&evaluation.subgradient * slope).as_slice().to_vec(),
         peak_pressure: shape.peak_pressure,
         total_normal_force: forces.total_normal_force(),
         status: forces.counts(),
@@ -74,9 +86,9 @@ pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Argum
         left_out: arguments.left_out(solver),
     };
     let object = json(&result)?;
-    let write = |folder| files::write_evaluation(&folder, loaded, objective, &shape, &object, &result.warnings);
-    let written = folder.map_or(Ok(()), write);
-    Failure::printed_with_files(arguments.printed(result.to_string(), object), written)
+    let write = |folder: &Folder| files::write_evaluation(folder, loaded, objective, &shape, &object, &result.warnings);
+    let printed = arguments.printed(result.to_string(), object.clone());
+    printed_with_files(printed, arguments.json, folder.as_ref(), write)
 }
 
 /// A solver and why it was taken.
@@ -91,8 +103,14 @@ pub fn said(solver: SolverKind, reason: Option<&str>) -> String {
 
 impl fmt::Display for EvaluationJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let norm = self.subgradient.iter().map(|x| x * x).sum::<f64>().sqrt();
-        writeln!(f, "objective            {:.10e}", self.objective)?;
+        // Squares of entries above 1e154 are no doubles.
+        let largest = self.subgradient.iter().fold(f64::MIN_POSITIVE, |largest, x| largest.max(x.abs()));
+        let norm = largest * self.subgradient.iter().map(|x| (x / largest).powi(2)).sum::<f64>().sqrt();
+        let power = match self.objective_root {
+            1.0 => String::new(),
+            root => format!(" = (Σσ^{root})^(1/{root}); Σσ^{root} = 10^{:.10}", self.log10_objective),
+        };
+        writeln!(f, "objective            {:.10e}{power}", self.objective)?;
         writeln!(f, "|subgradient|        {norm:.6e} ({} controls)", self.subgradient.len())?;
         writeln!(f, "peak pressure        {:.6} MPa", self.peak_pressure)?;
         writeln!(f, "total normal force   {:.10e} N", self.total_normal_force)?;

@@ -2,7 +2,7 @@
 
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
-use nonsmooth::{InputError, JournalError, OptimizeError, OracleError};
+use nonsmooth::{InputError, JournalError, OptimizeError, OracleError, Termination};
 use std::io::{self, Write};
 use std::process::ExitCode;
 use thiserror::Error;
@@ -44,20 +44,6 @@ impl Failure {
         }
     }
 
-    /// The text for stdout after files were written; a file that could not be written does not lose the text.
-    ///
-    /// # Errors
-    /// [`Failure::Incomplete`] with the text if a file could not be written.
-    pub fn printed_with_files(text: String, written: Result<(), Self>) -> Result<String, Self> {
-        match written {
-            Ok(()) => Ok(text),
-            Err(failure) => {
-                let reason = format!("{failure}; the report above is complete");
-                Err(Self::Incomplete { text, reason, status: 1 })
-            }
-        }
-    }
-
     /// The same failure after a text for stdout is there already, so that the text is not lost.
     #[must_use]
     pub fn after(self, printed: &str) -> Self {
@@ -72,17 +58,33 @@ impl Failure {
     }
 }
 
+/// Why a run failed, if it ended neither at a point that the optimizer vouches for nor at a limit.
+pub fn failed(termination: &Termination) -> Option<String> {
+    let failed = matches!(termination, Termination::OracleFailing { .. } | Termination::SubproblemFailed { .. });
+    failed.then(|| termination.to_string())
+}
+
 /// Prints the text of a command on stdout and the message of its failure on stderr; the exit status that belongs to them.
 pub fn finish(result: Result<String, Failure>) -> ExitCode {
-    let text = match &result {
-        Ok(text) | Err(Failure::Incomplete { text, .. }) => text,
-        Err(_) => "",
+    let (text, mut status) = match &result {
+        Ok(text) => (text.as_str(), 0),
+        Err(Failure::Incomplete { text, status, .. }) => (text.as_str(), *status),
+        Err(failure) => ("", failure.status()),
     };
-    // A reader that closes the pipe early has seen what it wanted; then the exit status is the message.
-    let _ = io::stdout().write_all(text.as_bytes());
-    let Err(failure) = result else { return ExitCode::SUCCESS };
-    let _ = writeln!(io::stderr(), "error: {failure}");
-    ExitCode::from(failure.status())
+    let printed = io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush());
+    if let Err(failure) = &result {
+        notice(&format!("error: {failure}"));
+    }
+    if let Err(error) = printed {
+        notice(&format!("error: stdout: {error}; the result was not printed"));
+        status = if status == 0 { 1 } else { status };
+    }
+    ExitCode::from(status)
+}
+
+/// A line on stderr. Where nobody listens there is nothing to be done.
+pub fn notice(line: &str) {
+    let _ = writeln!(io::stderr(), "{line}");
 }
 
 impl From<SceneError> for Failure {
@@ -93,7 +95,10 @@ impl From<SceneError> for Failure {
 
 impl From<JournalError> for Failure {
     fn from(error: JournalError) -> Self {
-        Self::Input(error.to_string())
+        match error {
+            JournalError::File { .. } => Self::Computation(error.to_string()),
+            _ => Self::Input(error.to_string()),
+        }
     }
 }
 
@@ -136,5 +141,21 @@ impl From<VerifyError> for Failure {
             VerifyError::Oracle(error) => error.into(),
             _ => Self::Computation(error.to_string()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_an_end_by_a_failure_is_one() {
+        let last = "an element is inverted".to_owned();
+        let words = failed(&Termination::OracleFailing { failures: 10, last: last.clone() }).expect("a failure");
+        assert!(words.contains(&last), "{words}");
+        assert!(failed(&Termination::SubproblemFailed { reason: last }).is_some());
+        let limits =
+            [Termination::EvaluationLimit, Termination::TimeLimit, Termination::Stationary { radius: 0.0, gap: None }];
+        assert!(limits.iter().all(|end| failed(end).is_none()));
     }
 }

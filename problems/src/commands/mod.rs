@@ -1,8 +1,8 @@
 //! The commands of the contact binaries.
 //!
 //! Contract (kept stable): `NAME [optimize|compare|evaluate|verify|recheck DIR] [options]`, for `contact3d` with a scene file
-//! before the command. Exit status: 0 success; 1 the computation failed, its files could not be written, or a certificate does
-//! not agree; 2 bad input; 130 interrupted, with a report. `--json` prints one JSON object on stdout and nothing else there.
+//! before the command. Exit status: 0 success; 1 the computation failed, its result could not be printed or written, or a
+//! certificate does not agree; 2 bad input; 130 interrupted, with a report. `--json` prints one JSON object on stdout and nothing else there.
 
 mod arguments;
 mod command_line;
@@ -16,6 +16,7 @@ mod loaded_scene;
 pub mod long_run;
 mod optimize;
 mod recheck;
+mod register;
 mod report;
 mod verify;
 
@@ -23,7 +24,7 @@ pub use arguments::Arguments;
 pub use command_line::{execute, run, run_any};
 pub use contact_objective::{ContactObjective, SolvedShape, objective};
 pub use controls::parse as parse_controls;
-pub use failure::{Failure, finish};
-pub use folder::{Folder, json};
+pub use failure::{Failure, failed, finish};
+pub use folder::{Folder, json, printed_with_files};
 pub use optimize::mesh_run::{first_step, mean_height_coordinates};
 pub use verify::{DIRECTION_SEED, smooth_taylor_test, taylor_steps};

@@ -7,7 +7,7 @@ use crate::commands::folder::{file_error, json};
 use crate::commands::optimize::stages::{MeshStage, stages};
 use contact::equilibrium::ContactProblem;
 use nonsmooth::{Certificate, CertificateCheck, Journal};
-use scene_file::Case;
+use scene_file::{Case, read_text};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -15,6 +15,9 @@ use std::path::Path;
 /// Largest difference of the norm, in norms of the subgradients behind it, and of the error, in values of Θ, that counts as
 /// rounding.
 const MAX_ROUNDING: f64 = 1e-8;
+
+/// Largest certificate file, bytes.
+const LARGEST_FILE: u64 = 256 << 20;
 
 /// A number of the certificate, and the same number computed again.
 #[derive(Debug, Serialize)]
@@ -77,7 +80,7 @@ fn last_stage(case: &Case, folder: &Path) -> Option<MeshStage> {
 }
 
 fn read(file: &Path) -> Result<Certificate, Failure> {
-    let text = std::fs::read_to_string(file).map_err(|error| file_error(file, error))?;
+    let text = read_text(file, LARGEST_FILE)?;
     let certificate: Option<Certificate> = serde_json::from_str(&text)
         .map_err(|error| file_error(file, format!("{error}; expected the certificate that an optimization writes")))?;
     let none = "the run solved no subproblem and has no certificate";

@@ -4,8 +4,7 @@ use crate::commands::arguments::Arguments;
 use crate::commands::contact_objective::ContactObjective;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, json};
-use crate::commands::long_run::RunFolder;
+use crate::commands::folder::{Folder, json, printed_with_files};
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactStatus, Residuals};
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
@@ -39,10 +38,11 @@ struct VerificationJson {
 
 /// The command.
 pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = RunFolder::folder_for_results(case.output.folder.as_deref())?;
     let shape = objective.solver();
-    let control = controls::load(shape, case, arguments.controls.as_deref())?;
-    let (here, step, test) = smooth_taylor_test(objective, &control)?;
+    let control = controls::load(shape, case, ("--controls", arguments.controls.as_deref()))?;
+    let folder = Folder::of_command(case, arguments)?;
+    let found = smooth_taylor_test(objective, &control);
+    let (here, step, test) = found.inspect_err(|_| folder.iter().for_each(Folder::abandon))?;
     let result = VerificationJson {
         test,
         smooth_step: step,
@@ -56,12 +56,12 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
          relative residuals of the state: {}\n",
         result.test, step, result.smallest_margin, result.weakly_active, result.residuals
     );
-    let write = |folder: Folder| {
+    let write = |folder: &Folder| {
         folder.write("verification.json", &object)?;
         folder.write("verification.txt", &text)
     };
-    let written = folder.map_or(Ok(()), write);
-    Failure::printed_with_files(arguments.printed(text, object), written)
+    let printed = arguments.printed(text.clone(), object.clone());
+    printed_with_files(printed, arguments.json, folder.as_ref(), write)
 }
 
 /// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the largest step.

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 
 /// The tables of README.md and docs/results.md.
 #[derive(Debug, Clone, Parser)]
-#[command(version)]
+#[command(name = "headline", version)]
 struct Options {
     /// Also the runs of many minutes: one million dofs, and the optimizations at the paper's size.
     #[arg(long)]

@@ -57,7 +57,7 @@ fn the_table_is_what_separate_commands_find() {
     // Neither kind of run is taken for the other.
     refused(&["--resume", kit::text(folder)], &["comparison", "compare --resume"]);
     let part = folder.join("with_friction");
-    refused(&["compare", "--resume", kit::text(&part)], &["optimization", "optimize --resume"]);
+    refused(&["compare", "--resume", kit::text(&part)], &["optimization", "--resume"]);
 }
 
 #[test]
@@ -76,32 +76,27 @@ fn a_comparison_that_is_cut_short_says_so_and_is_no_success() {
 }
 
 #[test]
-fn a_used_folder_never_answers_for_another_scene() {
+fn a_used_folder_is_renamed_and_never_answers_for_another_scene() {
     let scratch = kit::scratch();
-    let folder = scratch.path();
-    let path = kit::text(folder);
-    let compare = |more: &[&str]| {
-        let mut arguments = vec!["compare", "--mesh", "3", "--max-evaluations", "4", "--json"];
-        arguments.extend(["--out", path]);
-        arguments.extend(more);
-        kit::run(SIGNORINI, &arguments)
-    };
-    assert!(compare(&[]).status.success());
+    let folder = scratch.path().join("run");
+    let path = kit::text(&folder);
+    let small = ["compare", "--mesh", "3", "--max-evaluations", "4", "--json"];
+    let compare = |more: &[&str]| kit::run(SIGNORINI, &[&small[..], &["--out", path], more].concat());
+    let first = kit::parsed(&compare(&[]));
     // Another load in the same folder, cut short at once, then continued: what is continued is that load.
-    assert_eq!(compare(&["--load-factor", "0.5", "--time-limit", "1e-9"]).status.code(), Some(1));
+    let half = ["--load-factor", "0.5"];
+    assert_eq!(compare(&half).status.code(), Some(2));
+    assert_eq!(compare(&[&half[..], &["--time-limit", "1e-9", "--overwrite"]].concat()).status.code(), Some(1));
+    let renamed = kit::read_json(&scratch.path().join("run.1/report.json"));
+    assert_eq!(renamed, first);
+    // A comparison that has not ended is not replaced.
+    refused(&[&small[..], &["--out", path]].concat(), &["has not ended", "compare --resume", path]);
     let continued = json(&["compare", "--resume", path, "--time-limit", "1000", "--json"]);
-    let fresh = json(&["compare", "--mesh", "3", "--max-evaluations", "4", "--load-factor", "0.5", "--json"]);
+    let fresh = json(&[&small[..], &half].concat());
     assert_eq!(continued["shapes"], fresh["shapes"]);
-    // A comparison that has not ended is not replaced, nor is its scene.
-    std::fs::remove_file(folder.join("report.json")).unwrap();
-    let scene = std::fs::read(folder.join("scene.toml")).unwrap();
-    let refused = compare(&["--load-factor", "2"]);
-    let message = kit::errors(&refused);
-    assert!(refused.status.code() == Some(2) && message.contains("has not ended"), "{message}");
-    assert_eq!(std::fs::read(folder.join("scene.toml")).unwrap(), scene);
-    // An optimization takes over the folder of a comparison that has ended, and can be continued as one.
-    json(&["compare", "--resume", path, "--json"]);
-    let taken = kit::run(SIGNORINI, &["--mesh", "3", "--max-evaluations", "2", "--json", "--out", path]);
-    assert!(taken.status.success(), "{}", kit::errors(&taken));
+    // Of another kind of run nothing is left in the folder.
+    let taken = ["--mesh", "3", "--max-evaluations", "2", "--json", "--overwrite", "--out", path];
+    json(&taken);
+    assert!(scratch.path().join("run.2/with_friction").exists() && !folder.join("with_friction").exists());
     json(&["--resume", path, "--max-evaluations", "3", "--json"]);
 }

@@ -61,11 +61,11 @@ fn what_is_no_scene_is_refused_with_the_file_and_the_field() {
     let hertz = std::fs::read_to_string(scene("hertz.toml")).unwrap();
     for (right, wrong, words) in [
         ("friction = 0.3", "frction = 0.3", ["bad.toml", "did you mean `friction`?"]),
-        ("[2, 2, 2]", "[2, 2, 5]", ["bad.toml: subdomains (axis 3) = 5", "divisor of the 12"]),
+        ("[2, 2, 2]", "[2, 2, 5]", ["bad.toml: mesh.subdomains[2] = 5", "divisor of the 12"]),
         (
             "radius = 20.0",
             "radius = 2.0",
-            ["bad.toml: counter surface at (10, 0) = NaN", "finite heights over the whole base"],
+            ["bad.toml: counter_surface at (0, 4) = NaN", "finite heights over the whole base"],
         ),
         ("height = 10.0", "height = 10.5", ["admissible", "10.5"]),
         ("volume = [800.0, 1200.0]", "volume = [1200.0, 800.0]", ["1200", "800"]),

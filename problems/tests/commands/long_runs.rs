@@ -116,6 +116,7 @@ fn an_interrupted_run_reports_says_how_to_resume_and_resumes() {
     assert!(message.contains(&format!("--resume {}", text(&folder))), "{message}");
     let report = printed(&output);
     assert_eq!(report["termination"]["reason"], "stopped_by_observer");
+    assert_eq!(report["termination"]["text"], "interrupted on request");
     assert_eq!(std::fs::read(folder.join("report.json")).unwrap(), output.stdout);
     let journal = Journal::read(&folder).unwrap().unwrap();
     assert_eq!(journal.entries.len() as u64, report["evaluations"].as_u64().unwrap());
@@ -130,7 +131,7 @@ fn limits_end_a_run_with_a_report_and_can_be_raised() {
     let timed = succeeded(&["--mesh", "6", "--time-limit", "0.05", "--json", "--out", text(&folder)]);
     assert_eq!(timed["termination"]["reason"], "time_limit");
     let page = std::fs::read_to_string(folder.join("report.txt")).unwrap();
-    assert!(page.contains(&format!("to continue: --resume {}", text(&folder))), "{page}");
+    assert!(page.contains(&format!("to continue: {SIGNORINI} --resume {}", text(&folder))), "{page}");
     let done = timed["evaluations"].as_u64().unwrap();
     let limit = (done + 3).to_string();
     let resumed = succeeded(&["--resume", text(&folder), "--max-evaluations", &limit, "--time-limit", "60", "--json"]);
@@ -139,20 +140,134 @@ fn limits_end_a_run_with_a_report_and_can_be_raised() {
     assert_eq!(found(&resumed), found(&succeeded(&["--mesh", "6", "--max-evaluations", &limit, "--json"])));
 }
 
+/// Status 1, words on stderr, nothing on stdout.
+fn failed(output: &Output, words: &[&str]) {
+    let message = kit::errors(output);
+    assert!(output.status.code() == Some(1) && output.stdout.is_empty(), "{}: {message}", output.status);
+    assert!(words.iter().all(|word| message.contains(word)), "{message}");
+}
+
 #[test]
 fn folders_that_cannot_be_written_are_noticed_at_the_start() {
     let scratch = kit::scratch();
     std::fs::write(scratch.path().join("file"), "").unwrap();
-    let below_a_file = scratch.path().join("file/below");
-    refused(&["--mesh", "4", "--out", text(&below_a_file)], &["file/below", "cannot write"]);
+    for place in ["file/below", "file"] {
+        let place = scratch.path().join(place);
+        failed(&kit::run(SIGNORINI, &["--mesh", "4", "--out", text(&place)]), &[text(&place), "Not a directory"]);
+    }
     // A limit on the size of files stands for a full disk: the system refuses the bytes in the same way.
     let script = "trap '' XFSZ; ulimit -f 64; exec \"$0\" --mesh 4 --out \"$1\"";
-    let full = scratch.path().join("full");
-    let arguments = ["-c", script, SIGNORINI, text(&full)];
-    let output = kit::run("sh", &arguments);
-    let message = kit::errors(&output);
-    assert_eq!(output.status.code(), Some(2), "{message}");
-    assert!(message.contains("cannot write") && message.contains("bytes there"), "{message}");
+    let full = scratch.path().join("made/full");
+    failed(&kit::run("sh", &["-c", script, SIGNORINI, text(&full)]), &["cannot write", "bytes there"]);
+    assert!(!scratch.path().join("made").exists(), "a refusal leaves nothing");
+}
+
+#[test]
+fn output_that_cannot_be_printed_is_a_failure() {
+    let script = "\"$0\" evaluate --mesh 4 --json > /dev/full";
+    failed(&kit::run("sh", &["-c", script, SIGNORINI]), &["stdout", "No space left"]);
+    let mut child = command(&["evaluate", "--mesh", "4", "--json"]).spawn().unwrap();
+    drop(child.stdout.take());
+    failed(&child.wait_with_output().unwrap(), &["stdout", "Broken pipe"]);
+}
+
+/// Everything in a folder, with its content.
+fn everything(folder: &Path) -> Vec<(std::path::PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(everything(&path))
+        } else {
+            found.push((path.clone(), std::fs::read(&path).unwrap()))
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn folders_with_files_of_others_are_refused_and_results_are_renamed() {
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let run = ["--mesh", "3", "--max-evaluations", "3", "--json", "--out", text(&folder)];
+    let overwrite = [&run[..], &["--overwrite"]].concat();
+    let evaluate = ["evaluate", "--mesh", "3", "--json", "--overwrite", "--out", text(&folder)];
+    std::fs::create_dir_all(folder.join("figures")).unwrap();
+    for name in ["scene.toml", "report.json", ".hidden", "figures/pressure.svg"] {
+        std::fs::write(folder.join(name), "mine").unwrap();
+        let before = everything(&folder);
+        for arguments in [&run[..], &overwrite, &evaluate] {
+            refused(arguments, &[name, "not written by this program"]);
+        }
+        assert_eq!(everything(&folder), before);
+        std::fs::remove_file(folder.join(name)).unwrap();
+    }
+    succeeded(&run);
+    let before = everything(&folder);
+    refused(&run, &["holds results", "--overwrite"]);
+    for name in ["notes.txt", "vtk/mine.vtu"] {
+        std::fs::write(folder.join(name), "mine").unwrap();
+        refused(&overwrite, &[name, "not written by this program"]);
+        std::fs::remove_file(folder.join(name)).unwrap();
+    }
+    assert_eq!(everything(&folder), before);
+    for number in 1..=2 {
+        succeeded(if number == 1 { &overwrite } else { &evaluate });
+        let renamed = scratch.path().join(format!("run.{number}"));
+        assert_eq!(everything(&renamed).len(), before.len());
+    }
+    // What is wrong with the input is found before a folder is touched.
+    refused(&[&evaluate[..], &["--controls", "none.json"]].concat(), &["--controls", "none.json"]);
+    assert!(!scratch.path().join("run.3").exists() && folder.join("evaluation.json").exists());
+    // So is a scene without equilibrium, or what was begun is taken back.
+    let before = everything(scratch.path());
+    let loose = ["--mesh", "3", "--load-factor", "-1"];
+    let new = scratch.path().join("new");
+    for command in [&["compare"][..], &["--continuation", "2,3"], &["evaluate"]] {
+        let options = if command[0] == "--continuation" { &loose[2..] } else { &loose[..] };
+        refused(&[command, options, &["--overwrite", "--out", text(&folder)]].concat(), &["no equilibrium"]);
+        refused(&[command, options, &["--out", text(&new)]].concat(), &["no equilibrium"]);
+        assert!(everything(scratch.path()) == before && !new.exists(), "{command:?}");
+    }
+}
+
+#[test]
+fn a_changed_scene_and_another_version_are_refused_on_resume() {
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let options = ["--mesh", "3", "--json", "--max-evaluations"];
+    let scene = scenes.join("flat_punch.toml");
+    let contact = |arguments: &[&str]| kit::run(env!("CARGO_BIN_EXE_contact3d"), arguments);
+    let whole = kit::parsed(&contact(&[&[text(&scene)][..], &options, &["6"]].concat()));
+    kit::parsed(&contact(&[&[text(&scene)][..], &options, &["4", "--out", text(&folder)]].concat()));
+    let before = everything(&folder);
+    let resume = ["--resume", text(&folder), "--json", "--max-evaluations", "6"];
+    let changes = [
+        ("scene.toml", "friction = ", "friction = 1", "friction"),
+        ("counter_surface.csv", ",", ",1", "counter_surface.csv"),
+        ("start.json", ".", "1.", "start.json"),
+        ("journal.jsonl", env!("CARGO_PKG_VERSION"), "0.0.7", "--new-version"),
+    ];
+    for (name, right, wrong, word) in changes {
+        let original = std::fs::read_to_string(folder.join(name)).unwrap();
+        assert!(original.contains(right), "{name}");
+        std::fs::write(folder.join(name), original.replacen(right, wrong, 1)).unwrap();
+        let changed = everything(&folder);
+        let output = contact(&resume);
+        let message = kit::errors(&output);
+        assert_eq!(output.status.code(), Some(2), "{name}: {message}");
+        assert!(message.contains("journal.jsonl") && message.contains(word), "{name}: {message}");
+        assert_eq!(everything(&folder), changed);
+        if word == "--new-version" {
+            let resumed = kit::parsed(&contact(&[&resume[..], &["--new-version"]].concat()));
+            assert_eq!((found(&resumed), &resumed["resumed_evaluations"]), (found(&whole), &serde_json::json!(4)));
+        } else {
+            std::fs::write(folder.join(name), original).unwrap();
+            assert_eq!(everything(&folder), before);
+        }
+    }
 }
 
 #[test]
@@ -197,7 +312,6 @@ fn what_is_no_run_is_not_resumed_and_no_run_is_lost() {
     refused(&["--resume", text(&folder)], &["journal.jsonl", "another objective", "0.125"]);
     std::fs::write(&scene, stated).unwrap();
     succeeded(&["--resume", text(&folder), "--json"]);
-    succeeded(&first);
 }
 
 /// Neither lost restart data nor a journal that does not fit end a run; both are said.

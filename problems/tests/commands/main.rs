@@ -21,6 +21,8 @@ mod contact3d;
 mod fuzz;
 mod long_runs;
 mod loosely_held;
+mod messages;
+mod nothing_lost;
 mod pages_run;
 mod pictures;
 mod pins;

@@ -37,12 +37,10 @@ impl ContactProblem {
         let surface = scene.spline_surface()?;
         let boundary = ContactBoundary::new(&scene, &grid);
         let counter = &scene.counter_surface;
-        let admissible = AdmissibleSet::new(&surface, &grid, &scene.bounds, |x1, x2| counter.height(x1, x2))?;
+        let ceiling: Vec<f64> = surface.places(scene.size).map(|[x1, x2]| counter.height(x1, x2)).collect();
+        let admissible = AdmissibleSet::new(&surface, &grid, &scene.bounds, ceiling)?;
         let places = grid.columns().map(|(i, j)| grid.position(i, j));
         let counter_heights: Vec<f64> = places.map(|[x1, x2]| counter.height(x1, x2)).collect();
-        for height in &counter_heights {
-            SceneError::require(height.is_finite(), "counter surface", height, "finite heights over the whole base")?;
-        }
         Ok(Self { grid, boundary, height_map: surface.height_map(&grid), admissible, counter_heights, scene })
     }
 

@@ -96,54 +96,94 @@ impl Scene {
     /// [`SceneError`] naming the field, its value and what is allowed.
     pub fn validate(&self) -> Result<(), SceneError> {
         for (axis, (&mesh, &subdomains)) in self.mesh.iter().zip(&self.subdomains).enumerate() {
-            let field = |name: &str| format!("{name} (axis {})", axis + 1);
-            SceneError::require((1..=400).contains(&mesh), field("mesh"), mesh, "1 … 400 bricks per edge")?;
+            SceneError::require(
+                (1..=400).contains(&mesh),
+                format!("mesh.bricks[{axis}]"),
+                mesh,
+                "1 … 400 bricks per edge",
+            )?;
             let divides = subdomains > 0 && mesh.is_multiple_of(subdomains);
             let allowed = format!("a divisor of the {mesh} bricks per edge");
-            SceneError::require(divides, field("subdomains"), subdomains, allowed)?;
+            SceneError::require(divides, format!("mesh.subdomains[{axis}]"), subdomains, allowed)?;
         }
         let positive = |value: f64| value > 0.0 && value.is_finite();
         for (axis, &length) in self.size.iter().enumerate() {
-            let field = format!("size (axis {})", axis + 1);
-            SceneError::require(positive(length), field, length, "a finite length > 0 mm")?;
+            SceneError::require(positive(length), format!("size[{axis}]"), length, "a finite length > 0 mm")?;
         }
         let valid = self.friction == 0.0 || positive(self.friction);
         SceneError::require(valid, "friction", self.friction, "a finite number ≥ 0")?;
         let height = self.start_height;
-        SceneError::require(positive(height), "start height", height, "a finite height > 0 mm")?;
-        let [a, b] = self.size;
-        for [x1, x2] in [[0.0, 0.0], [a, 0.0], [0.0, b], [a, b]] {
-            let (height, field) = (self.counter_surface.height(x1, x2), format!("counter surface at ({x1}, {x2})"));
-            SceneError::require(height.is_finite(), field, height, "finite heights over the whole base")?;
-        }
-        self.spline_surface()?;
-        Self::validate_body("lower body", &self.lower, Face::Top)?;
+        SceneError::require(positive(height), "surface.start", height, "a finite mean height > 0 mm")?;
+        self.validate_heights()?;
+        Self::validate_body("lower", &self.lower, Face::Top)?;
         if let Some(upper) = &self.upper {
-            Self::validate_body("upper body", &upper.body, Face::Bottom)?;
+            Self::validate_body("upper", &upper.body, Face::Bottom)?;
+        }
+        Ok(())
+    }
+
+    /// Checks that there is room between the bounds of the shape, the counter surface, and the top of the upper body.
+    fn validate_heights(&self) -> Result<(), SceneError> {
+        let place = |x1: f64, x2: f64| format!("counter_surface at ({x1}, {x2})");
+        let ShapeBounds { minimum_height, volume: [least, largest], .. } = self.bounds;
+        for [x1, x2] in self.spline_surface()?.places(self.size) {
+            let height = self.counter_surface.height(x1, x2);
+            SceneError::require(height.is_finite(), place(x1, x2), height, "finite heights over the whole base")?;
+            let allowed = format!("at least admissible.minimum_height = {minimum_height} (mm)");
+            SceneError::require(height >= minimum_height, place(x1, x2), height, allowed)?;
+        }
+        let volume = format!("[{least}, {largest}]");
+        SceneError::require(
+            least <= largest,
+            "admissible.volume",
+            volume,
+            "the smallest volume, then the largest (mm³)",
+        )?;
+        let grid = self.grid();
+        for [x1, x2] in grid.columns().map(|(i, j)| grid.position(i, j)) {
+            let height = self.counter_surface.height(x1, x2);
+            SceneError::require(height.is_finite(), place(x1, x2), height, "finite heights over the whole base")?;
+            if let Some(UpperBody { top, .. }) = self.upper {
+                let allowed = format!("above the counter surface, which has the height {height} mm at ({x1}, {x2})");
+                SceneError::require(top > height, "upper.top", top, allowed)?;
+            }
         }
         Ok(())
     }
 
     fn validate_body(name: &str, body: &BodyScene, contact: Face) -> Result<(), SceneError> {
         let not_on_contact = |part: &str, face: Face| {
-            let (field, value) = (format!("{name}: {part} face"), format!("{face:?}"));
+            let (field, value) = (format!("{name}.{part}: face"), format!("{face:?}"));
             SceneError::require(face != contact, field, value, "any face but the contact boundary")
         };
         for load in &body.loads {
             for value in load.traction {
-                let field = format!("{name}: traction");
+                let field = format!("{name}.loads: traction");
                 SceneError::require(value.is_finite(), field, value, "finite numbers (MPa)")?;
             }
-            not_on_contact("loaded", load.face)?;
+            not_on_contact("loads", load.face)?;
         }
-        body.supports.iter().try_for_each(|support| not_on_contact("supported", support.face))?;
+        body.supports.iter().try_for_each(|support| not_on_contact("supports", support.face))?;
         let vertical = |face: Face| !matches!(face, Face::Bottom | Face::Top);
         SceneError::require(
             !body.supports.iter().any(|support| support.components[2] && vertical(support.face)),
-            format!("{name}: support"),
+            format!("{name}.supports: held"),
             "u₃ held on a vertical face",
             "u₃ held on the face opposite to the contact boundary only (it would hold the contact normal)",
         )
+    }
+
+    /// Sum of the magnitudes of all loads, N, with the sides of all bodies as high as the lower body at the start.
+    pub fn load(&self) -> f64 {
+        let ([a, b], height) = (self.size, self.start_height);
+        let area = |face: Face| match face {
+            Face::X1Min | Face::X1Max => b * height,
+            Face::X2Min | Face::X2Max => a * height,
+            Face::Bottom | Face::Top => a * b,
+        };
+        let bodies = std::iter::once(&self.lower).chain(self.upper.as_ref().map(|upper| &upper.body));
+        let loads = bodies.flat_map(|body| &body.loads);
+        loads.map(|load| area(load.face) * load.traction.iter().map(|t| t * t).sum::<f64>().sqrt()).sum()
     }
 
     /// The bodies, lower first, for changes.

@@ -33,7 +33,7 @@ pub struct ShapeBounds {
 }
 
 impl AdmissibleSet {
-    /// U for a surface over `grid`, below the obstacle of height `ceiling(x₁, x₂)`.
+    /// U for a surface over `grid`, below the obstacle, which has the heights `ceiling` over the controls.
     ///
     /// # Errors
     /// [`SceneError::Set`] when bounds contradict each other.
@@ -41,15 +41,12 @@ impl AdmissibleSet {
         surface: &SplineSurface,
         grid: &Grid,
         bounds: &ShapeBounds,
-        ceiling: impl Fn(f64, f64) -> f64,
+        ceiling: Vec<f64>,
     ) -> Result<Self, SceneError> {
         let counts = surface.counts();
         let dimension = surface.control_count();
         let intervals = counts.map(|count| (count - 1) as f64);
-        let upper = Vector::from_fn(dimension, |index, _| {
-            let (i, j) = (index / counts[1], index % counts[1]);
-            ceiling(grid.size[0] * i as f64 / intervals[0], grid.size[1] * j as f64 / intervals[1])
-        });
+        let upper = Vector::from_vec(ceiling);
         let mut rows = Vec::new();
         for i in 0..counts[0] {
             for j in 0..counts[1] {
@@ -58,7 +55,7 @@ impl AdmissibleSet {
                 {
                     if exists {
                         let bound = bounds.slope * grid.size[axis] / intervals[axis];
-                        let name = format!("α[{next}] − α[{here}] (slope along x{})", axis + 1);
+                        let name = format!("α[{next}] − α[{here}] (admissible.slope along x{})", axis + 1);
                         rows.push((name, vec![(next, 1.0), (here, -1.0)], [-bound, bound]));
                     }
                 }
@@ -66,10 +63,18 @@ impl AdmissibleSet {
         }
         let area = grid.size[0] * grid.size[1];
         let measure = surface.integrals().iter().map(|value| value * area).collect::<Vec<_>>();
-        rows.push(("volume under the surface".into(), measure.into_iter().enumerate().collect(), bounds.volume));
+        rows.push((
+            "volume under the surface (admissible.volume)".into(),
+            measure.into_iter().enumerate().collect(),
+            bounds.volume,
+        ));
         let areas: Vec<f64> = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
         let bricks = surface.height_map(grid).pull_back(&areas);
-        rows.push(("volume of the bricks".into(), bricks.into_iter().enumerate().collect(), bounds.volume));
+        rows.push((
+            "volume of the bricks (admissible.volume)".into(),
+            bricks.into_iter().enumerate().collect(),
+            bounds.volume,
+        ));
         let polyhedron = Polyhedron::boxed(Vector::from_element(dimension, bounds.minimum_height), upper)?;
         let mut matrix = Matrix::zeros(rows.len(), dimension);
         for (row, (_, entries, _)) in rows.iter().enumerate() {
@@ -91,7 +96,8 @@ impl AdmissibleSet {
     fn expressions(&self, controls: &Vector) -> Vec<(String, f64, f64, f64)> {
         let set = &self.polyhedron;
         let products = set.rows() * controls;
-        let bounds = (0..controls.len()).map(|i| (format!("α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
+        let bounds = (0..controls.len())
+            .map(|i| (format!("height of control {i}, α[{i}]"), controls[i], set.lower()[i], set.upper()[i]));
         let rows = (0..products.len())
             .map(|i| (self.row_names[i].clone(), products[i], set.row_lower()[i], set.row_upper()[i]));
         bounds.chain(rows).collect()

@@ -23,7 +23,7 @@ impl Basis {
     /// [`SceneError::OutOfRange`] unless 1 ≤ degree < count.
     pub fn clamped_uniform(degree: usize, count: usize) -> Result<Self, SceneError> {
         let allowed = format!("1 ≤ degree ≤ {} for {count} control points along an axis", count.saturating_sub(1));
-        SceneError::require((1..count).contains(&degree), "spline degree", degree, allowed)?;
+        SceneError::require((1..count).contains(&degree), "surface.degree", degree, allowed)?;
         let spans = count - degree;
         let knots =
             (0..count + degree + 1).map(|index| (index.clamp(degree, count) - degree) as f64 / spans as f64).collect();

@@ -52,6 +52,13 @@ impl SplineSurface {
         self.bases[0].count() * self.bases[1].count()
     }
 
+    /// Places (x₁, x₂) of the controls, spread evenly over a base of `size` mm.
+    pub fn places(&self, size: [f64; 2]) -> impl Iterator<Item = [f64; 2]> + use<> {
+        let counts = self.counts();
+        let along = move |axis: usize, index: usize| size[axis] * index as f64 / (counts[axis] - 1) as f64;
+        (0..counts[0]).flat_map(move |i| (0..counts[1]).map(move |j| [along(0, i), along(1, j)]))
+    }
+
     /// ∫∫ N_i N_j over the unit square, per control.
     pub fn integrals(&self) -> Vec<f64> {
         let (first, second) = (self.bases[0].integrals(), self.bases[1].integrals());

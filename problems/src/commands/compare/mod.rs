@@ -6,15 +6,13 @@ pub mod comparison;
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{SolvedShape, objective};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, json};
+use crate::commands::folder::{COMPARED, Folder, REPORT, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
-use crate::commands::long_run::{COMPARED, RunFolder, STATUS};
-use crate::commands::optimize::run::{OptimizationRun, check_limit, initial_controls, open_folder, optimize};
-use crate::commands::optimize::stages::stages;
+use crate::commands::long_run::{RunFolder, STATUS};
+use crate::commands::optimize::run::{OptimizationRun, begin, optimize};
 use crate::commands::optimize::{interruption, report};
 use crate::commands::report::files;
 use contact::error::SceneError;
-use nonsmooth::Vector;
 use std::path::Path;
 
 /// The command.
@@ -22,57 +20,74 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let friction = loaded.case.scene.friction;
     if friction == 0.0 {
         let allowed = "a coefficient > 0 to compare with no friction at all";
-        return Err(SceneError::out_of_range("friction", 0, allowed).into());
+        return Err(session.arguments.blame(SceneError::out_of_range("friction", 0, allowed)).into());
     }
-    let (folder, initial_controls) = begin(loaded, session)?;
-    let (folder, as_json) = (folder.as_ref(), session.arguments.json);
+    let (folder, initial_controls) = begin(&objective(&loaded.case)?, loaded, None, &COMPARED, session)?;
+    let folder = folder.as_ref();
+    let continued = folder.map(|folder| resume_command(folder.folder().path(), true));
+    let (as_json, parts) = (session.arguments.json, parts(loaded, folder)?);
+    if let Some(folder) = folder.filter(|folder| folder.is_resumed()) {
+        check(&parts, session)?;
+        folder.proceed(loaded)?;
+    }
     let (mut printed, mut runs) = (String::new(), Vec::new());
-    for (friction, name) in [friction, 0.0].into_iter().zip(COMPARED) {
-        let part = loaded.changed(|scene| {
-            scene.friction = friction;
-            scene.output.folder = folder.map(|folder| folder.folder().path().join(name).display().to_string());
+    for part in parts {
+        let run = optimize(&part, Some(&initial_controls), session).map_err(|failure| {
+            if let (Some(folder), 2, true) = (folder, failure.status(), runs.is_empty()) {
+                folder.abandon();
+            }
+            failure.after(&printed)
         })?;
-        let run = optimize(&part, Some(&initial_controls), session).map_err(|failure| failure.after(&printed))?;
         let (text, shapes) = report(&run, &part, session, None)
             .map_err(|failure| if as_json { failure } else { failure.after(&printed) })?;
         // One JSON object at most stands on stdout.
         printed = if as_json { text } else { printed + &text };
         if run.was_cut_short() {
-            return Err(cut_short(printed, folder, as_json));
+            return Err(cut_short(printed, continued.as_deref(), as_json));
         }
         runs.push((run, shapes));
     }
     let comparison = cross(&runs).map_err(|failure| failure.after(&printed))?;
     let mut text = comparison.to_string();
-    if let Some(folder) = folder.filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
-        text += &format!("to continue: compare --resume {}\n", folder.folder().path().display());
+    if let Some(command) = continued.as_ref().filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
+        text += &format!("to continue: {command}\n");
     }
     let object = json(&comparison.summary())?;
     let write = |folder: &Folder| {
         files::write_comparison(folder, loaded, &comparison)?;
         folder.write("report.txt", &text)?;
-        folder.replace("report.json", &object)
+        folder.write(REPORT, &object)
     };
-    let written = folder.map_or(Ok(()), |folder| write(folder.folder()));
-    let printed = session.arguments.printed(format!("{printed}\n{text}"), object);
-    let text = Failure::printed_with_files(printed, written)?;
-    match interruption(folder) {
-        Some(reason) => Err(Failure::Incomplete { text, reason, status: STATUS }),
-        None => Ok(text),
+    let printed = session.arguments.printed(format!("{printed}\n{text}"), object.clone());
+    let text = printed_with_files(printed, as_json, folder.map(RunFolder::folder), write)?;
+    let failed = runs.iter().find_map(|(run, _)| run.failure());
+    match (interruption(continued.as_deref()), failed) {
+        (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),
+        (None, Some(reason)) => Err(Failure::Incomplete { text, reason, status: 1 }),
+        (None, None) => Ok(text),
     }
 }
 
-/// The folder of the comparison, if one is asked for, and the controls that both optimizations start from.
-fn begin(loaded: &LoadedScene, session: &Session<'_>) -> Result<(Option<RunFolder>, Vector), Failure> {
-    let folder = open_folder(loaded, 2, session)?;
-    if let Some(folder) = folder.as_ref().filter(|folder| folder.is_resumed()) {
-        let parts = COMPARED.map(|part| folder.folder().path().join(part).display().to_string());
-        for part in parts.iter().filter(|part| RunFolder::is_one(Path::new(part))) {
-            check_limit(&RunFolder::open(part, 1, true)?, &stages(&loaded.case))?;
+/// The two scenes, with friction and without it, each with a folder of its own inside that of the comparison.
+fn parts(loaded: &LoadedScene, folder: Option<&RunFolder>) -> Result<[LoadedScene; 2], SceneError> {
+    let part = |name: &str, friction: f64| {
+        loaded.changed(|scene| {
+            scene.friction = friction;
+            scene.output.folder = folder.map(|folder| folder.folder().path().join(name).display().to_string());
+        })
+    };
+    Ok([part(COMPARED[0], loaded.case.scene.friction)?, part(COMPARED[1], 0.0)?])
+}
+
+/// Refuses runs that cannot be continued, before anything is changed.
+fn check(parts: &[LoadedScene], session: &Session<'_>) -> Result<(), Failure> {
+    for part in parts {
+        let folder = part.case.output.folder.as_deref().map(Path::new);
+        if let Some(folder) = folder.filter(|folder| RunFolder::is_one(folder)) {
+            RunFolder::reopen(Folder::reopen(folder, 1)?, part, session.arguments.new_version)?;
         }
     }
-    let controls = initial_controls(&objective(&loaded.case)?, loaded, None, folder.as_ref(), session)?;
-    Ok((folder, controls))
+    Ok(())
 }
 
 /// The comparison of two runs: their shapes, each solved in the model of the other run as well.
@@ -91,13 +106,12 @@ fn cross(runs: &[(OptimizationRun, [SolvedShape; 2])]) -> Result<Comparison<'_>,
 }
 
 /// The failure of a comparison of which one run was cut short, so that there is nothing to compare yet.
-fn cut_short(mut text: String, folder: Option<&RunFolder>, as_json: bool) -> Failure {
+fn cut_short(mut text: String, continued: Option<&str>, as_json: bool) -> Failure {
     if !as_json {
         text += "the comparison is not complete\n";
     }
     let (reason, status) =
-        if interruption(folder).is_some() { ("interrupted", STATUS) } else { ("time limit reached", 1) };
-    let continued =
-        folder.map(|folder| format!("; continue with compare --resume {}", folder.folder().path().display()));
-    Failure::Incomplete { text, reason: reason.to_owned() + &continued.unwrap_or_default(), status }
+        if interruption(continued).is_some() { ("interrupted", STATUS) } else { ("time limit reached", 1) };
+    let continued = continued.map_or_else(String::new, |command| format!("; continue with `{command}`"));
+    Failure::Incomplete { text, reason: reason.to_owned() + &continued, status }
 }

@@ -2,29 +2,68 @@
 
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, file_error, json};
+use crate::commands::folder::{Folder, GRIDS, REPORT, SCENE, START, file_error, is_comparison, json, resume_command};
 use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::optimize::stages::stages;
+use crate::commands::register::{JOURNAL, REGISTER, names};
 use contact::error::SceneError;
-use nonsmooth::{Journal, Journaled, NonsmoothObjective, Vector};
+use nonsmooth::{Journal, JournalError, Journaled, NonsmoothObjective, Vector};
 use scene_file::{CounterSection, OptimizerSection, OutputSection, SceneFile, StartSection};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-
-const SCENE: &str = "scene.toml";
-const START: &str = "start.json";
-const REPORT: &str = "report.json";
-/// What would be wrong beside another run.
-const REPORTS: [&str; 5] = [REPORT, "report.html", "report.txt", "controls.json", "certificate.json"];
-
-/// Folders of the two runs of a comparison.
-pub const COMPARED: [&str; 2] = ["with_friction", "without_friction"];
 
 /// A folder in which a run is kept.
 #[derive(Debug)]
 pub struct RunFolder {
     folder: Folder,
+    /// What the objective depends on.
+    identity: Identity,
+    /// The controls that the run starts from.
+    initial_controls: Vector,
     /// Whether the run continues what the folder holds.
     resumed: bool,
+    /// Whether another version of the program may continue.
+    new_version: bool,
+}
+
+/// The name of an objective in its journal: all that its values depend on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Identity {
+    /// Version of the program.
+    version: String,
+    /// The mesh of a coarse-to-fine optimization.
+    stage: Option<String>,
+    /// Hashes of the start and of the grid of the counter surface.
+    contents: BTreeMap<String, String>,
+    scene: SceneFile,
+}
+
+impl Identity {
+    fn new(loaded: &LoadedScene, initial_controls: &[f64]) -> Result<Self, Failure> {
+        let mut scene = loaded.file.clone();
+        let mut contents = BTreeMap::from([(START.to_owned(), hash(json(initial_controls)?.as_bytes()))]);
+        if let CounterSection::Grid { file } = &mut scene.counter_surface {
+            let grid = scene_file::read_grid(&loaded.folder().join(&*file))?;
+            contents.insert(GRIDS[0].to_owned(), hash(grid.as_bytes()));
+            *file = GRIDS[0].to_owned();
+        }
+        // The start is known by its controls.
+        scene.surface.start = StartSection::Controls { heights: vec![] };
+        (scene.optimizer, scene.output) = (OptimizerSection::default(), OutputSection::default());
+        Ok(Self { version: env!("CARGO_PKG_VERSION").to_owned(), stage: None, contents, scene })
+    }
+
+    fn text(&self) -> Result<String, Failure> {
+        serde_json::to_string(self).map_err(Failure::computation)
+    }
+}
+
+/// 64 bits that tell contents apart (FNV-1a), the same on every machine and with every compiler.
+fn hash(bytes: &[u8]) -> String {
+    let mix = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    format!("{:016x}", bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix))
 }
 
 impl RunFolder {
@@ -34,17 +73,14 @@ impl RunFolder {
     /// # Errors
     /// [`SceneError::File`] if the folder holds no run of this kind.
     pub fn scene(folder: &Path, comparison: bool) -> Result<(SceneFile, Option<PathBuf>), SceneError> {
-        if !folder.join(SCENE).exists() || !folder.join(START).exists() {
+        if !Self::is_one(folder) {
             let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
             return Err(file_error(folder, reason));
         }
-        if COMPARED.iter().any(|part| folder.join(part).join(START).exists()) != comparison {
-            let found = if comparison {
-                "an optimization: continue it with optimize"
-            } else {
-                "a comparison: continue it with compare"
-            };
-            return Err(file_error(folder, format!("holds {found} --resume")));
+        if is_comparison(&names(folder)) != comparison {
+            let found = if comparison { "an optimization" } else { "a comparison" };
+            let command = resume_command(folder, !comparison);
+            return Err(file_error(folder, format!("holds {found}: continue it with `{command}`")));
         }
         let file = folder.join(SCENE);
         let mut scene = SceneFile::read(&file)?;
@@ -57,49 +93,130 @@ impl RunFolder {
         folder.join(START).exists() && folder.join(SCENE).exists()
     }
 
-    /// A folder for the results of another command, if one is asked for; refuses the folder of an optimization, whose report
-    /// would be replaced.
+    /// Begins a run in a folder, with its scene and its initial controls. `parts` are the folders of the runs of a comparison.
     ///
     /// # Errors
-    /// As [`Folder::with_room`].
-    pub fn folder_for_results(path: Option<&str>) -> Result<Option<Folder>, SceneError> {
-        let Some(path) = path.map(Path::new) else { return Ok(None) };
-        if Self::is_one(path) {
-            let reason = "holds an optimization, whose report would be replaced; --out takes another folder";
-            return Err(file_error(path, reason));
+    /// As [`Folder::create`].
+    pub fn begin(
+        folder: Folder,
+        loaded: &LoadedScene,
+        initial_controls: &Vector,
+        parts: &[&str],
+    ) -> Result<Self, Failure> {
+        for part in parts {
+            folder.claim(&format!("{part}/{}", REGISTER))?;
         }
-        Folder::with_room(path, 1).map(Some)
+        let identity = Identity::new(loaded, initial_controls.as_slice())?;
+        let mut scene = loaded.file.clone();
+        let copy = |file: &mut String, name: &str| {
+            let text = scene_file::read_grid(&loaded.folder().join(&*file))?;
+            *file = name.to_owned();
+            folder.write(name, &text)
+        };
+        if let CounterSection::Grid { file } = &mut scene.counter_surface {
+            copy(file, GRIDS[0])?;
+        }
+        if let StartSection::Grid { file } = &mut scene.surface.start {
+            copy(file, GRIDS[1])?;
+        }
+        folder.write(START, json(initial_controls.as_slice())?)?;
+        // With its scene, the folder holds a run.
+        keep_scene(&folder, scene)?;
+        let initial_controls = initial_controls.clone();
+        Ok(Self { folder, identity, initial_controls, resumed: false, new_version: false })
     }
 
-    /// Prepares the folder for a run; `bytes` must fit into it.
+    /// The run that a folder holds, to be continued. Nothing of it is changed.
     ///
     /// # Errors
-    /// [`SceneError::File`] if the folder cannot be written to, or holds another run that has not ended.
-    pub fn open(path: &str, bytes: u64, resumed: bool) -> Result<Self, SceneError> {
-        let folder = Folder::with_room(Path::new(path), bytes)?;
-        let this = Self { folder, resumed };
-        if !resumed && !this.journals()?.is_empty() && !this.path(REPORT).exists() {
-            let reason = "holds a run that has not ended; continue it with --resume, or remove the folder";
-            return Err(file_error(Path::new(path), reason));
+    /// [`Failure::Input`] for a journal of another scene or, unless `new_version`, of another version of the program, and for
+    /// fewer evaluations than it holds; any [`Failure`] of the folder.
+    pub fn reopen(folder: Folder, loaded: &LoadedScene, new_version: bool) -> Result<Self, Failure> {
+        let count = loaded.file.surface.control_points.iter().product();
+        let initial_controls = controls::read(&folder.path().join(START), count)?;
+        let identity = Identity::new(loaded, initial_controls.as_slice())?;
+        let this = Self { folder, identity, initial_controls, resumed: true, new_version };
+        for stage in stages(&loaded.case) {
+            let (held, limit) = (this.held(stage.name.as_deref())?, stage.case.optimizer.max_evaluations);
+            if held > limit {
+                let allowed = format!("at least the {held} evaluations that the folder holds");
+                return Err(SceneError::out_of_range("--max-evaluations", limit, allowed).into());
+            }
         }
         Ok(this)
     }
 
-    /// Folders with a journal: this one, those of its stages, and those of the parts of a comparison.
-    fn journals(&self) -> Result<Vec<PathBuf>, SceneError> {
-        let failed = |error: std::io::Error| file_error(self.folder.path(), error);
-        let mut found = vec![self.folder.path().to_owned()];
-        found.extend(COMPARED.iter().map(|part| self.path(part)).filter(|part| part.exists()));
-        for place in found.clone() {
-            for entry in std::fs::read_dir(place).map_err(failed)? {
-                let path = entry.map_err(failed)?.path();
-                if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("stage_")) {
-                    found.push(path);
-                }
-            }
+    /// Goes on with the run: from here on a folder without report is that of a run that has not ended. What the run has found so
+    /// far stays until its end replaces it.
+    ///
+    /// # Errors
+    /// [`Failure`] if a file cannot be written.
+    pub fn proceed(&self, loaded: &LoadedScene) -> Result<(), Failure> {
+        if !self.resumed {
+            return Ok(());
         }
-        found.retain(|path| Journal::exists(path));
-        Ok(found)
+        let report = self.folder.path().join(REPORT);
+        match std::fs::remove_file(&report) {
+            Err(error) if error.kind() != ErrorKind::NotFound => return Err(file_error(&report, error).into()),
+            _ => {}
+        }
+        keep_scene(&self.folder, loaded.file.clone())
+    }
+
+    /// Takes a run back that its input does not let begin, unless it is an older one.
+    pub fn abandon(&self) {
+        if !self.resumed {
+            self.folder.abandon();
+        }
+    }
+
+    /// An objective with the journal of the run or of one of its stages.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for a journal that is that of another scene or that cannot be understood; [`Failure::Computation`] if
+    /// it cannot be read or written.
+    pub fn journaled<O: NonsmoothObjective>(&self, objective: O, stage: Option<&str>) -> Result<Journaled<O>, Failure> {
+        let prefix = stage.map_or_else(String::new, |stage| format!("{stage}/"));
+        self.folder.claim(&format!("{prefix}{JOURNAL}"))?;
+        let place = self.place(stage);
+        let journal = Journal::read(&place)?;
+        Ok(Journaled::open(objective, &place, &self.known(stage, journal.as_ref())?)?)
+    }
+
+    /// Number of evaluations in the journal of the run or of one of its stages.
+    fn held(&self, stage: Option<&str>) -> Result<usize, Failure> {
+        let Some(journal) = Journal::read(self.place(stage))? else { return Ok(0) };
+        let expected = self.known(stage, Some(&journal))?;
+        if journal.identity != expected {
+            let path = self.place(stage).join(JOURNAL);
+            return Err(JournalError::Identity { path, found: journal.identity, expected }.into());
+        }
+        Ok(journal.entries.len())
+    }
+
+    /// The name of the objective in a journal, which may be that of another version of the program if that is allowed.
+    fn known(&self, stage: Option<&str>, journal: Option<&Journal>) -> Result<String, Failure> {
+        #[derive(Deserialize)]
+        struct Written {
+            version: String,
+        }
+        let expected = Identity { stage: stage.map(str::to_owned), ..self.identity.clone() };
+        let found = journal.map_or("", |journal| &journal.identity);
+        let version =
+            serde_json::from_str(found).map_or_else(|_| expected.version.clone(), |Written { version }| version);
+        if version == expected.version {
+            return expected.text();
+        }
+        if !self.new_version {
+            let here = &expected.version;
+            let words = format!(
+                "the run was begun by version {version} of the program, this is version {here}; --new-version continues it"
+            );
+            return Err(file_error(&self.place(stage).join(JOURNAL), words).into());
+        }
+        let same =
+            serde_json::from_str(found).is_ok_and(|found: Identity| found == Identity { version, ..expected.clone() });
+        if same { Ok(found.to_owned()) } else { expected.text() }
     }
 
     /// Whether the run continues what the folder holds.
@@ -107,116 +224,26 @@ impl RunFolder {
         self.resumed
     }
 
-    /// The initial controls of the run that the folder holds, which goes on from here with the limits of this scene.
-    ///
-    /// # Errors
-    /// [`Failure`] if a file cannot be written or read.
-    pub fn resume(&self, loaded: &LoadedScene, count: usize) -> Result<Vector, Failure> {
-        // From here on a folder without report is that of a run that has not ended. What the run has found so far stays until
-        // its end replaces it.
-        self.remove_old(&REPORTS[..1])?;
-        self.keep_scene(loaded.file.clone())?;
-        Ok(controls::read(&self.path(START), count)?)
-    }
-
-    /// Begins another run, with its scene and its initial controls.
-    ///
-    /// # Errors
-    /// [`Failure`] if a file cannot be written or read.
-    pub fn begin(&self, loaded: &LoadedScene, initial_controls: &[f64]) -> Result<(), Failure> {
-        // From here on a folder without report is that of a run that has not ended.
-        self.remove_old(&REPORTS)?;
-        // No journal may ever stand beside a scene that is not its own.
-        let journals = self.journals()?;
-        if !journals.is_empty() {
-            eprintln!("warning: {}: the run that it held is replaced", self.folder.path().display());
-        }
-        for path in journals {
-            Journal::remove(&path)?;
-        }
-        for part in COMPARED {
-            self.remove_old(&[SCENE, START, REPORT].map(|file| format!("{part}/{file}")))?;
-        }
-        let mut scene = loaded.file.clone();
-        self.keep_grids(&mut scene, loaded.folder())?;
-        self.folder.replace(START, &json(initial_controls)?)?;
-        self.keep_scene(scene)
-    }
-
-    /// Writes the scene file, without the folder: that is where the file lies, and a file that named it would send other
-    /// commands there.
-    fn keep_scene(&self, mut scene: SceneFile) -> Result<(), Failure> {
-        scene.output.folder = None;
-        self.folder.replace(SCENE, &scene.print()?)
-    }
-
-    /// Removes files of an earlier run, as far as there are any.
-    fn remove_old(&self, names: &[impl AsRef<Path>]) -> Result<(), SceneError> {
-        for name in names {
-            let path = self.folder.path().join(name);
-            match std::fs::remove_file(&path) {
-                Err(error) if !matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-                    return Err(file_error(&path, error));
-                }
-                _ => {}
-            }
-        }
-        Ok(())
-    }
-
-    /// Copies the grids that the scene names, and names the copies.
-    fn keep_grids(&self, scene: &mut SceneFile, from: &Path) -> Result<(), Failure> {
-        let copy = |file: &mut String, name: &str| {
-            let path = from.join(&*file);
-            let text = std::fs::read_to_string(&path).map_err(|error| file_error(&path, error))?;
-            *file = name.to_owned();
-            self.folder.replace(name, &text)
-        };
-        if let CounterSection::Grid { file } = &mut scene.counter_surface {
-            copy(file, "counter_surface.csv")?;
-        }
-        if let StartSection::Grid { file } = &mut scene.surface.start {
-            copy(file, "start.csv")?;
-        }
-        Ok(())
-    }
-
-    /// An objective with the journal of the run or of one of its stages.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] for a folder that cannot be written to, and for a journal that cannot be read or that is that of
-    /// another scene.
-    pub fn journaled<O: NonsmoothObjective>(&self, objective: O, stage: Option<&str>) -> Result<Journaled<O>, Failure> {
-        Ok(Journaled::open(objective, self.place(stage), &self.identity(stage)?)?)
-    }
-
-    /// All that the objective depends on: the scene that the folder holds, and the stage.
-    fn identity(&self, stage: Option<&str>) -> Result<String, Failure> {
-        let scene = SceneFile::read(&self.path(SCENE))?;
-        let scene = SceneFile { optimizer: OptimizerSection::default(), output: OutputSection::default(), ..scene };
-        let text = serde_json::to_string(&scene).map_err(Failure::computation)?;
-        Ok(stage.map_or_else(|| text.clone(), |stage| format!("{stage}: {text}")))
-    }
-
-    /// Number of evaluations that the journal of the run, or of one of its stages, holds.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] for a journal that cannot be read.
-    pub fn evaluations(&self, stage: Option<&str>) -> Result<usize, Failure> {
-        Ok(Journal::read(self.place(stage))?.map_or(0, |journal| journal.entries.len()))
+    /// The controls that the run starts from.
+    pub fn initial_controls(&self) -> &Vector {
+        &self.initial_controls
     }
 
     /// Where the journal of the run, or of one of its stages, lies.
     fn place(&self, stage: Option<&str>) -> PathBuf {
-        stage.map_or_else(|| self.folder.path().to_owned(), |stage| self.path(stage))
+        let path = self.folder.path();
+        stage.map_or_else(|| path.to_owned(), |stage| path.join(stage))
     }
 
     /// The folder for the files of the report.
     pub fn folder(&self) -> &Folder {
         &self.folder
     }
+}
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
+/// Writes the scene file, without the folder: that is where the file lies, and a file that named it would send other commands
+/// there.
+fn keep_scene(folder: &Folder, mut scene: SceneFile) -> Result<(), Failure> {
+    scene.output.folder = None;
+    folder.write(SCENE, scene.print()?)
 }

@@ -1,5 +1,6 @@
 //! Ctrl-C and requests to terminate.
 
+use crate::commands::failure::notice;
 use std::sync::Once;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -17,7 +18,7 @@ pub fn watch_interrupts() {
             if INTERRUPTS.fetch_add(1, Ordering::SeqCst) > 0 {
                 std::process::exit(i32::from(STATUS));
             }
-            eprintln!("interrupted: the current evaluation is finished first; once more ends the program at once");
+            notice("interrupted: the current evaluation is finished first; once more ends the program at once");
         };
         // A program that has its own handler keeps it.
         if let Err(error) = ctrlc::set_handler(handler) {

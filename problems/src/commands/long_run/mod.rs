@@ -11,7 +11,7 @@ mod interrupt;
 mod progress;
 mod status;
 
-pub use folder::{COMPARED, RunFolder};
+pub use folder::RunFolder;
 pub use interrupt::{STATUS, interrupted, watch_interrupts};
 pub use progress::Progress;
 pub use status::{StageLayer, StatusLine};

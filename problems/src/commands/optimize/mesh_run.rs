@@ -1,7 +1,7 @@
 //! One optimization on one mesh, kept in a journal if asked for.
 
 use crate::commands::contact_objective::ContactObjective;
-use crate::commands::failure::Failure;
+use crate::commands::failure::{Failure, notice};
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
 use crate::commands::optimize::stages::MeshStage;
 use nonsmooth::{
@@ -23,6 +23,8 @@ pub struct MeshRun {
     pub name: Option<String>,
     /// The controls that it started from.
     pub initial_controls: Vector,
+    /// Whether its journal, if it has one, holds all evaluations.
+    pub is_kept: bool,
 }
 
 impl MeshRun {
@@ -80,8 +82,9 @@ pub fn run_on_mesh(
             report
         }
     };
+    let is_kept = journaled.as_ref().is_none_or(Journaled::is_complete);
     drop(journaled);
-    Ok(MeshRun { objective, report, replayed, name: stage.name.clone(), initial_controls })
+    Ok(MeshRun { objective, report, replayed, name: stage.name.clone(), initial_controls, is_kept })
 }
 
 /// Says what the journal warns of as soon as it does.
@@ -90,7 +93,7 @@ fn warner<O>(journaled: &Journaled<O>) -> impl Observer {
     move |_: &IterationRecord| {
         let warnings = journaled.warnings();
         for words in &warnings[said..] {
-            eprintln!("warning: {words}");
+            notice(&format!("warning: {words}"));
         }
         said = warnings.len();
         ControlFlow::Continue(())

@@ -7,7 +7,7 @@ pub mod summary;
 
 use crate::commands::contact_objective::{SolvedShape, checks};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, json};
+use crate::commands::folder::{Folder, REPORT, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS, interrupted};
 use crate::commands::optimize::run::{OptimizationRun, optimize};
@@ -18,16 +18,17 @@ use crate::commands::report::files;
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let optimization = optimize(loaded, None, session)?;
     let folder = optimization.folder.as_ref();
-    let continued = folder.map(|folder| format!("--resume {}", folder.folder().path().display()));
-    let (printed, _shapes) = report(&optimization, loaded, session, continued.as_deref())?;
-    match interruption(folder) {
-        Some(reason) => Err(Failure::Incomplete { text: printed, reason, status: STATUS }),
-        None => Ok(printed),
+    let continued = folder.map(|folder| resume_command(folder.folder().path(), false));
+    let (text, _shapes) = report(&optimization, loaded, session, continued.as_deref())?;
+    match (interruption(continued.as_deref()), optimization.failure()) {
+        (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),
+        (None, Some(reason)) => Err(Failure::Incomplete { text, reason, status: 1 }),
+        (None, None) => Ok(text),
     }
 }
 
 /// The text for stdout, with the shapes at both ends of the optimization; the same as files if a folder is asked for.
-/// `continued` holds the options that continue the run; the text names them if the run can be continued.
+/// `continued` is the command that continues the run; the text names it if the run can be continued.
 ///
 /// # Errors
 /// [`Failure::Incomplete`] with the text if a file cannot be written; any [`Failure`] of the contact solver.
@@ -49,23 +50,30 @@ pub fn report(
     let checks = checks(&last.objective, &shapes[1], session.arguments)?;
     let object = json(&summary(last, runs, &shapes, &checks, session.arguments))?;
     let mut text = page(last, &shapes, &checks, session.arguments) + &stages_page(runs, optimization.meshes);
-    if let Some(options) = continued.filter(|_| optimization.can_continue()) {
-        text += &format!("to continue: {options}\n");
+    if let Some(command) = continued.filter(|_| optimization.can_continue()) {
+        text += &format!("to continue: {command}\n");
     }
     let write = |folder: &Folder| {
+        files::write_optimization(folder, loaded, runs, last, &shapes, &checks)?;
         folder.write("report.txt", &text)?;
-        folder.replace("report.json", &object)?;
-        files::write_optimization(folder, loaded, runs, last, &shapes, &checks)
+        if let Some(run) = runs.iter().find(|run| !run.is_kept) {
+            let evaluations = run.report.counts.evaluations;
+            let words = format!("the journal does not hold all {evaluations} evaluations, see the warnings");
+            return Err(Failure::Computation(format!("{}: {words}", folder.path().display())));
+        }
+        // From here on the run has ended.
+        folder.write(REPORT, &object)
     };
-    let written = optimization.folder.as_ref().map_or(Ok(()), |folder| write(folder.folder()));
-    let printed = session.arguments.printed(text, object);
-    Ok((Failure::printed_with_files(printed, written)?, shapes))
+    let folder = optimization.folder.as_ref().map(RunFolder::folder);
+    let json = session.arguments.json;
+    let printed = session.arguments.printed(text.clone(), object.clone());
+    Ok((printed_with_files(printed, json, folder, write)?, shapes))
 }
 
-/// The sentence about an interruption; none if the run was not interrupted.
-pub fn interruption(folder: Option<&RunFolder>) -> Option<String> {
-    let hint = match folder {
-        Some(folder) => format!("continue with --resume {}", folder.folder().path().display()),
+/// The sentence about an interruption, with the command that continues the run; none if the run was not interrupted.
+pub fn interruption(continued: Option<&str>) -> Option<String> {
+    let hint = match continued {
+        Some(command) => format!("continue with `{command}`"),
         None => "nothing was kept; with --out DIR a run can be continued".to_owned(),
     };
     interrupted().then(|| format!("interrupted; {hint}"))

@@ -2,13 +2,13 @@
 
 use crate::commands::contact_objective::{ContactObjective, objective};
 use crate::commands::controls;
-use crate::commands::failure::Failure;
+use crate::commands::failure::{Failure, failed};
+use crate::commands::folder::Folder;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, interrupted, watch_interrupts};
 use crate::commands::optimize::mesh_run::{MeshRun, first_step, run_on_mesh};
 use crate::commands::optimize::stages::{MeshStage, stages};
-use contact::error::SceneError;
-use nonsmooth::{StateSolver, Termination, Vector};
+use nonsmooth::{Termination, Vector};
 use std::path::Path;
 
 /// First step on every mesh but the first, in first steps of the first mesh. The gap at a coarse optimum says nothing about the
@@ -30,6 +30,11 @@ impl OptimizationRun {
     /// Whether the time limit or an interruption ended it.
     pub fn was_cut_short(&self) -> bool {
         self.mesh_runs.last().is_some_and(ran_out_of_time)
+    }
+
+    /// Why it failed, if it did not end at a point that the optimizer vouches for, nor at a limit.
+    pub fn failure(&self) -> Option<String> {
+        self.mesh_runs.last().and_then(|run| failed(&run.report.termination))
     }
 
     /// Whether it ended at a limit or by an interruption, so that more evaluations may improve it.
@@ -56,12 +61,11 @@ pub fn optimize(
     session: &Session<'_>,
 ) -> Result<OptimizationRun, Failure> {
     let stages = stages(&loaded.case);
-    let folder = open_folder(loaded, 1, session)?;
     let first = objective(&stages[0].case)?;
-    if let Some(folder) = folder.as_ref().filter(|folder| folder.is_resumed()) {
-        check_limit(folder, &stages)?;
+    let (folder, mut controls) = begin(&first, loaded, given, &[], session)?;
+    if let Some(folder) = &folder {
+        folder.proceed(loaded)?;
     }
-    let mut controls = initial_controls(&first, loaded, given, folder.as_ref(), session)?;
     watch_interrupts();
     let optimizer = &loaded.case.optimizer;
     let mut step = optimizer.first_step.unwrap_or_else(|| first_step(&first, &controls));
@@ -70,8 +74,13 @@ pub fn optimize(
         let objective = first.take().map_or_else(|| objective(&stage.case), Ok)?;
         let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
         let start = (controls, step);
-        let run =
-            run_on_mesh(objective, stage, start, optimizer.time_limit.map(left), folder.as_ref(), &session.status)?;
+        let limit = optimizer.time_limit.map(left);
+        let run = run_on_mesh(objective, stage, start, limit, folder.as_ref(), &session.status);
+        let run = run.inspect_err(|failure| {
+            if let (Some(folder), 2, true) = (&folder, failure.status(), mesh_runs.is_empty()) {
+                folder.abandon();
+            }
+        })?;
         if mesh_runs.is_empty() {
             step *= LATER_FIRST_STEP;
         }
@@ -85,59 +94,32 @@ pub fn optimize(
     Ok(OptimizationRun { mesh_runs, meshes: stages.len(), folder })
 }
 
-/// The folder of a run if one is asked for, with room for the files of so many optimizations.
-///
-/// # Errors
-/// As [`RunFolder::open`].
-pub fn open_folder(
-    loaded: &LoadedScene,
-    optimizations: u64,
-    session: &Session<'_>,
-) -> Result<Option<RunFolder>, SceneError> {
-    let Some(path) = loaded.case.output.folder.as_deref() else { return Ok(None) };
-    let resumed = session.arguments.resume.is_some() && RunFolder::is_one(Path::new(path));
-    RunFolder::open(path, optimizations * room(&stages(&loaded.case)), resumed).map(Some)
-}
-
-/// The controls that a run starts from: those in the folder of a run that is continued, else those given, else those that the
-/// command line or the scene names. The folder keeps them.
+/// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is continued,
+/// else those given, else those that the command line or the scene names. Everything is checked before the folder is touched.
+/// `parts` are the folders of the runs of a comparison.
 ///
 /// # Errors
 /// [`Failure::Input`] for controls outside the admissible set; any [`Failure`] of the folder.
-pub fn initial_controls(
+pub fn begin(
     objective: &ContactObjective,
     loaded: &LoadedScene,
     given: Option<&Vector>,
-    folder: Option<&RunFolder>,
+    parts: &[&str],
     session: &Session<'_>,
-) -> Result<Vector, Failure> {
-    let shape = objective.solver();
-    if let Some(folder) = folder.filter(|folder| folder.is_resumed()) {
-        let controls = folder.resume(loaded, shape.control_dimension())?;
-        shape.problem().admissible.check(&controls)?;
-        return Ok(controls);
+) -> Result<(Option<RunFolder>, Vector), Failure> {
+    let (shape, arguments) = (objective.solver(), session.arguments);
+    let path = loaded.case.output.folder.as_deref().map(Path::new);
+    let bytes = room(&stages(&loaded.case)) * parts.len().max(1) as u64;
+    if let Some(path) = path.filter(|path| arguments.resume.is_some() && RunFolder::is_one(path)) {
+        let folder = RunFolder::reopen(Folder::reopen(path, bytes)?, loaded, arguments.new_version)?;
+        shape.problem().admissible.check(folder.initial_controls())?;
+        let controls = folder.initial_controls().clone();
+        return Ok((Some(folder), controls));
     }
-    let load = || controls::load(shape, &loaded.case, session.arguments.start_controls.as_deref());
+    let load = || controls::load(shape, &loaded.case, ("--start-controls", arguments.start_controls.as_deref()));
     let controls = given.cloned().map_or_else(load, Ok)?;
-    if let Some(folder) = folder {
-        folder.begin(loaded, controls.as_slice())?;
-    }
-    Ok(controls)
-}
-
-/// Refuses fewer evaluations than a run that is continued has made already, since its report would become worse.
-///
-/// # Errors
-/// [`Failure::Input`] naming `--max-evaluations`; any [`Failure`] of the folder.
-pub fn check_limit(folder: &RunFolder, stages: &[MeshStage]) -> Result<(), Failure> {
-    for stage in stages {
-        let (held, limit) = (folder.evaluations(stage.name.as_deref())?, stage.case.optimizer.max_evaluations);
-        if held > limit {
-            let allowed = format!("at least the {held} evaluations that the folder holds");
-            return Err(SceneError::out_of_range("--max-evaluations", limit, allowed).into());
-        }
-    }
-    Ok(())
+    let begin = |path| RunFolder::begin(Folder::create(path, bytes, arguments.overwrite)?, loaded, &controls, parts);
+    Ok((path.map(begin).transpose()?, controls))
 }
 
 /// Bytes of a number in the restart data.

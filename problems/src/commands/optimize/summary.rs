@@ -15,6 +15,8 @@ use serde::Serialize;
 struct OptimizationJson<'a> {
     objective_start: f64,
     objective: f64,
+    /// p where all values of the objective are (Σσ^p)^{1/p}, since Σσ^p may be no double; else 1.
+    objective_root: f64,
     controls: &'a [f64],
     evaluations: usize,
     serious_steps: usize,
@@ -125,6 +127,7 @@ pub fn summary<'a>(
     OptimizationJson {
         objective_start: shapes[0].value,
         objective: report.value,
+        objective_root: objective.cost().root(),
         controls: report.solution.as_slice(),
         evaluations: report.counts.evaluations,
         serious_steps: report.counts.serious,
@@ -168,7 +171,7 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], argum
     let scene = &objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
     format!(
-        "{}: {} of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}\n\
+        "{}: {} of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}; objective in {}\n\
          reduction:   {:.4} times, peak pressure {:.1} -> {:.1} MPa\n{report}\
          state:       relative residuals at the solution: {}\n\
          \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
@@ -184,6 +187,7 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], argum
         scene.subdomains[1],
         scene.subdomains[2],
         scene.friction,
+        objective.cost().unit().replace(['{', '}'], ""),
         shapes[0].value / report.value,
         shapes[0].peak_pressure,
         shapes[1].peak_pressure,

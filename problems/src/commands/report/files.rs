@@ -3,9 +3,9 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, PICTURE_ENDINGS, json};
+use crate::commands::folder::{COMPARED, Folder, PICTURE_ENDINGS, json};
 use crate::commands::loaded_scene::LoadedScene;
-use crate::commands::long_run::{COMPARED, RunFolder};
+use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::all_warnings;
 use crate::commands::report::gallery::ShownShape;
@@ -127,7 +127,7 @@ pub fn write_optimization(
     out.write("history.csv", &tables::history(report), "one line per evaluation")?;
     out.show(&[("initial", "start, ", &shapes[0]), ("optimal", "optimum, ", &shapes[1])])?;
     if out.wanted().pictures {
-        let figure = gallery::convergence(objective, loaded.case.measure, report, &shapes[1]);
+        let figure = gallery::convergence(objective, report, &shapes[1]);
         out.draw(figure, "objective of every evaluation and kinds of steps")?;
     }
     out.finish(|figures| pages::optimization(figures, runs, last, shapes), &all_warnings(report, checks))

@@ -3,7 +3,6 @@
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::failure::Failure;
 use contact::body::mesh::Block;
-use contact::cost::PressureMeasure;
 use contact::fields::{BodyFields, Fields};
 use figures::{
     Convergence, Figure, FigureError, Map, MapPanel, SolidBlock, SolidPanel, Solids, Step, SurfacePanel, Surfaces,
@@ -75,7 +74,6 @@ pub fn pressure(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Resu
 /// The course of an optimization, with the least value that the total force of a shape allows.
 pub fn convergence(
     objective: &ContactObjective,
-    measure: PressureMeasure,
     report: &Report,
     optimum: &SolvedShape,
 ) -> Result<Figure, FigureError> {
@@ -84,16 +82,12 @@ pub fn convergence(
         value: record.value,
         best: record.center_value,
     });
-    let unit = match measure {
-        PressureMeasure::Norm { exponent } => format!("MPa^{{{exponent}}}"),
-        PressureMeasure::Peak => "MPa".into(),
-    };
     let bound = objective.cost().lower_bound(optimum.state.forces.total_normal_force());
     Convergence {
         name: "convergence".into(),
         title: format!("{}: course of the optimization", objective.solver().problem().scene.name),
         quantity: "Θ".into(),
-        unit,
+        unit: objective.cost().unit(),
         steps: steps.collect(),
         reference: (bound > 0.0 && bound.is_finite()).then(|| ("least for this force".into(), bound)),
     }

@@ -14,7 +14,7 @@ use std::time::Instant;
 
 /// Error against run time: discretisation, contact solvers, subgradient, optimization.
 #[derive(Debug, Clone, Parser)]
-#[command(version)]
+#[command(name = "accuracy", version)]
 pub struct Arguments {
     /// About two minutes (the default).
     #[arg(long, conflicts_with_all = ["full", "smoke"])]
@@ -76,7 +76,7 @@ pub fn run() -> ExitCode {
 
 /// Measures, writes the folder, and returns what belongs on stdout.
 fn execute(arguments: &Arguments) -> Result<String, Failure> {
-    let folder = arguments.out.as_deref().map(|path| Folder::with_room(path, 1 << 20)).transpose()?;
+    let folder = arguments.out.as_deref().map(|path| Folder::create(path, 1 << 20, false)).transpose()?;
     let report = measure(arguments)?;
     let (object, page) = (json(&report)?, tables::markdown(&report));
     if let Some(folder) = folder {

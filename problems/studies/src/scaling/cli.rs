@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 /// Work, time and memory of the contact solvers over growing meshes.
 #[derive(Debug, Clone, Parser)]
-#[command(version)]
+#[command(name = "scaling", version)]
 pub struct Arguments {
     /// s = 2 and 3 only.
     #[arg(long, conflicts_with_all = ["full", "case"])]

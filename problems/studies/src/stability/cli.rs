@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 /// What the solvers and the optimizer do with stiff and extreme cases.
 #[derive(Debug, Clone, Parser)]
-#[command(version)]
+#[command(name = "stability", version)]
 pub struct Arguments {
     /// The fast subset only.
     #[arg(long)]
@@ -60,7 +60,7 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
 fn at_random(arguments: &Arguments, count: usize) -> Result<String, Failure> {
     let report = random::run(arguments.seed, count);
     if let Some(path) = &arguments.out {
-        let folder = Folder::with_room(path, 1_000_000)?;
+        let folder = Folder::create(path, 1 << 20, false)?;
         for short in report.short() {
             folder.write(&format!("{:05}.toml", short.index), format!("# {}\n{}", short.reason, short.text))?;
         }

@@ -1,0 +1,127 @@
+//! What the commands say to people: errors name the option or the field as it was written, its value, and what is allowed.
+
+use std::path::Path;
+use testset::kit::{self, text};
+
+const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
+const SIGNORINI: &str = env!("CARGO_BIN_EXE_signorini3d");
+
+#[test]
+fn options_out_of_range_are_named_with_value_and_range() {
+    for (option, value, allowed) in [
+        ("--mesh", "0", "an integer ≥ 1 and ≤ 400"),
+        ("--mesh", "-3", "an integer ≥ 1 and ≤ 400"),
+        ("--mesh", "1e99", "an integer ≥ 1 and ≤ 400"),
+        ("--subdomains", "0", "an integer ≥ 1"),
+        ("--poisson-ratio", "0.5", "> -1 and < 0.5"),
+        ("--young-modulus", "1e-300", "≥ 1e-9 and ≤ 1e15 (MPa)"),
+        ("--friction", "1e7", "≥ 0 and ≤ 1e6"),
+        ("--exponent", "65", "> 1 and ≤ 64"),
+        ("--load-factor", "nan", "a finite number"),
+        ("--load-factor", "1e300", "≤ 1e15 MPa"),
+        ("--control-points", "6x400", "≥ 2 and ≤ 40"),
+        ("--surface", "bspline:x", "an integer ≥ 1 and ≤ 39"),
+        ("--threads", "2000", "1..=256"),
+        ("--threads", "-3", "1..=256"),
+        ("--continuation", "x", "an integer ≥ 1 and ≤ 400"),
+        ("--max-evaluations", "-3", "an integer ≥ 1 and ≤ 1e6"),
+        ("--time-limit", "inf", "> 0 and ≤ 1e9 (s)"),
+    ] {
+        kit::refused(SIGNORINI, &["optimize", option, value], &[option, value, allowed]);
+    }
+    // What does not fit together is blamed on the option that was given, not on the field that it stands for.
+    kit::refused(SIGNORINI, &["evaluate", "--subdomains", "5"], &["--subdomains = 5", "a divisor of the 12 bricks"]);
+    kit::refused(SIGNORINI, &["compare", "--friction", "0"], &["--friction = 0", "> 0"]);
+    kit::refused(SIGNORINI, &["evaluate", "--controls", "none.json"], &["--controls: none.json"]);
+    kit::refused(SIGNORINI, &["--start-controls", "none.json"], &["--start-controls: none.json"]);
+}
+
+#[test]
+fn fields_that_contradict_each_other_are_named_as_in_the_file() {
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let hertz = std::fs::read_to_string(scenes.join("hertz.toml")).unwrap();
+    let folder = kit::scratch();
+    let file = folder.path().join("mine.toml");
+    for (right, wrong, words) in [
+        (
+            "volume = [800.0, 1200.0]",
+            "volume = [1200.0, 800.0]",
+            ["admissible.volume = [1200, 800]", "the smallest volume, then"],
+        ),
+        (
+            "minimum_height = ",
+            "minimum_height = 40",
+            ["counter_surface at (0, 0) = ", "at least admissible.minimum_height"],
+        ),
+        ("top = ", "top = -", ["upper.top = -", "above the counter surface, which has the height"]),
+        ("young_modulus = 2.1e5", "young_modulus = 2.1e-300", ["upper.material.young_modulus = 2.1e-300", "≥ 1e-9"]),
+        ("height = 10.0", "height = 10.5", ["surface.start: controls lie outside", "height of control"]),
+    ] {
+        assert!(hertz.contains(right), "{right}");
+        std::fs::write(&file, hertz.replacen(right, wrong, 1)).unwrap();
+        kit::refused(CONTACT, &[text(&file), "evaluate"], &words);
+    }
+}
+
+#[test]
+fn files_may_begin_with_a_byte_order_mark_and_must_not_be_endless() {
+    let folder = kit::scratch();
+    let (scene, controls) = (folder.path().join("marked.toml"), folder.path().join("marked.json"));
+    let marked = |content: &str| format!("\u{feff}{content}");
+    std::fs::write(&scene, marked(include_str!("../../scenes/signorini.toml"))).unwrap();
+    std::fs::write(&controls, marked(&format!("{:?}", [100.0; 36]))).unwrap();
+    kit::json(CONTACT, &[text(&scene), "evaluate", "--mesh", "3", "--controls", text(&controls), "--json"]);
+    #[cfg(unix)]
+    {
+        let endless = ["too long", "at most 1 MiB"];
+        kit::refused(CONTACT, &["/dev/zero", "evaluate"], &endless);
+        kit::refused(SIGNORINI, &["evaluate", "--controls", "/dev/zero"], &endless);
+        let punch = include_str!("../../scenes/flat_punch.toml").replace("flat_punch.csv", "/dev/zero");
+        std::fs::write(&scene, punch).unwrap();
+        kit::refused(CONTACT, &[text(&scene), "evaluate"], &["/dev/zero", "too long", "at most 128 MiB"]);
+    }
+}
+
+#[test]
+fn help_has_the_defaults_and_results_name_their_files() {
+    let printed = |program: &str, arguments: &[&str]| {
+        let output = kit::run(program, arguments);
+        assert!(output.status.success(), "{}", kit::errors(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let help = printed(SIGNORINI, &["--help"]);
+    for default in
+        ["[default: [12, 12, 12]]", "[default: 0.3]", "[default: 150]", "[default: 4]", "[default: optimize]"]
+    {
+        assert!(help.contains(default), "{default}: {help}");
+    }
+    assert!(printed(CONTACT, &["--help"]).contains("[default: friction of the scene]"));
+    for name in ["contact3d", "hertz3d", "signorini3d", "toy2d", "membrane2d"] {
+        assert!(printed(crate::binary(name).unwrap(), &["-V"]).starts_with(&format!("{name} ")), "{name}");
+    }
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    for command in [&["evaluate"][..], &["optimize", "--max-evaluations", "2"]] {
+        let text = printed(SIGNORINI, &[command, &["--mesh", "3", "--overwrite", "--out", text(&folder)]].concat());
+        assert!(text.contains(&format!("files:       {}", folder.join("report.html").display())), "{text}");
+    }
+}
+
+#[test]
+fn the_largest_exponents_are_evaluated_and_optimized() {
+    let evaluated =
+        |options: &[&str]| kit::json(SIGNORINI, &[&["evaluate", "--mesh", "4", "--json"], options].concat());
+    let value = |result: &serde_json::Value, key: &str| result[key].as_f64().unwrap();
+    let largest = evaluated(&["--exponent", "64"]);
+    assert_eq!(value(&largest, "objective_root"), 1.0);
+    assert!((value(&largest, "objective").log10() - value(&largest, "log10_objective")).abs() < 1e-10);
+    // Σσ^64 of pressures that are a hundred times larger is no double.
+    let beyond = evaluated(&["--exponent", "64", "--load-factor", "100"]);
+    let peak = value(&beyond, "peak_pressure");
+    assert_eq!(value(&beyond, "objective_root"), 64.0);
+    assert!((1.0..1.1).contains(&(value(&beyond, "objective") / peak)) && value(&beyond, "log10_objective") > 308.0);
+    // The paper's exponent is computed as ever.
+    assert_eq!(value(&evaluated(&[]), "objective_root"), 1.0);
+    let optimized = kit::json(SIGNORINI, &["--mesh", "4", "--exponent", "64", "--max-evaluations", "30", "--json"]);
+    assert!(value(&optimized, "objective") < 0.7 * value(&optimized, "objective_start"), "{optimized}");
+}
