@@ -36,8 +36,9 @@ fn paper(
     settings: &AugmentedLagrangianSettings,
 ) -> Result<Paper, ContactError> {
     let controls = controls(solver.problem());
-    let (state, forces, work, counts) =
-        solver.solve_by(&controls, 0.0, |contact| contact.solve_by_successive_approximations(start, settings))?;
+    let (state, forces, work, counts) = solver.solve_by(&controls, settings.tolerance, |contact| {
+        contact.solve_by_successive_approximations(start, settings)
+    })?;
     Ok(Paper { state, forces, work, counts })
 }
 

@@ -62,7 +62,7 @@ impl TornContact<'_> {
         let mut unknowns = rows.unknowns_of(start);
         let (mut first, mut last) = (None, f64::INFINITY);
         let mut image = self.zeros();
-        let allowed = self.operator.applications() + accuracy.max_products;
+        let allowed = self.operator.applications().saturating_add(accuracy.max_products);
         for _cycle in 0..accuracy.cycles {
             active.enforce(&mut unknowns, self.space.resultants());
             image = self.operator.apply(&rows.trial(&unknowns));
