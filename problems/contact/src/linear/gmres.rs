@@ -22,7 +22,7 @@ pub struct Combination<P> {
 }
 
 /// Iterations in which the residual usually halves, if rounding does not stop it.
-pub const PATIENCE: usize = 40;
+pub const MAX_STALLED_ITERATIONS: usize = 40;
 
 /// Minimises |r − A x| over growing Krylov spaces until the norm falls to `target`, `max_iterations` is reached, or the norm
 /// does not halve in `patience` iterations; the caller judges the residual.
@@ -127,7 +127,7 @@ mod tests {
         let multiply = |x: &[f64]| a.iter().map(|row| dot(row, x)).collect::<Vec<_>>();
         let expected = [1.0, -2.0, 3.0];
         let b = multiply(&expected);
-        let result = gmres(&b, 1e-13 * norm(&b), 10, PATIENCE, |v| v.to_vec(), |z| (multiply(z), ()));
+        let result = gmres(&b, 1e-13 * norm(&b), 10, MAX_STALLED_ITERATIONS, |v| v.to_vec(), |z| (multiply(z), ()));
         let mut x = vec![0.0; 3];
         for (c, z) in result.coefficients.iter().zip(&result.directions) {
             add_scaled(&mut x, *c, z);

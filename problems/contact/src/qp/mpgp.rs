@@ -180,7 +180,7 @@ impl Mpgp<'_> {
             let rounding = f64::EPSILON * (norm(linear) + self.norm * norm(&point.x));
             since_best = if length < best { 0 } else { since_best + 1 };
             best = best.min(length);
-            if length <= ROUNDED * rounding || (since_best > PATIENCE && best <= BLURRED * rounding) {
+            if length <= ROUNDED * rounding || (since_best > MAX_STALLED_ITERATIONS && best <= BLURRED * rounding) {
                 return Ok(Ending::Stagnated);
             }
             history.push(length);
@@ -372,10 +372,10 @@ impl Mpgp<'_> {
 
 /// Multiple of the rounding of the gradient below which |g̃| means nothing.
 const ROUNDED: f64 = 2.0;
-/// The same, if no progress was made for [`PATIENCE`] sweeps.
+/// The same, if no progress was made for [`MAX_STALLED_ITERATIONS`] sweeps.
 const BLURRED: f64 = 1e7;
 /// Sweeps without a smaller |g̃| near the level of rounding.
-const PATIENCE: usize = 20;
+const MAX_STALLED_ITERATIONS: usize = 20;
 /// Doublings of the norm estimate in one projected step.
 const MAX_RAISES: usize = 60;
 /// Curvature relative to |H| that counts as zero.

@@ -10,7 +10,7 @@
 
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
-use crate::linear::gmres::{PATIENCE, gmres};
+use crate::linear::gmres::{MAX_STALLED_ITERATIONS, gmres};
 use crate::linear::pcg::pcg;
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
@@ -154,7 +154,7 @@ impl AdjointSystem<'_> {
         };
         let target = (0.5 * goal).max(reduction * iterate.residual);
         // Once single precision has failed, the system is so ill conditioned that its residual may rest for long.
-        let patience = if precision == self.contact.precision { PATIENCE } else { MAX_KRYLOV };
+        let patience = if precision == self.contact.precision { MAX_STALLED_ITERATIONS } else { MAX_KRYLOV };
         let project = |v: &mut [f64]| self.active.project_adjoint(v);
         let precondition = |v: &[f64]| self.contact.precondition(&self.active.rows, v, project);
         let product = |z: &[f64]| {

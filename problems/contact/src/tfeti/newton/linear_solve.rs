@@ -5,7 +5,7 @@
 //! ```
 
 use crate::error::ContactError;
-use crate::linear::gmres::{PATIENCE, gmres};
+use crate::linear::gmres::{MAX_STALLED_ITERATIONS, gmres};
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::{ActiveRows, ActiveSet, Iterate, TornContact};
 use crate::tfeti::newton::recycling::{Direction, Recycled};
@@ -31,7 +31,7 @@ pub struct LinearAccuracy {
 impl LinearAccuracy {
     /// The start: one digit.
     pub fn start(max_products: usize) -> Self {
-        Self { target: 0.0, reduction: 0.1, max_krylov: 200, patience: PATIENCE, cycles: 1, max_products }
+        Self { target: 0.0, reduction: 0.1, max_krylov: 200, patience: MAX_STALLED_ITERATIONS, cycles: 1, max_products }
     }
 
     /// All that rounding allows.
@@ -41,7 +41,7 @@ impl LinearAccuracy {
 
     /// One cycle to a given residual.
     pub fn to(target: f64, max_krylov: usize, max_products: usize) -> Self {
-        Self { target, reduction: 0.0, max_krylov, patience: PATIENCE, cycles: 1, max_products }
+        Self { target, reduction: 0.0, max_krylov, patience: MAX_STALLED_ITERATIONS, cycles: 1, max_products }
     }
 }
 
