@@ -23,14 +23,14 @@ fn objective(mut scene: Scene, friction: f64, load: f64, measure: PressureMeasur
 /// Largest relative difference of the subgradient's product and a difference quotient that counts as agreement.
 const AGREEMENT: f64 = 1e-6;
 
-/// Whether ⟨ξ, d⟩ agrees with the central quotient of one of four steps. A long step may lie across a kink, a short one drown
+/// Whether ⟨ξ, d⟩ agrees with the central quotient of one of five steps. A long step may lie across a kink, a short one drown
 /// in rounding; a wrong subgradient agrees with none.
 fn agrees(objective: &Objective, control: &Vector, direction: &Vector) -> Result<(), TestCaseError> {
     let evaluate = |control: &Vector| objective.evaluate(&Request::tight(control)).unwrap().into_evaluation();
     let subgradient = evaluate(control).subgradient;
     let (product, size) = (subgradient.dot(direction), subgradient.norm() * direction.norm());
     let mut errors = Vec::new();
-    for exponent in [4, 5, 6, 3] {
+    for exponent in [4, 5, 6, 3, 7] {
         let step = control.norm() / 6.0 * 10.0_f64.powi(-exponent);
         let (ahead, behind) = (evaluate(&(control + direction * step)), evaluate(&(control - direction * step)));
         let quotient = (ahead.value - behind.value) / (2.0 * step);
@@ -39,7 +39,7 @@ fn agrees(objective: &Objective, control: &Vector, direction: &Vector) -> Result
             return Ok(());
         }
     }
-    Err(TestCaseError::fail(format!("relative differences of four steps {errors:?}")))
+    Err(TestCaseError::fail(format!("relative differences of five steps {errors:?}")))
 }
 
 fn numbers(seed: u64, count: usize) -> Vector {
