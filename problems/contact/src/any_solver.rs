@@ -12,7 +12,6 @@ use crate::equilibrium::{
 };
 use crate::error::ContactError;
 use crate::memory;
-use crate::scene::Scene;
 use crate::solver_kind::SolverKind;
 use crate::tfeti::{DualMethod, PreconditionerKind, Recycling, TornState, TotalFeti};
 use crate::work_estimate::WorkEstimate;
@@ -150,7 +149,7 @@ impl AutoSolver {
         let condensable = memory::estimate(scene, SolverKind::Direct, preconditioner) <= MAX_CONDENSED_BYTES;
         let max_products =
             condensable.then(|| WorkEstimate::of(scene).products_per_condensed_state().max(MIN_PRODUCTS));
-        let direct_first = if condensable { slow_for_total_feti(scene) } else { None };
+        let direct_first = if condensable { slow_for_total_feti(&problem) } else { None };
         let (torn, direct) = (OnceLock::new(), OnceLock::new());
         let solver = Self { problem, preconditioner, torn, direct, direct_first, max_products };
         match solver.direct_first {
@@ -207,10 +206,13 @@ impl AutoSolver {
         tolerance: f64,
     ) -> Result<ContactState<AnyState>, ContactError> {
         let failed = match self.torn()?.attempt(controls, start, tolerance, self.max_products) {
-            Ok(state) => match (comfortable(&state, tolerance), self.max_products) {
-                (Err(error), Some(_)) => Failed { error: Box::new(error), work: state.work() },
-                _ => return Ok(state.map(AnyState::from)),
-            },
+            Ok(state) => {
+                let comfortable = state.forces.residuals.within(tolerance.max(COMFORTABLE_SHARE * MAX_RESIDUAL));
+                match (comfortable, self.max_products) {
+                    (Err(error), Some(_)) => Failed { error: Box::new(error), work: state.work() },
+                    _ => return Ok(state.map(AnyState::from)),
+                }
+            }
             Err(failed) if self.max_products.is_none() || failed.error.is_about_the_problem() => {
                 return Err(*failed.error);
             }
@@ -227,20 +229,10 @@ impl AutoSolver {
     }
 }
 
-/// Refuses a state whose residuals leave no room for how another path would measure them.
-fn comfortable(state: &ContactState<TornState>, tolerance: f64) -> Result<(), ContactError> {
-    let residuals = state.forces.residuals;
-    let allowed = tolerance.max(COMFORTABLE_SHARE * MAX_RESIDUAL);
-    if residuals.largest() <= allowed {
-        return Ok(());
-    }
-    Err(ContactError::Inaccurate { residuals: residuals.to_string(), largest: residuals.largest(), allowed })
-}
-
 /// Why total FETI would be slow for a scene, if it would.
-fn slow_for_total_feti(scene: &Scene) -> Option<String> {
-    let bodies = std::iter::once(&scene.lower).chain(scene.upper.as_ref().map(|upper| &upper.body));
-    let ratio = bodies.map(|body| body.material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
+fn slow_for_total_feti(problem: &ContactProblem) -> Option<String> {
+    let scene = &problem.scene;
+    let ratio = problem.bodies().map(|body| body.material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
     if ratio >= NEARLY_INCOMPRESSIBLE {
         return Some(format!("Poisson's ratio {ratio} is nearly incompressible"));
     }

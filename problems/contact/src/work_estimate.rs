@@ -10,10 +10,14 @@ use crate::equilibrium::Work;
 use crate::scene::Scene;
 use crate::solver_kind::SolverKind;
 
+/// Products with F after which total FETI gives up where direct condensation cannot follow; what direct condensation may cost.
+pub(crate) const MAX_PRODUCTS: usize = 20_000;
 /// Fill of a factor with the contact dofs last, relative to one in free order.
 const CONTACT_LAST: f64 = 1.3;
 /// Newton steps on condensed bodies with all nodes closed that a state is expected to cost.
 const EXPECTED_STEPS: f64 = 5.0;
+/// Newton steps on condensed bodies that are always allowed: nine tenths of the states need fewer.
+const MIN_STEPS: usize = 60;
 
 /// Values of the Cholesky factor of a box with `dofs` dofs.
 pub(crate) fn factor_values(dofs: f64) -> f64 {
@@ -56,6 +60,11 @@ impl WorkEstimate {
     /// Products with F that cost as much as a state by direct condensation.
     pub fn products_per_condensed_state(&self) -> usize {
         ((self.condensation + EXPECTED_STEPS * self.condensed_step) / self.product) as usize
+    }
+
+    /// Newton steps on condensed bodies that cost as much as so many products with F; at least those of an ordinary state.
+    pub fn condensed_steps_per_products(&self, products: usize) -> usize {
+        ((products as f64 * self.product / self.condensed_step) as usize).max(MIN_STEPS)
     }
 
     /// Operations of the work behind a state that a solver found, attempts of total FETI before it included.

@@ -26,8 +26,6 @@ pub struct CompliantContact {
     pub problem: Arc<ContactProblem>,
     /// C, symmetric, rows × rows.
     pub compliance: Mat<f64>,
-    /// d: jumps less gaps under the loads alone, per row.
-    pub constant: Vec<f64>,
     /// R: jumps of the rigid motions, rows × motions, with orthonormal columns.
     pub motions: Mat<f64>,
     /// e: what contact must carry along the motions.
@@ -37,12 +35,21 @@ pub struct CompliantContact {
     /// Unit of compliances, mm/N.
     pub unit: f64,
     pub(super) bodies: Vec<Arc<CompliantBody>>,
-    /// Amplitudes that `constant` already holds.
-    offset: Vec<f64>,
+    /// Where the bodies are.
+    pub(super) placement: Placement,
     /// From the amplitudes of R to those of the bodies' own motions.
     basis: DMatrix<f64>,
     /// From the bodies' own amplitudes to those of R.
     inverse_basis: DMatrix<f64>,
+}
+
+/// Where the bodies are when the amplitudes are 0.
+#[derive(Debug, Clone)]
+pub(super) struct Placement {
+    /// d: jumps less gaps under the loads alone, per row, the rigid motions so far included.
+    constant: Vec<f64>,
+    /// The amplitudes of these motions.
+    offset: Vec<f64>,
 }
 
 impl CompliantContact {
@@ -76,12 +83,18 @@ impl CompliantContact {
         let resultant = (basis.transpose() * DVector::from_vec(own) / load).iter().copied().collect();
         let motions = Mat::from_fn(rows, motions.ncols(), |i, k| motions[(i, k)]);
         let offset = vec![0.0; motions.ncols()];
-        Self { offset, problem, compliance, constant, motions, resultant, load, unit, bodies, basis, inverse_basis }
+        let placement = Placement { constant, offset };
+        Self { placement, problem, compliance, motions, resultant, load, unit, bodies, basis, inverse_basis }
     }
 
     /// Number of packed rows.
     pub fn row_count(&self) -> usize {
-        self.constant.len()
+        self.compliance.nrows()
+    }
+
+    /// d: jumps less gaps under the loads alone, per row, dimensionless.
+    pub fn constant(&self) -> &[f64] {
+        &self.placement.constant
     }
 
     /// w = d − (C + δ) λ + R a.
@@ -89,7 +102,8 @@ impl CompliantContact {
         let (forces, amplitudes) = unknowns.split_at(self.row_count());
         let product = multiply(&self.compliance, forces);
         let rigid = multiply(&self.motions, amplitudes);
-        (0..self.row_count()).map(|i| self.constant[i] - product[i] - delta * forces[i] + rigid[i]).collect()
+        let constant = self.constant();
+        (0..self.row_count()).map(|i| constant[i] - product[i] - delta * forces[i] + rigid[i]).collect()
     }
 
     /// (λ − Π(x), Rᵀλ − e) and x = λ + w/(1 + δ).
@@ -111,18 +125,20 @@ impl CompliantContact {
     }
 
     /// Moves the bodies by the rigid motions of given unknowns: d := d + R a, a := 0. Jumps of nodes in contact are small
-    /// numbers then, and no longer differences of large ones.
-    pub(super) fn recentre(&mut self, unknowns: &mut [f64]) {
-        let (_, amplitudes) = unknowns.split_at_mut(self.constant.len());
-        add_scaled(&mut self.constant, 1.0, &multiply(&self.motions, amplitudes));
-        add_scaled(&mut self.offset, 1.0, amplitudes);
+    /// numbers then, and no longer differences of large ones. Returns where they were.
+    pub(super) fn recentre(&mut self, unknowns: &mut [f64]) -> Placement {
+        let before = self.placement.clone();
+        let (_, amplitudes) = unknowns.split_at_mut(self.compliance.nrows());
+        add_scaled(&mut self.placement.constant, 1.0, &multiply(&self.motions, amplitudes));
+        add_scaled(&mut self.placement.offset, 1.0, amplitudes);
         amplitudes.fill(0.0);
+        before
     }
 
     /// Relative residual that the rounding of d and R a causes.
     pub(super) fn rounding(&self, unknowns: &[f64]) -> f64 {
         let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        f64::EPSILON * largest(&self.constant).max(largest(&multiply(&self.motions, &unknowns[self.row_count()..])))
+        f64::EPSILON * largest(self.constant()).max(largest(&multiply(&self.motions, &unknowns[self.row_count()..])))
     }
 
     /// Derivatives of Π selected at given arguments x.
@@ -144,7 +160,8 @@ impl CompliantContact {
     pub fn dimensional(&self, unknowns: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (forces, amplitudes) = unknowns.split_at(self.row_count());
         let forces: Vec<f64> = forces.iter().map(|force| force * self.load).collect();
-        let amplitudes: Vec<f64> = amplitudes.iter().zip(&self.offset).map(|(a, offset)| a + offset).collect();
+        let amplitudes: Vec<f64> =
+            amplitudes.iter().zip(&self.placement.offset).map(|(a, offset)| a + offset).collect();
         let own = self.own_amplitudes(&amplitudes, self.unit * self.load);
         let parts = self.bodies.iter().zip(&own);
         let displacements = parts.flat_map(|(body, own)| body.displacement(&forces, own, true)).collect();

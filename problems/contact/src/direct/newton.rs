@@ -62,6 +62,8 @@ struct Problem {
     delta: f64,
     spring: f64,
     tolerance: f64,
+    /// Newton steps allowed in all, those before it included.
+    max_steps: usize,
 }
 
 /// Newton's matrix over the rows of the nodes that are not open, then the motions.
@@ -72,12 +74,13 @@ pub(super) struct ActiveSystem {
 }
 
 impl CompliantContact {
-    /// The equilibrium from given unknowns or from the bonded problem, to a relative residual; or the last state on the way.
-    pub(super) fn equilibrium(&mut self, start: Option<&[f64]>, tolerance: f64) -> Reached {
+    /// The equilibrium from given unknowns or from the bonded problem, to a relative residual; or, after at most so many Newton
+    /// steps, the last state on the way.
+    pub(super) fn equilibrium(&mut self, start: Option<&[f64]>, tolerance: f64, max_steps: usize) -> Reached {
         let mut history = Vec::new();
         let tolerance = tolerance.max(TIGHTEST);
         let zero = vec![0.0; self.row_count() + self.resultant.len()];
-        let problem = |delta, spring| Problem { delta, spring, tolerance };
+        let problem = |delta, spring| Problem { delta, spring, tolerance, max_steps };
         let started = start.and_then(|start| self.newton(start.to_vec(), problem(0.0, SPRINGS[0]), &mut history));
         let mut reached = (zero.clone(), false);
         for spring in SPRINGS.into_iter().take_while(|_| started.is_none()) {
@@ -99,15 +102,15 @@ impl CompliantContact {
 
     /// Newton's method from given unknowns; none where it does not converge.
     pub fn newton_from(&mut self, unknowns: &[f64]) -> Option<Vec<f64>> {
-        let problem = Problem { delta: 0.0, spring: SPRINGS[0], tolerance: TIGHTEST };
+        let problem = Problem { delta: 0.0, spring: SPRINGS[0], tolerance: TIGHTEST, max_steps: MAX_STEPS };
         self.newton(unknowns.to_vec(), problem, &mut Vec::new())
     }
 
     /// Lowers the compliance from a solved problem; the last solved one, and whether its compliance is 0.
     fn lower(&mut self, mut unknowns: Vec<f64>, mut problem: Problem, history: &mut Vec<f64>) -> (Vec<f64>, bool) {
         let mut factor = SHRINKAGE;
-        let first = history.len();
-        while problem.delta > 0.0 && factor <= LARGEST_FACTOR && history.len() - first < MAX_TOTAL_STEPS {
+        let last = (history.len() + MAX_TOTAL_STEPS).min(problem.max_steps);
+        while problem.delta > 0.0 && factor <= LARGEST_FACTOR && history.len() < last {
             let delta = if factor * problem.delta < LAST_COMPLIANCE { 0.0 } else { factor * problem.delta };
             match self.newton(unknowns.clone(), Problem { delta, ..problem }, history) {
                 Some(found) => {
@@ -124,14 +127,13 @@ impl CompliantContact {
     fn newton(&mut self, mut unknowns: Vec<f64>, problem: Problem, history: &mut Vec<f64>) -> Option<Vec<f64>> {
         let (mut residual, mut arguments) = self.residual(&unknowns, problem.delta);
         let mut size = norm(&residual);
-        let mut recentred = false;
+        let mut before = None;
         for _step in 0..MAX_STEPS {
-            if size <= problem.tolerance || !size.is_finite() {
+            if size <= problem.tolerance || !size.is_finite() || history.len() >= problem.max_steps {
                 break;
             }
-            if !recentred && size <= FLOOR_REACHED * self.rounding(&unknowns) {
-                recentred = true;
-                self.recentre(&mut unknowns);
+            if before.is_none() && size <= FLOOR_REACHED * self.rounding(&unknowns) {
+                before = Some(self.recentre(&mut unknowns));
                 (residual, arguments) = self.residual(&unknowns, problem.delta);
                 size = norm(&residual);
             }
@@ -146,7 +148,12 @@ impl CompliantContact {
                 break;
             }
         }
-        (size <= problem.tolerance.max(ACCEPTABLE)).then_some(unknowns)
+        let solved = size <= problem.tolerance.max(ACCEPTABLE);
+        // The unknowns that the caller keeps refer to where the bodies were.
+        if let Some(before) = before.filter(|_| !solved) {
+            self.placement = before;
+        }
+        solved.then_some(unknowns)
     }
 
     /// The solution with all nodes glued.
@@ -206,7 +213,7 @@ impl CompliantContact {
             right.push(resultant - open);
         }
         DenseLu::new(&active.matrix).solve_refined(&active.matrix, &mut right);
-        for (&row, value) in active.rows.iter().chain((count..residual.len()).collect::<Vec<_>>().iter()).zip(&right) {
+        for (row, value) in active.rows.iter().copied().chain(count..residual.len()).zip(&right) {
             step[row] = *value;
         }
         step

@@ -17,6 +17,7 @@ use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::scene::BodyScene;
 use crate::solver_kind::SolverKind;
+use crate::work_estimate::{MAX_PRODUCTS, WorkEstimate};
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -154,7 +155,8 @@ impl DirectSolver {
     ) -> Result<(CondensedSolution, usize), ContactError> {
         let size: usize = contact.bodies.iter().map(|body| body.free.len()).sum();
         let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
-        let reached = contact.equilibrium(start.as_deref(), tolerance);
+        let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
+        let reached = contact.equilibrium(start.as_deref(), tolerance, max_steps);
         if !reached.solved {
             let residual = norm(&contact.residual(&reached.unknowns, 0.0).0);
             let floor = contact.rounding(&reached.unknowns);

@@ -39,7 +39,14 @@ impl Residuals {
     /// # Errors
     /// [`ContactError::Inaccurate`] with the residuals.
     pub fn check(&self, allowed: f64) -> Result<(), ContactError> {
-        let allowed = allowed.max(MAX_RESIDUAL);
+        self.within(allowed.max(MAX_RESIDUAL))
+    }
+
+    /// Refuses residuals above what is allowed.
+    ///
+    /// # Errors
+    /// [`ContactError::Inaccurate`] with the residuals.
+    pub(crate) fn within(&self, allowed: f64) -> Result<(), ContactError> {
         if self.largest() <= allowed {
             return Ok(());
         }

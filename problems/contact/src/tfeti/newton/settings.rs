@@ -1,6 +1,7 @@
 //! Settings of Newton's method on the dual problem.
 
 use crate::tfeti::dual::CoarseSpace;
+use crate::work_estimate::MAX_PRODUCTS;
 
 /// When to stop, and whether directions are recycled.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,9 +25,6 @@ const TIGHTEST_TOLERANCE: f64 = 2e-13;
 
 /// Tightest relative residual that is insisted on.
 const TIGHTEST_ACCEPTABLE: f64 = 1e-9;
-
-/// Products with F allowed where nothing is known of another path.
-const MAX_PRODUCTS: usize = 20_000;
 
 impl NewtonSettings {
     /// Settings for a relative residual; 0 asks for all that rounding allows.

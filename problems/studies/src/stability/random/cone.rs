@@ -57,7 +57,7 @@ fn program(contact: &CompliantContact, slips: &[f64]) -> Option<Vec<f64>> {
     let (count, motions) = (contact.row_count(), contact.resultant.len());
     let quadratic =
         sparse(count, (0..count).map(|j| (0..=j).map(|i| (i, contact.compliance[(i, j)])).collect()).collect());
-    let mut linear: Vec<f64> = contact.constant.iter().map(|d| -d).collect();
+    let mut linear: Vec<f64> = contact.constant().iter().map(|d| -d).collect();
     let mut columns: Vec<Vec<(usize, f64)>> =
         (0..count).map(|row| (0..motions).map(|k| (k, contact.motions[(row, k)])).collect()).collect();
     let mut right = contact.resultant.clone();

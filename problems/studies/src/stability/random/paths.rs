@@ -168,7 +168,7 @@ impl Examined {
         };
         let defect = largest(&mut explained.iter().zip(&jumps).map(|(a, b)| a - b));
         let amplitudes = unknowns[contact.row_count()..].iter();
-        let terms = largest(&mut contact.constant.iter().chain(amplitudes).copied());
+        let terms = largest(&mut contact.constant().iter().chain(amplitudes).copied());
         let rounding = JUMP_ROUNDINGS * f64::EPSILON * terms;
         let mut law = 0.0_f64;
         for point in &boundary.points {
