@@ -8,7 +8,7 @@
 use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{
     Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, MAX_RESIDUAL,
-    Sensitivities, SolvedBody, SolverState,
+    Sensitivities, SolvedBody, SolverState, Tangents,
 };
 use crate::error::ContactError;
 use crate::memory;
@@ -308,6 +308,13 @@ impl ContactSolver for AnySolver {
                 (result, _) => result,
             },
             AnyState::Direct(state) => self.direct()?.sensitivities(state, direction, tolerance),
+        }
+    }
+
+    fn tangents(&self, state: &AnyState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
+        match state {
+            AnyState::Torn(state) => self.torn()?.tangents(state, changes, tolerance),
+            AnyState::Direct(state) => self.direct()?.tangents(state, changes, tolerance),
         }
     }
 

@@ -3,5 +3,6 @@
 pub mod elasticity;
 pub mod local_pattern;
 pub mod mesh;
+pub(crate) mod shape_force;
 pub(crate) mod shape_load;
 pub(crate) mod shape_sensitivity;

@@ -28,6 +28,16 @@ pub fn loaded_faces(grid: &Grid, face: Face, place: Option<&Subdomain>) -> Vec<[
     faces
 }
 
+/// ∂(weight of the second corner)/∂x₃ of the first, for the four corners of a face, mm.
+pub fn weight_derivatives(block: &Block, face: &[[usize; 3]; 4]) -> [[f64; 4]; 4] {
+    let nodes = face.map(|node| block.coordinates(node));
+    std::array::from_fn(|moved| {
+        let mut dual = nodes.map(|x| x.map(|value| Dual::new(value, 0.0)));
+        dual[moved][2].derivative = 1.0;
+        face_weights(&dual).map(|weight| weight.derivative)
+    })
+}
+
 /// Adds ∂(p·f)/∂x₃ of the face's nodes to `add(node, value)`, for a traction and adjoint displacements `p(node)`.
 pub fn height_derivative(
     block: &Block,
@@ -36,12 +46,8 @@ pub fn height_derivative(
     p: impl Fn([usize; 3]) -> [f64; 3],
     mut add: impl FnMut([usize; 3], f64),
 ) {
-    let nodes = face.map(|node| block.coordinates(node));
     let work: [f64; 4] = face.map(|node| p(node).iter().zip(traction).map(|(p, t)| p * t).sum());
-    for moved in 0..4 {
-        let mut dual = nodes.map(|x| x.map(|value| Dual::new(value, 0.0)));
-        dual[moved][2].derivative = 1.0;
-        let weights = face_weights(&dual);
-        add(face[moved], weights.iter().zip(&work).map(|(weight, work)| weight.derivative * work).sum());
+    for (node, weights) in face.iter().zip(weight_derivatives(block, face)) {
+        add(*node, weights.iter().zip(&work).map(|(weight, work)| weight * work).sum());
     }
 }

@@ -156,6 +156,11 @@ impl CompliantContact {
         self.bodies.iter().map(|body| own.by_ref().take(body.motions.len()).collect()).collect()
     }
 
+    /// Resultants along R of those along the bodies' own motions.
+    pub(super) fn resultants_of(&self, own: &DVector<f64>) -> Vec<f64> {
+        (self.basis.transpose() * own).iter().copied().collect()
+    }
+
     /// Forces, N, and contact displacements of all bodies, mm, of given unknowns.
     pub fn dimensional(&self, unknowns: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (forces, amplitudes) = unknowns.split_at(self.row_count());

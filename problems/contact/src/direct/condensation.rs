@@ -12,6 +12,7 @@ use crate::body::shape_load::loaded_faces;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::dense::{DenseLu, multiply};
+use crate::linear::vector::add_scaled;
 use crate::scene::BodyScene;
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Accum, Mat, Par};
@@ -54,6 +55,11 @@ impl CondensationPattern {
             held.extend(scene.held(grid, pattern.shape.local_position(node)));
         }
         Ok(Self { pattern, symbolic, contact: nodes.into_iter().map(|node| 3 * node).collect(), held })
+    }
+
+    /// Whether supports hold a dof of the body.
+    pub fn held(&self) -> &[bool] {
+        &self.held
     }
 
     /// Condenses one shape.
@@ -117,6 +123,25 @@ impl CondensedBody {
         let mut displacement = forces.to_vec();
         DenseLu::new(&self.schur).solve_in_place(&mut displacement);
         displacement
+    }
+
+    /// What forces on the whole body, N, one column per load case, put on the contact dofs, N; forces on held dofs do not count.
+    pub fn condense_loads(&self, mut forces: Mat<f64>, held: &[bool]) -> Mat<f64> {
+        for column in 0..forces.ncols() {
+            for (force, _) in forces.col_as_slice_mut(column).iter_mut().zip(held).filter(|(_, held)| **held) {
+                *force = 0.0;
+            }
+        }
+        self.factor.solve_columns_in_place(&mut forces);
+        let size = self.load.len();
+        let mut loads = Mat::<f64>::zeros(size, forces.ncols());
+        for column in 0..forces.ncols() {
+            let contact = contact_part(&self.contact, forces.col_as_slice(column));
+            let mut load = multiply(&self.schur, &contact);
+            add_scaled(&mut load, self.shift, &contact);
+            loads.col_as_slice_mut(column).copy_from_slice(&load);
+        }
+        loads
     }
 
     /// Extends contact displacements to the whole body; `forces` act on the contact dofs, `loaded` adds the loads.

@@ -13,6 +13,7 @@ mod diagnosis;
 mod newton;
 mod recovery;
 mod solver;
+mod tangents;
 
 pub use compliant_body::CompliantBody;
 pub use compliant_contact::CompliantContact;

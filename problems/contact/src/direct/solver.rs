@@ -1,6 +1,7 @@
 //! From a shape to its contact state and coderivative by direct condensation.
 
 use crate::body::mesh::{Block, Subdomain};
+use crate::body::shape_force::shape_forces;
 use crate::body::shape_sensitivity::column_sensitivities;
 use crate::direct::compliant_body::CompliantBody;
 use crate::direct::compliant_contact::CompliantContact;
@@ -11,13 +12,14 @@ use crate::equilibrium::law::Linearization;
 use crate::equilibrium::modes::RigidScene;
 use crate::equilibrium::{
     Configuration, ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Kink,
-    Residuals, Sensitivities, SolvedBody, SolverState, Stage, ValueError, Work,
+    Residuals, Sensitivities, SolvedBody, SolverState, Stage, Tangents, ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::scene::BodyScene;
 use crate::solver_kind::SolverKind;
 use crate::work_estimate::{MAX_PRODUCTS, WorkEstimate};
+use faer::Mat;
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -234,6 +236,28 @@ impl ContactSolver for DirectSolver {
         }
         let shape_seconds = clock.elapsed().as_secs_f64() - adjoint_seconds;
         Ok(Sensitivities { heights, applications: 0, adjoint_seconds, shape_seconds, value_error })
+    }
+
+    fn tangents(&self, state: &DirectState, changes: &[Vec<f64>], _tolerance: f64) -> Result<Tangents, ContactError> {
+        let rows = self.problem.boundary.row_count;
+        if state.load == 0.0 {
+            return Ok(Tangents::at_rest(rows, changes));
+        }
+        Stage::Adjoint.enter();
+        let (solution, lower) = (&state.solution, &state.contact.bodies[0]);
+        let size = lower.condensed.load.len();
+        let u = state.extend(0, &solution.displacement[..size], &solution.forces, true);
+        let (grid, scene) = (&self.problem.grid, &self.problem.scene.lower);
+        let whole = Subdomain { first_cell: [0; 3], cells: grid.cells };
+        let forces = shape_forces(&state.block, &whole, &scene.material, &scene.loads, &u, changes);
+        let forces = Mat::from_fn(u.len(), changes.len(), |dof, column| forces[column][dof]);
+        let loads = lower.condensed.condense_loads(forces, self.lower.held());
+        let tangents = state.contact.tangents(&solution.linearizations, &loads, changes);
+        let entries = tangents.forces.iter().chain(&tangents.openings).flatten();
+        if entries.copied().any(|entry| !entry.is_finite()) {
+            return Err(ContactError::NotFinite { what: "tangents of the condensed state" });
+        }
+        Ok(tangents)
     }
 
     fn diagnose(&self, state: &DirectState) -> Result<Diagnosis, ContactError> {

@@ -46,6 +46,14 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError>;
 
+    /// Forward derivative of the contact state for changes of the heights of the contact nodes, mm, one vector per change:
+    /// columns of the generalized Jacobian that [`sensitivities`](Self::sensitivities) has rows of. `tolerance`: relative
+    /// residual of the linearized contact problems, for solvers that iterate.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] from the linearized problems, [`ContactError::NotFinite`] when they are singular.
+    fn tangents(&self, state: &Self::State, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError>;
+
     /// Contraction and condition at a solved shape.
     ///
     /// # Errors
@@ -67,6 +75,27 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
 
     /// Strain energy of all bodies, N·mm; none for a solver that keeps no displacements inside the bodies.
     fn strain_energy(&self, state: &Self::State) -> Option<f64>;
+}
+
+/// Directional derivatives of a contact state, one per change of the heights, and what they cost.
+#[derive(Debug, Clone)]
+pub struct Tangents {
+    /// Changes of the multipliers per change of the heights, packed rows, N.
+    pub forces: Vec<Vec<f64>>,
+    /// Changes of the openings (normal jump less gap) of the contact nodes per change of the heights, mm.
+    pub openings: Vec<Vec<f64>>,
+    /// Relative residual of the linearized contact problems.
+    pub residual: f64,
+    /// Products with the dual operator F, one per column; 0 for direct condensation.
+    pub applications: usize,
+}
+
+impl Tangents {
+    /// Those of bodies at rest: no force depends on the shape, and gaps follow the surface.
+    pub(crate) fn at_rest(row_count: usize, changes: &[Vec<f64>]) -> Self {
+        let forces = vec![vec![0.0; row_count]; changes.len()];
+        Self { forces, openings: changes.to_vec(), residual: 0.0, applications: 0 }
+    }
 }
 
 /// Sensitivities of the heights of the contact nodes, and what they cost.

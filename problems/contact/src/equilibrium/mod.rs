@@ -18,7 +18,7 @@ mod value_error;
 pub use boundary::{ContactBoundary, ContactPoint};
 pub use certificate::{Kink, MAX_RESIDUAL, Residuals, WEAKLY_ACTIVE};
 pub use configuration::Configuration;
-pub use contact_solver::{ContactSolver, Sensitivities};
+pub use contact_solver::{ContactSolver, Sensitivities, Tangents};
 pub use diagnosis::Diagnosis;
 pub use problem::ContactProblem;
 pub use solved_body::SolvedBody;

@@ -13,7 +13,7 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::ComplexField;
-use faer::{Conj, Mat, Par, Side};
+use faer::{Conj, Mat, MatMut, Par, Side};
 use std::sync::{Arc, OnceLock};
 
 /// A factorisation works on one thread: subdomains are what threads are shared among.
@@ -88,11 +88,11 @@ impl SymbolicFactor {
         Ok(NumericFactor { symbolic: Arc::clone(self), values: factor, single: OnceLock::new() })
     }
 
-    /// Solves L Lᵀ x = b in place for the values of a factor, in either precision.
-    fn solve<E: ComplexField>(&self, values: &[E], b: &mut [E]) {
-        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<E>(1, SEQUENTIAL));
-        let (right, stack) = (column(b), MemStack::new(&mut memory));
-        LltRef::new(&self.symbolic, values).solve_in_place_with_conj(Conj::No, right, SEQUENTIAL, stack);
+    /// Solves L Lᵀ x = b in place for the values of a factor, in either precision; columns of b are right sides.
+    fn solve<E: ComplexField>(&self, values: &[E], b: MatMut<'_, E>) {
+        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<E>(b.ncols(), SEQUENTIAL));
+        let stack = MemStack::new(&mut memory);
+        LltRef::new(&self.symbolic, values).solve_in_place_with_conj(Conj::No, b, SEQUENTIAL, stack);
     }
 }
 
@@ -138,14 +138,19 @@ impl SymbolicFactor {
 impl NumericFactor {
     /// Solves A x = b in place.
     pub fn solve_in_place(&self, b: &mut [f64]) {
-        self.symbolic.solve(&self.values, b);
+        self.symbolic.solve(&self.values, column(b));
+    }
+
+    /// Solves A X = B in place, all columns at once.
+    pub fn solve_columns_in_place(&self, b: &mut Mat<f64>) {
+        self.symbolic.solve(&self.values, b.as_mut());
     }
 
     /// As [`NumericFactor::solve_in_place`], with factor and vector in single precision. The rounded factor is made at the
     /// first call and kept.
     pub fn solve_in_place_single(&self, b: &mut [f32]) {
         let values = self.single.get_or_init(|| self.values.iter().map(|&value| value as f32).collect());
-        self.symbolic.solve(values, b);
+        self.symbolic.solve(values, column(b));
     }
 
     /// L₂₂ of the trailing `size` indices of the elimination order: L₂₂L₂₂ᵀ is their Schur complement. Row and column p

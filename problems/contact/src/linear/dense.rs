@@ -6,10 +6,11 @@ use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::lu::partial_pivoting as lu;
+use faer::linalg::matmul::matmul;
 use faer::linalg::svd::{ComputeSvdVectors, svd, svd_scratch};
 use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::perm::Perm;
-use faer::{Conj, Mat, MatMut, Par};
+use faer::{Accum, Conj, Mat, MatMut, Par};
 
 /// The number of threads, given with every call: results do not depend on it, and no caller's own setting is changed.
 const SEQUENTIAL: Par = Par::Seq;
@@ -56,11 +57,20 @@ impl DenseLu {
 
     /// Solves A x = b in place.
     pub fn solve_in_place(&self, b: &mut [f64]) {
-        let scratch = lu::solve::solve_in_place_scratch::<usize, f64>(b.len(), 1, SEQUENTIAL);
+        self.solve_columns(column(b));
+    }
+
+    /// Solves A X = B in place, all columns at once.
+    pub fn solve_columns_in_place(&self, b: &mut Mat<f64>) {
+        self.solve_columns(b.as_mut());
+    }
+
+    fn solve_columns(&self, b: MatMut<'_, f64>) {
+        let scratch = lu::solve::solve_in_place_scratch::<usize, f64>(b.nrows(), b.ncols(), SEQUENTIAL);
         let mut memory = MemBuffer::new(scratch);
         let (factors, permutation) = (self.factors.as_ref(), self.permutation.as_ref());
-        let (right, stack) = (column(b), MemStack::new(&mut memory));
-        lu::solve::solve_in_place_with_conj(factors, factors, permutation, Conj::No, right, SEQUENTIAL, stack);
+        let stack = MemStack::new(&mut memory);
+        lu::solve::solve_in_place_with_conj(factors, factors, permutation, Conj::No, b, SEQUENTIAL, stack);
     }
 
     /// Solves A x = b in place with one step of iterative refinement against the matrix that was factored; the correction is
@@ -84,16 +94,7 @@ impl DenseLu {
     pub fn inverse(&self) -> Mat<f64> {
         let size = self.factors.nrows();
         let mut inverse = Mat::<f64>::identity(size, size);
-        let scratch = lu::solve::solve_in_place_scratch::<usize, f64>(size, size, SEQUENTIAL);
-        lu::solve::solve_in_place_with_conj(
-            self.factors.as_ref(),
-            self.factors.as_ref(),
-            self.permutation.as_ref(),
-            Conj::No,
-            inverse.as_mut(),
-            SEQUENTIAL,
-            MemStack::new(&mut MemBuffer::new(scratch)),
-        );
+        self.solve_columns_in_place(&mut inverse);
         inverse
     }
 
@@ -169,6 +170,13 @@ pub fn multiply(matrix: &Mat<f64>, x: &[f64]) -> Vec<f64> {
         }
     }
     y
+}
+
+/// A B, on one thread.
+pub fn multiply_columns(matrix: &Mat<f64>, columns: &Mat<f64>) -> Mat<f64> {
+    let mut product = Mat::<f64>::zeros(matrix.nrows(), columns.ncols());
+    matmul(product.as_mut(), Accum::Replace, matrix.as_ref(), columns.as_ref(), 1.0, SEQUENTIAL);
+    product
 }
 
 /// Largest over smallest singular value of a square matrix after the rows are brought to equal length; infinite for a singular matrix, none

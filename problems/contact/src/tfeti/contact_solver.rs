@@ -2,7 +2,7 @@
 
 use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, Sensitivities, SolvedBody,
-    SolverState,
+    SolverState, Tangents,
 };
 use crate::error::ContactError;
 use crate::solver_kind::SolverKind;
@@ -119,6 +119,10 @@ impl ContactSolver for TotalFeti {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
         self.solver.sensitivities(state, direction, tolerance)
+    }
+
+    fn tangents(&self, _state: &TornState, _changes: &[Vec<f64>], _tolerance: f64) -> Result<Tangents, ContactError> {
+        Err(ContactError::OtherSolver)
     }
 
     fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {

@@ -5,3 +5,4 @@
 mod error_estimate;
 mod reference_cases;
 mod subgradient_properties;
+mod tangents;

@@ -76,6 +76,44 @@ pub fn height_derivative(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS
     result
 }
 
+/// ∂(K u)/∂x₃ of each of the eight nodes: one row of 24 nodal forces per node that moves, N per mm; the same derivative as
+/// [`height_derivative`], for all q at once.
+pub fn height_forces(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS]) -> [[f64; DOFS]; 8] {
+    let mut result = [[0.0; DOFS]; 8];
+    let (lambda, mu) = (pointwise_lambda(material), material.shear_modulus());
+    let points = gauss_points(nodes);
+    for point in &points {
+        let grad_u = displacement_gradient(point, u);
+        let stress_u = stress(&grad_u, (lambda, mu));
+        let along = grad_u.map(|row| row[2]);
+        for (b, g) in point.gradients.iter().enumerate() {
+            let work = g[0] * along[0] + g[1] * along[1] + g[2] * along[2];
+            for k in 0..3 {
+                // q is the unit vector of component k of node b: ∇q = e_k ⊗ g.
+                let energy: f64 = (0..3).map(|j| stress_u[k][j] * g[j]).sum();
+                let mut flux: [f64; 3] =
+                    std::array::from_fn(|i| stress_u[k][i] * g[2] + lambda * g[k] * along[i] + mu * g[i] * along[k]);
+                flux[k] += mu * work;
+                for (row, moved) in result.iter_mut().zip(&point.gradients) {
+                    let transported = flux[0] * moved[0] + flux[1] * moved[1] + flux[2] * moved[2];
+                    row[3 * b + k] += point.volume * (energy * moved[2] - transported);
+                }
+            }
+        }
+    }
+    if material.formulation() == Formulation::MeanDilatation {
+        for dof in 0..DOFS {
+            let unit: [f64; DOFS] = std::array::from_fn(|other| f64::from(u8::from(other == dof)));
+            let mut column = [0.0; 8];
+            mean_dilatation::add_height_derivative(&points, material.bulk_modulus(), u, &unit, &mut column);
+            for (row, entry) in result.iter_mut().zip(column) {
+                row[dof] += entry;
+            }
+        }
+    }
+    result
+}
+
 /// Stress λ tr(ε) I + 2 μ ε of a displacement gradient and (λ, μ) at a Gauss point, MPa.
 pub fn stress(gradient: &[[f64; 3]; 3], (lambda, mu): (f64, f64)) -> [[f64; 3]; 3] {
     let volumetric = lambda * (gradient[0][0] + gradient[1][1] + gradient[2][2]);
@@ -157,6 +195,18 @@ mod tests {
                 .sum();
             for force in [standard[dof], mean[dof]] {
                 assert!((force - exact).abs() < 1e-12 * 150.0, "{force} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn forces_of_moved_nodes_do_the_work_of_the_height_derivative() {
+        let (nodes, u, q) = (distorted(), vector(0.7), vector(1.3));
+        for material in materials() {
+            let forces = height_forces(&nodes, &material, &u);
+            for (row, derivative) in forces.iter().zip(height_derivative(&nodes, &material, &u, &q)) {
+                let work: f64 = row.iter().zip(&q).map(|(force, q)| force * q).sum();
+                assert!((work - derivative).abs() < 1e-12 * derivative.abs().max(1e5), "{work} {derivative}");
             }
         }
     }

@@ -1,0 +1,113 @@
+//! Forward derivative of the condensed problem: all columns on one factorisation.
+//!
+//! ```text
+//! r = −∂(K u − f),   r_c: what it puts on the contact dofs,   δd = B C r_c − ∂g,   δe = Nᵀ r_c
+//! M (δλ; δa) = (D δd; δe),   M = ∂(λ − Π(λ + w), Rᵀλ − e)/∂(λ, a),   δw = δd − C δλ + R δa
+//! ```
+//! The adjoint solves with Mᵀ what is solved here with M. Rigid motions of the upper body are those of its reference shape, so
+//! that the change of the lower body's own motions is the only one; it is part of r.
+
+use crate::direct::compliant_contact::CompliantContact;
+use crate::direct::newton::SPRINGS;
+use crate::equilibrium::Tangents;
+use crate::equilibrium::law::Linearization;
+use crate::linear::dense::{DenseLu, multiply, multiply_columns};
+use crate::linear::vector::{dot, norm};
+use faer::Mat;
+use nalgebra::DVector;
+
+impl CompliantContact {
+    /// Tangents at given derivatives, for forces on the contact dofs of the lower body (N, one column per change) and changes of
+    /// the heights of the contact nodes, mm.
+    pub(super) fn tangents(
+        &self,
+        linearizations: &[Linearization],
+        contact_loads: &Mat<f64>,
+        changes: &[Vec<f64>],
+    ) -> Tangents {
+        let boundary = &self.problem.boundary;
+        let (count, motions) = (self.row_count(), self.resultant.len());
+        let active = self.active_system(linearizations, 0.0, boundary.friction);
+        let size = active.rows.len();
+        let mut sprung = active.matrix.clone();
+        for motion in size..size + motions {
+            sprung[(motion, motion)] = SPRINGS[0];
+        }
+        let driven: Vec<(Vec<f64>, Vec<f64>)> =
+            changes.iter().enumerate().map(|(k, change)| self.driving(contact_loads.col_as_slice(k), change)).collect();
+        let mut right = Mat::<f64>::zeros(size + motions, changes.len());
+        for (column, (constant, resultant)) in driven.iter().enumerate() {
+            let right = right.col_as_slice_mut(column);
+            let mut row = 0;
+            for (node, linearization) in boundary.points.iter().zip(linearizations) {
+                if *linearization == Linearization::Open {
+                    continue;
+                }
+                let block = linearization.derivative(node.row_count(), boundary.friction);
+                for coefficients in block.iter().take(node.row_count()) {
+                    right[row] = coefficients.iter().zip(&constant[node.rows()]).map(|(d, w)| d * w).sum();
+                    row += 1;
+                }
+            }
+            right[size..].copy_from_slice(resultant);
+        }
+        let (solution, residual) = refined(&DenseLu::new(&sprung), &active.matrix, right);
+        let mut tangents = Tangents { forces: Vec::new(), openings: Vec::new(), residual, applications: 0 };
+        for (column, (constant, _)) in driven.iter().enumerate() {
+            let solution = solution.col_as_slice(column);
+            let mut forces = vec![0.0; count];
+            for (&row, value) in active.rows.iter().zip(solution) {
+                forces[row] = *value;
+            }
+            let (product, rigid) = (multiply(&self.compliance, &forces), multiply(&self.motions, &solution[size..]));
+            let opening = |start: usize| (constant[start] - product[start] + rigid[start]) * self.unit * self.load;
+            tangents.openings.push(boundary.points.iter().map(|point| opening(point.start)).collect());
+            forces.iter_mut().for_each(|force| *force *= self.load);
+            tangents.forces.push(forces);
+        }
+        tangents
+    }
+
+    /// δd and δe, dimensionless, of forces on the contact dofs of the lower body and a change of the heights.
+    fn driving(&self, forces: &[f64], change: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (lower, boundary) = (&self.bodies[0], &self.problem.boundary);
+        let mut constant = vec![0.0; self.row_count()];
+        let free = multiply(&lower.compliance, forces);
+        for &(row, dof) in &lower.rows {
+            constant[row] += lower.sign * free[dof];
+        }
+        // The gap F² − F_α falls as the surface rises.
+        for (point, height) in boundary.points.iter().zip(change) {
+            constant[point.start] += height;
+        }
+        constant.iter_mut().for_each(|d| *d /= self.unit * self.load);
+        let mut own: Vec<f64> = lower.motions.iter().map(|motion| dot(motion, forces) / self.load).collect();
+        own.resize(self.bodies.iter().map(|body| body.motions.len()).sum(), 0.0);
+        (constant, self.resultants_of(&DVector::from_vec(own)))
+    }
+}
+
+/// M⁻¹ B by a factor of a matrix near M, refined against M; also the largest relative residual of a column.
+fn refined(factor: &DenseLu, matrix: &Mat<f64>, right: Mat<f64>) -> (Mat<f64>, f64) {
+    let mut solution = right.clone();
+    factor.solve_columns_in_place(&mut solution);
+    let mut rest = &right - multiply_columns(matrix, &solution);
+    for _refinement in 0..2 {
+        let mut correction = rest.clone();
+        factor.solve_columns_in_place(&mut correction);
+        let better = &solution + correction;
+        let remaining = &right - multiply_columns(matrix, &better);
+        for column in 0..right.ncols() {
+            if norm(remaining.col_as_slice(column)) < norm(rest.col_as_slice(column)) {
+                solution.col_as_slice_mut(column).copy_from_slice(better.col_as_slice(column));
+                rest.col_as_slice_mut(column).copy_from_slice(remaining.col_as_slice(column));
+            }
+        }
+    }
+    let relative = (0..right.ncols()).map(|column| {
+        let size = norm(right.col_as_slice(column));
+        if size > 0.0 { norm(rest.col_as_slice(column)) / size } else { 0.0 }
+    });
+    let residual = relative.fold(0.0, f64::max);
+    (solution, residual)
+}
