@@ -64,7 +64,8 @@ impl NonsmoothObjective for LevelString {
             let t = node as f64 * WIDTH;
             // y at a node is affine in (x, c): this cut is exact, wherever the sweeps stop.
             let subgradient = Vector::from_vec(vec![-0.5 * t.min(1.0 - t), 1.0]) * y[node].signum();
-            let evaluation = |value, error_bound| Evaluation { value, subgradient, error_bound, warm_start: y.clone() };
+            let evaluation =
+                |value, error_bound| Evaluation { error_bound, ..Evaluation::exact(value, subgradient, y.clone()) };
             if bound <= request.accuracy.tolerance().max(ROUNDING) * value {
                 return Ok(Answer::Accurate(evaluation(value, bound)));
             }

@@ -180,6 +180,8 @@
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 pub mod bundle;
+pub mod composite;
+pub mod composite_objective;
 pub mod constraints;
 pub mod error;
 pub mod journal;
@@ -200,6 +202,7 @@ pub use bundle::{
     AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, CurvedModelConfig, Cut, ExplorationConfig, Run,
     ScaledNorm, VariableScaling,
 };
+pub use composite_objective::{CompositeFunction, CompositeObjective, OutputJacobian};
 pub use constraints::Polyhedron;
 pub use error::{InputError, OptimizeError, OracleError};
 pub use journal::{Journal, JournalError, Journaled};

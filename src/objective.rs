@@ -4,6 +4,7 @@
 //! request: point, warm start, accuracy, descent target   →   accurate | certified no descent | failed with reason
 //! ```
 
+use crate::composite::{Linearization, LinearizationRequest, OuterFunction};
 use crate::{Accuracy, OracleError, Vector};
 
 /// One question to a [`NonsmoothObjective`].
@@ -18,12 +19,14 @@ pub struct Request<'a, W> {
     /// The value below which the point would be a serious step. An oracle that can prove Θ(point) > target before its
     /// value is accurate may stop and answer [`Answer::NoDescent`].
     pub descent_target: Option<f64>,
+    /// Outputs and Jacobian of a composite objective, where they are wanted.
+    pub linearization: Option<LinearizationRequest>,
 }
 
 impl<'a, W> Request<'a, W> {
     /// A request for the tightest accuracy, without a warm start and without a target.
     pub fn tight(point: &'a Vector) -> Self {
-        Self { point, warm_start: None, accuracy: Accuracy::TIGHTEST, descent_target: None }
+        Self { point, warm_start: None, accuracy: Accuracy::TIGHTEST, descent_target: None, linearization: None }
     }
 }
 
@@ -39,6 +42,16 @@ pub struct Evaluation<W> {
     pub error_bound: f64,
     /// Warm start for evaluations at nearby points.
     pub warm_start: W,
+    /// Outputs and Jacobian of a composite objective, if the request asked for them; the text of the error where they cannot be
+    /// had, which costs the run nothing but its composite model.
+    pub linearization: Option<Result<Linearization, String>>,
+}
+
+impl<W> Evaluation<W> {
+    /// A value and a subgradient that are exact up to rounding.
+    pub fn exact(value: f64, subgradient: Vector, warm_start: W) -> Self {
+        Self { value, subgradient, error_bound: 0.0, warm_start, linearization: None }
+    }
 }
 
 /// The answer of a [`NonsmoothObjective`].
@@ -75,6 +88,11 @@ pub trait NonsmoothObjective {
     /// Number of variables.
     fn dimension(&self) -> usize;
 
+    /// The convex function h of a composite objective Θ = h∘c; none (the default) for all others.
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        None
+    }
+
     /// Θ and one subgradient at `request.point`.
     ///
     /// # Errors
@@ -87,6 +105,10 @@ impl<O: NonsmoothObjective + ?Sized> NonsmoothObjective for &O {
 
     fn dimension(&self) -> usize {
         (**self).dimension()
+    }
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        (**self).outer()
     }
 
     fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {
@@ -157,6 +179,6 @@ impl<F: Fn(&Vector) -> A, A: FnAnswer> NonsmoothObjective for FnObjective<F> {
 
     fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
         let (value, subgradient) = (self.function)(request.point).into_pair()?;
-        Ok(Answer::Accurate(Evaluation { value, subgradient, error_bound: 0.0, warm_start: () }))
+        Ok(Answer::Accurate(Evaluation::exact(value, subgradient, ())))
     }
 }

@@ -47,7 +47,7 @@ impl<S: Coderivative, J: Cost<S::State>> ReducedObjective<S, J> {
         if first_non_finite(subgradient.as_slice()).is_some() {
             return Err(OracleError::NotFinite { what: "subgradient" });
         }
-        Ok(Evaluation { value, subgradient, error_bound, warm_start: self.solver.warm_start(state) })
+        Ok(Evaluation { error_bound, ..Evaluation::exact(value, subgradient, self.solver.warm_start(state)) })
     }
 }
 

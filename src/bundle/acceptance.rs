@@ -2,6 +2,7 @@
 
 use super::config::Convexity;
 use super::cut::Cut;
+use super::finish::Event;
 use super::proposers::proposal::Proposal;
 use super::proposers::proposer::{Comparison, Trial};
 use super::run::Run;
@@ -23,7 +24,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// Serious or null: updates weight, bundle and center.
     pub(super) fn accept_or_reject(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<O::WarmStart>) {
         let accurate = matches!(answer, Answer::Accurate(_));
-        let evaluation = answer.into_evaluation();
+        let mut evaluation = answer.into_evaluation();
+        let linearization = evaluation.linearization.take();
         let value = evaluation.value;
         let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
         let serious = accurate && comparison.is_serious(&self.method.config);
@@ -47,7 +49,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         if serious {
             self.move_center(proposal.trial.clone(), evaluation, accuracy);
         }
-        self.record(kind, &proposal, accuracy, Some(value), None);
+        let linearized = self.learn_structure(&trial, linearization, value);
+        self.record(&proposal, accuracy, Event { kind, value: Some(value), failure: None, linearized });
     }
 
     /// Values that jump although the points almost coincide, and cuts above the values of a convex function, are noise.

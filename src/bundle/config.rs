@@ -121,6 +121,8 @@ pub struct BundleTrustConfig {
     pub restart_radius: f64,
     /// Failed evaluations in a row after which the run ends once its steps are short beside the variables. Default 10; ≥ 1.
     pub max_failures: usize,
+    /// The composite model, for objectives that have an outer function and return Jacobians. Default on.
+    pub composite_model: bool,
     /// The curved model as a second proposer of trial points; none switches it off. Default on, with its own defaults.
     pub curved_model: Option<CurvedModelConfig>,
     /// Exploration as a third proposer of trial points; none switches it off. Default on, with its own defaults.
@@ -150,6 +152,7 @@ impl Default for BundleTrustConfig {
             max_restarts: 5,
             restart_radius: 0.1,
             max_failures: 10,
+            composite_model: true,
             curved_model: Some(CurvedModelConfig::default()),
             exploration: Some(ExplorationConfig::default()),
         }

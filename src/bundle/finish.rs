@@ -9,18 +9,22 @@ use std::ops::ControlFlow::{self, Break, Continue};
 /// A decrease of Θ beyond this many times its first value and first promise ends the run as unbounded below.
 const UNBOUNDED_DECREASE: f64 = 1e12;
 
+/// What became of an evaluation.
+#[derive(Debug)]
+pub(super) struct Event {
+    pub kind: StepKind,
+    pub value: Option<f64>,
+    pub failure: Option<String>,
+    /// Whether a Jacobian that was asked for was returned; the reason if it could not be had.
+    pub linearized: Option<Result<(), String>>,
+}
+
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
-    pub(super) fn record(
-        &mut self,
-        kind: StepKind,
-        proposal: &Proposal,
-        accuracy: Accuracy,
-        value: Option<f64>,
-        failure: Option<String>,
-    ) {
+    pub(super) fn record(&mut self, proposal: &Proposal, accuracy: Accuracy, event: Event) {
+        let Event { kind, value, failure, linearized } = event;
         let origin = if kind == StepKind::Refinement { Origin::Given } else { proposal.origin };
         self.state.counts.trials.add(origin);
-        let record = IterationRecord {
+        let mut record = IterationRecord {
             evaluation: self.state.counts.evaluations,
             kind,
             origin,
@@ -36,8 +40,11 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             convexification: proposal.convexification,
             accuracy: accuracy.tolerance(),
             failure,
+            jacobian: false,
+            note: None,
             seconds: self.seconds(),
         };
+        record.set_linearized(linearized);
         self.state.history.push(record);
     }
 

@@ -13,6 +13,7 @@
 
 mod acceptance;
 mod builder;
+mod composite;
 mod config;
 mod coordinates;
 pub(crate) mod cut;
@@ -27,6 +28,7 @@ mod start;
 mod state;
 
 pub use builder::BundleTrust;
+pub use composite::OuterCut;
 pub use config::{AccuracyPolicy, BundleTrustConfig, Convexity, VariableScaling};
 pub use cut::Cut;
 pub use norm::ScaledNorm;

@@ -35,6 +35,11 @@ fn check<W>(answer: Answer<W>, request: &Request<'_, W>) -> Outcome<W> {
     if evaluation.value == f64::NEG_INFINITY {
         return Outcome::MinusInfinity;
     }
+    if let Some(Ok(linearization)) = &evaluation.linearization
+        && let Err(error) = linearization.check(expected)
+    {
+        return Outcome::Failure(error.into());
+    }
     let finite = |what, finite: bool| if finite { None } else { Some(OracleError::NotFinite { what }) };
     let failure = finite("value", evaluation.value.is_finite())
         .or_else(|| finite("subgradient", first_non_finite(evaluation.subgradient.as_slice()).is_none()))

@@ -1,7 +1,9 @@
 //! A run in the making: one evaluation per step.
 
 use super::builder::BundleTrust;
+use super::composite::{Base, Composite, CompositeStep};
 use super::config::AccuracyPolicy;
+use super::finish::Event;
 use super::oracle::{Outcome, evaluate};
 use super::proposers::cuts::model::Model;
 use super::proposers::list::Proposers;
@@ -51,6 +53,10 @@ pub struct Run<'r, 'o, O: NonsmoothObjective> {
     /// The answer of the last plain subproblem, as long as center and bundle are those it was solved for.
     pub(super) proposal: Option<Proposal>,
     pub(super) termination: Option<Termination>,
+    /// The composite model, if the objective has its structure.
+    pub(super) composite: Option<Composite>,
+    /// Its proof that the center is stationary, once it has ended the run.
+    pub(super) proof: Option<(Base, CompositeStep)>,
     pub(super) clock: Instant,
 }
 
@@ -72,8 +78,13 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.check_limits()?;
         // A step depends on the state of the run alone, not on what the solver remembers of earlier subproblems.
         self.solver.forget();
-        let proposal = self.next_trial()?;
-        let proposal = self.choose_trial(proposal);
+        let proposal = match self.composite_trial()? {
+            Some(proposal) => proposal,
+            None => {
+                let plain = self.next_trial()?;
+                self.choose_trial(plain)
+            }
+        };
         if self.center_is_too_coarse(&proposal) {
             return self.refine_center(&proposal);
         }
@@ -117,7 +128,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
 
     fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>) -> Outcome<O::WarmStart> {
         self.state.counts.evaluations += 1;
-        let request = Request { point, warm_start: self.warm_start.as_ref(), accuracy, descent_target: target };
+        let linearization = self.composite.as_ref().map(|_| Composite::request(target.unwrap_or(f64::INFINITY)));
+        let warm_start = self.warm_start.as_ref();
+        let request = Request { point, warm_start, accuracy, descent_target: target, linearization };
         match evaluate(self.objective, &request) {
             Outcome::Answer(answer) => self.check_slope(answer),
             other => other,
@@ -183,7 +196,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     }
 
     /// Adds the subproblems solved since `before` to the report.
-    fn count_solves(&mut self, before: QpCounts) {
+    pub(super) fn count_solves(&mut self, before: QpCounts) {
         let after = self.solver.counts();
         self.state.counts.qp_solves += after.solves - before.solves;
         self.state.counts.qp_fallbacks += after.fallbacks - before.fallbacks;
@@ -211,20 +224,21 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let accuracy = self.wanted_accuracy(REFINEMENT_SHARE * proposal.predicted_decrease);
         let center = self.state.center.clone();
         self.state.center_accuracy = accuracy.tolerance();
-        let (value, failure) = match self.evaluate(&center, accuracy, None) {
-            Outcome::Answer(Answer::Accurate(evaluation)) => {
-                let value = evaluation.value;
+        let mut event = Event { kind: StepKind::Refinement, value: None, failure: None, linearized: None };
+        match self.evaluate(&center, accuracy, None) {
+            Outcome::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;
+                event.value = Some(evaluation.value);
+                event.linearized = self.rebase(&center, evaluation.value, evaluation.linearization.take());
                 self.add_cut(center.clone(), &evaluation, false);
                 self.move_center(center, evaluation, accuracy);
                 self.state.bundle.retain(|cut| cut.id != old);
-                (Some(value), None)
             }
-            Outcome::Failure(error) => (None, Some(error.to_string())),
-            _ => (None, Some("no accurate value at the center".to_owned())),
-        };
+            Outcome::Failure(error) => event.failure = Some(error.to_string()),
+            _ => event.failure = Some("no accurate value at the center".to_owned()),
+        }
         self.state.counts.refined += 1;
-        self.record(StepKind::Refinement, proposal, accuracy, value, failure);
+        self.record(proposal, accuracy, event);
         self.after_evaluation()
     }
 
@@ -237,7 +251,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let failures = state.failures;
         let close = proposal.step_length <= CLOSE * state.length_scale().max(state.first_step);
         self.proposers.shorten(state, &self.method.config, proposal);
-        self.record(StepKind::Failed, proposal, accuracy, None, Some(error.to_string()));
+        let failure = Some(error.to_string());
+        self.record(proposal, accuracy, Event { kind: StepKind::Failed, value: None, failure, linearized: None });
         if failures >= self.method.config.max_failures && proposal.origin == Origin::Cuts && close {
             return Break(Termination::OracleFailing { failures, last: error.to_string() });
         }

@@ -99,6 +99,14 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
     }
 
+    /// The word for a point at which a model that is exact there leaves no more than `remaining` within reach, if that is little.
+    pub(super) fn word_at_point(&self, remaining: f64) -> Option<Termination> {
+        let convex = self.method.config.convexity == Convexity::Convex;
+        let allowed = if convex { MAX_BOUND_DECREASES } else { MAX_REMAINING_DECREASES };
+        let confirmed = Termination::Stationary { radius: 0.0, gap: convex.then_some(remaining) };
+        self.word((remaining, allowed), confirmed)
+    }
+
     /// Noise seen in the values, or promised by the oracle and not to be improved by asking for more.
     pub(super) fn noise_level(&self) -> f64 {
         let center = self.state.center_error_bound();

@@ -1,6 +1,7 @@
 //! The ways to run a method, and the first evaluation: admissible start, norm, first weight.
 
 use super::builder::BundleTrust;
+use super::composite::Composite;
 use super::config::{AccuracyPolicy, BundleTrustConfig};
 use super::cut::{Bundle, Cut};
 use super::norm::ScaledNorm;
@@ -10,6 +11,7 @@ use super::proposers::proposal::FEASIBILITY;
 use super::run::Run;
 use super::state::State;
 use crate::checks::{check_finite, check_size};
+use crate::composite::Linearization;
 use crate::qp::{EpigraphQpSolver, QpError, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{Accuracy, Evaluation, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector};
@@ -46,10 +48,9 @@ impl<'o> BundleTrust<'o> {
         let dimension = objective.dimension();
         let set = self.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
         let start = admissible_start(&set, dimension, x0)?;
-        let (mut state, warm_start) = first_evaluation(objective, &self.config, &set, start)?;
-        if let Some(first) = state.history.first_mut() {
-            first.seconds = clock.elapsed().as_secs_f64();
-        }
+        let (state, warm_start, linearization) = first_evaluation(objective, &self.config, &set, start)?;
+        let structured = objective.outer().filter(|_| self.config.composite_model);
+        let composite = structured.map(|_| Composite::new(state.first_weight));
         let proposers = Proposers::new(&self.config, dimension, state.first_weight);
         let mut run = Run {
             method: self,
@@ -62,8 +63,17 @@ impl<'o> BundleTrust<'o> {
             model: None,
             proposal: None,
             termination: None,
+            composite,
+            proof: None,
             clock,
         };
+        let start = run.state.center.clone();
+        let linearized = run.rebase(&start, run.state.center_value, linearization);
+        let seconds = run.seconds();
+        if let Some(first) = run.state.history.first_mut() {
+            first.seconds = seconds;
+            first.set_linearized(linearized);
+        }
         if let Break(termination) = run.after_evaluation() {
             run.termination = Some(termination);
         }
@@ -88,25 +98,29 @@ fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Ve
     if violation <= MAX_START_VIOLATION { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }
 
+/// The state after the first evaluation, and what else that returned.
+type FirstEvaluation<W> = (State, W, Option<Result<Linearization, String>>);
+
 /// Evaluates the start and sets up the state.
 fn first_evaluation<O: NonsmoothObjective>(
     objective: &O,
     config: &BundleTrustConfig,
     set: &Polyhedron,
     start: Vector,
-) -> Result<(State, O::WarmStart), OptimizeError> {
+) -> Result<FirstEvaluation<O::WarmStart>, OptimizeError> {
     let norm = ScaledNorm::new(&config.scaling, set)?;
     let accuracy = match config.accuracy {
         AccuracyPolicy::OnDemand { coarsest, .. } => Accuracy::relative(coarsest)?,
         AccuracyPolicy::Tightest => Accuracy::TIGHTEST,
     };
-    let request = Request { point: &start, warm_start: None, accuracy, descent_target: None };
+    let wanted = objective.outer().filter(|_| config.composite_model).map(|_| Composite::request(f64::INFINITY));
+    let request = Request { linearization: wanted, accuracy, ..Request::tight(&start) };
     let evaluation = match evaluate(objective, &request) {
         Outcome::Answer(answer) => answer.into_evaluation(),
         Outcome::MinusInfinity => return Err(OptimizeError::Oracle(OracleError::NotFinite { what: "value" })),
         Outcome::Failure(error) => return Err(OptimizeError::Oracle(error)),
     };
-    let Evaluation { value, subgradient, error_bound, warm_start } = evaluation;
+    let Evaluation { value, subgradient, error_bound, warm_start, linearization } = evaluation;
     let slope = norm.dual_length(&subgradient);
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
@@ -143,7 +157,7 @@ fn first_evaluation<O: NonsmoothObjective>(
         history: vec![],
     };
     state.history.push(first_record(&state, set, slope));
-    Ok((state, warm_start))
+    Ok((state, warm_start, linearization))
 }
 
 /// A first step length that follows the units of variables and values: the size of the start, or where that is zero the distance
@@ -176,6 +190,8 @@ fn first_record(state: &State, set: &Polyhedron, slope: f64) -> IterationRecord 
         convexification: 0.0,
         accuracy: state.center_accuracy,
         failure: None,
+        jacobian: false,
+        note: None,
         seconds: 0.0,
     }
 }

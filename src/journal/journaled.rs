@@ -3,6 +3,7 @@
 use super::entry::{Entry, RecordedAnswer};
 use super::error::JournalError;
 use super::writer::Writer;
+use crate::composite::OuterFunction;
 use crate::panics::evaluate_without_panic;
 use crate::{Answer, Evaluation, NonsmoothObjective, OracleError, Report, Request, Vector};
 use serde::Serialize;
@@ -180,7 +181,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
 
     /// An answer of the oracle as it is written down, with the text of its restart data.
     fn record(&self, evaluation: usize, answer: &Answer<O::WarmStart>) -> (RecordedAnswer, Option<String>) {
-        let Evaluation { value, subgradient, error_bound, warm_start } = answer.evaluation();
+        let Evaluation { value, subgradient, error_bound, warm_start, .. } = answer.evaluation();
         let (restart_data, text) = self.text(evaluation, warm_start);
         let recorded = RecordedAnswer::Evaluated {
             value: *value,
@@ -200,7 +201,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
                 let data = if restart_data { None } else { serde_json::from_str("null").ok() };
                 let warm_start = RestartData { evaluation: entry.evaluation, data };
                 let subgradient = Vector::from_vec(subgradient);
-                let evaluation = Evaluation { value, subgradient, error_bound, warm_start };
+                let evaluation = Evaluation { error_bound, ..Evaluation::exact(value, subgradient, warm_start) };
                 Ok(if no_descent { Answer::NoDescent(evaluation) } else { Answer::Accurate(evaluation) })
             }
         }
@@ -221,6 +222,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
             warm_start: request.warm_start.and_then(|start| start.data.as_ref()).or(stored.as_ref()),
             accuracy: request.accuracy,
             descent_target: request.descent_target,
+            linearization: request.linearization,
         };
         // The optimizer treats a panic as a failed evaluation, and so has the journal.
         let result = evaluate_without_panic(&self.inner, &inner);
@@ -234,6 +236,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
             subgradient: inner.subgradient,
             error_bound: inner.error_bound,
             warm_start: RestartData { evaluation, data: Some(inner.warm_start) },
+            linearization: inner.linearization,
         };
         Ok(match result? {
             Answer::Accurate(inner) => Answer::Accurate(tag(inner)),
@@ -244,6 +247,10 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
 
 impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> NonsmoothObjective for Journaled<O> {
     type WarmStart = RestartData<O::WarmStart>;
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        self.inner.outer()
+    }
 
     fn dimension(&self) -> usize {
         self.inner.dimension()

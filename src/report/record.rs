@@ -47,6 +47,8 @@ pub enum Origin {
     CurvedModel,
     /// An exploration.
     Exploration,
+    /// The composite model.
+    CompositeModel,
 }
 
 impl std::fmt::Display for Origin {
@@ -56,6 +58,7 @@ impl std::fmt::Display for Origin {
             Self::Cuts => "cuts",
             Self::CurvedModel => "curved model",
             Self::Exploration => "exploration",
+            Self::CompositeModel => "composite",
         })
     }
 }
@@ -93,8 +96,22 @@ pub struct IterationRecord {
     pub accuracy: f64,
     /// Text of the failure, if the oracle failed.
     pub failure: Option<String>,
+    /// Whether the oracle returned a Jacobian.
+    #[serde(default)]
+    pub jacobian: bool,
+    /// What went wrong without failing the evaluation, such as a Jacobian that could not be had.
+    #[serde(default)]
+    pub note: Option<String>,
     /// Seconds since the start of the run when the evaluation was done.
     pub seconds: f64,
+}
+
+impl IterationRecord {
+    /// Notes whether a Jacobian was returned, or why it could not be had.
+    pub(crate) fn set_linearized(&mut self, linearized: Option<Result<(), String>>) {
+        self.jacobian = linearized == Some(Ok(()));
+        self.note = linearized.and_then(Result::err).map(|error| format!("no Jacobian: {error}"));
+    }
 }
 
 /// Counts of a run.
@@ -117,6 +134,9 @@ pub struct Counts {
     pub trials: TrialCounts,
     /// Local restarts of the bundle.
     pub restarts: usize,
+    /// Jacobians of a composite objective's outputs that the oracle returned.
+    #[serde(default)]
+    pub jacobians: usize,
     /// Subproblems solved.
     pub qp_solves: usize,
     /// Subproblems that needed the fallback solver.
@@ -133,6 +153,8 @@ pub struct TrialCounts {
     pub curved_model: usize,
     /// Explorations.
     pub exploration: usize,
+    /// The composite model.
+    pub composite_model: usize,
 }
 
 impl TrialCounts {
@@ -143,6 +165,7 @@ impl TrialCounts {
             Origin::Cuts => self.cuts += 1,
             Origin::CurvedModel => self.curved_model += 1,
             Origin::Exploration => self.exploration += 1,
+            Origin::CompositeModel => self.composite_model += 1,
         }
     }
 }

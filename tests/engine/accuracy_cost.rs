@@ -67,7 +67,8 @@ impl NonsmoothObjective for Decades<'_> {
             if no_descent || decades >= wanted {
                 self.cost.set(self.cost.get() + f64::from(decades - done));
                 let error_bound = 10.0_f64.powi(-decades) * size;
-                let evaluation = Evaluation { value, subgradient, error_bound, warm_start: (y.clone(), decades) };
+                let evaluation =
+                    Evaluation { error_bound, ..Evaluation::exact(value, subgradient, (y.clone(), decades)) };
                 let accurate = !no_descent || decades >= wanted;
                 return Ok(if accurate { Answer::Accurate(evaluation) } else { Answer::NoDescent(evaluation) });
             }

@@ -53,7 +53,7 @@ impl NonsmoothObjective for OnDemand {
         self.cost.set(self.cost.get() - accuracy.log10());
         let error_bound = accuracy * value;
         let value = value + error_bound * jitter(request.point.as_slice(), 0);
-        Ok(Answer::Accurate(Evaluation { value, subgradient, error_bound, warm_start: () }))
+        Ok(Answer::Accurate(Evaluation { error_bound, ..Evaluation::exact(value, subgradient, ()) }))
     }
 }
 
@@ -93,8 +93,7 @@ impl NonsmoothObjective for Lazy {
 
     fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
         let (value, subgradient) = exact(request.point);
-        let evaluation =
-            |value| Evaluation { value, subgradient: subgradient.clone(), error_bound: 0.0, warm_start: () };
+        let evaluation = |value| Evaluation::exact(value, subgradient.clone(), ());
         Ok(match request.descent_target {
             Some(target) if value > target => Answer::NoDescent(evaluation(target + 0.5 * (value - target))),
             _ => Answer::Accurate(evaluation(value)),

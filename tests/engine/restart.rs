@@ -79,7 +79,7 @@ impl NonsmoothObjective for Moody {
         let value = (x - 3.0).powi(2) + y.abs() + 1e-13 * (start.0 + start.1).sin();
         let warm_start = Memory { steps: start.0 + 1.0, trail: vec![start.1 * 0.7 + x / 3.0, -0.0, 1e-310] };
         let subgradient = v(&[2.0 * (x - 3.0), y.signum()]);
-        let evaluation = Evaluation { value, subgradient, error_bound: 1e-13, warm_start };
+        let evaluation = Evaluation { error_bound: 1e-13, ..Evaluation::exact(value, subgradient, warm_start) };
         let hopeless = request.descent_target.is_some_and(|target| value > target + 1e-3);
         Ok(if hopeless { Answer::NoDescent(evaluation) } else { Answer::Accurate(evaluation) })
     }

@@ -98,7 +98,7 @@ impl NonsmoothObjective for Fragile {
             return Err((self.how)());
         }
         let subgradient = v(&[(x - 1.5).signum()]);
-        Ok(Answer::Accurate(Evaluation { value: (x - 1.5).abs(), subgradient, error_bound: 0.0, warm_start: () }))
+        Ok(Answer::Accurate(Evaluation::exact((x - 1.5).abs(), subgradient, ())))
     }
 }
 

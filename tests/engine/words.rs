@@ -91,7 +91,7 @@ impl NonsmoothObjective for Stated {
         let x = request.point;
         let value = (x[0] - 1.0).abs() + x[1].abs() + self.0 * testset::kit::jitter(x.as_slice(), 0);
         let subgradient = v(&[(x[0] - 1.0).signum(), x[1].signum()]);
-        Ok(Answer::Accurate(Evaluation { value, subgradient, error_bound: self.0, warm_start: () }))
+        Ok(Answer::Accurate(Evaluation { error_bound: self.0, ..Evaluation::exact(value, subgradient, ()) }))
     }
 }
 

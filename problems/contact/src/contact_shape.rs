@@ -13,7 +13,8 @@ use crate::memory;
 use crate::plausibility::{self, Warning};
 use crate::scene::Scene;
 use crate::tfeti::PreconditionerKind;
-use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
+use nonsmooth::composite::{InactiveConstraints, Linearization};
+use nonsmooth::{Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJacobian, StateSolver, Vector};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -240,6 +241,49 @@ impl<S: ContactSolver> Coderivative for ContactShape<S> {
     ) -> Result<(Vector, Option<f64>), OracleError> {
         let (product, error) = self.pull_back(control, state, direction)?;
         Ok((product, Some(error.bound)))
+    }
+}
+
+/// The outputs are the contact pressures σ = λ_N/A per contact node, MPa; the slacks are the gaps of the open nodes, mm.
+impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
+    fn outputs(&self, state: &Self::State) -> Vector {
+        let points = self.problem().boundary.points.iter();
+        Vector::from_iterator(
+            points.len(),
+            state.forces.normal.iter().zip(points).map(|(force, point)| force / point.area),
+        )
+    }
+
+    fn output_dual(&self, _state: &Self::State, weights: &Vector) -> Vector {
+        let boundary = &self.problem().boundary;
+        let mut dual = Vector::zeros(boundary.dual_dimension());
+        for (index, (weight, point)) in weights.iter().zip(&boundary.points).enumerate() {
+            dual[index] = weight / point.area;
+        }
+        dual
+    }
+
+    fn linearize(
+        &self,
+        control: &Vector,
+        state: &Self::State,
+        accuracy: Accuracy,
+    ) -> Result<Linearization, OracleError> {
+        self.check_dimension(control)?;
+        let (problem, outputs) = (self.problem(), self.outputs(state));
+        let unit = |k: usize| (0..control.len()).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
+        let changes: Vec<Vec<f64>> = (0..control.len()).map(|k| problem.height_map.heights(&unit(k))).collect();
+        let tangents = self.solver.tangents(&state.solution, &changes, accuracy.tolerance()).map_err(oracle)?;
+        state.adjoint_applications.fetch_add(tangents.applications, Ordering::Relaxed);
+        let points = &problem.boundary.points;
+        let jacobian =
+            Matrix::from_fn(points.len(), control.len(), |i, k| tangents.forces[k][points[i].start] / points[i].area);
+        let open: Vec<usize> = (0..points.len()).filter(|&i| state.forces.opening[i] < 0.0).collect();
+        let inactive = InactiveConstraints {
+            slacks: Vector::from_iterator(open.len(), open.iter().map(|&i| -state.forces.opening[i])),
+            jacobian: Matrix::from_fn(open.len(), control.len(), |row, k| -tangents.openings[k][open[row]]),
+        };
+        Ok(Linearization { outputs, jacobian, accuracy: tangents.residual, inactive: Some(inactive) })
     }
 }
 

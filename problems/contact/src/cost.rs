@@ -3,7 +3,8 @@
 use crate::equilibrium::{ContactBoundary, ContactState};
 use crate::error::SceneError;
 use crate::scene::Scene;
-use nonsmooth::{Cost, CostGradient, Vector};
+use nonsmooth::composite::{OuterFunction, weighted_gram};
+use nonsmooth::{Cost, CostGradient, Matrix, Vector};
 
 /// A function of the contact pressures.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,47 +98,76 @@ impl PressureCost {
     }
 }
 
-impl<S> Cost<ContactState<S>> for PressureCost {
-    fn value(&self, _control: &Vector, state: &ContactState<S>) -> f64 {
-        let pressures = self.pressures(state);
+/// As a function of the pressures.
+impl OuterFunction for PressureCost {
+    fn value(&self, pressures: &Vector) -> f64 {
         match self.measure {
             PressureMeasure::Norm { exponent } if self.is_root => {
-                let (largest, sum) = relative_sum(&pressures, exponent);
+                let (largest, sum) = relative_sum(pressures, exponent);
                 largest * sum.powf(1.0 / exponent)
             }
             PressureMeasure::Norm { exponent } => pressures.iter().map(|p| p.max(0.0).powf(exponent)).sum(),
-            PressureMeasure::Peak => pressures.into_iter().fold(f64::NEG_INFINITY, f64::max),
+            PressureMeasure::Peak => pressures.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         }
     }
 
-    fn gradient(&self, control: &Vector, state: &ContactState<S>) -> CostGradient {
-        let pressures = self.pressures(state);
-        let mut dual = Vector::zeros(self.dual_dimension);
+    fn subgradient(&self, pressures: &Vector) -> Vector {
         match self.measure {
             PressureMeasure::Norm { exponent } => {
                 let (largest, factor) = match self.is_root {
                     false => (1.0, exponent),
                     true => {
-                        let (largest, sum) = relative_sum(&pressures, exponent);
+                        let (largest, sum) = relative_sum(pressures, exponent);
                         (largest, sum.powf(1.0 / exponent - 1.0))
                     }
                 };
-                for (index, (pressure, area)) in pressures.iter().zip(&self.areas).enumerate() {
-                    dual[index] = factor * (pressure.max(0.0) / largest).powf(exponent - 1.0) / area;
-                }
+                pressures.map(|pressure| factor * (pressure.max(0.0) / largest).powf(exponent - 1.0))
             }
             PressureMeasure::Peak => {
                 let larger = |peak: usize, index: usize| if pressures[index] > pressures[peak] { index } else { peak };
                 let peak = (0..pressures.len()).fold(0, larger);
-                dual[peak] = 1.0 / self.areas[peak];
+                Vector::from_fn(pressures.len(), |index, _| f64::from(u8::from(index == peak)))
             }
+        }
+    }
+
+    /// Σσ^p has the curvature p(p−1)σ^{p−2} per node; its root N has (p−1)/N ((σ/N)^{p−2} − g gᵀ) with g = (σ/N)^{p−1}. None for
+    /// the peak, and for p < 2, where the curvature grows without bound as a node opens.
+    fn curvature(&self, pressures: &Vector, jacobian: &Matrix) -> Option<Matrix> {
+        let PressureMeasure::Norm { exponent } = self.measure else { return None };
+        if exponent < 2.0 {
+            return None;
+        }
+        let size = if self.is_root { OuterFunction::value(self, pressures) } else { 1.0 };
+        let relative = pressures.map(|pressure| pressure.max(0.0) / size);
+        let factor = if self.is_root { (exponent - 1.0) / size } else { exponent * (exponent - 1.0) };
+        let weights = relative.map(|p| factor * p.powf(exponent - 2.0));
+        let mut curvature = weighted_gram(jacobian, &weights);
+        if self.is_root {
+            let gradient = jacobian.tr_mul(&relative.map(|p| p.powf(exponent - 1.0)));
+            curvature.ger(-factor, &gradient, &gradient, 1.0);
+        }
+        Some(curvature)
+    }
+}
+
+impl<S> Cost<ContactState<S>> for PressureCost {
+    fn value(&self, _control: &Vector, state: &ContactState<S>) -> f64 {
+        OuterFunction::value(self, &Vector::from_vec(self.pressures(state)))
+    }
+
+    fn gradient(&self, control: &Vector, state: &ContactState<S>) -> CostGradient {
+        let weights = self.subgradient(&Vector::from_vec(self.pressures(state)));
+        let mut dual = Vector::zeros(self.dual_dimension);
+        for (index, (weight, area)) in weights.iter().zip(&self.areas).enumerate() {
+            dual[index] = weight / area;
         }
         CostGradient { control: Vector::zeros(control.len()), state: dual }
     }
 }
 
 /// The largest pressure m, and Σ(σ/m)^p; m is positive, also where no pressure is.
-fn relative_sum(pressures: &[f64], exponent: f64) -> (f64, f64) {
+fn relative_sum(pressures: &Vector, exponent: f64) -> (f64, f64) {
     let largest = pressures.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     // At least 1, which it is unless there is no pressure at all.
     (largest, pressures.iter().map(|p| (p.max(0.0) / largest).powf(exponent)).sum::<f64>().max(1.0))

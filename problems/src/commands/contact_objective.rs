@@ -5,12 +5,12 @@ use crate::commands::failure::Failure;
 use contact::contact_shape::{ContactShape, ContactState};
 use contact::cost::PressureCost;
 use contact::plausibility::Warning;
-use nonsmooth::{Accuracy, Cost, ReducedObjective, StateSolver, Vector};
+use nonsmooth::{Accuracy, CompositeObjective, Cost, StateSolver, Vector};
 use scene_file::Case;
 
 /// Θ of a scene: the pressure measure of the contact state that the control heights lead to. Where Σσ^p may be no double, its
 /// p-th root.
-pub type ContactObjective = ReducedObjective<ContactShape, PressureCost>;
+pub type ContactObjective = CompositeObjective<ContactShape, PressureCost>;
 
 /// Θ of a case.
 ///
@@ -19,7 +19,7 @@ pub type ContactObjective = ReducedObjective<ContactShape, PressureCost>;
 pub fn objective(case: &Case) -> Result<ContactObjective, Failure> {
     let shape = ContactShape::with_preconditioner(case.scene.clone(), case.solver, case.preconditioner)?;
     let cost = PressureCost::new(case.measure, &shape.problem().boundary)?.normalised_for(&case.scene);
-    Ok(ReducedObjective::new(shape, cost))
+    Ok(CompositeObjective::new(shape, cost))
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.

@@ -3,6 +3,7 @@
 //! Adding one takes a folder with a type that implements [`Proposer`](proposer::Proposer), an optional setting in
 //! `BundleTrustConfig`, a name in `Origin`, and a line in `list.rs`.
 
+pub(crate) mod aggregate;
 pub(crate) mod curved;
 pub(crate) mod cuts;
 pub(crate) mod exploration;

@@ -53,6 +53,8 @@ pub(crate) enum SubproblemError {
     Qp(#[from] QpError),
     #[error("its solution violates the constraints by {violation:.1e} and cannot be repaired")]
     Infeasible { violation: f64 },
+    #[error("the outer function is not convex: a cut lies above it by {excess:.1e}")]
+    NotConvex { excess: f64 },
     #[error("its solution is not finite or contradicts itself")]
     Unusable,
 }

@@ -1,11 +1,10 @@
-//! The quadratic program around the center that every proposer solves, with its own metric and cuts.
+//! The quadratic program around a point that every proposer solves, with its own metric and cuts.
 //!
 //! ```text
 //! min over (d, v)  v + ½ dᵀHd,   ⟨h_i, d⟩ − a_i ≤ v,   x̂ + d ∈ U
 //! ```
 
 use super::proposal::FEASIBILITY;
-use crate::bundle::state::State;
 use crate::qp::{EpigraphQp, EpigraphQpSolver, Metric, QpError, QpSolution};
 use crate::{Polyhedron, Vector};
 
@@ -24,16 +23,16 @@ impl Cuts<'_> {
     }
 }
 
-/// Solves the quadratic program with the metric H.
+/// Solves the quadratic program around `center` with the metric H.
 pub(crate) fn solve(
     solver: &mut EpigraphQpSolver,
     set: &Polyhedron,
-    state: &State,
+    center: &Vector,
     metric: Metric<'_>,
     cuts: Cuts<'_>,
 ) -> Result<QpSolution, QpError> {
-    let at_center = set.rows() * &state.center;
-    let terms = set.rows().abs() * state.center.abs();
+    let at_center = set.rows() * center;
+    let terms = set.rows().abs() * center.abs();
     solver.solve(&EpigraphQp {
         metric,
         slopes: cuts.slopes,
@@ -42,8 +41,8 @@ pub(crate) fn solve(
         rows: set.rows(),
         row_lower: &slack(set.row_lower(), &at_center, &terms, f64::min),
         row_upper: &slack(set.row_upper(), &at_center, &terms, f64::max),
-        lower: &(set.lower() - &state.center),
-        upper: &(set.upper() - &state.center),
+        lower: &(set.lower() - center),
+        upper: &(set.upper() - center),
     })
 }
 

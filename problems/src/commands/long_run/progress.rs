@@ -110,6 +110,8 @@ mod tests {
             convexification: 0.0,
             accuracy: 0.0,
             failure: None,
+            jacobian: false,
+            note: None,
             seconds: 1.0,
         };
         // Ten evaluations after the resumption took 50 s: 120 more take ten minutes, the time limit leaves two.

@@ -68,7 +68,7 @@ pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<Algeb
     let reference = objective(Variant::Direct)?;
     let control = bent(&reference);
     let state = reference.solver().solve(&control, None, Accuracy::TIGHTEST)?;
-    let evaluation = reference.differentiate(&control, &state)?;
+    let evaluation = reference.reduced().differentiate(&control, &state)?;
     let exact = Exact {
         pressures: reference.cost().pressures(&state),
         value: evaluation.value,

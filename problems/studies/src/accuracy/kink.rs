@@ -140,7 +140,7 @@ pub fn of_scene(scene: SceneName, count: usize) -> Result<Vec<KinkRow>, Failure>
         let after = line.slope(change.high, 1.0, &change.above, DIFFERENCE * height)?;
         let (Some(before), Some(after)) = (before, after) else { continue };
         let state = line.state(t)?;
-        let product = objective.differentiate(&line.at(t), &state)?.subgradient.dot(&line.direction);
+        let product = objective.reduced().differentiate(&line.at(t), &state)?.subgradient.dot(&line.direction);
         rows.push(KinkRow {
             scene: crate::scaling::word(&scene),
             change: words(&change),

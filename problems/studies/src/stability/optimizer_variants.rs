@@ -144,11 +144,7 @@ impl NonsmoothObjective for Changed<'_> {
         }
         let (value, subgradient) = self.exact(request.point);
         let noisy = value + self.noise() * jitter(request.point.as_slice(), 0);
-        Ok(Answer::Accurate(Evaluation {
-            value: factor * noisy + shift,
-            subgradient: subgradient * (factor / unit),
-            error_bound: factor * self.noise(),
-            warm_start: (),
-        }))
+        let evaluation = Evaluation::exact(factor * noisy + shift, subgradient * (factor / unit), ());
+        Ok(Answer::Accurate(Evaluation { error_bound: factor * self.noise(), ..evaluation }))
     }
 }

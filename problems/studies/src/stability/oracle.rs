@@ -94,6 +94,6 @@ impl NonsmoothObjective for Hostile {
         let size = slope.norm();
         let noisy = Vector::from_fn(z.len(), |i, _| slope[i] + self.noise * size * jitter(z.as_slice(), 1 + i as u64));
         let subgradient = noisy.component_mul(&self.scales);
-        Ok(Answer::Accurate(Evaluation { value, subgradient, error_bound: 0.0, warm_start: () }))
+        Ok(Answer::Accurate(Evaluation::exact(value, subgradient, ())))
     }
 }

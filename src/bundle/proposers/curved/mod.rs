@@ -44,12 +44,13 @@ impl Curved {
         for _ in 0..self.settings.multiplier_rounds {
             let mut metric = model.matrix(state.center.len(), &multipliers);
             state.norm.add_to(&mut metric, self.weight);
-            let solution = match subproblem::solve(at.solver, at.set, state, Metric::Dense(&metric), model.cuts()) {
-                Ok(solution) => solution,
-                // A later round only refines what an earlier one has found.
-                Err(_) if best.is_some() => break,
-                Err(error) => return Err(error.into()),
-            };
+            let solution =
+                match subproblem::solve(at.solver, at.set, &state.center, Metric::Dense(&metric), model.cuts()) {
+                    Ok(solution) => solution,
+                    // A later round only refines what an earlier one has found.
+                    Err(_) if best.is_some() => break,
+                    Err(error) => return Err(error.into()),
+                };
             let total = model.change(&solution.step) + 0.5 * self.weight * state.norm.squared(&solution.step);
             if best.as_ref().is_none_or(|(least, _)| total < *least) {
                 best = Some((total, solution.step));

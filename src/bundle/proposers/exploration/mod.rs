@@ -69,7 +69,7 @@ impl Exploration {
         let cuts = at.model.cuts();
         let mut metric = seen.clone();
         at.state.norm.add_to(&mut metric, weight);
-        let step = subproblem::solve(at.solver, at.set, at.state, Metric::Dense(&metric), cuts)?.step;
+        let step = subproblem::solve(at.solver, at.set, &at.state.center, Metric::Dense(&metric), cuts)?.step;
         let change = |step: &Vector| cuts.change(step) + 0.5 * step.dot(&(seen * step));
         let far = plain.replaced((step, weight, Origin::Exploration), (at.set, at.state), change)?;
         Ok(Proposal { predicted_decrease: -cuts.change(&far.step), ..far })

@@ -1,0 +1,198 @@
+//! The composite model around a base point, and its subproblem, solved without evaluations of Θ.
+//!
+//! ```text
+//! min over d   h(c + G d) + u‖d‖²/2,   x + d ∈ U
+//! h smooth:    Newton's method, each step a quadratic program with Gᵀ∇²h G + u W, and a line search
+//! else:        max_j h(c_j) + ⟨w_j, c + G d − c_j⟩ in place of h, cuts added until they meet h
+//! w = Σ λ_j w_j:   Gᵀw + Aᵀμ + ν = −u W d,   error of w at c:  Σ λ_j (h(c) − h(c_j) − ⟨w_j, c − c_j⟩) ≥ 0
+//! ```
+
+use crate::bundle::norm::ScaledNorm;
+use crate::bundle::proposers::proposal::SubproblemError;
+use crate::bundle::proposers::subproblem::{self, Cuts};
+use crate::composite::{Linearization, OuterFunction};
+use crate::qp::{EpigraphQpSolver, Metric, QpSolution};
+use crate::{Polyhedron, Vector};
+use serde::{Deserialize, Serialize};
+
+/// Newton steps of one subproblem.
+const MAX_NEWTON: usize = 100;
+/// Cuts of one subproblem.
+const MAX_CUTS: usize = 1000;
+/// Promised decrease of a step, relative to the decrease so far, at which a subproblem counts as solved.
+const SOLVED: f64 = 1e-9;
+/// The same for the gap between h and its cuts.
+const MET: f64 = 1e-6;
+/// Rounding of h in units of its size.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// A cut above h by more than this share of the sizes of its terms is no rounding: h is not convex.
+const MAX_EXCESS: f64 = 1e-9;
+/// Halvings of a Newton step.
+const MAX_HALVINGS: usize = 40;
+/// Decrease asked of a step of length one, as a share of what it promises.
+const SUFFICIENT_DECREASE: f64 = 1e-4;
+
+/// A subgradient of the outer function at some outputs, with its multiplier in an aggregate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct OuterCut {
+    /// Where h was evaluated, c_j.
+    pub outputs: Vector,
+    /// h(c_j).
+    pub value: f64,
+    /// w_j ∈ ∂h(c_j).
+    pub subgradient: Vector,
+    /// λ_j ≥ 0; Σ λ_j = 1.
+    pub multiplier: f64,
+}
+
+impl OuterCut {
+    fn at(outer: &dyn OuterFunction, outputs: Vector) -> Self {
+        Self { value: outer.value(&outputs), subgradient: outer.subgradient(&outputs), outputs, multiplier: 0.0 }
+    }
+
+    /// h(c) − h(c_j) − ⟨w_j, c − c_j⟩ ≥ 0 for a value h(c).
+    pub fn error(&self, outputs: &Vector, value: f64) -> f64 {
+        value - self.value - self.subgradient.dot(&(outputs - &self.outputs))
+    }
+}
+
+/// The model at a base point.
+pub(crate) struct CompositeModel<'a> {
+    pub outer: &'a dyn OuterFunction,
+    pub linearization: &'a Linearization,
+    /// h(c) at the base.
+    pub value: f64,
+    pub base: &'a Vector,
+    pub norm: &'a ScaledNorm,
+    pub set: &'a Polyhedron,
+    /// u.
+    pub weight: f64,
+}
+
+/// A solved subproblem.
+#[derive(Debug, Clone)]
+pub(crate) struct CompositeStep {
+    pub step: Vector,
+    /// h(c) − h(c + G d).
+    pub decrease: f64,
+    /// Cuts with a multiplier.
+    pub cuts: Vec<OuterCut>,
+    pub row_multipliers: Vector,
+    pub bound_multipliers: Vector,
+}
+
+impl CompositeStep {
+    /// w = Σ λ_j w_j.
+    pub(crate) fn weights(&self) -> Vector {
+        let mut cuts = self.cuts.iter();
+        let first = cuts.next().map_or_else(|| Vector::zeros(0), |cut| &cut.subgradient * cut.multiplier);
+        cuts.fold(first, |sum, cut| sum + &cut.subgradient * cut.multiplier)
+    }
+}
+
+impl CompositeModel<'_> {
+    pub(crate) fn solve(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
+        let Linearization { outputs, jacobian, .. } = self.linearization;
+        solver.forget();
+        match self.outer.curvature(outputs, jacobian) {
+            Some(_) => self.solve_by_newton(solver),
+            None => self.solve_by_cuts(solver),
+        }
+    }
+
+    /// c + G d.
+    fn outputs(&self, step: &Vector) -> Vector {
+        &self.linearization.outputs + &self.linearization.jacobian * step
+    }
+
+    /// h(c + G d) − h(c) + u‖d‖²/2.
+    fn merit(&self, step: &Vector) -> f64 {
+        self.outer.value(&self.outputs(step)) - self.value + 0.5 * self.weight * self.norm.squared(step)
+    }
+
+    fn solve_by_newton(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
+        let jacobian = &self.linearization.jacobian;
+        let mut step = Vector::zeros(self.base.len());
+        let mut merit = 0.0;
+        for _ in 0..MAX_NEWTON {
+            let at = OuterCut::at(self.outer, self.outputs(&step));
+            let Some(mut metric) = self.outer.curvature(&at.outputs, jacobian) else { break };
+            self.norm.add_to(&mut metric, self.weight);
+            let slope = jacobian.tr_mul(&at.subgradient) + self.norm.lower_index(&step) * self.weight;
+            let (slopes, point) = ([slope], self.base + &step);
+            let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0] };
+            let solution = subproblem::solve(solver, self.set, &point, Metric::Dense(&metric), cuts)?;
+            let promised = -slopes[0].dot(&solution.step);
+            if promised <= SOLVED * -merit + ROUNDING * self.value.abs() {
+                return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], &solution));
+            }
+            let Some((next, lower)) = self.search(&step, &solution.step, merit, promised) else {
+                return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], &solution));
+            };
+            (step, merit) = (next, lower);
+        }
+        Err(SubproblemError::Unusable)
+    }
+
+    /// The longest of the halved steps that lowers the merit enough, with the merit there; none where rounding hides any decrease.
+    fn search(&self, from: &Vector, step: &Vector, merit: f64, promised: f64) -> Option<(Vector, f64)> {
+        let mut length = 1.0;
+        for _ in 0..MAX_HALVINGS {
+            let trial = from + step * length;
+            let value = self.merit(&trial);
+            if value <= merit - SUFFICIENT_DECREASE * length * promised {
+                return Some((trial, value));
+            }
+            length *= 0.5;
+        }
+        None
+    }
+
+    fn solve_by_cuts(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
+        let linearization = self.linearization;
+        let metric = self.norm.weighted(self.weight);
+        let mut cuts = vec![OuterCut::at(self.outer, linearization.outputs.clone())];
+        let (mut slopes, mut offsets, mut ids) = (vec![], vec![], vec![]);
+        loop {
+            if let Some(newest) = cuts.last() {
+                slopes.push(linearization.jacobian.tr_mul(&newest.subgradient));
+                offsets.push(self.error(newest)?);
+                ids.push(ids.len() as u64);
+            }
+            let view = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids };
+            let solution = subproblem::solve(solver, self.set, self.base, metric.metric(), view)?;
+            let next = OuterCut::at(self.outer, self.outputs(&solution.step));
+            let (promised, gap) = (-solution.epigraph, next.value - self.value - solution.epigraph);
+            if gap <= MET * promised + ROUNDING * self.value.abs() || cuts.len() >= MAX_CUTS {
+                for (cut, multiplier) in cuts.iter_mut().zip(&solution.cut_multipliers) {
+                    cut.multiplier = *multiplier;
+                }
+                cuts.retain(|cut| cut.multiplier > 0.0);
+                return Ok(self.solved(solution.step.clone(), cuts, &solution));
+            }
+            cuts.push(next);
+        }
+    }
+
+    /// The linearization error of a cut of h at the base; an error if the cut lies above h there.
+    fn error(&self, cut: &OuterCut) -> Result<f64, SubproblemError> {
+        let outputs = &self.linearization.outputs;
+        let error = cut.error(outputs, self.value);
+        let terms = cut.subgradient.abs().dot(&(outputs.abs() + cut.outputs.abs()));
+        if error < -MAX_EXCESS * (self.value.abs() + cut.value.abs() + terms) {
+            return Err(SubproblemError::NotConvex { excess: -error });
+        }
+        Ok(error.max(0.0))
+    }
+
+    fn solved(&self, step: Vector, cuts: Vec<OuterCut>, solution: &QpSolution) -> CompositeStep {
+        CompositeStep {
+            decrease: self.value - self.outer.value(&self.outputs(&step)),
+            step,
+            cuts,
+            row_multipliers: Vector::from_column_slice(&solution.row_multipliers),
+            bound_multipliers: Vector::from_column_slice(&solution.bound_multipliers),
+        }
+    }
+}

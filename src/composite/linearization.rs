@@ -1,0 +1,63 @@
+//! Outputs with their generalized Jacobian, as an oracle returns them when it is asked to.
+
+use crate::checks::{check_finite, check_size};
+use crate::{Accuracy, InputError, Matrix, Vector};
+
+/// What an engine asks of a composite objective beside value and subgradient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinearizationRequest {
+    /// Relative accuracy of the Jacobian.
+    pub accuracy: Accuracy,
+    /// The Jacobian is wanted only where Θ is at most this.
+    pub below: f64,
+}
+
+/// Outputs c(x) and one element G of their generalized Jacobian; m outputs, n variables.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linearization {
+    /// c(x), m entries.
+    pub outputs: Vector,
+    /// G, m × n.
+    pub jacobian: Matrix,
+    /// Relative error of the columns of G; 0 means exact up to rounding.
+    pub accuracy: f64,
+    /// Constraints inside the outputs that are inactive here, if the problem has any.
+    pub inactive: Option<InactiveConstraints>,
+}
+
+/// Slacks of constraints that change the piece of c when they become active: gaps of open contact nodes, for example. The
+/// engine uses them once it has found a stationary point, to look at the neighbouring piece.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InactiveConstraints {
+    /// Slacks s > 0, k entries.
+    pub slacks: Vector,
+    /// Their derivative, k × n.
+    pub jacobian: Matrix,
+}
+
+impl Linearization {
+    /// Refuses sizes that do not fit `dimension` variables, and entries that are not finite.
+    ///
+    /// # Errors
+    /// [`InputError::Dimension`], [`InputError::NotFinite`].
+    pub fn check(&self, dimension: usize) -> Result<(), InputError> {
+        check_size("rows of the Jacobian", self.outputs.len(), self.jacobian.nrows())?;
+        check_size("columns of the Jacobian", dimension, self.jacobian.ncols())?;
+        check_finite("outputs", self.outputs.as_slice())?;
+        check_finite("Jacobian", self.jacobian.as_slice())?;
+        let Some(inactive) = &self.inactive else { return Ok(()) };
+        check_size("rows of the slacks' Jacobian", inactive.slacks.len(), inactive.jacobian.nrows())?;
+        check_size("columns of the slacks' Jacobian", dimension, inactive.jacobian.ncols())?;
+        check_finite("slacks", inactive.slacks.as_slice())?;
+        check_finite("Jacobian of the slacks", inactive.jacobian.as_slice())
+    }
+
+    /// Changes G by a matrix of rank one so that Gᵀw is a subgradient known to be more accurate.
+    pub fn correct(&mut self, weights: &Vector, subgradient: &Vector) {
+        let size = weights.norm_squared();
+        if size > 0.0 && size.is_finite() {
+            let defect = subgradient - self.jacobian.tr_mul(weights);
+            self.jacobian.ger(1.0 / size, weights, &defect, 1.0);
+        }
+    }
+}

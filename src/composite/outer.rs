@@ -1,0 +1,162 @@
+//! Convex functions of the outputs.
+
+use crate::{Matrix, Vector};
+
+/// A convex function h: Rᵐ → R with one subgradient, and its curvature where it has one.
+pub trait OuterFunction {
+    /// h(c).
+    fn value(&self, outputs: &Vector) -> f64;
+
+    /// One w ∈ ∂h(c), m entries.
+    fn subgradient(&self, outputs: &Vector) -> Vector;
+
+    /// Gᵀ∇²h(c) G for G of shape m × n, if h is smooth: the subproblem is then solved by Newton's method. None (the default):
+    /// h may have kinks, and the subproblem is solved by cuts of h.
+    fn curvature(&self, _outputs: &Vector, _jacobian: &Matrix) -> Option<Matrix> {
+        None
+    }
+}
+
+impl<H: OuterFunction + ?Sized> OuterFunction for &H {
+    fn value(&self, outputs: &Vector) -> f64 {
+        (**self).value(outputs)
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        (**self).subgradient(outputs)
+    }
+
+    fn curvature(&self, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
+        (**self).curvature(outputs, jacobian)
+    }
+}
+
+/// h(c) = max_i c_i: minimax problems.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Maximum;
+
+impl OuterFunction for Maximum {
+    fn value(&self, outputs: &Vector) -> f64 {
+        outputs.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// The unit vector of the first largest output.
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        let largest = self.value(outputs);
+        let first = outputs.iter().position(|output| *output == largest).unwrap_or(0);
+        Vector::from_fn(outputs.len(), |i, _| f64::from(u8::from(i == first)))
+    }
+}
+
+/// h(c) = Σ |c_i|^p, p ≥ 1: sums of absolute values (p = 1), of squares, of powers.
+#[derive(Debug, Clone, Copy)]
+pub struct SumOfPowers {
+    /// The exponent p ≥ 1.
+    pub exponent: f64,
+}
+
+impl OuterFunction for SumOfPowers {
+    fn value(&self, outputs: &Vector) -> f64 {
+        outputs.iter().map(|output| output.abs().powf(self.exponent)).sum()
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        let p = self.exponent;
+        outputs.map(|output| if output == 0.0 { 0.0 } else { p * output.abs().powf(p - 1.0) * output.signum() })
+    }
+
+    /// None below p = 2, where the curvature grows without bound at 0.
+    fn curvature(&self, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
+        let p = self.exponent;
+        (p >= 2.0).then(|| weighted_gram(jacobian, &outputs.map(|output| p * (p - 1.0) * output.abs().powf(p - 2.0))))
+    }
+}
+
+/// h(c) = |c|₂.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct EuclideanNorm;
+
+impl OuterFunction for EuclideanNorm {
+    fn value(&self, outputs: &Vector) -> f64 {
+        outputs.norm()
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        let size = outputs.norm();
+        if size > 0.0 { outputs / size } else { Vector::zeros(outputs.len()) }
+    }
+}
+
+/// A closure `c ↦ (h(c), one subgradient)` as an outer function, with cuts in place of a curvature.
+///
+/// ```
+/// use nonsmooth::{Vector, composite::{FnOuter, OuterFunction}};
+/// // An exact penalty: c₀ + 10 Σ max(c_i, 0).
+/// let penalty = FnOuter::new(|c: &Vector| {
+///     let violated = |i: usize| i > 0 && c[i] > 0.0;
+///     let value = c[0] + (1..c.len()).filter(|&i| violated(i)).map(|i| 10.0 * c[i]).sum::<f64>();
+///     let slope = |i: usize| if i == 0 { 1.0 } else if violated(i) { 10.0 } else { 0.0 };
+///     (value, Vector::from_fn(c.len(), |i, _| slope(i)))
+/// });
+/// assert_eq!(penalty.value(&Vector::from_vec(vec![1.0, -3.0, 2.0])), 21.0);
+/// ```
+#[derive(Debug, Clone)]
+pub struct FnOuter<F>(F);
+
+impl<F: Fn(&Vector) -> (f64, Vector)> FnOuter<F> {
+    /// The function of a closure; h must be convex.
+    pub fn new(function: F) -> Self {
+        Self(function)
+    }
+}
+
+impl<F: Fn(&Vector) -> (f64, Vector)> OuterFunction for FnOuter<F> {
+    fn value(&self, outputs: &Vector) -> f64 {
+        (self.0)(outputs).0
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        (self.0)(outputs).1
+    }
+}
+
+/// Gᵀ diag(weights) G, n × n, for G of shape m × n: the curvature of a sum of functions of single outputs.
+pub fn weighted_gram(jacobian: &Matrix, weights: &Vector) -> Matrix {
+    let mut scaled = jacobian.clone();
+    for (mut row, weight) in scaled.row_iter_mut().zip(weights.iter()) {
+        row *= *weight;
+    }
+    let product = jacobian.tr_mul(&scaled);
+    (&product + product.transpose()) * 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::verify::seeded_direction;
+
+    #[test]
+    fn curvature_is_the_derivative_of_the_subgradient() {
+        let jacobian = Matrix::from_fn(5, 3, |i, j| ((3 * i + j) as f64).sin());
+        let (c, d) = (seeded_direction(5, 1), seeded_direction(3, 2));
+        let h = SumOfPowers { exponent: 4.0 };
+        let step = 1e-6;
+        let at = |t: f64| jacobian.tr_mul(&h.subgradient(&(&c + &jacobian * &d * t)));
+        let quotient = (at(step) - at(-step)) / (2.0 * step);
+        let product = h.curvature(&c, &jacobian).expect("smooth") * &d;
+        assert!((quotient - &product).norm() < 1e-8 * product.norm());
+    }
+
+    #[test]
+    fn subgradients_lie_below_the_function() {
+        let functions: [&dyn OuterFunction; 4] =
+            [&Maximum, &SumOfPowers { exponent: 1.0 }, &SumOfPowers { exponent: 3.0 }, &EuclideanNorm];
+        for h in functions {
+            for seed in 0..50 {
+                let (a, b) = (seeded_direction(6, seed), seeded_direction(6, seed + 1000));
+                let cut = h.value(&a) + h.subgradient(&a).dot(&(&b - &a));
+                assert!(cut <= h.value(&b) + 1e-14);
+            }
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Composite objectives as oracles: a closure for outputs and Jacobian, or outputs of a state.
+
+use crate::composite::{Linearization, LinearizationRequest, OuterFunction};
+use crate::{
+    Accuracy, Answer, Coderivative, Cost, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError,
+    ReducedObjective, Request, Vector,
+};
+
+/// Θ = h∘c with a closure `x ↦ (c(x), G)`.
+///
+/// ```
+/// use nonsmooth::{BundleTrust, BundleTrustConfig, CompositeFunction, Matrix, Vector, composite::Maximum};
+/// // Minimax: max(x² + y⁴, (2 − x)² + (2 − y)², 2 e^{y − x}), all pieces at once.
+/// let theta = CompositeFunction::new(2, Maximum, |p: &Vector| {
+///     let (x, y) = (p[0], p[1]);
+///     let e = 2.0 * (y - x).exp();
+///     let outputs = Vector::from_vec(vec![x * x + y.powi(4), (2.0 - x).powi(2) + (2.0 - y).powi(2), e]);
+///     let rows = [2.0 * x, 4.0 * y.powi(3), 2.0 * x - 4.0, 2.0 * y - 4.0, -e, e];
+///     (outputs, Matrix::from_row_slice(3, 2, &rows))
+/// });
+/// let report = BundleTrust::new(BundleTrustConfig::default())?.minimize(&theta, Vector::from_vec(vec![1.0, -0.1]))?;
+/// assert!((report.value - 1.952224).abs() < 1e-6);
+/// assert!(report.termination.is_confirmed() && report.counts.evaluations < 12, "{report}");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct CompositeFunction<H, F> {
+    dimension: usize,
+    outer: H,
+    function: F,
+}
+
+impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> CompositeFunction<H, F> {
+    /// An objective of `dimension` variables; the closure returns m outputs and their m × `dimension` Jacobian.
+    pub fn new(dimension: usize, outer: H, function: F) -> Self {
+        Self { dimension, outer, function }
+    }
+}
+
+impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> NonsmoothObjective for CompositeFunction<H, F> {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        Some(&self.outer)
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let (outputs, jacobian) = (self.function)(request.point);
+        let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
+        linearization.check(self.dimension)?;
+        let value = self.outer.value(&linearization.outputs);
+        let subgradient = linearization.jacobian.tr_mul(&self.outer.subgradient(&linearization.outputs));
+        let linearization = request.linearization.map(|_| Ok(linearization));
+        let evaluation = Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) };
+        Ok(Answer::Accurate(evaluation))
+    }
+}
+
+/// The outputs c of a state problem that a convex cost is a function of, with their generalized Jacobian.
+pub trait OutputJacobian: Coderivative {
+    /// c(S(α)), m entries.
+    fn outputs(&self, state: &Self::State) -> Vector;
+
+    /// y* = (∂c/∂y)ᵀ w, in the layout of the solver's dual: what the coderivative is asked for.
+    fn output_dual(&self, state: &Self::State, weights: &Vector) -> Vector;
+
+    /// Outputs and G, to a relative accuracy of its columns. The default takes one coderivative per output, which is exact and
+    /// right for few outputs; a solver that has forward derivatives should use them where there are fewer controls.
+    ///
+    /// # Errors
+    /// [`OracleError`] when a linearized problem cannot be solved.
+    fn linearize(
+        &self,
+        control: &Vector,
+        state: &Self::State,
+        _accuracy: Accuracy,
+    ) -> Result<Linearization, OracleError> {
+        let outputs = self.outputs(state);
+        let mut jacobian = Matrix::zeros(outputs.len(), control.len());
+        for row in 0..outputs.len() {
+            let unit = Vector::from_fn(outputs.len(), |i, _| f64::from(u8::from(i == row)));
+            let sensitivity = self.coderivative(control, state, &self.output_dual(state, &unit))?;
+            jacobian.set_row(row, &sensitivity.transpose());
+        }
+        Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None })
+    }
+}
+
+/// Θ(α) = J(α, S(α)) of a cost that is a convex function of the outputs alone: J = h∘c.
+///
+/// The cost is both a [`Cost`] of the state and an [`OuterFunction`] of the outputs, and must have the same value as either.
+#[derive(Debug, Clone)]
+pub struct CompositeObjective<S, J> {
+    reduced: ReducedObjective<S, J>,
+}
+
+impl<S, J> CompositeObjective<S, J> {
+    /// Composes a state solver and a cost.
+    pub fn new(solver: S, cost: J) -> Self {
+        Self { reduced: ReducedObjective::new(solver, cost) }
+    }
+
+    /// The state solver.
+    pub fn solver(&self) -> &S {
+        self.reduced.solver()
+    }
+
+    /// The cost.
+    pub fn cost(&self) -> &J {
+        self.reduced.cost()
+    }
+
+    /// The same objective without its structure.
+    pub fn reduced(&self) -> &ReducedObjective<S, J> {
+        &self.reduced
+    }
+}
+
+impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> CompositeObjective<S, J> {
+    /// Outputs and G at a state, G corrected so that Gᵀw is the subgradient ξ; the text of the error where there is none.
+    fn linearize(
+        &self,
+        control: &Vector,
+        state: &S::State,
+        subgradient: &Vector,
+        request: LinearizationRequest,
+    ) -> Result<Linearization, String> {
+        let linearized = self.solver().linearize(control, state, request.accuracy);
+        let mut linearization = linearized.map_err(|error| error.to_string())?;
+        let weights = self.cost().subgradient(&linearization.outputs);
+        linearization.correct(&weights, subgradient);
+        Ok(linearization)
+    }
+}
+
+impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> NonsmoothObjective for CompositeObjective<S, J> {
+    type WarmStart = S::WarmStart;
+
+    fn dimension(&self) -> usize {
+        self.solver().control_dimension()
+    }
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        Some(self.cost())
+    }
+
+    fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
+        let (expected, found) = (self.dimension(), request.point.len());
+        if expected != found {
+            return Err(InputError::Dimension { what: "control", expected, found }.into());
+        }
+        let state = self.solver().solve(request.point, request.warm_start, request.accuracy)?;
+        let mut evaluation = self.reduced.differentiate(request.point, &state)?;
+        if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
+            evaluation.linearization = Some(self.linearize(request.point, &state, &evaluation.subgradient, wanted));
+        }
+        Ok(Answer::Accurate(evaluation))
+    }
+}
