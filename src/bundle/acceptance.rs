@@ -49,7 +49,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         if serious {
             self.move_center(proposal.trial.clone(), evaluation, accuracy);
         }
-        let linearized = self.learn_structure(&trial, linearization, value);
+        let linearized = self.learn_structure(&trial, value, linearization);
         self.record(&proposal, accuracy, Event { kind, value: Some(value), failure: None, linearized });
     }
 

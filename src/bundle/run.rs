@@ -1,7 +1,7 @@
 //! A run in the making: one evaluation per step.
 
 use super::builder::BundleTrust;
-use super::composite::{Base, Composite, CompositeStep};
+use super::composite::{Composite, Proof};
 use super::config::AccuracyPolicy;
 use super::finish::Event;
 use super::oracle::{Outcome, evaluate};
@@ -56,7 +56,7 @@ pub struct Run<'r, 'o, O: NonsmoothObjective> {
     /// The composite model, if the objective has its structure.
     pub(super) composite: Option<Composite>,
     /// Its proof that the center is stationary, once it has ended the run.
-    pub(super) proof: Option<(Base, CompositeStep)>,
+    pub(super) proof: Option<Proof>,
     pub(super) clock: Instant,
 }
 
@@ -128,7 +128,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
 
     fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>) -> Outcome<O::WarmStart> {
         self.state.counts.evaluations += 1;
-        let linearization = self.composite.as_ref().map(|_| Composite::request(target.unwrap_or(f64::INFINITY)));
+        let linearization = self.composite.as_ref().map(|model| model.request(target.unwrap_or(f64::INFINITY)));
         let warm_start = self.warm_start.as_ref();
         let request = Request { point, warm_start, accuracy, descent_target: target, linearization };
         match evaluate(self.objective, &request) {
@@ -251,6 +251,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let failures = state.failures;
         let close = proposal.step_length <= CLOSE * state.length_scale().max(state.first_step);
         self.proposers.shorten(state, &self.method.config, proposal);
+        self.shorten_composite(proposal);
         let failure = Some(error.to_string());
         self.record(proposal, accuracy, Event { kind: StepKind::Failed, value: None, failure, linearized: None });
         if failures >= self.method.config.max_failures && proposal.origin == Origin::Cuts && close {

@@ -6,7 +6,7 @@
 //! The only file that knows both the framework and the mechanics. Dual of the state: the normal forces of all contact nodes,
 //! then, with friction, two tangential forces per node ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries).
 
-use crate::equilibrium::{ContactProblem, ContactSolver, Diagnosis, SolverState, ValueError};
+use crate::equilibrium::{ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolverState, ValueError};
 use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
 use crate::memory;
@@ -278,7 +278,7 @@ impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
         let points = &problem.boundary.points;
         let jacobian =
             Matrix::from_fn(points.len(), control.len(), |i, k| tangents.forces[k][points[i].start] / points[i].area);
-        let open: Vec<usize> = (0..points.len()).filter(|&i| state.forces.opening[i] < 0.0).collect();
+        let open: Vec<usize> = (0..points.len()).filter(|&i| state.forces.status[i] == ContactStatus::Open).collect();
         let inactive = InactiveConstraints {
             slacks: Vector::from_iterator(open.len(), open.iter().map(|&i| -state.forces.opening[i])),
             jacobian: Matrix::from_fn(open.len(), control.len(), |row, k| -tangents.openings[k][open[row]]),

@@ -57,7 +57,8 @@ pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Argum
     let shape = SolvedShape::at(objective, &controls).inspect_err(abandon)?;
     let state_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let evaluation = objective.reduced().differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
+    let evaluation =
+        objective.reduced().differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
     let (state, forces) = (&shape.state, &shape.state.forces);
     let root = objective.cost().root();

@@ -7,6 +7,7 @@
 //! One linearization is pessimistic where a constraint becomes active inside c, so that ratios above 1 are common. After
 //! failures the model pauses, and cuts, curved model and exploration go on; it returns at the next center with a Jacobian.
 
+mod excursion;
 mod model;
 
 use super::proposers::aggregate::{aggregate_sizes, slack_error};
@@ -14,9 +15,10 @@ use super::proposers::pause::Pause;
 use super::proposers::proposal::{Proposal, SubproblemError};
 use super::proposers::proposer::Trial;
 use super::run::Run;
-use crate::composite::{Linearization, LinearizationRequest, OuterFunction};
+use crate::composite::{Linearization, LinearizationRequest};
 use crate::report::{Origin, Termination};
-use crate::{Accuracy, NonsmoothObjective, Vector};
+use crate::{Accuracy, NonsmoothObjective, Polyhedron, Vector};
+use excursion::Excursion;
 use model::CompositeModel;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -27,14 +29,16 @@ pub use model::OuterCut;
 const FIRST_WEIGHT: f64 = 1e-2;
 /// A step with this share of the predicted decrease lets the weight fall.
 const GOOD_RATIO: f64 = 0.5;
-/// By which the weight falls.
-const DECREASE: f64 = 10.0;
-/// By which it rises.
-const INCREASE: f64 = 10.0;
+/// By which the weight falls, and by which it rises.
+const FACTOR: f64 = 10.0;
+/// Length of the step after a rejected one, as a share of its length.
+const SHORTER: f64 = 0.3;
+/// Weights tried until a step is short enough.
+const MAX_WEIGHTS: usize = 20;
 /// Longest pause after failures, evaluations.
 const MAX_PAUSE: usize = 64;
 /// Failures in a row before a pause.
-const PATIENCE: usize = 2;
+const PATIENCE: usize = 3;
 /// Accuracy asked of a Jacobian.
 const JACOBIAN_ACCURACY: f64 = 1e-4;
 
@@ -42,43 +46,72 @@ const JACOBIAN_ACCURACY: f64 = 1e-4;
 #[derive(Debug)]
 pub(crate) struct Composite {
     weight: f64,
+    /// Length that the next step must not exceed, after a rejected one.
+    longest: f64,
     pause: Pause,
     failures: usize,
+    /// Where the model is built: the center, if its Jacobian is known.
     base: Option<Base>,
+    excursion: Option<Excursion>,
 }
 
 /// Where the model is built.
 #[derive(Debug, Clone)]
 pub(crate) struct Base {
-    pub(super) point: Vector,
-    pub(super) value: f64,
-    pub(super) linearization: Linearization,
+    pub point: Vector,
+    pub value: f64,
+    pub linearization: Linearization,
+}
+
+/// What proves that a point is stationary.
+#[derive(Debug, Clone)]
+pub(crate) struct Proof {
+    pub word: Termination,
+    pub base: Base,
+    pub step: CompositeStep,
+    pub proposal: Proposal,
 }
 
 impl Composite {
     pub(crate) fn new(first_weight: f64) -> Self {
-        let factor = std::env::var("CW").ok().and_then(|text| text.parse().ok()).unwrap_or(FIRST_WEIGHT);
-        Self { weight: factor * first_weight, pause: Pause::default(), failures: 0, base: None }
+        Self {
+            weight: FIRST_WEIGHT * first_weight,
+            longest: f64::INFINITY,
+            pause: Pause::default(),
+            failures: 0,
+            base: None,
+            excursion: None,
+        }
     }
 
     /// What to ask of an evaluation; `below`: the value from which on the point becomes the center.
-    pub(crate) fn request(below: f64) -> LinearizationRequest {
-        let accuracy = Accuracy::relative(JACOBIAN_ACCURACY).unwrap_or(Accuracy::TIGHTEST);
-        LinearizationRequest { accuracy, below }
+    pub(crate) fn request(&self, below: f64) -> LinearizationRequest {
+        LinearizationRequest {
+            below: if self.excursion.is_some() { f64::INFINITY } else { below },
+            ..Self::first_request()
+        }
     }
 
-    /// Learns what came of one of its trial points.
-    fn learn(&mut self, change: f64, predicted: f64, serious: bool) {
-        let ratio = -change / predicted;
-        if serious {
+    /// What to ask of the first evaluation.
+    pub(crate) fn first_request() -> LinearizationRequest {
+        let accuracy = Accuracy::relative(JACOBIAN_ACCURACY).unwrap_or(Accuracy::TIGHTEST);
+        LinearizationRequest { accuracy, below: f64::INFINITY }
+    }
+
+    /// Learns what came of a step of its own: the ratio of the decrease to the one predicted, none if the oracle failed.
+    fn learn(&mut self, proposal: &Proposal, ratio: Option<f64>, accepted: bool) {
+        self.weight = proposal.weight;
+        if accepted {
             self.failures = 0;
             self.pause.succeed();
-            if ratio >= GOOD_RATIO {
-                self.weight /= DECREASE;
+            self.longest = f64::INFINITY;
+            if ratio.is_some_and(|ratio| ratio >= GOOD_RATIO) {
+                self.weight /= FACTOR;
             }
         } else {
             self.failures += 1;
-            self.weight *= INCREASE;
+            self.weight *= FACTOR;
+            self.longest = SHORTER * proposal.step_length;
             if self.failures >= PATIENCE {
                 self.pause.fail(MAX_PAUSE);
             }
@@ -89,50 +122,87 @@ impl Composite {
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// The trial point of the composite model, none where it has none; ends the run at a point that it proves stationary.
     pub(super) fn composite_trial(&mut self) -> ControlFlow<Termination, Option<Proposal>> {
-        let (objective, Some(composite)) = (self.objective, &mut self.composite) else { return Continue(None) };
-        let (Some(outer), Some(base)) = (objective.outer(), composite.base.clone()) else { return Continue(None) };
-        if !composite.pause.pass() {
-            return Continue(None);
+        let Some(composite) = &mut self.composite else { return Continue(None) };
+        if let Some(excursion) = composite.excursion.take() {
+            return self.continue_excursion(excursion);
         }
+        let Some(base) = composite.base.clone().filter(|_| composite.pause.pass()) else { return Continue(None) };
         let mut weight = composite.weight;
-        for _ in 0..=self.method.config.attenuation_steps {
-            let found = self.solve_composite(outer, &base, weight);
-            let (proposal, step) =
-                match found.and_then(|step| Ok((self.composite_proposal(&base, &step, weight)?, step))) {
-                    Err(error @ SubproblemError::NotConvex { .. }) => {
-                        return Break(Termination::SubproblemFailed { reason: error.to_string() });
-                    }
-                    Err(_) => return Continue(None),
-                    Ok(found) => found,
-                };
+        for _ in 0..MAX_WEIGHTS {
+            let Some((proposal, step)) = self.composite_step(&base, weight, None)? else { return Continue(None) };
             if let Some(word) = self.composite_word(&proposal) {
-                self.proof = Some((base, step));
-                return Break(word);
+                return self.leave(Proof { word, base, step, proposal });
             }
-            if proposal.predicted_decrease > self.small() {
+            if proposal.step_length > self.composite.as_ref().map_or(0.0, |composite| composite.longest) {
+                weight *= FACTOR;
+            } else if proposal.predicted_decrease > self.small() {
                 return Continue(Some(proposal));
+            } else {
+                weight /= FACTOR;
             }
-            weight /= DECREASE;
         }
         Continue(None)
+    }
+
+    /// The step of the model at a base with a weight, and the trial point that it leads to; none where the subproblem cannot be
+    /// solved. `set`: the admissible set, if it is not that of the run.
+    pub(super) fn composite_step(
+        &mut self,
+        base: &Base,
+        weight: f64,
+        set: Option<&Polyhedron>,
+    ) -> ControlFlow<Termination, Option<(Proposal, CompositeStep)>> {
+        let Some(outer) = self.objective.outer() else { return Continue(None) };
+        let model = CompositeModel {
+            outer,
+            linearization: &base.linearization,
+            value: outer.value(&base.linearization.outputs),
+            base: &base.point,
+            norm: &self.state.norm,
+            set: set.unwrap_or(&self.set),
+            weight,
+        };
+        let before = self.solver.counts();
+        let step = model.solve(&mut self.solver);
+        self.count_solves(before);
+        match step.and_then(|step| Ok((self.composite_proposal(base, &step, weight)?, step))) {
+            Err(error @ SubproblemError::NotConvex { .. }) => {
+                Break(Termination::SubproblemFailed { reason: error.to_string() })
+            }
+            Err(_) => Continue(None),
+            Ok(found) => Continue(Some(found)),
+        }
     }
 
     /// Learns from a trial point and what its evaluation says about the outputs; whether it brought a Jacobian.
     pub(super) fn learn_structure(
         &mut self,
         trial: &Trial<'_>,
-        linearization: Option<Result<Linearization, String>>,
         value: f64,
+        linearization: Option<Result<Linearization, String>>,
     ) -> Option<Result<(), String>> {
         let composite = self.composite.as_mut()?;
+        if composite.excursion.is_some() {
+            return self.learn_excursion(trial, value, linearization);
+        }
         if trial.proposal.origin == Origin::CompositeModel {
-            composite.weight = trial.proposal.weight;
-            composite.learn(trial.comparison.change, -trial.comparison.model_change, trial.serious);
+            let ratio = trial.comparison.change / trial.comparison.model_change;
+            composite.learn(trial.proposal, Some(ratio), trial.serious);
         }
         if !trial.serious {
             return None;
         }
         self.rebase(&trial.proposal.trial, value, linearization)
+    }
+
+    /// Takes note that the oracle failed at a trial point.
+    pub(super) fn shorten_composite(&mut self, proposal: &Proposal) {
+        let Some(composite) = &mut self.composite else { return };
+        if let Some(excursion) = &mut composite.excursion {
+            excursion.give_up();
+        } else if proposal.origin == Origin::CompositeModel {
+            composite.learn(proposal, None, false);
+        }
     }
 
     /// Moves the model to a new center; whether that brought a Jacobian.
@@ -150,55 +220,36 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }))
     }
 
-    fn solve_composite(
-        &mut self,
-        outer: &dyn OuterFunction,
-        base: &Base,
-        weight: f64,
-    ) -> Result<CompositeStep, SubproblemError> {
-        let model = CompositeModel {
-            outer,
-            linearization: &base.linearization,
-            value: outer.value(&base.linearization.outputs),
-            base: &base.point,
-            norm: &self.state.norm,
-            set: &self.set,
-            weight,
-        };
-        let before = self.solver.counts();
-        let step = model.solve(&mut self.solver);
-        self.count_solves(before);
-        step
-    }
-
     fn composite_proposal(&self, base: &Base, step: &CompositeStep, weight: f64) -> Result<Proposal, SubproblemError> {
         let state = &self.state;
         let outputs = &base.linearization.outputs;
         let errors = step.cuts.iter().map(|cut| cut.multiplier * cut.error(outputs, base.value).max(0.0));
-        let (error, squared) = (errors.sum::<f64>(), state.norm.squared(&step.step));
-        let sides = (&step.row_multipliers, &step.bound_multipliers);
+        let (error, length) = (errors.sum::<f64>(), state.norm.length(&step.step));
+        let rows = step.row_multipliers.rows(0, self.set.rows().nrows()).into_owned();
+        let sides = (&rows, &step.bound_multipliers);
         let slack = slack_error(sides, &base.point, &self.set);
         let aggregate = base.linearization.jacobian.tr_mul(&step.weights());
-        Proposal {
-            trial: &base.point + &step.step,
-            step: step.step.clone(),
-            step_length: squared.sqrt(),
+        let trial = &base.point + &step.step;
+        let proposal = Proposal {
+            step: &trial - &state.center,
+            trial,
+            step_length: length,
             predicted_decrease: step.decrease,
             cut_change: 0.0,
             aggregate_sizes: aggregate_sizes(std::iter::once((1.0, &aggregate)), sides, &self.set),
             slack_error: slack,
-            aggregate_norm: weight * squared.sqrt(),
+            aggregate_norm: weight * length,
             aggregate_error: error + slack,
             cut_error: error,
             cut_multipliers: vec![0.0; state.bundle.cuts().len()],
-            row_multipliers: step.row_multipliers.clone(),
             bound_multipliers: step.bound_multipliers.clone(),
+            row_multipliers: rows,
             convexification: 0.0,
             weight,
             violation: 0.0,
             origin: Origin::CompositeModel,
-        }
-        .admissible(&self.set, state)
+        };
+        proposal.admissible(&self.set, state)
     }
 
     /// The word for a base that the model proves stationary.

@@ -11,7 +11,7 @@ use crate::bundle::norm::ScaledNorm;
 use crate::bundle::proposers::proposal::SubproblemError;
 use crate::bundle::proposers::subproblem::{self, Cuts};
 use crate::composite::{Linearization, OuterFunction};
-use crate::qp::{EpigraphQpSolver, Metric, QpSolution};
+use crate::qp::{EpigraphQpSolver, Metric, QpSolution, project};
 use crate::{Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -113,8 +113,9 @@ impl CompositeModel<'_> {
 
     fn solve_by_newton(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
         let jacobian = &self.linearization.jacobian;
-        let mut step = Vector::zeros(self.base.len());
-        let mut merit = 0.0;
+        // A base outside the set, of which a step is to lead into it, has no feasible step of length 0.
+        let mut step = project(self.set, self.base)? - self.base;
+        let mut merit = self.merit(&step);
         for _ in 0..MAX_NEWTON {
             let at = OuterCut::at(self.outer, self.outputs(&step));
             let Some(mut metric) = self.outer.curvature(&at.outputs, jacobian) else { break };
@@ -124,7 +125,7 @@ impl CompositeModel<'_> {
             let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0] };
             let solution = subproblem::solve(solver, self.set, &point, Metric::Dense(&metric), cuts)?;
             let promised = -slopes[0].dot(&solution.step);
-            if promised <= SOLVED * -merit + ROUNDING * self.value.abs() {
+            if promised <= SOLVED * merit.abs() + ROUNDING * self.value.abs() {
                 return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], &solution));
             }
             let Some((next, lower)) = self.search(&step, &solution.step, merit, promised) else {

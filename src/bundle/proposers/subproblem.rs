@@ -8,6 +8,9 @@ use super::proposal::FEASIBILITY;
 use crate::qp::{EpigraphQp, EpigraphQpSolver, Metric, QpError, QpSolution};
 use crate::{Polyhedron, Vector};
 
+/// Relative violation of a row that a center may have.
+const LARGEST_VIOLATION: f64 = 1e-8;
+
 /// Slopes h_i, offsets a_i and identities of cuts.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cuts<'a> {
@@ -46,14 +49,18 @@ pub(crate) fn solve(
     })
 }
 
-/// Sides of the rows as seen from the center; what is rounding of the center counts as zero, so that d = 0 is admissible.
+/// Sides of the rows as seen from the center; what is rounding of the center counts as zero, so that d = 0 is admissible. Rows
+/// that the center violates by more than that are rows that a step is to reach.
 fn slack(side: &Vector, at_center: &Vector, terms: &Vector, outward: fn(f64, f64) -> f64) -> Vector {
     Vector::from_fn(side.len(), |i, _| {
         let slack = side[i] - at_center[i];
-        if slack.is_finite() && slack.abs() <= FEASIBILITY * terms[i].max(side[i].abs()) {
+        let size = terms[i].max(side[i].abs());
+        if slack.is_finite() && slack.abs() <= FEASIBILITY * size {
             0.0
-        } else {
+        } else if slack.abs() <= LARGEST_VIOLATION * size {
             outward(slack, 0.0)
+        } else {
+            slack
         }
     })
 }

@@ -1,0 +1,158 @@
+//! The closing step: from a stationary point to the piece behind constraints that are nearly active there.
+//!
+//! ```text
+//! s_i + S_i d ≤ −s_i/2 for the inactive constraints next to the point      one composite step with these rows, then go on
+//! ```
+//! The linearization at a stationary point sees one piece of c alone. Where a constraint inside c (an open contact node) is all
+//! but active, the neighbouring piece may lead lower. The excursion may rise above the center; it ends when the center is
+//! undercut, when its model promises no such thing any more, or after a few evaluations: then the proof of the stationary
+//! point stands.
+
+use super::{Base, Composite, Proof};
+use crate::bundle::proposers::proposal::Proposal;
+use crate::bundle::proposers::proposer::Trial;
+use crate::bundle::run::Run;
+use crate::composite::{InactiveConstraints, Linearization};
+use crate::report::Termination;
+use crate::{NonsmoothObjective, Polyhedron, Vector};
+use std::ops::ControlFlow::{self, Break, Continue};
+
+/// Evaluations of an excursion, its first included.
+const MAX_EVALUATIONS: usize = 4;
+/// How far beyond its activation a constraint is taken, in its slacks.
+const BEYOND: f64 = 0.5;
+/// Distances up to which constraints count as next to the point, in lengths of the first step.
+const NEAR: [f64; 3] = [0.3, 0.1, 0.03];
+/// One linearization is pessimistic where constraints become active: decreases up to this many times the predicted one are common.
+const PESSIMISM: f64 = 2.5;
+
+/// A run away from a stationary center.
+#[derive(Debug)]
+pub(crate) struct Excursion {
+    proof: Box<Proof>,
+    /// Where its model is built; none before its first evaluation.
+    base: Option<Base>,
+    weight: f64,
+    left: usize,
+}
+
+impl Excursion {
+    pub(super) fn give_up(&mut self) {
+        self.left = 0;
+    }
+}
+
+impl<O: NonsmoothObjective> Run<'_, '_, O> {
+    /// Ends the run with a proof, unless there are constraints next to the point to be closed first.
+    pub(super) fn leave(&mut self, proof: Proof) -> ControlFlow<Termination, Option<Proposal>> {
+        let inactive = proof.base.linearization.inactive.clone();
+        for near in inactive.iter().flat_map(|_| NEAR) {
+            let Some(set) = inactive.as_ref().and_then(|inactive| self.closing_set(&proof.base, inactive, near)) else {
+                continue;
+            };
+            let first_weight = Composite::new(self.state.first_weight).weight;
+            if let Some((proposal, _)) = self.composite_step(&proof.base, first_weight, Some(&set))? {
+                if let Some(composite) = &mut self.composite {
+                    let left = MAX_EVALUATIONS - 1;
+                    let proof = Box::new(proof);
+                    composite.excursion = Some(Excursion { proof, base: None, weight: first_weight, left });
+                }
+                let predicted_decrease = self.small();
+                return Continue(Some(Proposal { predicted_decrease, ..proposal }));
+            }
+        }
+        self.prove(proof)
+    }
+
+    fn prove(&mut self, proof: Proof) -> ControlFlow<Termination, Option<Proposal>> {
+        let word = proof.word.clone();
+        self.proof = Some(proof);
+        Break(word)
+    }
+
+    /// The admissible points at which the constraints within a distance are active by the linearization; none without any.
+    fn closing_set(&self, base: &Base, inactive: &InactiveConstraints, near: f64) -> Option<Polyhedron> {
+        let reach = near * self.state.first_step;
+        let distance =
+            |i: usize| inactive.slacks[i] / self.state.norm.dual_length(&inactive.jacobian.row(i).transpose());
+        let close: Vec<usize> = (0..inactive.slacks.len()).filter(|&i| distance(i) <= reach).collect();
+        if std::env::var("DBG").is_ok() {
+            let mut all: Vec<(f64, f64)> =
+                (0..inactive.slacks.len()).map(|i| (distance(i) / self.state.first_step, inactive.slacks[i])).collect();
+            all.sort_by(|a, b| a.0.total_cmp(&b.0));
+            eprintln!(
+                "near {near} close {} first_step {} dist {:?}",
+                close.len(),
+                self.state.first_step,
+                &all[..all.len().min(12)]
+            );
+        }
+        if close.is_empty() {
+            return None;
+        }
+        let rows = inactive.jacobian.select_rows(&close);
+        let at_base = &rows * &base.point;
+        let upper = Vector::from_fn(close.len(), |k, _| at_base[k] - (1.0 + BEYOND) * inactive.slacks[close[k]]);
+        let open = Vector::from_element(close.len(), f64::NEG_INFINITY);
+        self.set.clone().with_rows(&rows, &open, &upper).ok()
+    }
+
+    /// The next trial point of an excursion, or the end of the run with the proof of its center.
+    pub(super) fn continue_excursion(
+        &mut self,
+        mut excursion: Excursion,
+    ) -> ControlFlow<Termination, Option<Proposal>> {
+        let base = excursion.base.take().filter(|_| excursion.left > 0);
+        let Some(base) = base else { return self.prove(*excursion.proof) };
+        let found = self.composite_step(&base, excursion.weight, None)?;
+        let least = |proposal: &Proposal| base.value - PESSIMISM * proposal.predicted_decrease;
+        let center = self.state.center_value;
+        if std::env::var("DBG").is_ok() {
+            if let Some((p, _)) = &found {
+                eprintln!(
+                    "exc base {:e} pred {:e} least {:e} center {:e} len {}",
+                    base.value,
+                    p.predicted_decrease,
+                    least(p),
+                    center,
+                    p.step_length
+                );
+            }
+        }
+        let Some((proposal, _)) = found.filter(|(proposal, _)| least(proposal) < center - self.small()) else {
+            return self.prove(*excursion.proof);
+        };
+        let predicted_decrease = (center - base.value + proposal.predicted_decrease).max(self.small());
+        excursion.base = Some(base);
+        excursion.left -= 1;
+        if let Some(composite) = &mut self.composite {
+            composite.excursion = Some(excursion);
+        }
+        Continue(Some(Proposal { predicted_decrease, ..proposal }))
+    }
+
+    pub(super) fn learn_excursion(
+        &mut self,
+        trial: &Trial<'_>,
+        value: f64,
+        linearization: Option<Result<Linearization, String>>,
+    ) -> Option<Result<(), String>> {
+        let composite = self.composite.as_mut()?;
+        let excursion = composite.excursion.as_mut()?;
+        if trial.serious {
+            composite.weight = excursion.weight;
+            composite.excursion = None;
+            return self.rebase(&trial.proposal.trial, value, linearization);
+        }
+        let before = excursion.base.as_ref().map_or(f64::INFINITY, |base| base.value);
+        if value >= before {
+            excursion.weight *= super::FACTOR;
+            return None;
+        }
+        Some(linearization?.map(|linearization| {
+            self.state.counts.jacobians += 1;
+            excursion.weight /= super::FACTOR;
+            excursion.base = Some(Base { point: trial.proposal.trial.clone(), value, linearization });
+        }))
+    }
+}
