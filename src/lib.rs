@@ -211,6 +211,6 @@ pub use objective::{Answer, Evaluation, FnAnswer, FnObjective, NonsmoothObjectiv
 pub use problem::{Coderivative, Cost, CostGradient, StateSolver};
 pub use reduced::ReducedObjective;
 pub use report::{
-    Certificate, CertificateCheck, Counts, IterationRecord, Observer, Origin, Report, StepKind, StopRule, TablePrinter,
-    Termination, TrialCounts,
+    Certificate, CertificateCheck, CompositeProof, Counts, IterationRecord, Observer, Origin, ProofCheck, Report,
+    StepKind, StopRule, TablePrinter, Termination, TrialCounts,
 };

@@ -71,7 +71,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
 
     /// Ends the run; the reason is `Unfinished` if it had not ended by itself.
     pub fn finish(mut self) -> Report {
-        if self.proposal.is_none() {
+        if self.proposal.is_none() && self.proof.is_none() {
             let _solved = self.try_subproblem();
         }
         let certificate = self.certificate();
@@ -92,8 +92,14 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     }
 
     fn certificate(&self) -> Option<Certificate> {
-        let proposal = self.proposal.as_ref()?;
-        Some(Certificate {
+        match &self.proof {
+            Some(proof) => Some(proof.certificate(self.certificate_of(&proof.proposal))),
+            None => self.proposal.as_ref().map(|proposal| self.certificate_of(proposal)),
+        }
+    }
+
+    fn certificate_of(&self, proposal: &Proposal) -> Certificate {
+        Certificate {
             point: self.state.center.clone(),
             value: self.state.center_value,
             error_bound: self.state.center_error_bound(),
@@ -108,6 +114,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             bound_multipliers: proposal.bound_multipliers.clone(),
             active_radius: self.active_radius(proposal),
             noise: self.noise_level(),
-        })
+            composite: None,
+        }
     }
 }

@@ -75,7 +75,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     }
 
     fn advance(&mut self) -> ControlFlow<Termination> {
-        self.check_limits()?;
+        if let Break(limit) = self.check_limits() {
+            return Break(self.end_excursion().unwrap_or(limit));
+        }
         // A step depends on the state of the run alone, not on what the solver remembers of earlier subproblems.
         self.solver.forget();
         let proposal = match self.composite_trial()? {

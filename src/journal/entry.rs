@@ -2,6 +2,7 @@
 
 use super::exact;
 use crate::Request;
+use crate::composite::LinearizationRequest;
 use serde::{Deserialize, Serialize};
 
 /// One evaluation.
@@ -20,12 +21,42 @@ pub struct Entry {
     /// Descent target of the request.
     #[serde(with = "exact")]
     pub target: Option<f64>,
+    /// Outputs and Jacobian that were asked for.
+    pub linearization: Option<RecordedRequest>,
     /// Number of the evaluation whose restart data the request carried.
     pub restarted_from: Option<usize>,
     /// Seconds of computation since the start of the run, earlier invocations included.
     pub seconds: f64,
     /// What came of it.
     pub answer: RecordedAnswer,
+}
+
+/// A [`LinearizationRequest`] as it is written down.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordedRequest {
+    /// Relative accuracy of the Jacobian.
+    #[serde(with = "exact")]
+    pub accuracy: f64,
+    /// Value above which it is not wanted.
+    #[serde(with = "exact")]
+    pub below: f64,
+}
+
+impl From<LinearizationRequest> for RecordedRequest {
+    fn from(request: LinearizationRequest) -> Self {
+        Self { accuracy: request.accuracy.tolerance(), below: request.below }
+    }
+}
+
+/// What came of a request for outputs and Jacobian.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RecordedLinearization {
+    /// They have a file of their own.
+    Stored,
+    /// The reason why they could not be had.
+    Failed(String),
 }
 
 /// What came of an evaluation.
@@ -48,6 +79,8 @@ pub enum RecordedAnswer {
         no_descent: bool,
         /// Whether there were restart data, which then have a file of their own.
         restart_data: bool,
+        /// Outputs and Jacobian, if the oracle was asked for them and had an answer to that.
+        linearization: Option<RecordedLinearization>,
     },
     /// The text of the [`OracleError`](crate::OracleError).
     Failed(String),
@@ -57,10 +90,12 @@ impl Entry {
     /// Whether the request is the recorded one, bit by bit; `restarted_from`: as in the entry.
     pub(super) fn answers<W>(&self, request: &Request<'_, W>, restarted_from: Option<usize>) -> bool {
         let same = |a: f64, b: f64| a.to_bits() == b.to_bits();
+        let bits = |wanted: Option<RecordedRequest>| wanted.map(|r| [r.accuracy.to_bits(), r.below.to_bits()]);
         self.point.len() == request.point.len()
             && self.point.iter().zip(request.point.iter()).all(|(a, b)| same(*a, *b))
             && same(self.accuracy, request.accuracy.tolerance())
             && self.target.map(f64::to_bits) == request.descent_target.map(f64::to_bits)
+            && bits(self.linearization) == bits(request.linearization.map(RecordedRequest::from))
             && self.restarted_from == restarted_from
     }
 }

@@ -1,9 +1,9 @@
 //! An objective that is answered from its journal as long as that lasts, and keeps what it computes after that.
 
-use super::entry::{Entry, RecordedAnswer};
+use super::entry::{Entry, RecordedAnswer, RecordedLinearization, RecordedRequest};
 use super::error::JournalError;
 use super::writer::Writer;
-use crate::composite::OuterFunction;
+use crate::composite::{Linearization, OuterFunction};
 use crate::panics::evaluate_without_panic;
 use crate::{Answer, Evaluation, NonsmoothObjective, OracleError, Report, Request, Vector};
 use serde::Serialize;
@@ -131,6 +131,7 @@ impl<O> Journaled<O> {
         request: &Request<'_, RestartData<W>>,
         answer: RecordedAnswer,
         restart_data: Option<String>,
+        linearization: Option<&Linearization>,
     ) {
         let mut state = self.state.borrow_mut();
         let entry = Entry {
@@ -138,11 +139,12 @@ impl<O> Journaled<O> {
             point: request.point.as_slice().to_vec(),
             accuracy: request.accuracy.tolerance(),
             target: request.descent_target,
+            linearization: request.linearization.map(RecordedRequest::from),
             restarted_from: request.warm_start.map(|start| start.evaluation),
             seconds: state.before + state.clock.elapsed().as_secs_f64(),
             answer,
         };
-        let written = state.journal.append(&entry, restart_data);
+        let written = state.journal.append(&entry, restart_data, linearization);
         if let (Err(error), false) = (&written, state.is_failing) {
             state.warnings.push(format!(
                 "from evaluation {evaluation} on, evaluations are not in the journal: {error}; tried again with every evaluation"
@@ -157,7 +159,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
     fn read(&self, evaluation: usize) -> Option<O::WarmStart> {
         let text = self.state.borrow().journal.restart_data(evaluation);
         let data = text.map_err(|error| error.to_string());
-        let data = data.and_then(|text| serde_json::from_str(&text).map_err(|error| error.to_string()));
+        let data = data.and_then(|text| serde_json::from_slice(&text).map_err(|error| error.to_string()));
         data.map_err(|error| {
             self.warn(format!(
                 "the restart data of evaluation {evaluation} are lost ({error}); the oracle starts without them, and the run may \
@@ -181,7 +183,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
 
     /// An answer of the oracle as it is written down, with the text of its restart data.
     fn record(&self, evaluation: usize, answer: &Answer<O::WarmStart>) -> (RecordedAnswer, Option<String>) {
-        let Evaluation { value, subgradient, error_bound, warm_start, .. } = answer.evaluation();
+        let Evaluation { value, subgradient, error_bound, warm_start, linearization } = answer.evaluation();
         let (restart_data, text) = self.text(evaluation, warm_start);
         let recorded = RecordedAnswer::Evaluated {
             value: *value,
@@ -189,30 +191,60 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
             error_bound: *error_bound,
             no_descent: matches!(answer, Answer::NoDescent(_)),
             restart_data,
+            linearization: linearization.as_ref().map(|linearized| match linearized {
+                Ok(_) => RecordedLinearization::Stored,
+                Err(reason) => RecordedLinearization::Failed(reason.clone()),
+            }),
         };
         (recorded, text)
     }
 
-    /// The answer of an entry.
-    fn answer(entry: Entry) -> Result<Answer<RestartData<O::WarmStart>>, OracleError> {
+    /// The answer of an entry, which was given to this request.
+    fn answer(
+        &self,
+        entry: Entry,
+        request: &Request<'_, RestartData<O::WarmStart>>,
+    ) -> Result<Answer<RestartData<O::WarmStart>>, OracleError> {
         match entry.answer {
             RecordedAnswer::Failed(reason) => Err(OracleError::Failed(reason.into())),
-            RecordedAnswer::Evaluated { value, subgradient, error_bound, no_descent, restart_data } => {
+            RecordedAnswer::Evaluated { value, subgradient, error_bound, no_descent, restart_data, linearization } => {
                 let data = if restart_data { None } else { serde_json::from_str("null").ok() };
                 let warm_start = RestartData { evaluation: entry.evaluation, data };
                 let subgradient = Vector::from_vec(subgradient);
-                let evaluation = Evaluation { error_bound, ..Evaluation::exact(value, subgradient, warm_start) };
+                let linearization = linearization.map(|recorded| match recorded {
+                    RecordedLinearization::Stored => self.linearization(entry.evaluation, request),
+                    RecordedLinearization::Failed(reason) => Err(reason),
+                });
+                let exact = Evaluation::exact(value, subgradient, warm_start);
+                let evaluation = Evaluation { error_bound, linearization, ..exact };
                 Ok(if no_descent { Answer::NoDescent(evaluation) } else { Answer::Accurate(evaluation) })
             }
         }
     }
 
-    /// Asks the oracle, and writes its answer down before it is returned.
-    fn compute(
+    /// Outputs and Jacobian of an evaluation from their file; computed again, to the same bits, where that is lost.
+    fn linearization(
         &self,
         evaluation: usize,
         request: &Request<'_, RestartData<O::WarmStart>>,
-    ) -> Result<Answer<RestartData<O::WarmStart>>, OracleError> {
+    ) -> Result<Linearization, String> {
+        let stored = self.state.borrow().journal.linearization(evaluation);
+        let error = match stored {
+            Ok(linearization) => return Ok(linearization),
+            Err(error) => error,
+        };
+        self.warn(format!("the Jacobian of evaluation {evaluation} is lost ({error}) and is computed again"));
+        let answer = self.ask(request).map_err(|error| error.to_string())?;
+        let linearization =
+            answer.into_evaluation().linearization.ok_or("the oracle returns no Jacobian any more")??;
+        if let Err(error) = self.state.borrow().journal.restore(evaluation, &linearization) {
+            self.warn(format!("the Jacobian of evaluation {evaluation} cannot be written: {error}"));
+        }
+        Ok(linearization)
+    }
+
+    /// Asks the oracle.
+    fn ask(&self, request: &Request<'_, RestartData<O::WarmStart>>) -> Result<Answer<O::WarmStart>, OracleError> {
         let stored = match request.warm_start {
             Some(RestartData { data: None, evaluation }) => self.read(*evaluation),
             _ => None,
@@ -225,12 +257,23 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
             linearization: request.linearization,
         };
         // The optimizer treats a panic as a failed evaluation, and so has the journal.
-        let result = evaluate_without_panic(&self.inner, &inner);
+        evaluate_without_panic(&self.inner, &inner)
+    }
+
+    /// Asks the oracle, and writes its answer down before it is returned.
+    fn compute(
+        &self,
+        evaluation: usize,
+        request: &Request<'_, RestartData<O::WarmStart>>,
+    ) -> Result<Answer<RestartData<O::WarmStart>>, OracleError> {
+        let result = self.ask(request);
         let (answer, text) = match &result {
             Ok(answer) => self.record(evaluation, answer),
             Err(error) => (RecordedAnswer::Failed(error.to_string()), None),
         };
-        self.keep(evaluation, request, answer, text);
+        let linearized = result.as_ref().ok().and_then(|answer| answer.evaluation().linearization.as_ref());
+        let linearization = linearized.and_then(|linearized| linearized.as_ref().ok());
+        self.keep(evaluation, request, answer, text, linearization);
         let tag = |inner: Evaluation<O::WarmStart>| Evaluation {
             value: inner.value,
             subgradient: inner.subgradient,
@@ -263,7 +306,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> NonsmoothOb
             state.evaluation
         };
         match self.recorded(request) {
-            Some(entry) => Self::answer(entry),
+            Some(entry) => self.answer(entry, request),
             None => self.compute(evaluation, request),
         }
     }

@@ -36,7 +36,8 @@
 //! | file in the folder | what it holds |
 //! |---|---|
 //! | `journal.jsonl` | version, identity and dimension in the first line; an [`Entry`] in every other |
-//! | `warm_start_K.json` | restart data of evaluation K: of the last one, and of the one that it was restarted from |
+//! | `warm_start_K.json` | restart data of evaluation K: of the last one, of the one that it was restarted from, and of those that a Jacobian was computed from |
+//! | `linearization_K.bin` | outputs and Jacobian of evaluation K of a composite objective, with a checksum |
 //!
 //! Numbers are written so that they read back as the same bits; `"inf"`, `"-inf"` and `"NaN"` stand for what JSON lacks. Restart
 //! data are written by their own `Serialize`, which JSON limits to finite numbers. A last line that is not whole is cut
@@ -46,17 +47,18 @@
 //!
 //! A journal of another objective is refused ([`JournalError`]). Everything after that is a warning ([`Journaled::warnings`]),
 //! and the run goes on: lines that cannot be written are tried again with every evaluation; restart data that are lost are
-//! replaced by none; where a request differs from the recorded one, the rest of the journal is dropped and computed again.
+//! replaced by none; a Jacobian whose file is lost or torn is computed again, to the same bits; where a request differs from the recorded one, the rest of the journal is dropped and computed again.
 
 mod contents;
 mod entry;
 mod error;
 mod exact;
 mod journaled;
+mod linearization_file;
 mod restart_files;
 mod writer;
 
 pub use contents::Journal;
-pub use entry::{Entry, RecordedAnswer};
+pub use entry::{Entry, RecordedAnswer, RecordedLinearization, RecordedRequest};
 pub use error::JournalError;
 pub use journaled::{Journaled, RestartData};

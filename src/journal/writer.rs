@@ -1,9 +1,11 @@
 //! A journal that is being written: lines are appended and synchronised one by one.
 
 use super::contents::Journal;
-use super::entry::Entry;
+use super::entry::{Entry, RecordedAnswer, RecordedLinearization};
 use super::error::JournalError;
-use super::restart_files;
+use super::linearization_file;
+use super::restart_files::{self, Kind};
+use crate::composite::Linearization;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -13,7 +15,7 @@ use std::path::{Path, PathBuf};
 struct Pending {
     evaluation: usize,
     line: String,
-    restart_data: Option<String>,
+    files: Vec<(Kind, Vec<u8>)>,
 }
 
 /// The files of a journal, open for appending.
@@ -25,8 +27,10 @@ pub(super) struct Writer {
     ends: Vec<u64>,
     /// Lines that could not be written yet.
     pending: Vec<Pending>,
-    /// Evaluations whose restart data lie in the folder.
-    kept: Vec<usize>,
+    /// Files that lie in the folder.
+    kept: Vec<(Kind, usize)>,
+    /// Evaluations whose restart data a Jacobian was computed from, which must be had again if its file is lost.
+    origins: Vec<usize>,
 }
 
 impl Writer {
@@ -48,33 +52,55 @@ impl Writer {
             }
         };
         let kept = restart_files::present(folder).map_err(JournalError::file(folder))?;
-        Ok((Self { folder: folder.to_owned(), file, ends, pending: vec![], kept }, entries))
+        let origins = entries.iter().filter_map(origin).collect();
+        Ok((Self { folder: folder.to_owned(), file, ends, pending: vec![], kept, origins }, entries))
     }
 
     /// Forgets all evaluations after the first `count`.
     pub fn cut(&mut self, count: usize) -> io::Result<()> {
         self.ends.truncate(count + 1);
         self.file.set_len(length(&self.ends))?;
-        self.keep(|evaluation| evaluation <= count)
+        self.origins.retain(|evaluation| *evaluation <= count);
+        self.keep(|_, evaluation| evaluation <= count)
     }
 
     /// Restart data of an evaluation, as JSON.
-    pub fn restart_data(&self, evaluation: usize) -> io::Result<String> {
-        restart_files::read(&self.folder, evaluation)
+    pub fn restart_data(&self, evaluation: usize) -> io::Result<Vec<u8>> {
+        restart_files::read(&self.folder, Kind::WarmStart, evaluation)
     }
 
-    /// Adds an evaluation. Its restart data are kept, and those that it was itself restarted from; no others, since the
-    /// next request can carry only one of the two.
+    /// Outputs and Jacobian of an evaluation.
+    pub fn linearization(&self, evaluation: usize) -> io::Result<Linearization> {
+        linearization_file::decode(&restart_files::read(&self.folder, Kind::Linearization, evaluation)?)
+    }
+
+    /// Writes outputs and Jacobian of an evaluation again.
+    pub fn restore(&self, evaluation: usize, linearization: &Linearization) -> io::Result<()> {
+        let bytes = linearization_file::encode(linearization);
+        restart_files::write(&self.folder, Kind::Linearization, evaluation, &bytes)
+    }
+
+    /// Adds an evaluation. Its restart data are kept, those that it was itself restarted from, and those that Jacobians were
+    /// computed from; no others, since the next request can carry only one of the first two.
     ///
     /// # Errors
     /// The system's reason; what was not written is tried again with the next evaluation.
-    pub fn append(&mut self, entry: &Entry, restart_data: Option<String>) -> io::Result<()> {
+    pub fn append(
+        &mut self,
+        entry: &Entry,
+        restart_data: Option<String>,
+        linearization: Option<&Linearization>,
+    ) -> io::Result<()> {
         let line = serde_json::to_string(entry)? + "\n";
-        self.pending.push(Pending { evaluation: entry.evaluation, line, restart_data });
-        while let Some(Pending { evaluation, line, restart_data }) = self.pending.first() {
-            if let Some(text) = restart_data {
-                restart_files::write(&self.folder, *evaluation, text)?;
-                self.kept.push(*evaluation);
+        let restart_data = restart_data.map(|text| (Kind::WarmStart, text.into_bytes()));
+        let linearization = linearization.map(|known| (Kind::Linearization, linearization_file::encode(known)));
+        let files = restart_data.into_iter().chain(linearization).collect();
+        self.origins.extend(origin(entry));
+        self.pending.push(Pending { evaluation: entry.evaluation, line, files });
+        while let Some(Pending { evaluation, line, files }) = self.pending.first() {
+            for (kind, bytes) in files {
+                restart_files::write(&self.folder, *kind, *evaluation, bytes)?;
+                self.kept.push((*kind, *evaluation));
             }
             let written = self.file.write_all(line.as_bytes()).and_then(|()| self.file.sync_data());
             if let Err(error) = written {
@@ -85,17 +111,31 @@ impl Writer {
             self.ends.push(length(&self.ends) + line.len() as u64);
             self.pending.remove(0);
         }
-        self.keep(|evaluation| evaluation == entry.evaluation || Some(evaluation) == entry.restarted_from)
+        let origins = std::mem::take(&mut self.origins);
+        let needed = |evaluation: usize| {
+            evaluation == entry.evaluation || Some(evaluation) == entry.restarted_from || origins.contains(&evaluation)
+        };
+        let kept = self.keep(|kind, evaluation| kind == Kind::Linearization || needed(evaluation));
+        self.origins = origins;
+        kept
     }
 
-    /// Removes the restart data of all other evaluations.
-    fn keep(&mut self, is_needed: impl Fn(usize) -> bool) -> io::Result<()> {
-        for evaluation in self.kept.iter().copied().filter(|evaluation| !is_needed(*evaluation)) {
-            restart_files::remove(&self.folder, evaluation)?;
+    /// Removes all other files.
+    fn keep(&mut self, is_needed: impl Fn(Kind, usize) -> bool) -> io::Result<()> {
+        for (kind, evaluation) in self.kept.iter().filter(|(kind, evaluation)| !is_needed(*kind, *evaluation)) {
+            restart_files::remove(&self.folder, *kind, *evaluation)?;
         }
-        self.kept.retain(|evaluation| is_needed(*evaluation));
+        self.kept.retain(|(kind, evaluation)| is_needed(*kind, *evaluation));
         Ok(())
     }
+}
+
+/// The evaluation whose restart data the Jacobian of an entry was computed from.
+fn origin(entry: &Entry) -> Option<usize> {
+    let stored = |answer: &RecordedAnswer| {
+        matches!(answer, RecordedAnswer::Evaluated { linearization: Some(RecordedLinearization::Stored), .. })
+    };
+    entry.restarted_from.filter(|_| stored(&entry.answer))
 }
 
 /// Where the next line begins.

@@ -5,6 +5,7 @@
 //! Θ(y) ≥ Θ(x̂) − ‖z̃‖*‖y − x̂‖ − ẽ   for all y ∈ U     (Θ convex; otherwise for the convexified model)
 //! ```
 
+use super::CompositeProof;
 use crate::bundle::cut::Cut;
 use crate::bundle::norm::ScaledNorm;
 use crate::{Polyhedron, Vector};
@@ -43,6 +44,9 @@ pub struct Certificate {
     pub active_radius: f64,
     /// Noise promised by the oracle or seen in its values, in units of Θ.
     pub noise: f64,
+    /// Outputs and Jacobian behind the cuts, where the composite model proved the point stationary.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub composite: Option<CompositeProof>,
 }
 
 /// The numbers of a certificate computed again from its cuts and multipliers.

@@ -1,12 +1,14 @@
 //! What a run leaves behind: solution, reason of the end, certificate, counts, history.
 
 mod certificate;
+mod composite_proof;
 mod observer;
 mod record;
 mod stop;
 mod termination;
 
 pub use certificate::{Certificate, CertificateCheck};
+pub use composite_proof::{CompositeProof, ProofCheck};
 pub use observer::{Observer, TablePrinter};
 pub use record::{Counts, IterationRecord, Origin, StepKind, TrialCounts};
 pub use stop::StopRule;
@@ -83,9 +85,12 @@ impl fmt::Display for Report {
         let trials = &counts.trials;
         writeln!(
             f,
-            "             trial points: {} of the cuts, {} of the curved model, {} explorations",
-            trials.cuts, trials.curved_model, trials.exploration
+            "             trial points: {} of the cuts, {} of the curved model, {} explorations, {} of the composite model",
+            trials.cuts, trials.curved_model, trials.exploration, trials.composite_model
         )?;
+        if counts.jacobians > 0 {
+            writeln!(f, "             {} Jacobians", counts.jacobians)?;
+        }
         writeln!(
             f,
             "             {} subproblems ({} by the fallback solver), {:.3} s",

@@ -102,6 +102,12 @@ impl fmt::Display for Termination {
             Self::Stationary { gap: Some(gap), .. } => {
                 write!(f, "stationary, confirmed: the cuts of the convex objective leave {gap:.1e} to its minimum")
             }
+            Self::Stationary { radius: 0.0, gap: None } => {
+                write!(
+                    f,
+                    "stationary, confirmed by the derivatives at the point itself (a local optimum need not be the best)"
+                )
+            }
             Self::Stationary { radius, gap: None } => {
                 write!(f, "stationary, confirmed by cuts within relative distance {radius:.1e}")
             }

@@ -30,6 +30,19 @@ const NEARLY_INCOMPRESSIBLE: f64 = 0.499;
 /// Longest over shortest edge of a brick from which total FETI takes hundreds of products and more.
 const EXTREME_BRICK: f64 = 30.0;
 
+/// Products with F, by operations, up to which a state by direct condensation with all its derivatives takes less time than one by
+/// total FETI: dense operations are the faster ones (docs/scaling.md).
+const MAX_PRODUCTS_WITH_JACOBIANS: usize = 1000;
+
+/// What a solver will be asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wanted {
+    /// States and adjoints.
+    States,
+    /// The Jacobian of all contact forces too.
+    Jacobians,
+}
+
 /// A contact solver of any kind.
 #[derive(Debug)]
 pub enum AnySolver {
@@ -106,9 +119,24 @@ impl AnySolver {
         kind: SolverKind,
         preconditioner: PreconditionerKind,
     ) -> Result<Self, ContactError> {
+        Self::for_use(problem, kind, preconditioner, Wanted::States)
+    }
+
+    /// The solver of a kind; `preconditioner` is for total FETI.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when a symbolic analysis fails.
+    pub fn for_use(
+        problem: Arc<ContactProblem>,
+        kind: SolverKind,
+        preconditioner: PreconditionerKind,
+        wanted: Wanted,
+    ) -> Result<Self, ContactError> {
         let torn = |problem, method| TotalFeti::new(problem, preconditioner, method).map(Self::from);
         match kind {
-            SolverKind::Auto => AutoSolver::new(problem, preconditioner).map(|solver| Self::Auto(Box::new(solver))),
+            SolverKind::Auto => {
+                AutoSolver::new(problem, preconditioner, wanted).map(|solver| Self::Auto(Box::new(solver)))
+            }
             SolverKind::Newton => torn(problem, DualMethod::Newton(Recycling::default())),
             SolverKind::AugmentedLagrangian => torn(problem, DualMethod::SuccessiveApproximations),
             SolverKind::Direct => DirectSolver::new(problem).map(Self::from),
@@ -144,12 +172,18 @@ fn prepared<T>(cell: &OnceLock<T>, build: impl FnOnce() -> Result<T, ContactErro
 
 impl AutoSolver {
     /// Prepares the solver that comes first.
-    fn new(problem: Arc<ContactProblem>, preconditioner: PreconditionerKind) -> Result<Self, ContactError> {
+    fn new(
+        problem: Arc<ContactProblem>,
+        preconditioner: PreconditionerKind,
+        wanted: Wanted,
+    ) -> Result<Self, ContactError> {
         let scene = &problem.scene;
         let condensable = memory::estimate(scene, SolverKind::Direct, preconditioner) <= MAX_CONDENSED_BYTES;
-        let max_products =
-            condensable.then(|| WorkEstimate::of(scene).products_per_condensed_state().max(MIN_PRODUCTS));
-        let direct_first = if condensable { slow_for_total_feti(&problem) } else { None };
+        let products = WorkEstimate::of(scene).products_per_condensed_state();
+        let max_products = condensable.then(|| products.max(MIN_PRODUCTS));
+        let cheaper = wanted == Wanted::Jacobians && products <= MAX_PRODUCTS_WITH_JACOBIANS;
+        let cheaper = cheaper.then(|| "Jacobians of all pressures cost least there".to_owned());
+        let direct_first = if condensable { slow_for_total_feti(&problem).or(cheaper) } else { None };
         let (torn, direct) = (OnceLock::new(), OnceLock::new());
         let solver = Self { problem, preconditioner, torn, direct, direct_first, max_products };
         match solver.direct_first {
@@ -191,12 +225,11 @@ impl AutoSolver {
         }
     }
 
-    /// Sensitivities at a state of total FETI by direct condensation: where the adjoint on TFETI does not converge.
-    fn sensitivities(&self, state: &TornState, direction: &[f64]) -> Result<Sensitivities, ContactError> {
+    /// The shape of a state of total FETI solved by direct condensation: where derivatives on TFETI do not converge.
+    fn condensed(&self, state: &TornState) -> Result<(&DirectSolver, ContactState<DirectState>), ContactError> {
         let configuration = Configuration::of(&self.problem, state.blocks().to_vec())?;
         let direct = self.direct()?;
-        let state = direct.solve_configuration(configuration, None, 0.0)?;
-        direct.sensitivities(&state.solution, direction, 0.0)
+        Ok((direct, direct.solve_configuration(configuration, None, 0.0)?))
     }
 
     fn torn_then_direct(
@@ -304,7 +337,10 @@ impl ContactSolver for AnySolver {
     ) -> Result<Sensitivities, ContactError> {
         match state {
             AnyState::Torn(state) => match (self.torn()?.sensitivities(state, direction, tolerance), self) {
-                (Err(_), Self::Auto(solver)) if solver.max_products.is_some() => solver.sensitivities(state, direction),
+                (Err(_), Self::Auto(solver)) if solver.max_products.is_some() => {
+                    let (direct, state) = solver.condensed(state)?;
+                    direct.sensitivities(&state.solution, direction, 0.0)
+                }
                 (result, _) => result,
             },
             AnyState::Direct(state) => self.direct()?.sensitivities(state, direction, tolerance),
@@ -313,7 +349,13 @@ impl ContactSolver for AnySolver {
 
     fn tangents(&self, state: &AnyState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
         match state {
-            AnyState::Torn(state) => self.torn()?.tangents(state, changes, tolerance),
+            AnyState::Torn(state) => match (self.torn()?.tangents(state, changes, tolerance), self) {
+                (Err(_), Self::Auto(solver)) if solver.max_products.is_some() => {
+                    let (direct, state) = solver.condensed(state)?;
+                    direct.tangents(&state.solution, changes, tolerance)
+                }
+                (result, _) => result,
+            },
             AnyState::Direct(state) => self.direct()?.tangents(state, changes, tolerance),
         }
     }

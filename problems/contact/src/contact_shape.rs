@@ -18,7 +18,7 @@ use nonsmooth::{Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJ
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-pub use crate::any_solver::{AnySolver, AnyState, AutoSolver};
+pub use crate::any_solver::{AnySolver, AnyState, AutoSolver, Wanted};
 pub use crate::equilibrium::ContactWarmStart;
 pub use crate::solver_kind::SolverKind;
 
@@ -62,10 +62,23 @@ impl ContactShape {
         kind: SolverKind,
         preconditioner: PreconditionerKind,
     ) -> Result<Self, SceneError> {
+        Self::for_use(scene, kind, preconditioner, Wanted::States)
+    }
+
+    /// As [`ContactShape::with_preconditioner`], for what the solver will be asked for: the choice of `auto` depends on it.
+    ///
+    /// # Errors
+    /// As [`ContactShape::new`].
+    pub fn for_use(
+        scene: Scene,
+        kind: SolverKind,
+        preconditioner: PreconditionerKind,
+        wanted: Wanted,
+    ) -> Result<Self, SceneError> {
         scene.validate()?;
         memory::check(&scene, kind, preconditioner)?;
         let problem = Arc::new(ContactProblem::new(scene)?);
-        let solver = AnySolver::new(problem, kind, preconditioner)
+        let solver = AnySolver::for_use(problem, kind, preconditioner, wanted)
             .map_err(|error| SceneError::out_of_range("mesh", error, "a size that can be factored"))?;
         Ok(Self { solver })
     }

@@ -24,7 +24,8 @@ pub use case::{Case, default_subdomains};
 pub use grid_file::read_grid;
 pub use schema::schema;
 pub use settings::{
-    AccuracyName, MeasureName, MeshSection, ObjectiveSection, OptimizerSection, OutputSection, SolverSection,
+    AccuracyName, MeasureName, MeshSection, MethodName, ObjectiveSection, OptimizerSection, OutputSection,
+    SolverSection,
 };
 pub use surfaces::{AdmissibleSection, CounterSection, SplineName, StartSection, SurfaceSection};
 pub use table::field_table;

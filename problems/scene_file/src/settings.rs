@@ -62,6 +62,8 @@ pub struct SolverSection {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OptimizerSection {
+    /// With the composite model of pressure measure and pressures, or by cuts alone.
+    pub method: MethodName,
     /// Largest number of evaluations of objective and subgradient, on every mesh.
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub max_evaluations: usize,
@@ -90,6 +92,7 @@ pub struct OptimizerSection {
 impl Default for OptimizerSection {
     fn default() -> Self {
         Self {
+            method: MethodName::default(),
             max_evaluations: 150,
             tolerance: 1e-7,
             time_limit: None,
@@ -99,6 +102,17 @@ impl Default for OptimizerSection {
             continuation: vec![],
         }
     }
+}
+
+/// What proposes trial points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum MethodName {
+    /// The composite model, with the Jacobian of all pressures, beside those of the bundle.
+    #[default]
+    Composite,
+    /// The bundle alone, with one subgradient per shape.
+    Bundle,
 }
 
 /// How accurately the objective is asked for.

@@ -8,7 +8,7 @@ use contact::contact_shape::{ContactShape, SolverKind};
 use contact::error::SceneError;
 use contact::shape::SplineKind;
 use contact::tfeti::PreconditionerKind;
-use scene_file::{MeasureName, SceneFile, SplineName, default_subdomains};
+use scene_file::{MeasureName, MethodName, SceneFile, SplineName, default_subdomains};
 use serde::de::value::Error as NameError;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::path::PathBuf;
@@ -88,6 +88,9 @@ pub struct Arguments {
     /// Control heights to start the optimization from [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
+    /// What proposes trial points: the composite model beside the bundle, or the bundle alone.
+    #[arg(long, value_parser = named::<MethodName>, value_name = "composite|bundle")]
+    pub optimizer: Option<MethodName>,
     /// Largest number of evaluations of the optimization.
     #[arg(long, value_name = "K", value_parser = count("optimizer.max_evaluations"))]
     pub max_evaluations: Option<usize>,
@@ -169,6 +172,7 @@ impl Arguments {
         for (option, given, taken, allowed) in [
             ("--controls", self.controls.is_some(), evaluating, takes_controls),
             ("--start-controls", self.start_controls.is_some(), optimizing, takes_start),
+            ("--optimizer", self.optimizer.is_some(), optimizing, limits),
             ("--max-evaluations", self.max_evaluations.is_some(), optimizing, limits),
             ("--diagnose", self.diagnose, self.command == Command::Evaluate, "with evaluate only"),
             ("--time-limit", self.time_limit.is_some(), optimizing, limits),
@@ -217,7 +221,7 @@ impl Arguments {
     }
 
     /// The options that stand for fields of the scene, with the fields and whether they are given.
-    fn fields(&self) -> [(&'static str, &'static str, bool); 15] {
+    fn fields(&self) -> [(&'static str, &'static str, bool); 16] {
         [
             ("mesh", "mesh.bricks", self.mesh.is_some()),
             ("subdomains", "mesh.subdomains", self.subdomains.is_some()),
@@ -232,6 +236,7 @@ impl Arguments {
             ("preconditioner", "solver.preconditioner", self.preconditioner.is_some()),
             ("objective", "objective.measure", self.objective.is_some()),
             ("exponent", "objective.exponent", self.exponent.is_some()),
+            ("optimizer", "optimizer.method", self.optimizer.is_some()),
             ("max_evaluations", "optimizer.max_evaluations", self.max_evaluations.is_some()),
             ("continuation", "optimizer.continuation", self.continuation.is_some()),
         ]
@@ -312,6 +317,7 @@ impl Arguments {
             file.objective.exponent = None;
         }
         file.objective.exponent = self.exponent.or(file.objective.exponent);
+        file.optimizer.method = self.optimizer.unwrap_or(file.optimizer.method);
         file.optimizer.max_evaluations = self.max_evaluations.unwrap_or(file.optimizer.max_evaluations);
         file.optimizer.time_limit = self.time_limit.or(file.optimizer.time_limit);
         if let Some(meshes) = &self.continuation {
@@ -374,7 +380,7 @@ mod tests {
     #[test]
     fn every_name_that_the_help_lists_is_one() {
         let command = <Arguments as clap::CommandFactory>::command();
-        for option in ["solver", "preconditioner", "formulation", "objective"] {
+        for option in ["solver", "preconditioner", "formulation", "objective", "optimizer"] {
             let argument = command.get_arguments().find(|argument| argument.get_id() == option).expect(option);
             let listed: Vec<String> = match argument.get_possible_values() {
                 values if !values.is_empty() => values.iter().map(|value| value.get_name().to_owned()).collect(),

@@ -2,22 +2,40 @@
 
 use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
-use contact::contact_shape::{ContactShape, ContactState};
+use contact::contact_shape::{ContactShape, ContactState, Wanted};
 use contact::cost::PressureCost;
 use contact::plausibility::Warning;
 use nonsmooth::{Accuracy, CompositeObjective, Cost, StateSolver, Vector};
-use scene_file::Case;
+use scene_file::{Case, MethodName};
 
 /// Θ of a scene: the pressure measure of the contact state that the control heights lead to. Where Σσ^p may be no double, its
 /// p-th root.
 pub type ContactObjective = CompositeObjective<ContactShape, PressureCost>;
 
-/// Θ of a case.
+/// Θ of a case, for single shapes.
 ///
 /// # Errors
 /// [`Failure::Input`] naming the field.
 pub fn objective(case: &Case) -> Result<ContactObjective, Failure> {
-    let shape = ContactShape::with_preconditioner(case.scene.clone(), case.solver, case.preconditioner)?;
+    objective_for(case, Wanted::States)
+}
+
+/// Θ of a case, for its optimization.
+///
+/// # Errors
+/// [`Failure::Input`] naming the field.
+pub fn optimized_objective(case: &Case) -> Result<ContactObjective, Failure> {
+    objective_for(
+        case,
+        match case.optimizer.method {
+            MethodName::Composite => Wanted::Jacobians,
+            MethodName::Bundle => Wanted::States,
+        },
+    )
+}
+
+fn objective_for(case: &Case, wanted: Wanted) -> Result<ContactObjective, Failure> {
+    let shape = ContactShape::for_use(case.scene.clone(), case.solver, case.preconditioner, wanted)?;
     let cost = PressureCost::new(case.measure, &shape.problem().boundary)?.normalised_for(&case.scene);
     Ok(CompositeObjective::new(shape, cost))
 }

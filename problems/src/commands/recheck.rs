@@ -5,8 +5,9 @@ use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{file_error, json};
 use crate::commands::optimize::stages::{MeshStage, stages};
+use contact::cost::PressureCost;
 use contact::equilibrium::ContactProblem;
-use nonsmooth::{Certificate, CertificateCheck, Journal};
+use nonsmooth::{Certificate, CertificateCheck, Journal, ProofCheck};
 use scene_file::{Case, read_text};
 use serde::Serialize;
 use std::fmt;
@@ -48,6 +49,9 @@ struct RecheckJson {
     violation: f64,
     /// Whether the point of the certificate is that of controls.json.
     point_equals_controls: bool,
+    /// Differences of the cuts from those that outputs, Jacobian and pressure measure give, where the composite model proved the
+    /// point stationary.
+    composite: Option<ProofCheck>,
     agrees: bool,
 }
 
@@ -59,11 +63,18 @@ pub fn run(case: &Case, arguments: &Arguments) -> Result<String, Failure> {
     let Some(MeshStage { case, .. }) = last_stage(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };
+    let scene = case.scene.clone();
     let problem = ContactProblem::new(case.scene)?;
-    let check = certificate.recheck(problem.admissible.polyhedron()).map_err(|error| {
+    let cost = PressureCost::new(case.measure, &problem.boundary)?.normalised_for(&scene);
+    let foreign = |error| {
         Failure::Computation(format!("{}: the certificate is not one of this scene: {error}", folder.display()))
-    })?;
-    let result = RecheckJson::new(&certificate, &check, certificate.point == controls);
+    };
+    let check = certificate.recheck(problem.admissible.polyhedron()).map_err(foreign)?;
+    let proof = certificate.composite.as_ref();
+    let proof = proof.map(|proof| proof.recheck(&certificate, &cost)).transpose().map_err(foreign)?;
+    let mut result = RecheckJson::new(&certificate, &check, certificate.point == controls);
+    result.agrees &= proof.is_none_or(|proof| proof.largest() <= MAX_ROUNDING);
+    result.composite = proof;
     let text = arguments.printed(result.to_string(), json(&result)?);
     if result.agrees {
         return Ok(text);
@@ -104,6 +115,7 @@ impl RecheckJson {
             open_side_multiplier: check.open_side_multiplier,
             violation: check.violation,
             point_equals_controls,
+            composite: None,
         }
     }
 }
@@ -125,6 +137,12 @@ impl fmt::Display for RecheckJson {
         )?;
         let equal = if self.point_equals_controls { "equals" } else { "does NOT equal" };
         writeln!(f, "point               {equal} controls.json")?;
+        if let Some(ProofCheck { value, outer, cuts, .. }) = &self.composite {
+            writeln!(
+                f,
+                "composite proof     relative differences: objective {value:.1e}, pressure measure {outer:.1e}, cuts {cuts:.1e}"
+            )?;
+        }
         writeln!(f, "certificate         {}", verdict(self.agrees))
     }
 }

@@ -161,7 +161,8 @@ fn foreign_below(folder: &Path, prefix: &str, names: &BTreeSet<String>) -> io::R
 /// Whether a file is on a list, or one that comes with a file on the list.
 fn is_listed(name: &str, names: &BTreeSet<String>) -> bool {
     let (folder, file) = name.rsplit_once('/').map_or(("", name), |(folder, file)| (&name[..=folder.len()], file));
-    let of_journal = file.starts_with("warm_start_") && names.contains(&format!("{folder}{JOURNAL}"));
+    let of_journal = ["warm_start_", "linearization_"].iter().any(|prefix| file.starts_with(prefix))
+        && names.contains(&format!("{folder}{JOURNAL}"));
     let being_written = name.strip_suffix(UNFINISHED).is_some_and(|name| names.contains(name));
     names.contains(name) || of_journal || being_written
 }

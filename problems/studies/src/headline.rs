@@ -48,8 +48,8 @@ fn pressure(value: &Value) -> String {
 /// Evaluations of an optimization until Θ is at most `level`; none if it never is.
 fn evaluations_to(report: &Value, level: f64) -> Option<usize> {
     // A failed evaluation has no value.
-    let reached = |value: &Value| value.as_f64().is_some_and(|value| value <= level);
-    report["history"].as_array()?.iter().position(reached).map(|index| index + 1)
+    let reached = |entry: &Value| entry["objective"].as_f64().is_some_and(|value| value <= level);
+    report["course"].as_array()?.iter().position(reached).map(|index| index + 1)
 }
 
 /// A line of the table of README.md for an optimization; `paper` is what stands beside the reduction.

@@ -90,7 +90,7 @@ fn a_short_optimization_descends_and_stays_admissible() {
     assert!(start / end > 5.0, "{start} {end}");
     assert!(result["largest_constraint_violation"].as_f64().unwrap() <= 1e-9);
     assert_eq!(result["evaluations"], 25);
-    assert_eq!(result["history"].as_array().unwrap().len(), 25);
+    assert_eq!(result["course"].as_array().unwrap().len(), 25);
     assert_eq!(result["controls"].as_array().unwrap().len(), 36);
     let termination = result["termination"]["text"].as_str().unwrap();
     assert!(termination.contains("limit"), "{termination}");

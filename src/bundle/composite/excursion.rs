@@ -70,23 +70,20 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         Break(word)
     }
 
+    /// The word of the stationary center, if a limit ends the run on an excursion from it.
+    pub(in crate::bundle) fn end_excursion(&mut self) -> Option<Termination> {
+        let excursion = self.composite.as_mut()?.excursion.take()?;
+        let word = excursion.proof.word.clone();
+        self.proof = Some(*excursion.proof);
+        Some(word)
+    }
+
     /// The admissible points at which the constraints within a distance are active by the linearization; none without any.
     fn closing_set(&self, base: &Base, inactive: &InactiveConstraints, near: f64) -> Option<Polyhedron> {
         let reach = near * self.state.first_step;
         let distance =
             |i: usize| inactive.slacks[i] / self.state.norm.dual_length(&inactive.jacobian.row(i).transpose());
         let close: Vec<usize> = (0..inactive.slacks.len()).filter(|&i| distance(i) <= reach).collect();
-        if std::env::var("DBG").is_ok() {
-            let mut all: Vec<(f64, f64)> =
-                (0..inactive.slacks.len()).map(|i| (distance(i) / self.state.first_step, inactive.slacks[i])).collect();
-            all.sort_by(|a, b| a.0.total_cmp(&b.0));
-            eprintln!(
-                "near {near} close {} first_step {} dist {:?}",
-                close.len(),
-                self.state.first_step,
-                &all[..all.len().min(12)]
-            );
-        }
         if close.is_empty() {
             return None;
         }
@@ -107,18 +104,6 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let found = self.composite_step(&base, excursion.weight, None)?;
         let least = |proposal: &Proposal| base.value - PESSIMISM * proposal.predicted_decrease;
         let center = self.state.center_value;
-        if std::env::var("DBG").is_ok() {
-            if let Some((p, _)) = &found {
-                eprintln!(
-                    "exc base {:e} pred {:e} least {:e} center {:e} len {}",
-                    base.value,
-                    p.predicted_decrease,
-                    least(p),
-                    center,
-                    p.step_length
-                );
-            }
-        }
         let Some((proposal, _)) = found.filter(|(proposal, _)| least(proposal) < center - self.small()) else {
             return self.prove(*excursion.proof);
         };

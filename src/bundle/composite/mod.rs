@@ -9,6 +9,7 @@
 
 mod excursion;
 mod model;
+mod proof;
 
 use super::proposers::aggregate::{aggregate_sizes, slack_error};
 use super::proposers::pause::Pause;
@@ -24,6 +25,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 pub(crate) use model::CompositeStep;
 pub use model::OuterCut;
+pub(crate) use proof::Proof;
 
 /// The first weight, in first weights of the cuts.
 const FIRST_WEIGHT: f64 = 1e-2;
@@ -61,15 +63,6 @@ pub(crate) struct Base {
     pub point: Vector,
     pub value: f64,
     pub linearization: Linearization,
-}
-
-/// What proves that a point is stationary.
-#[derive(Debug, Clone)]
-pub(crate) struct Proof {
-    pub word: Termination,
-    pub base: Base,
-    pub step: CompositeStep,
-    pub proposal: Proposal,
 }
 
 impl Composite {
@@ -238,7 +231,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             cut_change: 0.0,
             aggregate_sizes: aggregate_sizes(std::iter::once((1.0, &aggregate)), sides, &self.set),
             slack_error: slack,
-            aggregate_norm: weight * length,
+            aggregate_norm: state
+                .norm
+                .dual_length(&(&aggregate + self.set.rows().tr_mul(&rows) + &step.bound_multipliers)),
             aggregate_error: error + slack,
             cut_error: error,
             cut_multipliers: vec![0.0; state.bundle.cuts().len()],

@@ -4,7 +4,7 @@
 pub mod comparison;
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::contact_objective::{SolvedShape, objective};
+use crate::commands::contact_objective::{SolvedShape, optimized_objective};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, REPORT, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
@@ -22,7 +22,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         let allowed = "a coefficient > 0 to compare with no friction at all";
         return Err(session.arguments.blame(SceneError::out_of_range("friction", 0, allowed)).into());
     }
-    let (folder, initial_controls) = begin(&objective(&loaded.case)?, loaded, None, &COMPARED, session)?;
+    let (folder, initial_controls) = begin(&optimized_objective(&loaded.case)?, loaded, None, &COMPARED, session)?;
     let folder = folder.as_ref();
     let continued = folder.map(|folder| resume_command(folder.folder().path(), true));
     let (as_json, parts) = (session.arguments.json, parts(loaded, folder)?);

@@ -8,7 +8,7 @@ use nonsmooth::{
     AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, Observer, Report,
     VariableScaling, Vector,
 };
-use scene_file::AccuracyName;
+use scene_file::{AccuracyName, MethodName};
 use std::ops::ControlFlow;
 
 /// An optimization on one mesh that has ended.
@@ -65,6 +65,7 @@ pub fn run_on_mesh(
         first_step: Some(first_step),
         bundle_size: optimizer.bundle_size,
         accuracy,
+        composite_model: optimizer.method == MethodName::Composite,
         scaling: VariableScaling::Linear(mean_height_coordinates(&initial_controls, first_step)),
         ..BundleTrustConfig::default()
     };

@@ -1,6 +1,6 @@
 //! An optimization from its beginning to its end: on one mesh or on growing ones, kept on disk if asked for.
 
-use crate::commands::contact_objective::{ContactObjective, objective};
+use crate::commands::contact_objective::{ContactObjective, optimized_objective};
 use crate::commands::controls;
 use crate::commands::failure::{Failure, failed};
 use crate::commands::folder::Folder;
@@ -61,7 +61,7 @@ pub fn optimize(
     session: &Session<'_>,
 ) -> Result<OptimizationRun, Failure> {
     let stages = stages(&loaded.case);
-    let first = objective(&stages[0].case)?;
+    let first = optimized_objective(&stages[0].case)?;
     let (folder, mut controls) = begin(&first, loaded, given, &[], session)?;
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
@@ -71,7 +71,7 @@ pub fn optimize(
     let mut step = optimizer.first_step.unwrap_or_else(|| first_step(&first, &controls));
     let (mut mesh_runs, mut first) = (Vec::new(), Some(first));
     for stage in &stages {
-        let objective = first.take().map_or_else(|| objective(&stage.case), Ok)?;
+        let objective = first.take().map_or_else(|| optimized_objective(&stage.case), Ok)?;
         let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
         let start = (controls, step);
         let limit = optimizer.time_limit.map(left);

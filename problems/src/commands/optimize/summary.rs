@@ -7,7 +7,7 @@ use crate::commands::optimize::mesh_run::MeshRun;
 use contact::contact_shape::SolverKind;
 use contact::equilibrium::{Kink, Residuals};
 use contact::plausibility::Warning;
-use nonsmooth::{Report, Termination, Vector};
+use nonsmooth::{IterationRecord, Origin, Report, StepKind, Termination, Vector};
 use serde::Serialize;
 
 /// The keys of the JSON of `optimize`.
@@ -19,12 +19,17 @@ struct OptimizationJson<'a> {
     objective_root: f64,
     controls: &'a [f64],
     evaluations: usize,
+    /// Contact problems solved at trial points, failed ones included.
+    states: usize,
+    /// Jacobians of all pressures.
+    jacobians: usize,
     serious_steps: usize,
     null_steps: usize,
     termination: Ending<'a>,
     certificate: Option<CertificateJson>,
     largest_constraint_violation: f64,
-    history: Vec<Option<f64>>,
+    /// One entry per evaluation.
+    course: Vec<CourseJson<'a>>,
     seconds: f64,
     /// Number of evaluations of an earlier part of the run, which were answered from its journal.
     resumed_evaluations: usize,
@@ -43,6 +48,35 @@ struct OptimizationJson<'a> {
     /// Those of the optimizer have the code `optimizer`, the others look at the final state.
     warnings: Vec<Warning>,
     left_out: Vec<&'static str>,
+}
+
+/// One evaluation.
+#[derive(Debug, Serialize)]
+struct CourseJson<'a> {
+    evaluation: usize,
+    /// None if the evaluation failed.
+    objective: Option<f64>,
+    kind: StepKind,
+    /// Who proposed the point.
+    origin: Origin,
+    /// Whether the Jacobian of all pressures was computed.
+    jacobian: bool,
+    /// Seconds since the start.
+    seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    note: Option<&'a str>,
+}
+
+fn course(record: &IterationRecord) -> CourseJson<'_> {
+    CourseJson {
+        evaluation: record.evaluation,
+        objective: record.value,
+        kind: record.kind,
+        origin: record.origin,
+        jacobian: record.jacobian,
+        seconds: record.seconds,
+        note: record.note.as_deref().or(record.failure.as_deref()),
+    }
 }
 
 /// How a run ended.
@@ -130,6 +164,8 @@ pub fn summary<'a>(
         objective_root: objective.cost().root(),
         controls: report.solution.as_slice(),
         evaluations: report.counts.evaluations,
+        states: report.counts.evaluations,
+        jacobians: report.counts.jacobians,
         serious_steps: report.counts.serious,
         null_steps: report.counts.null,
         termination: ending(report),
@@ -144,7 +180,7 @@ pub fn summary<'a>(
             noise: certificate.noise,
         }),
         largest_constraint_violation: report.largest_violation,
-        history: report.history.iter().map(|record| record.value).collect(),
+        course: report.history.iter().map(course).collect(),
         seconds: report.seconds,
         resumed_evaluations: *replayed,
         peak_pressure: shapes.each_ref().map(|shape| shape.peak_pressure),

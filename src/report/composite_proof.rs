@@ -1,0 +1,80 @@
+//! What the composite model proves at a point, with all that is needed to compute it again.
+//!
+//! ```text
+//! z̃ = Gᵀ Σ λ_j w_j + Aᵀμ + ν,   w_j ∈ ∂h(c_j),     e_j = h(c) − h(c_j) − ⟨w_j, c − c_j⟩ ≥ 0,   Σ λ_j e_j = h(c) − ⟨w, c⟩ + h*(w)
+//! ```
+//! The last equation holds where Σ λ_j w_j is a subgradient at all c_j with a multiplier, as it is for one c_j; otherwise the
+//! sum is an upper bound of the right side.
+
+use super::Certificate;
+use crate::bundle::OuterCut;
+use crate::checks::check_size;
+use crate::composite::OuterFunction;
+use crate::{InputError, Matrix, Vector};
+use serde::{Deserialize, Serialize};
+
+/// Outputs, Jacobian and cuts of the outer function behind a certificate. The certificate's own cuts are these, seen in the
+/// variables: subgradient Gᵀw_j, linearization error e_j, multiplier λ_j.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct CompositeProof {
+    /// c at the point, m entries.
+    pub outputs: Vector,
+    /// G there, m × n.
+    pub jacobian: Matrix,
+    /// Relative error of the columns of G that the oracle promised.
+    pub accuracy: f64,
+    /// The cuts of h, in the order of the certificate's cuts.
+    pub cuts: Vec<OuterCut>,
+}
+
+/// Differences between a certificate and its proof computed again, relative to the sizes of what is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ProofCheck {
+    /// |h(c) − Θ(x̂)|/|Θ(x̂)|.
+    pub value: f64,
+    /// h(c_j) and w_j against the outer function.
+    pub outer: f64,
+    /// Gᵀw_j against the subgradients of the certificate's cuts, and e_j against their errors (relative to Θ(x̂)).
+    pub cuts: f64,
+}
+
+impl ProofCheck {
+    /// The largest of the differences.
+    pub fn largest(&self) -> f64 {
+        self.value.max(self.outer).max(self.cuts)
+    }
+}
+
+impl CompositeProof {
+    /// Computes the cuts of a certificate again, from outputs, Jacobian and outer function alone.
+    ///
+    /// # Errors
+    /// [`InputError::Dimension`] if the parts do not fit together.
+    pub fn recheck(&self, certificate: &Certificate, outer: &dyn OuterFunction) -> Result<ProofCheck, InputError> {
+        let (m, n) = (self.outputs.len(), certificate.point.len());
+        check_size("rows of the Jacobian", m, self.jacobian.nrows())?;
+        check_size("columns of the Jacobian", n, self.jacobian.ncols())?;
+        check_size("cuts of the outer function", certificate.cuts.len(), self.cuts.len())?;
+        let relative = |difference: f64, size: f64| if difference == 0.0 { 0.0 } else { difference / size };
+        let distance = |a: &Vector, b: &Vector| relative((a - b).norm(), a.norm().max(b.norm()));
+        let value = outer.value(&self.outputs);
+        let theta = certificate.value.abs();
+        let mut check = ProofCheck { value: relative((value - certificate.value).abs(), theta), outer: 0.0, cuts: 0.0 };
+        let raise =
+            |largest: &mut f64, found: f64| *largest = if found.is_nan() { f64::INFINITY } else { largest.max(found) };
+        for (own, cut) in self.cuts.iter().zip(&certificate.cuts) {
+            check_size("outputs of a cut", m, own.outputs.len())?;
+            check_size("subgradient of the outer function", m, own.subgradient.len())?;
+            let at = outer.value(&own.outputs);
+            raise(&mut check.outer, relative((at - own.value).abs(), at.abs().max(own.value.abs())));
+            raise(&mut check.outer, distance(&outer.subgradient(&own.outputs), &own.subgradient));
+            raise(&mut check.cuts, distance(&self.jacobian.tr_mul(&own.subgradient), &cut.subgradient));
+            let seen = cut.linearization_error(&certificate.point, certificate.value);
+            raise(&mut check.cuts, relative((own.error(&self.outputs, value) - seen).abs(), theta));
+            raise(&mut check.cuts, (own.multiplier - cut.multiplier).abs());
+        }
+        Ok(check)
+    }
+}
