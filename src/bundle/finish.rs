@@ -93,7 +93,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
 
     fn certificate(&self) -> Option<Certificate> {
         match &self.proof {
-            Some(proof) => Some(proof.certificate(self.certificate_of(&proof.proposal))),
+            Some(proof) => Some(proof.certificate(self.certificate_of(&proof.proposal), &self.set)),
             None => self.proposal.as_ref().map(|proposal| self.certificate_of(proposal)),
         }
     }

@@ -220,7 +220,7 @@ fn foreign_journals_are_refused_and_left_alone() {
     assert!(["journal.jsonl", "\"moody\"", "\"noisy\""].iter().all(|word| error.to_string().contains(word)), "{error}");
     assert!(matches!(refused("moody", 3), JournalError::Dimension { found: 2, expected: 3, .. }));
     for (old, new, line) in [
-        ("{\"journal\":2", "{\"journal\":99", None),
+        ("{\"journal\":3", "{\"journal\":99", None),
         ("\"evaluation\":2", "\"evaluation\":7", Some(3)),
         ("\"point\":[", "\"point\":[1.0,", Some(2)),
         ("\"answer\"", "\"reply\"", Some(2)),

@@ -5,7 +5,7 @@ use std::path::Path;
 use testset::kit;
 
 const SIGNORINI: &str = env!("CARGO_BIN_EXE_signorini3d");
-const SMALL: [&str; 5] = ["compare", "--mesh", "4", "--max-evaluations", "12"];
+const SMALL: [&str; 7] = ["compare", "--mesh", "4", "--optimizer", "bundle", "--max-evaluations", "12"];
 
 fn json(arguments: &[&str]) -> Value {
     kit::json(SIGNORINI, arguments)
@@ -48,7 +48,7 @@ fn the_table_is_what_separate_commands_find() {
     // Continued with more evaluations, it is the comparison that would have been made with them at once.
     let arguments = ["compare", "--resume", kit::text(folder), "--max-evaluations", "15", "--json"];
     let continued = json(&arguments);
-    let at_once = json(&["compare", "--mesh", "4", "--max-evaluations", "15", "--json"]);
+    let at_once = json(&["compare", "--mesh", "4", "--optimizer", "bundle", "--max-evaluations", "15", "--json"]);
     assert_eq!(continued["shapes"], at_once["shapes"]);
     // Fewer evaluations than it has are refused, and nothing is touched.
     let kept = std::fs::read(folder.join("report.json")).unwrap();

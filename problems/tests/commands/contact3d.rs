@@ -35,7 +35,7 @@ fn a_scene_is_the_same_from_wherever_it_comes() {
 fn grids_are_found_beside_the_scene_and_travel_with_a_run() {
     let folder = kit::scratch();
     let out = folder.path().join("run");
-    let limits = ["--mesh", "4", "--max-evaluations", "2", "--json", "--out", text(&out)];
+    let limits = ["--mesh", "4", "--optimizer", "bundle", "--max-evaluations", "2", "--json", "--out", text(&out)];
     json(CONTACT, &[&[scene("flat_punch.toml").as_str()], &limits[..]].concat());
     assert!(out.join("counter_surface.csv").exists() && out.join("figures/pressure.svg").exists());
     let resumed = json(CONTACT, &["--resume", text(&out), "--max-evaluations", "4", "--json"]);

@@ -187,17 +187,17 @@ struct Corpus {
 fn journal() -> String {
     let entry = |number: usize, target: &str, answer: &str| {
         format!(
-            "{{\"evaluation\":{number},\"point\":[100.0,99.5],\"accuracy\":1e-12,\"target\":{target},\"restarted_from\":null,\
-             \"seconds\":0.5,\"answer\":{answer}}}\n"
+            "{{\"evaluation\":{number},\"point\":[100.0,99.5],\"accuracy\":1e-12,\"target\":{target},\
+             \"linearization\":{{\"accuracy\":1e-4,\"below\":\"inf\"}},\"restarted_from\":null,\"seconds\":0.5,\"answer\":{answer}}}\n"
         )
     };
     let evaluated = |value: &str| {
         format!(
             "{{\"evaluated\":{{\"value\":{value},\"subgradient\":[1.5,-2e-3],\"error_bound\":0.0,\"no_descent\":false,\
-             \"restart_data\":true}}}}"
+             \"restart_data\":true,\"linearization\":{{\"failed\":\"singular\"}}}}}}"
         )
     };
-    let text = "{\"journal\":2,\"identity\":\"a scene\",\"dimension\":2}\n".to_owned()
+    let text = "{\"journal\":3,\"identity\":\"a scene\",\"dimension\":2}\n".to_owned()
         + &entry(1, "null", &evaluated("4e17"))
         + &entry(2, "3e17", "{\"failed\":\"an element is inverted\"}")
         + &entry(3, "3e17", &evaluated("\"-inf\""));

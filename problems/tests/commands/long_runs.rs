@@ -27,19 +27,16 @@ fn printed(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {}", kit::errors(output)))
 }
 
+/// The course of a run without its times.
+fn course(report: &Value) -> String {
+    let entries = report["course"].as_array().cloned().unwrap_or_default();
+    entries.iter().map(|entry| format!("\n{} {} {}", entry["objective"], entry["kind"], entry["origin"])).collect()
+}
+
 /// All that a run found, as text: numbers are printed so that different bits give different text.
 fn found(report: &Value) -> String {
-    let keys = [
-        "objective",
-        "controls",
-        "history",
-        "evaluations",
-        "serious_steps",
-        "null_steps",
-        "termination",
-        "certificate",
-    ];
-    keys.map(|key| report[key].to_string()).join("\n")
+    let keys = ["objective", "controls", "evaluations", "serious_steps", "null_steps", "termination", "certificate"];
+    keys.map(|key| report[key].to_string()).join("\n") + &course(report)
 }
 
 /// Whole lines of a journal, the first not counted.
@@ -58,7 +55,34 @@ fn wait_for(child: &mut Child, folder: &Path, evaluations: usize) {
     }
 }
 
-const RUN: [&str; 5] = ["--mesh", "6", "--max-evaluations", "20", "--json"];
+const RUN: [&str; 7] = ["--mesh", "6", "--optimizer", "bundle", "--max-evaluations", "20", "--json"];
+
+/// Jacobians are read on resumption; those that are lost or torn are computed again, to the same bits.
+#[test]
+fn runs_with_jacobians_resume_to_the_same_bits_whatever_became_of_their_files() {
+    let scene = ["--mesh", "6", "--json"];
+    for solver in ["newton", "direct"] {
+        let scene = [&scene[..], &["--solver", solver]].concat();
+        let whole = succeeded(&scene);
+        assert_eq!(whole["termination"]["confirmed"], true);
+        assert!(whole["jacobians"].as_u64() > Some(5));
+        let scratch = kit::scratch();
+        let folder = scratch.path().join("run");
+        succeeded(&[&scene[..], &["--max-evaluations", "6", "--out", text(&folder)]].concat());
+        let file = |evaluation: usize| folder.join(format!("linearization_{evaluation}.bin"));
+        let torn = std::fs::read(file(3)).unwrap();
+        std::fs::write(file(3), &torn[..torn.len() / 2]).unwrap();
+        std::fs::remove_file(file(5)).unwrap();
+        let resumed = succeeded(&["--resume", text(&folder), "--max-evaluations", "150", "--json"]);
+        assert_eq!(found(&resumed), found(&whole));
+        assert_eq!(resumed["resumed_evaluations"], 6);
+        let said = resumed["warnings"].to_string();
+        for evaluation in [3, 5] {
+            assert!(said.contains(&format!("the Jacobian of evaluation {evaluation} is lost")), "{said}");
+        }
+        assert_eq!(std::fs::read(file(3)).unwrap(), torn);
+    }
+}
 
 /// SIGKILL twice, at different places; the end is that of a run that was left alone, bit by bit.
 #[test]
@@ -238,7 +262,7 @@ fn a_changed_scene_and_another_version_are_refused_on_resume() {
     let scratch = kit::scratch();
     let folder = scratch.path().join("run");
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-    let options = ["--mesh", "3", "--json", "--max-evaluations"];
+    let options = ["--mesh", "3", "--optimizer", "bundle", "--json", "--max-evaluations"];
     let scene = scenes.join("flat_punch.toml");
     let contact = |arguments: &[&str]| kit::run(env!("CARGO_BIN_EXE_contact3d"), arguments);
     let whole = kit::parsed(&contact(&[&[text(&scene)][..], &options, &["6"]].concat()));

@@ -28,7 +28,7 @@ fn count(all: usize, sample: usize) -> usize {
 /// What a command found, without times and without what tells a resumed run from another.
 fn found(output: &Value) -> String {
     let keys =
-        ["objective", "controls", "history", "evaluations", "termination", "certificate", "shapes", "terminations"];
+        ["objective", "controls", "jacobians", "evaluations", "termination", "certificate", "shapes", "terminations"];
     keys.map(|key| output[key].to_string()).join("\n")
 }
 

@@ -101,6 +101,26 @@ fn an_honest_certificate_agrees_and_a_changed_one_does_not() {
 }
 
 #[test]
+fn a_composite_proof_is_computed_again_from_jacobian_and_pressure_measure() {
+    let run = Run::new("proof", &["--mesh", "6"]);
+    assert_eq!(run.read("report.json")["termination"]["confirmed"], json!(true));
+    let honest = result(&recheck(&run.0), 0);
+    for key in ["value", "outer", "cuts"] {
+        assert!(honest["composite"][key].as_f64() < Some(1e-12), "{honest}");
+    }
+    let forge = |certificate: &mut Value, place: &[&str]| {
+        let entry = place.iter().fold(certificate, |value, key| &mut value[*key]);
+        entry[0][20] = json!(1.5 * entry[0][20].as_f64().unwrap() + 1.0);
+    };
+    for place in [&["composite", "jacobian"][..], &["composite", "outputs"]] {
+        let found = result(&run.tampered("certificate.json", |certificate| forge(certificate, place)), 1);
+        assert_eq!(found["agrees"], json!(false), "{place:?}: {found}");
+    }
+    let other = signorini3d(&["recheck", run.path(), "--mesh", "6", "--exponent", "3"]);
+    assert_eq!(other.status.code(), Some(1), "{}", String::from_utf8_lossy(&other.stdout));
+}
+
+#[test]
 fn the_certificate_of_growing_meshes_is_rechecked_on_the_last_one() {
     let run = Run::new("meshes", &["--continuation", "2,4", "--max-evaluations", "8"]);
     assert_eq!(result(&recheck(&run.0), 0)["agrees"], json!(true));

@@ -1,6 +1,7 @@
 //! The proof that a point is stationary, as the certificate of a run.
 
 use super::{Base, CompositeStep};
+use crate::Polyhedron;
 use crate::bundle::cut::Cut;
 use crate::bundle::proposers::proposal::Proposal;
 use crate::report::{Certificate, CompositeProof, Termination};
@@ -16,8 +17,9 @@ pub(crate) struct Proof {
 }
 
 impl Proof {
-    /// The certificate with the cuts of the outer function, seen in the variables, in place of the bundle.
-    pub(crate) fn certificate(&self, of_proposal: Certificate) -> Certificate {
+    /// The certificate with the cuts of the outer function, seen in the variables, in place of the bundle; its numbers are computed
+    /// from them, as whoever checks it will do.
+    pub(crate) fn certificate(&self, of_proposal: Certificate, set: &Polyhedron) -> Certificate {
         let Base { point, value, linearization } = &self.base;
         let cut = |(index, cut): (usize, &super::OuterCut)| Cut {
             id: index as u64 + 1,
@@ -36,6 +38,10 @@ impl Proof {
             cuts: self.step.cuts.clone(),
         };
         let cuts = self.step.cuts.iter().enumerate().map(cut).collect();
-        Certificate { cuts, composite: Some(proof), active_radius: 0.0, ..of_proposal }
+        let mut certificate = Certificate { cuts, composite: Some(proof), active_radius: 0.0, ..of_proposal };
+        if let Ok(check) = certificate.recheck(set) {
+            (certificate.aggregate_norm, certificate.aggregate_error) = (check.aggregate_norm, check.aggregate_error);
+        }
+        certificate
     }
 }

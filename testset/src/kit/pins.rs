@@ -41,12 +41,13 @@ pub fn check_pins(file: &str, wanted: impl Fn(&Value) -> bool, run: impl Fn(&str
         let optimize = text(pin, "command") == "optimize";
         let mut arguments = vec![text(pin, "command"), "--mesh", text(pin, "mesh"), "--solver", text(pin, "solver")];
         if optimize {
-            arguments.extend(["--max-evaluations", "60"]);
+            arguments.extend(["--optimizer", "bundle", "--max-evaluations", "60"]);
         }
         let report = run(text(pin, "binary"), &arguments);
         let mut expected = numbers(&pin["values"]);
         let mut found = if optimize {
-            numbers(&report["history"])
+            let course = report["course"].as_array().map_or(&[][..], Vec::as_slice);
+            course.iter().map(|entry| entry["objective"].as_f64().unwrap_or(f64::NAN)).collect()
         } else {
             let objective = report["objective"].as_f64().unwrap_or(f64::NAN);
             [vec![objective], numbers(&report["subgradient"])].concat()

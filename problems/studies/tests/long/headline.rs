@@ -1,17 +1,16 @@
 //! The numbers that README.md and docs/results.md begin with are those of today's build.
 
 use std::path::Path;
-use studies::headline::{LEVELS, friction_table, hertz_line, signorini_line, state_line};
+use studies::headline::{LEVELS, friction_table, optimization_line, state_line};
 use studies::scaling::Case;
 use testset::kit::rounds_alike;
 
 /// Relative difference allowed for printed values and pressures on processors that round alike.
 const VALUES: f64 = 2e-3;
-/// The same on others, for Θ and for peak pressures: a run of 150 evaluations carries rounding on. One change of rounding (bounds
-/// instead of rows in the subproblem) moved Θ of Hertz' example by 0.9 % and its peak pressure by 9 %.
-const VALUES_ELSEWHERE: f64 = 0.02;
-/// See [`VALUES_ELSEWHERE`].
-const PEAKS_ELSEWHERE: f64 = 0.2;
+/// The same on others: the runs end stationary, to 1e-7 of Θ.
+const VALUES_ELSEWHERE: f64 = 2e-3;
+/// The same for peak pressures, which Σσ⁴ determines less well.
+const PEAKS_ELSEWHERE: f64 = 0.02;
 /// Difference allowed for evaluations until a value is reached, for the same reason.
 const COUNTS: f64 = 3.0;
 
@@ -65,22 +64,22 @@ fn compare(documented: &str, computed: &str) {
 #[test]
 fn optimizations_of_both_examples() {
     let readme = page("README.md");
-    compare(line(&readme, "| Signorini (Example 5.1)"), &signorini_line().unwrap());
-    compare(line(&readme, "| Hertz (Example 5.2)"), &hertz_line().unwrap());
+    compare(line(&readme, "| Signorini (Example 5.1)"), &optimization_line(0).unwrap());
+    compare(line(&readme, "| Hertz (Example 5.2)"), &optimization_line(1).unwrap());
 }
 
 /// docs/results.md repeats the numbers of README.md.
 #[test]
 fn the_page_of_results_says_what_the_readme_says() {
     let (readme, results) = (page("README.md"), page("docs/results.md"));
-    let signorini = line(&readme, "| Signorini (Example 5.1)");
-    for level in LEVELS {
-        let count = signorini.split(&format!(" to {level}")).next().unwrap().rsplit([' ', '|']).next().unwrap();
+    for (level, scene) in LEVELS.iter().zip(["| Signorini (Example 5.1)", "| Hertz (Example 5.2)"]) {
+        let documented = line(&readme, scene);
+        let count = documented.split(&format!(" to {level}")).next().unwrap().rsplit([' ', '|']).next().unwrap();
         assert!(results.contains(&format!("{level} after {count}")), "{level} after {count}");
     }
     let hertz = numbers(line(&readme, "| Hertz (Example 5.2)"));
-    let reduction = hertz.iter().find(|number| (30.0..33.0).contains(*number)).unwrap();
-    assert!(results.contains(&format!("a reduction of {reduction} (of 12 after ")), "{reduction}");
+    let reduction = hertz.iter().find(|number| (30.0..40.0).contains(*number)).unwrap();
+    assert!(results.contains(&format!("a reduction of {reduction}")), "{reduction}");
 }
 
 #[test]
@@ -109,7 +108,6 @@ fn leaving_friction_out_costs_what_the_page_says() {
         let (documented, computed) = (numbers(line(&results, &format!("| {name}"))), numbers(computed));
         let documented = &documented[documented.len() - 4..];
         for (expected, found) in documented.iter().zip(&computed) {
-            // The optimizations end at 150 evaluations, not at a minimum.
             assert!(
                 (found / expected - 1.0).abs() < 5.0 * allowed(*expected),
                 "{name}: {found}, documented {expected}"
