@@ -157,21 +157,14 @@ impl<'a, E: Real> Panel<'a, E> {
         let columns: [&[E]; TILE] = std::array::from_fn(|t| {
             &self.values[(first + t) * self.height + first + TILE..(first + t + 1) * self.height]
         });
-        let mut sums = [Row::ZERO; TILE];
-        for (offset, x) in solved.iter().enumerate() {
-            for t in 0..TILE {
-                sums[t].add_fused(columns[t][offset], x);
-            }
-        }
-        let columns = columns.map(|column| &column[solved.len()..][..below.len()]);
-        for (offset, x) in below.iter().enumerate() {
-            for t in 0..TILE {
-                sums[t].add_fused(columns[t][offset], x);
-            }
-        }
+        let (near, far) = (column_products(columns, solved), {
+            let columns = columns.map(|column| &column[solved.len()..]);
+            column_products(columns, below)
+        });
         for row in (0..TILE).rev() {
             let (before, rest) = tile.split_at_mut(row + 1);
-            before[row].add_fused(-E::one(), &sums[row]);
+            before[row].add_fused(-E::one(), &near[row]);
+            before[row].add_fused(-E::one(), &far[row]);
             let column = (first + row) * self.height + first;
             for (offset, x) in rest.iter().enumerate() {
                 before[row].add_fused(-self.values[column + row + 1 + offset], x);
@@ -180,4 +173,21 @@ impl<'a, E: Real> Panel<'a, E> {
             before[row] = before[row].map(|entry| entry * pivot);
         }
     }
+}
+
+/// Σ_i columns[t][i] x_i, for the columns of a tile.
+#[inline(always)]
+fn column_products<E: Real, const N: usize, const TILE: usize>(
+    columns: [&[E]; TILE],
+    x: &[Row<E, N>],
+) -> [Row<E, N>; TILE] {
+    let columns = columns.map(|column| &column[..x.len()]);
+    let mut sums = [Row::ZERO; TILE];
+    for (i, x) in x.iter().enumerate() {
+        let entries: [E; TILE] = std::array::from_fn(|t| columns[t][i]);
+        for t in 0..TILE {
+            sums[t].add_fused(entries[t], x);
+        }
+    }
+    sums
 }
