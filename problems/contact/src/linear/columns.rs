@@ -38,13 +38,25 @@ pub fn products<E: Real, const N: usize>(list: &[&[Row<E, N>]], b: &[Row<E, N>])
     sums
 }
 
-/// |a|₂ per column.
+/// |a|₂ per column, with squares in double precision: no unit system leaves its range.
 pub fn norms<E: Real, const N: usize>(a: &[Row<E, N>]) -> Row<f64, N> {
-    let mut norms = Row::ZERO;
-    for square in products(&[a], a) {
-        norms = square.map(f64::sqrt);
-    }
-    norms
+    let square = |a: &[Row<E, N>]| {
+        vectorized(
+            #[inline(always)]
+            || {
+                let mut sum = Row::<f64, N>::ZERO;
+                for a in a {
+                    let a = a.to();
+                    sum.add_product(&a, &a);
+                }
+                sum
+            },
+        )
+    };
+    let partial: Vec<Row<f64, N>> = a.par_chunks(CHUNK).map(square).collect();
+    let mut sum = Row::ZERO;
+    partial.iter().for_each(|partial| sum.add_scaled(1.0, partial));
+    sum.map(f64::sqrt)
 }
 
 /// y += Σ factors∘x, with one factor per column for every x; x may have another precision than y.

@@ -24,7 +24,7 @@ pub struct ColumnCombination<E, P, const N: usize> {
 }
 
 /// Whether all columns have reached their targets.
-pub fn reached<const N: usize>(residuals: &Row<f64, N>, targets: &Row<f64, N>) -> bool {
+fn reached<const N: usize>(residuals: &Row<f64, N>, targets: &Row<f64, N>) -> bool {
     residuals.iter().zip(targets.iter()).all(|(residual, target)| residual <= target)
 }
 

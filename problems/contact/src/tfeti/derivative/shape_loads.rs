@@ -7,19 +7,20 @@
 
 use crate::body::mesh::Block;
 use crate::body::shape_force::shape_forces;
-use crate::linear::entry::{Entry, LANES, Row};
+use crate::linear::entry::{Entry, LANES, Row, vectorized};
+use crate::linear::real::Real;
 use crate::tfeti::torn::{TornModel, TornSystem, TornVector};
 use rayon::prelude::*;
 
 /// Torn forces and their resultants along the rigid motions, one column per change of the heights.
-pub struct ShapeLoads<const N: usize> {
+pub struct ShapeLoads<E, const N: usize> {
     /// r over torn dofs, N; zero on the subdomains of other processes.
-    pub forces: Vec<Row<f64, N>>,
+    pub forces: Vec<Row<E, N>>,
     /// δe of all subdomains, N.
-    pub resultants: Vec<Row<f64, N>>,
+    pub resultants: Vec<Row<E, N>>,
 }
 
-impl<const N: usize> ShapeLoads<N> {
+impl<E: Real, const N: usize> ShapeLoads<E, N> {
     /// The loads of at most 8N changes (mm, all columns of the body); `lower` is the lower body, `displacement` is u.
     pub fn new(
         model: &TornModel,
@@ -40,16 +41,19 @@ impl<const N: usize> ShapeLoads<N> {
                 }
                 let u = &displacement.0[subdomain.first_dof..subdomain.first_dof + forces.len()];
                 let columns = shape_forces(lower, &subdomain.place, &scene.material, &scene.loads, u, changes);
-                for (column, values) in columns.iter().enumerate() {
-                    for (force, value) in forces.iter_mut().zip(values) {
-                        force.set(column, *value);
-                    }
+                for (dof, force) in forces.iter_mut().enumerate() {
+                    columns.iter().enumerate().for_each(|(column, values)| force.set(column, values[dof]));
                 }
-                for (resultant, mode) in resultants.iter_mut().zip(&part.rigid.modes) {
-                    for (value, force) in mode.iter().zip(&*forces) {
-                        resultant.add_scaled(*value, force);
-                    }
-                }
+                vectorized(
+                    #[inline(always)]
+                    || {
+                        for (resultant, mode) in resultants.iter_mut().zip(&part.rigid.modes) {
+                            for (value, force) in mode.iter().zip(&*forces) {
+                                resultant.add_scaled(*value, force);
+                            }
+                        }
+                    },
+                );
             },
         );
         if !model.is_whole() {

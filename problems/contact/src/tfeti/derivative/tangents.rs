@@ -15,7 +15,7 @@ use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::columns::{add_combination, norms};
 use crate::linear::entry::{Entry, LANES, Row};
-use crate::linear::gcr::{gcr, reached};
+use crate::linear::gcr::gcr;
 use crate::linear::real::Real;
 use crate::tfeti::derivative::cycles::{
     CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
@@ -23,6 +23,7 @@ use crate::tfeti::derivative::cycles::{
 use crate::tfeti::derivative::shape_loads::ShapeLoads;
 use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
 use crate::tfeti::torn::{RowVector, TornVector};
+use std::cell::RefCell;
 
 /// The surface that moves, and the state that it moves in.
 #[derive(Debug, Clone, Copy)]
@@ -48,25 +49,27 @@ const MAX_ROUNDING_SHARE: f64 = 0.1;
 /// Krylov iterations allowed per cycle.
 const MAX_KRYLOV: usize = 400;
 
-/// The system of at most 8N changes of the heights.
-struct TangentSystem<'a, const N: usize> {
+/// The system of at most 8N changes of the heights, with residuals in precision D.
+struct TangentSystem<'a, D, const N: usize> {
     contact: &'a TornContact<'a>,
     active: &'a ActiveSet<'a>,
-    loads: ShapeLoads<N>,
+    loads: ShapeLoads<D, N>,
     /// −∂g in the rows of the contact nodes, mm.
-    approaches: Vec<Row<f64, N>>,
+    approaches: Vec<Row<D, N>>,
     count: usize,
 }
 
 /// Unknowns y with their residual.
-struct TangentIterate<const N: usize> {
-    unknowns: Vec<Row<f64, N>>,
+struct TangentIterate<D, const N: usize> {
+    unknowns: Vec<Row<D, N>>,
     /// The residual without its rigid part, mm.
-    projected: Vec<Row<f64, N>>,
+    projected: Vec<Row<D, N>>,
     /// Normal rows of δw.
-    openings: Vec<Row<f64, N>>,
+    openings: Vec<Row<D, N>>,
     /// Norms of the projected residual.
     residuals: Row<f64, N>,
+    /// Norms of the whole residual.
+    natural: Row<f64, N>,
 }
 
 impl TornContact<'_> {
@@ -103,18 +106,16 @@ impl TornContact<'_> {
         tolerance: f64,
         tangents: &mut Tangents,
     ) -> Result<(), ContactError> {
-        let system = TangentSystem::<N>::new(self, active, surface, changes);
-        let (iterate, residual) = system.solve(tolerance)?;
-        tangents.residual = tangents.residual.max(residual);
-        let multipliers = active.rows.trial(&iterate.unknowns);
-        let scales: Vec<f64> = self.operator.model.constraints.contact_scales(self.boundary).collect();
-        let normalisation = &self.operator.model.constraints.normalisation;
-        for column in 0..changes.len() {
-            let rows = multipliers.contact().iter().zip(&scales);
-            tangents.forces.push(rows.map(|(row, nu)| row.get(column) / nu).collect());
-            let nodes = iterate.openings.iter().zip(normalisation);
-            tangents.openings.push(nodes.map(|(opening, nu)| opening.get(column) * nu).collect());
+        if self.single_is_enough(tolerance) {
+            let system = TangentSystem::<f32, N>::new(self, active, surface, changes);
+            if let Some(iterate) = system.solve_once(tolerance) {
+                system.append(&iterate, tangents);
+                return Ok(());
+            }
         }
+        let system = TangentSystem::<f64, N>::new(self, active, surface, changes);
+        let iterate = system.solve_in_cycles(tolerance)?;
+        system.append(&iterate, tangents);
         Ok(())
     }
 
@@ -132,7 +133,7 @@ impl TornContact<'_> {
     }
 }
 
-impl<'a, const N: usize> TangentSystem<'a, N> {
+impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
     fn new(
         contact: &'a TornContact<'a>,
         active: &'a ActiveSet<'a>,
@@ -150,81 +151,25 @@ impl<'a, const N: usize> TangentSystem<'a, N> {
         Self { contact, active, loads, approaches, count: changes.len() }
     }
 
-    /// Solves to a relative residual in cycles; also the largest relative residual.
-    fn solve(&self, tolerance: f64) -> Result<(TangentIterate<N>, f64), ContactError> {
-        let mut precision = self.contact.precision;
-        let mut unchecked = self.contact.single_is_enough(tolerance);
-        let (mut iterate, natural) = match unchecked {
-            true => self.evaluate::<f32>(self.zeros()),
-            false => self.evaluate::<f64>(self.zeros()),
-        };
-        // Where equilibrium alone determines the forces, all of the right side is rigid and only rounding is left of it.
-        let sizes = iterate.residuals.zip(&natural, |size, all| size.max(SMALLEST_PROJECTED_SHARE * all));
-        let goal = tolerance.max(TIGHTEST_GOAL);
-        let goals = sizes.map(|size| goal * size);
-        let mut worst = largest_share(&iterate.residuals, &sizes);
-        for _cycle in 0..MAX_CYCLES {
-            if worst <= goal {
-                break;
-            }
-            match precision {
-                Precision::Mixed => {
-                    self.cycle::<f32>(&mut iterate, &goals, if unchecked { 0.0 } else { CYCLE_REDUCTION })
-                }
-                Precision::Double => self.cycle::<f64>(&mut iterate, &goals, 0.0),
-            }
-            if unchecked && reached(&iterate.residuals, &goals) {
-                worst = largest_share(&iterate.residuals, &sizes);
-                break;
-            }
-            unchecked = false;
-            iterate = self.evaluate::<f64>(iterate.unknowns).0;
-            let previous = std::mem::replace(&mut worst, largest_share(&iterate.residuals, &sizes));
-            match next_cycle(precision, previous, worst, goal) {
-                NextCycle::Continue => {}
-                NextCycle::Double => precision = Precision::Double,
-                NextCycle::DoubleFromZero => {
-                    precision = Precision::Double;
-                    iterate = self.evaluate::<f64>(self.zeros()).0;
-                    worst = largest_share(&iterate.residuals, &sizes);
-                }
-                NextCycle::Stop => break,
-            }
-        }
-        if worst.is_nan() || worst > TIGHTEST_ACCEPTABLE.max(tolerance) {
-            return Err(ContactError::NotConverged {
-                solver: "tangents by GCR on TFETI",
-                residual: worst,
-                tolerance,
-                iterations: MAX_KRYLOV,
-                history: vec![worst],
-            });
-        }
-        Ok((iterate, worst))
-    }
-
-    fn zeros(&self) -> Vec<Row<f64, N>> {
-        vec![Row::ZERO; self.active.rows.dimension()]
-    }
-
-    /// Brings unknowns into equilibrium and computes their residual, with subdomain solves in precision E; also the norms of the
-    /// residual with its rigid part.
-    fn evaluate<E: Real>(&self, mut unknowns: Vec<Row<f64, N>>) -> (TangentIterate<N>, Row<f64, N>) {
+    /// Brings unknowns into equilibrium and computes their residual.
+    fn evaluate(&self, mut unknowns: Vec<Row<D, N>>) -> TangentIterate<D, N> {
         let (rows, operator) = (&self.active.rows, &self.contact.operator);
         self.active.enforce(&mut unknowns, &self.loads.resultants);
-        let mut torn = vec![Row::<E, N>::ZERO; operator.model.dof_count];
-        let jumps = operator.free_jumps(&self.loads.forces, &rows.trial(&unknowns), &mut torn, self.count);
-        drop(torn);
-        let equality_count = jumps.split().0.len();
-        let mut jumps = RowVector::new(jumps.into_values().into_iter().map(Row::to).collect(), equality_count);
+        let mut torn = vec![Row::ZERO; operator.model.dof_count];
+        let mut jumps = operator.free_jumps(&self.loads.forces, &rows.trial(&unknowns), &mut torn, self.count);
         for (point, approach) in self.contact.boundary.points.iter().zip(&self.approaches) {
             jumps.contact_mut()[point.start].add_scaled(1.0, approach);
         }
-        let mut reduced = rows.test_transposed(&jumps);
-        rows.add_compliance(&unknowns, &mut reduced, -1.0);
-        let natural = norms(&reduced);
-        let openings = self.release(&mut reduced, &jumps);
-        (TangentIterate { unknowns, residuals: norms(&reduced), projected: reduced, openings }, natural)
+        let mut projected = rows.test_transposed(&jumps);
+        rows.add_compliance(&unknowns, &mut projected, -1.0);
+        let natural = norms(&projected);
+        let openings = self.release(&mut projected, &jumps);
+        TangentIterate { unknowns, residuals: norms(&projected), projected, openings, natural }
+    }
+
+    /// y = 0, brought into equilibrium.
+    fn at_zero(&self) -> TangentIterate<D, N> {
+        self.evaluate(vec![Row::ZERO; self.active.rows.dimension()])
     }
 
     /// Takes the rigid part off a reduced residual or product; returns the normal rows of `jumps` without it.
@@ -239,13 +184,14 @@ impl<'a, const N: usize> TangentSystem<'a, N> {
     }
 
     /// One run of the Krylov method in precision E, towards residuals of `goals`, or by a factor `reduction` if that is more.
-    fn cycle<E: Real>(&self, iterate: &mut TangentIterate<N>, goals: &Row<f64, N>, reduction: f64) {
+    fn cycle<E: Real>(&self, iterate: &mut TangentIterate<D, N>, goals: &Row<f64, N>, reduction: f64) {
         let (rows, contact) = (&self.active.rows, self.contact);
         // Every column is brought to size one, so that no unit system leaves the range of single precision.
         let sizes = iterate.residuals.map(|size| if size > 0.0 { size } else { 1.0 });
         let targets = goals.zip(&sizes, |goal, size| (goal / size).max(reduction));
-        let residual = iterate.projected.iter().map(|row| row.zip(&sizes, |row, size| E::of(row / size))).collect();
-        let torn = std::cell::RefCell::new(vec![Row::<E, N>::ZERO; contact.operator.model.dof_count]);
+        let scaled = |row: &Row<D, N>| row.zip(&sizes, |row, size| E::of(row.double() / size));
+        let residual = iterate.projected.iter().map(scaled).collect();
+        let torn = RefCell::new(vec![Row::<E, N>::ZERO; contact.operator.model.dof_count]);
         let precondition = |v: &[Row<E, N>]| {
             let image = contact.preconditioner.apply_columns(&rows.test(v), &mut torn.borrow_mut());
             let mut z = rows.test_transposed(&image);
@@ -269,6 +215,82 @@ impl<'a, const N: usize> TangentSystem<'a, N> {
         let terms: Vec<_> = changes.zip(krylov.payloads.iter().map(Vec::as_slice)).collect();
         add_combination(&mut iterate.openings, &terms);
         iterate.residuals = krylov.residuals.zip(&sizes, |residual, size| residual * size);
+    }
+
+    /// Appends the tangents of an iterate.
+    fn append(&self, (iterate, residual): &(TangentIterate<D, N>, f64), tangents: &mut Tangents) {
+        tangents.residual = tangents.residual.max(*residual);
+        let multipliers = self.active.rows.trial(&iterate.unknowns);
+        let constraints = &self.contact.operator.model.constraints;
+        let scales: Vec<f64> = constraints.contact_scales(self.contact.boundary).collect();
+        for column in 0..self.count {
+            let rows = multipliers.contact().iter().zip(&scales);
+            tangents.forces.push(rows.map(|(row, nu)| row.get(column) / nu).collect());
+            let nodes = iterate.openings.iter().zip(&constraints.normalisation);
+            tangents.openings.push(nodes.map(|(opening, nu)| opening.get(column) * nu).collect());
+        }
+    }
+}
+
+impl<const N: usize> TangentSystem<'_, f32, N> {
+    /// One cycle in single precision, with its largest relative residual by the recurrence; none if it misses the tolerance.
+    fn solve_once(&self, tolerance: f64) -> Option<(TangentIterate<f32, N>, f64)> {
+        let mut iterate = self.at_zero();
+        let sizes = iterate.sizes();
+        self.cycle::<f32>(&mut iterate, &sizes.map(|size| tolerance * size), 0.0);
+        let residual = largest_share(&iterate.residuals, &sizes);
+        (residual <= tolerance).then_some((iterate, residual))
+    }
+}
+
+impl<const N: usize> TangentSystem<'_, f64, N> {
+    /// Cycles to a relative residual, each followed by products in double precision; also the largest relative residual.
+    fn solve_in_cycles(&self, tolerance: f64) -> Result<(TangentIterate<f64, N>, f64), ContactError> {
+        let mut precision = self.contact.precision;
+        let mut iterate = self.at_zero();
+        let sizes = iterate.sizes();
+        let goal = tolerance.max(TIGHTEST_GOAL);
+        let goals = sizes.map(|size| goal * size);
+        let mut residual = largest_share(&iterate.residuals, &sizes);
+        for _cycle in 0..MAX_CYCLES {
+            if residual <= goal {
+                break;
+            }
+            match precision {
+                Precision::Mixed => self.cycle::<f32>(&mut iterate, &goals, CYCLE_REDUCTION),
+                Precision::Double => self.cycle::<f64>(&mut iterate, &goals, 0.0),
+            }
+            iterate = self.evaluate(iterate.unknowns);
+            let previous = std::mem::replace(&mut residual, largest_share(&iterate.residuals, &sizes));
+            match next_cycle(precision, previous, residual, goal) {
+                NextCycle::Continue => {}
+                NextCycle::Double => precision = Precision::Double,
+                NextCycle::DoubleFromZero => {
+                    precision = Precision::Double;
+                    iterate = self.at_zero();
+                    residual = largest_share(&iterate.residuals, &sizes);
+                }
+                NextCycle::Stop => break,
+            }
+        }
+        if residual.is_nan() || residual > TIGHTEST_ACCEPTABLE.max(tolerance) {
+            return Err(ContactError::NotConverged {
+                solver: "tangents by GCR on TFETI",
+                residual,
+                tolerance,
+                iterations: MAX_KRYLOV,
+                history: vec![residual],
+            });
+        }
+        Ok((iterate, residual))
+    }
+}
+
+impl<D, const N: usize> TangentIterate<D, N> {
+    /// What relative residuals refer to: where equilibrium alone determines the forces, all of the right side is rigid and only
+    /// rounding is left of it.
+    fn sizes(&self) -> Row<f64, N> {
+        self.residuals.zip(&self.natural, |size, all| size.max(SMALLEST_PROJECTED_SHARE * all))
     }
 }
 

@@ -90,32 +90,21 @@ impl<'a> DualOperator<'a> {
         self.gather_columns(torn)
     }
 
-    /// B K⁺ (r − BᵀΛ) for torn forces r (N), with K⁺ in precision E; `count` columns are counted. `torn`: room for a torn block.
+    /// B K⁺ (r − BᵀΛ) for torn forces r (N) in their precision; `count` columns are counted. `torn`: room for a torn block.
     pub(crate) fn free_jumps<E: Real, const N: usize>(
         &self,
-        forces: &[Row<f64, N>],
-        multipliers: &[Row<f64, N>],
+        forces: &[Row<E, N>],
+        multipliers: &[Row<E, N>],
         torn: &mut [Row<E, N>],
         count: usize,
     ) -> RowVector<Row<E, N>> {
         self.applications.fetch_add(count, Ordering::Relaxed);
         self.for_each_subdomain(torn, |first, factors, part| {
-            let mut loads = vec![Row::<f64, N>::ZERO; part.len()];
-            self.model.constraints.transposed.multiply_rows(first, multipliers, &mut loads);
-            let mut sizes = Row::<f64, N>::ZERO;
-            for (load, force) in loads.iter_mut().zip(&forces[first..]) {
+            self.model.constraints.transposed.multiply_rows(first, multipliers, part);
+            for (load, force) in part.iter_mut().zip(&forces[first..]) {
                 *load = force.zip(load, |force, held| force - held);
-                sizes = sizes.zip(load, |size, load| size.max(load.abs()));
-            }
-            // Brought to size one, so that no unit system leaves the range of single precision.
-            sizes = sizes.map(|size| if size > 0.0 { size } else { 1.0 });
-            for (entry, load) in part.iter_mut().zip(&loads) {
-                *entry = load.zip(&sizes, |load, size| E::of(load / size));
             }
             RightSide::solve(&factors.inverse, part);
-            for entry in part.iter_mut() {
-                *entry = entry.zip(&sizes, |entry, size| E::of(entry.double() * size));
-            }
         });
         self.gather_columns(torn)
     }
