@@ -91,3 +91,38 @@ fn largest_share<const N: usize>(norms: &Row<f64, N>, targets: &Row<f64, N>) -> 
         if share.is_nan() || share > largest { share } else { largest }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::entry::Entry;
+
+    #[test]
+    fn every_column_is_solved_in_at_most_n_steps() {
+        let a = [[4.0, 1.0, 0.0], [-1.0, 3.0, 2.0], [0.5, 0.0, 2.0]];
+        let apply = |x: &[Row<f64, 1>]| -> Vec<Row<f64, 1>> {
+            let product = |row: &[f64; 3]| {
+                let mut sum = Row::ZERO;
+                row.iter().zip(x).for_each(|(&a, x)| sum.add_scaled(a, x));
+                sum
+            };
+            a.iter().map(product).collect()
+        };
+        // All columns but the first and the third are zero and have nothing to do.
+        let mut expected = [Row::<f64, 1>::ZERO; 3];
+        for (column, values) in [[1.0, -2.0, 3.0], [0.0, 0.0, 0.0], [0.0, 1.0, 5.0]].into_iter().enumerate() {
+            (0..3).for_each(|row| expected[row].set(column, values[row]));
+        }
+        let targets = Row::ZERO.map(|_: f64| 1e-12);
+        let krylov = gcr(apply(&expected), &targets, 10, |r| r.to_vec(), |z| (apply(z), ()));
+        assert_eq!(krylov.directions.len(), 3);
+        assert!(reached(&krylov.residuals, &targets));
+        let mut found = vec![Row::<f64, 1>::ZERO; 3];
+        let terms: Vec<_> =
+            krylov.coefficients.iter().copied().zip(krylov.directions.iter().map(Vec::as_slice)).collect();
+        add_combination(&mut found, &terms);
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!(found.iter().zip(expected.iter()).all(|(a, b)| (a - b).abs() < 1e-11), "{found:?}");
+        }
+    }
+}

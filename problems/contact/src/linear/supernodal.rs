@@ -191,3 +191,57 @@ fn column_products<E: Real, const N: usize, const TILE: usize>(
     }
     sums
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
+    use crate::linear::symmetric::LowerPattern;
+    use std::sync::Arc;
+
+    const SIZE: usize = 60;
+
+    /// A banded matrix, with its factor for an elimination order that fills it.
+    fn factored() -> NumericFactor {
+        let columns = (0..SIZE).map(|i| (i + 1..SIZE.min(i + 6)).collect()).collect();
+        let pattern = Arc::new(LowerPattern::from_columns(columns));
+        let values: Vec<f64> = (0..SIZE)
+            .flat_map(|column| {
+                pattern.rows()[pattern.starts()[column]..pattern.starts()[column + 1]]
+                    .iter()
+                    .map(move |&row| (row, column))
+            })
+            .map(|(row, column)| if row == column { 20.0 } else { (3 * row + column) as f64 % 4.0 - 2.0 })
+            .collect();
+        let order = (0..SIZE).map(|new| 7 * new % SIZE).collect();
+        Arc::new(SymbolicFactor::new(pattern, order).expect("symbolic")).factorize(&values).expect("positive definite")
+    }
+
+    /// Every column of a block comes out as it does alone.
+    fn blocks_are_solved<E: Real, const N: usize>(rounding: f64) {
+        let factor = factored();
+        let right = |row: usize, column: usize| ((row * row + 3 * column) as f64).sin();
+        let mut block = vec![Row::<E, N>::ZERO; SIZE];
+        for (row, entry) in block.iter_mut().enumerate() {
+            (0..Row::<E, N>::WIDTH).for_each(|column| entry.set(column, right(row, column)));
+        }
+        factor.solve_rows_in_place(&mut block);
+        for column in 0..Row::<E, N>::WIDTH {
+            let mut expected: Vec<f64> = (0..SIZE).map(|row| right(row, column)).collect();
+            factor.solve_in_place(&mut expected);
+            for (row, expected) in block.iter().zip(&expected) {
+                assert!((row.get(column) - expected).abs() < rounding, "{} {expected}", row.get(column));
+            }
+        }
+    }
+
+    #[test]
+    fn blocks_of_all_widths_are_solved_in_both_precisions() {
+        blocks_are_solved::<f64, 1>(1e-14);
+        blocks_are_solved::<f64, 3>(1e-14);
+        blocks_are_solved::<f64, 5>(1e-14);
+        blocks_are_solved::<f32, 1>(1e-6);
+        blocks_are_solved::<f32, 3>(1e-6);
+        blocks_are_solved::<f32, 5>(1e-6);
+    }
+}

@@ -155,3 +155,26 @@ impl SymmetricBlock {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_add_up_to_the_matrix() {
+        let pattern = LowerPattern::from_columns(vec![vec![1, 3], vec![2, 3], vec![], vec![]]);
+        let values = [4.0, 1.0, -2.0, 5.0, 0.5, 3.0, 6.0, 7.0];
+        let x = [1.0, 2.0, 3.0, 4.0];
+        let mut expected = [0.0; 4];
+        pattern.multiply(&values, &x, &mut expected);
+        let (first, second) = ([0, 2], [1, 3]);
+        for rows in [first, second] {
+            let mut product = [0.0; 2];
+            for columns in [first, second] {
+                let block = SymmetricBlock::new(&pattern, &rows, &columns);
+                block.add_product(&values, 1.0, &columns.map(|column| x[column]), &mut product);
+            }
+            assert_eq!(product, rows.map(|row| expected[row]));
+        }
+    }
+}

@@ -81,10 +81,7 @@ fn both_solvers_have_the_same_tangents() {
             shape.contact_solver().tangents(&state.solution, &changes, 0.0).unwrap()
         });
         assert!(both[0].applications > 0 && both[1].applications == 0);
-        let errors = [
-            difference(&both[0].forces, &both[1].forces),
-            difference(&both[0].openings, &both[1].openings),
-        ];
+        let errors = [difference(&both[0].forces, &both[1].forces), difference(&both[0].openings, &both[1].openings)];
         assert!(errors.into_iter().all(|error| error < 1e-8), "{errors:?}");
     }
 }

@@ -59,7 +59,9 @@ impl<'a> Preconditioner<'a> {
     fn apply_subdomain<V: RightSide>(&self, index: usize, factors: &SubdomainFactors, part: &mut [V]) {
         let stiffness = &factors.stiffness;
         let Some(class) = self.model.interior(index) else {
-            return self.model.pattern.pattern.multiply(stiffness, &part.to_vec(), part);
+            let whole = part.to_vec();
+            self.model.pattern.pattern.multiply(stiffness, &whole, part);
+            return;
         };
         let boundary: Vec<V> = class.boundary.iter().map(|&dof| part[dof]).collect();
         let mut image = vec![V::ZERO; boundary.len()];
