@@ -59,10 +59,10 @@ impl Csr {
 
     /// Row `row` of A x.
     #[inline(always)]
-    pub fn product<V: Entry>(&self, row: usize, x: &[V]) -> V {
+    fn product<V: Entry>(&self, row: usize, x: &[V]) -> V {
         let mut sum = V::ZERO;
         for (column, value) in self.row(row) {
-            sum.add_scaled(value, &x[column]);
+            sum.accumulate(value, &x[column]);
         }
         sum
     }

@@ -22,6 +22,9 @@ pub trait Entry: Copy + Send + Sync + PartialEq {
     /// self += factor·other.
     fn add_scaled(&mut self, factor: f64, other: &Self);
 
+    /// The same inside [`vectorized`], where blocks take the instruction with one rounding.
+    fn accumulate(&mut self, factor: f64, other: &Self);
+
     /// self ← factor·self.
     fn scale(&mut self, factor: f64);
 
@@ -38,6 +41,11 @@ impl Entry for f64 {
 
     #[inline(always)]
     fn add_scaled(&mut self, factor: f64, other: &Self) {
+        *self += factor * other;
+    }
+
+    #[inline(always)]
+    fn accumulate(&mut self, factor: f64, other: &Self) {
         *self += factor * other;
     }
 
@@ -118,6 +126,11 @@ impl<E: Real, const N: usize> Entry for Row<E, N> {
                 *entry = *entry + factor * other;
             }
         }
+    }
+
+    #[inline(always)]
+    fn accumulate(&mut self, factor: f64, other: &Self) {
+        self.add_fused(E::of(factor), other);
     }
 
     #[inline(always)]

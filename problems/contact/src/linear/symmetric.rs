@@ -143,13 +143,13 @@ impl SymmetricBlock {
         Self { starts, entries: lists.concat() }
     }
 
-    /// y += factor·A_RC x for the values of the lower triangle.
+    /// y += factor·A_RC x for the values of the lower triangle; to be called inside [`vectorized`](super::entry::vectorized).
     #[inline(always)]
     pub fn add_product<V: Entry>(&self, values: &[f64], factor: f64, x: &[V], y: &mut [V]) {
         for (y, range) in y.iter_mut().zip(self.starts.windows(2)) {
             let mut sum = V::ZERO;
             for &(column, position) in &self.entries[range[0]..range[1]] {
-                sum.add_scaled(values[position as usize], &x[column as usize]);
+                sum.accumulate(values[position as usize], &x[column as usize]);
             }
             y.add_scaled(factor, &sum);
         }

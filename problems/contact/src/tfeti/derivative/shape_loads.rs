@@ -49,7 +49,7 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
                     || {
                         for (resultant, mode) in resultants.iter_mut().zip(&part.rigid.modes) {
                             for (value, force) in mode.iter().zip(&*forces) {
-                                resultant.add_scaled(*value, force);
+                                resultant.accumulate(*value, force);
                             }
                         }
                     },
