@@ -1,7 +1,8 @@
 //! Forward derivatives of the contact state against the adjoint, to rounding, and against states of moved surfaces.
 
+use contact::body::elasticity::Material;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::ContactSolver;
+use contact::equilibrium::{ContactSolver, Tangents};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -104,6 +105,43 @@ fn tangents_of_total_feti_are_as_accurate_as_asked_for() {
             let errors = [difference(&rough.forces, &exact.forces), difference(&rough.openings, &exact.openings)];
             assert!(errors.into_iter().all(|error| error <= 3.0 * tolerance), "{errors:?} {tolerance:e}");
         }
+    }
+}
+
+/// Ten tangents by total FETI to a tolerance.
+fn ten_tangents(scene: Scene, tolerance: f64) -> Tangents {
+    let shape = shape(scene, 0.3, SolverKind::Newton);
+    let state = shape.solve(&controls(&shape, 6), None, Accuracy::TIGHTEST).unwrap();
+    let changes = changes(&shape, &(5..15).collect::<Vec<_>>());
+    shape.contact_solver().tangents(&state.solution, &changes, tolerance).unwrap()
+}
+
+#[test]
+fn tangents_do_not_depend_on_the_number_of_threads() {
+    for tolerance in [1e-2, 0.0] {
+        let [one, three] = [1, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| ten_tangents(hertz().unwrap(), tolerance))
+        });
+        assert_eq!((one.forces, one.openings, one.residual), (three.forces, three.openings, three.residual));
+    }
+}
+
+#[test]
+fn tangents_in_single_precision_do_not_depend_on_the_unit_of_force() {
+    let unit = ten_tangents(signorini().unwrap(), 1e-2);
+    for factor in [1e-9, 1e9] {
+        let mut scene = signorini().unwrap();
+        let material = scene.lower.material;
+        scene.lower.material = Material::new(factor * material.young_modulus(), material.poisson_ratio()).unwrap();
+        for load in &mut scene.lower.loads {
+            load.traction = load.traction.map(|traction| factor * traction);
+        }
+        let mut other = ten_tangents(scene, 1e-2);
+        assert_eq!(other.applications, unit.applications);
+        other.forces.iter_mut().flatten().for_each(|force| *force /= factor);
+        let errors = [difference(&other.forces, &unit.forces), difference(&other.openings, &unit.openings)];
+        assert!(errors.into_iter().all(|error| error < 1e-4), "{errors:?}");
     }
 }
 
