@@ -1,10 +1,11 @@
-//! Median times of what a state and its subgradient are made of: factorisation, product with F, state, adjoint.
+//! Median times of what a state and its derivatives are made of: factorisation, product with F, state, adjoint, tangents for
+//! 36 changes of the heights.
 //!
 //! Signorini at the flat start on 12³ bricks in 2³ subdomains and on 24³ bricks in 4³. The last column relates each time to
 //! that of one product with F.
 
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::ContactProblem;
+use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::scene::{Scene, signorini};
 use contact::tfeti::{DualOperator, PreconditionerKind, TornSolver};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
@@ -43,6 +44,9 @@ fn measure(mesh: usize, subdomains: usize) -> Result<(), Box<dyn Error>> {
     let rows = operator.gather(&operator.loaded_displacement());
     let state = shape.solve(&start, None, accuracy)?;
     let dual = Vector::from_element(problem.boundary.dual_dimension(), 1.0);
+    let unit = |control: usize| (0..start.len()).map(|i| f64::from(u8::from(i == control))).collect::<Vec<f64>>();
+    let changes: Vec<Vec<f64>> = (0..start.len()).map(|control| problem.height_map.heights(&unit(control))).collect();
+    let tangents = |tolerance| median(|| shape.contact_solver().tangents(&state.solution, &changes, tolerance));
 
     let product = median(|| operator.apply(&rows));
     for (what, seconds) in [
@@ -50,6 +54,9 @@ fn measure(mesh: usize, subdomains: usize) -> Result<(), Box<dyn Error>> {
         ("factorisation of all subdomains", median(|| model.factorize(&blocks))),
         ("state, cold, to 1e-8", median(|| shape.solve(&start, None, accuracy))),
         ("adjoint and shape derivative", median(|| shape.coderivative(&start, &state, &dual))),
+        ("tangents to 1e-2", tangents(1e-2)),
+        ("tangents to 1e-4", tangents(1e-4)),
+        ("tangents to rounding", tangents(0.0)),
     ] {
         println!("{mesh:3}/{subdomains} {what:32} {:10.3} {:8.1}", 1e3 * seconds, seconds / product);
     }

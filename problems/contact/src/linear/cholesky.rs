@@ -2,6 +2,9 @@
 
 use crate::linear::FactorizationError;
 use crate::linear::dense::column;
+use crate::linear::entry::Row;
+use crate::linear::real::Real;
+use crate::linear::supernodal;
 use crate::linear::symmetric::LowerPattern;
 use crate::linear::vector::{add_scaled, norm};
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -9,7 +12,7 @@ use faer::perm::Perm;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky, supernodal,
+    factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::ComplexField;
@@ -149,8 +152,29 @@ impl NumericFactor {
     /// As [`NumericFactor::solve_in_place`], with factor and vector in single precision. The rounded factor is made at the
     /// first call and kept.
     pub fn solve_in_place_single(&self, b: &mut [f32]) {
-        let values = self.single.get_or_init(|| self.values.iter().map(|&value| value as f32).collect());
-        self.symbolic.solve(values, column(b));
+        self.symbolic.solve(self.single_values(), column(b));
+    }
+
+    /// The values of L.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The values of L rounded to single precision.
+    pub(super) fn single_values(&self) -> &[f32] {
+        self.single.get_or_init(|| self.values.iter().map(|&value| value as f32).collect())
+    }
+
+    /// Solves A X = B in place for a block of columns by rows, in the precision of the block.
+    pub(crate) fn solve_rows_in_place<E: Real, const N: usize>(&self, b: &mut [Row<E, N>]) {
+        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.symbolic.raw() else {
+            unreachable!("invariant: factors are forced to be supernodal");
+        };
+        let mut ordered: Vec<Row<E, N>> = self.symbolic.order.iter().map(|&old| b[old]).collect();
+        supernodal::solve(symbolic, E::factor_values(self), &mut ordered);
+        for (&old, row) in self.symbolic.order.iter().zip(ordered) {
+            b[old] = row;
+        }
     }
 
     /// L₂₂ of the trailing `size` indices of the elimination order: L₂₂L₂₂ᵀ is their Schur complement. Row and column p
@@ -163,7 +187,7 @@ impl NumericFactor {
             return Err(failure("Schur complement", "the factor is not supernodal".into()));
         };
         let first = self.symbolic.pattern.dimension() - size;
-        let factor = supernodal::SupernodalLltRef::<usize, f64>::new(symbolic, &self.values);
+        let factor = SupernodalLltRef::<usize, f64>::new(symbolic, &self.values);
         let mut block = Mat::<f64>::zeros(size, size);
         for index in 0..symbolic.n_supernodes() {
             let (begin, end) = (symbolic.supernode_begin()[index], symbolic.supernode_end()[index]);

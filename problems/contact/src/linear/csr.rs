@@ -1,5 +1,6 @@
-//! Sparse rows: y_r = Σ_c A_rc x_c.
+//! Sparse rows: y_r = Σ_c A_rc x_c, for a vector or a block of columns.
 
+use crate::linear::entry::{Entry, vectorized};
 use rayon::prelude::*;
 
 /// A sparse matrix by rows.
@@ -11,8 +12,8 @@ pub struct Csr {
     column_count: usize,
 }
 
-/// Below this many rows one thread is faster than two.
-const PARALLEL_ROWS: usize = 4096;
+/// Below this many numbers of the result one thread is faster than two.
+const PARALLEL_NUMBERS: usize = 4096;
 
 impl Csr {
     /// A matrix with `column_count` columns from its rows of (column, value).
@@ -56,15 +57,37 @@ impl Csr {
         Self::from_rows(self.row_count(), rows)
     }
 
-    /// y = A x.
-    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
-        debug_assert_eq!((x.len(), y.len()), (self.column_count, self.row_count()));
-        let entry = |(row, y): (usize, &mut f64)| *y = self.row(row).map(|(column, value)| value * x[column]).sum();
-        if y.len() < PARALLEL_ROWS {
-            y.iter_mut().enumerate().for_each(entry);
-        } else {
-            y.par_iter_mut().enumerate().with_min_len(PARALLEL_ROWS / 4).for_each(entry);
+    /// Row `row` of A x.
+    #[inline(always)]
+    fn product<V: Entry>(&self, row: usize, x: &[V]) -> V {
+        let mut sum = V::ZERO;
+        for (column, value) in self.row(row) {
+            sum.accumulate(value, &x[column]);
         }
+        sum
+    }
+
+    /// y = A x.
+    pub fn multiply<V: Entry>(&self, x: &[V], y: &mut [V]) {
+        debug_assert_eq!((x.len(), y.len()), (self.column_count, self.row_count()));
+        if y.len() * V::WIDTH < PARALLEL_NUMBERS {
+            self.multiply_rows(0, x, y);
+        } else {
+            let rows = (PARALLEL_NUMBERS / 4).div_ceil(V::WIDTH);
+            y.par_chunks_mut(rows).enumerate().for_each(|(index, y)| self.multiply_rows(index * rows, x, y));
+        }
+    }
+
+    /// The rows of A x from `first` on, as many as y has, on this thread.
+    pub fn multiply_rows<V: Entry>(&self, first: usize, x: &[V], y: &mut [V]) {
+        vectorized(
+            #[inline(always)]
+            || {
+                for (offset, y) in y.iter_mut().enumerate() {
+                    *y = self.product(first + offset, x);
+                }
+            },
+        );
     }
 }
 

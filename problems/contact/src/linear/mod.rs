@@ -1,12 +1,18 @@
 //! Linear algebra that the contact solvers stand on; the only place that knows faer.
 
 pub mod cholesky;
+pub(crate) mod columns;
 pub(crate) mod csr;
 pub(crate) mod dense;
+pub(crate) mod entry;
 mod error;
+pub(crate) mod gcr;
 pub(crate) mod gmres;
 pub mod ordering;
 pub(crate) mod pcg;
+pub(crate) mod real;
+pub(crate) mod right_side;
+mod supernodal;
 pub mod symmetric;
 pub mod vector;
 

@@ -1,5 +1,6 @@
 //! Lower triangles of symmetric sparse matrices that share one pattern.
 
+use crate::linear::entry::Entry;
 use std::sync::Arc;
 
 /// Pattern of a lower triangle by columns; rows ascend within a column and start with the diagonal.
@@ -51,17 +52,18 @@ impl LowerPattern {
     }
 
     /// y = A x for the symmetric matrix with these lower values.
-    pub fn multiply(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
-        y.fill(0.0);
-        for (column, &entry) in x.iter().enumerate() {
+    pub fn multiply<V: Entry>(&self, values: &[f64], x: &[V], y: &mut [V]) {
+        y.fill(V::ZERO);
+        for (column, entry) in x.iter().enumerate() {
             let range = self.starts[column]..self.starts[column + 1];
-            let mut sum = values[range.start] * entry;
+            let mut sum = V::ZERO;
+            sum.add_scaled(values[range.start], entry);
             for position in range.start + 1..range.end {
                 let row = self.rows[position];
-                y[row] += values[position] * entry;
-                sum += values[position] * x[row];
+                y[row].add_scaled(values[position], entry);
+                sum.add_scaled(values[position], &x[row]);
             }
-            y[column] += sum;
+            y[column].add_scaled(1.0, &sum);
         }
     }
 }
@@ -97,5 +99,82 @@ impl Submatrix {
     /// Values of the submatrix.
     pub fn gather(&self, full_values: &[f64]) -> Vec<f64> {
         self.positions.iter().map(|&position| full_values[position]).collect()
+    }
+}
+
+/// A block A_RC of a symmetric matrix by rows: where each of its values sits in the lower triangle.
+#[derive(Debug)]
+pub struct SymmetricBlock {
+    starts: Vec<usize>,
+    /// (position in C, position in the value array).
+    entries: Vec<(u32, u32)>,
+}
+
+impl SymmetricBlock {
+    /// The block of the given rows R and columns C.
+    pub fn new(full: &LowerPattern, rows: &[usize], columns: &[usize]) -> Self {
+        let place = |kept: &[usize]| {
+            let mut places = vec![None; full.dimension()];
+            kept.iter().enumerate().for_each(|(place, &index)| places[index] = Some(place));
+            places
+        };
+        let (row_places, column_places) = (place(rows), place(columns));
+        let narrow = |index: usize| u32::try_from(index).expect("invariant: a subdomain has fewer than 2³² entries");
+        let mut lists = vec![Vec::new(); rows.len()];
+        for column in 0..full.dimension() {
+            for position in full.starts[column]..full.starts[column + 1] {
+                let row = full.rows[position];
+                let mut add = |row: usize, column: usize| {
+                    if let (Some(row), Some(column)) = (row_places[row], column_places[column]) {
+                        lists[row].push((narrow(column), narrow(position)));
+                    }
+                };
+                add(row, column);
+                if row != column {
+                    add(column, row);
+                }
+            }
+        }
+        let mut starts = vec![0];
+        starts.extend(lists.iter().scan(0, |end, list: &Vec<_>| {
+            *end += list.len();
+            Some(*end)
+        }));
+        Self { starts, entries: lists.concat() }
+    }
+
+    /// y += factor·A_RC x for the values of the lower triangle; to be called inside [`vectorized`](super::entry::vectorized).
+    #[inline(always)]
+    pub fn add_product<V: Entry>(&self, values: &[f64], factor: f64, x: &[V], y: &mut [V]) {
+        for (y, range) in y.iter_mut().zip(self.starts.windows(2)) {
+            let mut sum = V::ZERO;
+            for &(column, position) in &self.entries[range[0]..range[1]] {
+                sum.accumulate(values[position as usize], &x[column as usize]);
+            }
+            y.add_scaled(factor, &sum);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_add_up_to_the_matrix() {
+        let pattern = LowerPattern::from_columns(vec![vec![1, 3], vec![2, 3], vec![], vec![]]);
+        let values = [4.0, 1.0, -2.0, 5.0, 0.5, 3.0, 6.0, 7.0];
+        let x = [1.0, 2.0, 3.0, 4.0];
+        let mut expected = [0.0; 4];
+        pattern.multiply(&values, &x, &mut expected);
+        let (first, second) = ([0, 2], [1, 3]);
+        for rows in [first, second] {
+            let mut product = [0.0; 2];
+            for columns in [first, second] {
+                let block = SymmetricBlock::new(&pattern, &rows, &columns);
+                block.add_product(&values, 1.0, &columns.map(|column| x[column]), &mut product);
+            }
+            assert_eq!(product, rows.map(|row| expected[row]));
+        }
     }
 }

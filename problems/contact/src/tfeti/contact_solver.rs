@@ -121,8 +121,8 @@ impl ContactSolver for TotalFeti {
         self.solver.sensitivities(state, direction, tolerance)
     }
 
-    fn tangents(&self, _state: &TornState, _changes: &[Vec<f64>], _tolerance: f64) -> Result<Tangents, ContactError> {
-        Err(ContactError::OtherSolver)
+    fn tangents(&self, state: &TornState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
+        self.solver.tangents(state, changes, tolerance)
     }
 
     fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {

@@ -5,11 +5,11 @@ use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::{self, Linearization};
 use crate::equilibrium::{
     Configuration, ContactForces, ContactProblem, Diagnosis, Failed, Kink, Residuals, Sensitivities, SolvedBody, Stage,
-    StageSeconds, ValueError, Work,
+    StageSeconds, Tangents, ValueError, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::tfeti::derivative::height_sensitivities;
+use crate::tfeti::derivative::{MovedSurface, height_sensitivities};
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::NewtonSettings;
 use crate::tfeti::torn::{
@@ -274,6 +274,28 @@ impl TornSolver {
         let heights = height_sensitivities(&self.model, &state.system, &state.blocks[0], &state.displacement, &adjoint);
         let (applications, shape_seconds) = (contact.operator.applications(), clock.lap());
         Ok(Sensitivities { heights, applications, adjoint_seconds, shape_seconds, value_error })
+    }
+
+    /// Forward derivatives of a state for changes of the heights of the contact nodes, mm, one vector per change.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] from the linearized problems, [`ContactError::ForeignState`] for a state of another mesh or
+    /// changes of another surface.
+    pub fn tangents(&self, state: &TornState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
+        let expected = self.problem().grid.column_count();
+        if let Some(found) = changes.iter().map(Vec::len).find(|found| *found != expected) {
+            return Err(ContactError::ForeignState { what: "heights of contact nodes", expected, found });
+        }
+        let Some(contact) = self.contact_of(state)? else {
+            return Ok(Tangents::at_rest(self.problem().boundary.row_count, changes));
+        };
+        Stage::Adjoint.enter();
+        let surface = MovedSurface {
+            lower: &state.blocks[0],
+            displacement: &state.displacement,
+            linearizations: &state.solution.linearizations,
+        };
+        contact.tangents(surface, changes, tolerance)
     }
 
     /// All bodies of a solved shape, lower first; torn copies of a node averaged.

@@ -1,14 +1,20 @@
 //! Forward derivatives of the contact state against the adjoint, to rounding, and against states of moved surfaces.
 
+use contact::body::elasticity::Material;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::ContactSolver;
+use contact::equilibrium::{ContactSolver, Tangents};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, StateSolver, Vector};
 
 fn shape(mut scene: Scene, friction: f64, kind: SolverKind) -> ContactShape {
-    (scene.mesh, scene.friction) = ([6; 3], friction);
+    (scene.mesh, scene.subdomains, scene.friction) = ([6; 3], [2, 3, 2], friction);
     ContactShape::new(scene, kind).unwrap()
+}
+
+/// Both scenes without and with friction.
+fn scenes() -> impl Iterator<Item = (Scene, f64)> {
+    [0.0, 0.3].into_iter().flat_map(|friction| [signorini(), hertz()].map(|scene| (scene.unwrap(), friction)))
 }
 
 /// Controls near the start of a scene.
@@ -46,10 +52,105 @@ fn forward_and_adjoint_agree(shape: &ContactShape, tolerance: f64) {
 
 #[test]
 fn tangents_of_direct_condensation_agree_with_its_adjoint() {
-    for friction in [0.0, 0.3] {
-        forward_and_adjoint_agree(&shape(signorini().unwrap(), friction, SolverKind::Direct), 1e-10);
-        forward_and_adjoint_agree(&shape(hertz().unwrap(), friction, SolverKind::Direct), 1e-10);
+    for (scene, friction) in scenes() {
+        forward_and_adjoint_agree(&shape(scene, friction, SolverKind::Direct), 1e-10);
     }
+}
+
+#[test]
+fn tangents_of_total_feti_agree_with_its_adjoint() {
+    for (scene, friction) in scenes() {
+        forward_and_adjoint_agree(&shape(scene, friction, SolverKind::Newton), 1e-9);
+    }
+}
+
+/// |a − b|/|b| over all columns.
+fn difference(found: &[Vec<f64>], expected: &[Vec<f64>]) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    let norm = |entries: Vec<f64>| entries.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+    let pairs = found.iter().flatten().zip(expected.iter().flatten());
+    norm(pairs.map(|(a, b)| a - b).collect()) / norm(expected.concat())
+}
+
+#[test]
+fn both_solvers_have_the_same_tangents() {
+    for (scene, friction) in scenes() {
+        let both = [SolverKind::Newton, SolverKind::Direct].map(|kind| {
+            let shape = shape(scene.clone(), friction, kind);
+            let state = shape.solve(&controls(&shape, 3), None, Accuracy::TIGHTEST).unwrap();
+            let changes = changes(&shape, &[1, 8, 21]);
+            shape.contact_solver().tangents(&state.solution, &changes, 0.0).unwrap()
+        });
+        assert!(both[0].applications > 0 && both[1].applications == 0);
+        let errors = [difference(&both[0].forces, &both[1].forces), difference(&both[0].openings, &both[1].openings)];
+        assert!(errors.into_iter().all(|error| error < 1e-8), "{errors:?}");
+    }
+}
+
+#[test]
+fn tangents_of_total_feti_are_as_accurate_as_asked_for() {
+    for (scene, friction) in scenes() {
+        let shape = shape(scene, friction, SolverKind::Newton);
+        let state = shape.solve(&controls(&shape, 4), None, Accuracy::TIGHTEST).unwrap();
+        // More columns than advance in lockstep: two batches.
+        let changes = changes(&shape, &(0..45).map(|k| k % 36).collect::<Vec<_>>());
+        let solve = |tolerance| shape.contact_solver().tangents(&state.solution, &changes, tolerance).unwrap();
+        let exact = solve(0.0);
+        let mut applications = exact.applications;
+        for tolerance in [1e-4, 1e-2] {
+            let rough = solve(tolerance);
+            assert!(rough.residual <= tolerance, "{:e}", rough.residual);
+            assert!(rough.applications < applications, "{} {applications}", rough.applications);
+            applications = rough.applications;
+            let errors = [difference(&rough.forces, &exact.forces), difference(&rough.openings, &exact.openings)];
+            assert!(errors.into_iter().all(|error| error <= 3.0 * tolerance), "{errors:?} {tolerance:e}");
+        }
+    }
+}
+
+/// Ten tangents by total FETI to a tolerance.
+fn ten_tangents(scene: Scene, tolerance: f64) -> Tangents {
+    let shape = shape(scene, 0.3, SolverKind::Newton);
+    let state = shape.solve(&controls(&shape, 6), None, Accuracy::TIGHTEST).unwrap();
+    let changes = changes(&shape, &(5..15).collect::<Vec<_>>());
+    shape.contact_solver().tangents(&state.solution, &changes, tolerance).unwrap()
+}
+
+#[test]
+fn tangents_do_not_depend_on_the_number_of_threads() {
+    for tolerance in [1e-2, 0.0] {
+        let [one, three] = [1, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| ten_tangents(hertz().unwrap(), tolerance))
+        });
+        assert_eq!((one.forces, one.openings, one.residual), (three.forces, three.openings, three.residual));
+    }
+}
+
+#[test]
+fn tangents_in_single_precision_do_not_depend_on_the_unit_of_force() {
+    let unit = ten_tangents(signorini().unwrap(), 1e-2);
+    for factor in [1e-9, 1e9] {
+        let mut scene = signorini().unwrap();
+        let material = scene.lower.material;
+        scene.lower.material = Material::new(factor * material.young_modulus(), material.poisson_ratio()).unwrap();
+        for load in &mut scene.lower.loads {
+            load.traction = load.traction.map(|traction| factor * traction);
+        }
+        let mut other = ten_tangents(scene, 1e-2);
+        assert_eq!(other.applications, unit.applications);
+        other.forces.iter_mut().flatten().for_each(|force| *force /= factor);
+        let errors = [difference(&other.forces, &unit.forces), difference(&other.openings, &unit.openings)];
+        assert!(errors.into_iter().all(|error| error < 1e-4), "{errors:?}");
+    }
+}
+
+#[test]
+fn changes_of_another_surface_are_refused() {
+    let shape = shape(signorini().unwrap(), 0.3, SolverKind::Newton);
+    let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+    let error = shape.contact_solver().tangents(&state.solution, &[vec![1.0; 3]], 0.0).unwrap_err();
+    assert!(error.to_string().contains("heights of contact nodes"), "{error}");
 }
 
 #[test]

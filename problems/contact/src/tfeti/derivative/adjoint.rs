@@ -13,6 +13,9 @@ use crate::error::ContactError;
 use crate::linear::gmres::{MAX_STALLED_ITERATIONS, gmres};
 use crate::linear::pcg::pcg;
 use crate::linear::vector::{add_scaled, norm};
+use crate::tfeti::derivative::cycles::{
+    CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
+};
 use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
 use crate::tfeti::torn::{RowVector, TornVector};
 
@@ -25,24 +28,12 @@ pub struct TornAdjoint {
     pub(crate) multipliers: RowVector,
 }
 
-/// Cycles allowed: each recomputes the residual, so that the next one regains what rounding has taken.
-const MAX_CYCLES: usize = 12;
-/// Residual reduction asked of a cycle with single precision products.
-const CYCLE_REDUCTION: f64 = 3e-5;
-/// Residual reduction by a cycle that is too little for products in single precision.
-const SLOW_REDUCTION: f64 = 0.1;
-/// Residual reduction by a cycle that is too little for another one in double precision.
-const STALLED_REDUCTION: f64 = 0.5;
 /// Krylov iterations allowed per cycle.
 const MAX_KRYLOV: usize = 600;
-/// Share of the right side below which its projection is known to few digits: relative residuals refer to no less.
-const SMALLEST_PROJECTED_SHARE: f64 = 1e-5;
 /// Share of the natural residual accepted when rounding stops all progress: six digits of a sensitivity of its size.
 const NATURAL_ACCEPTABLE: f64 = 1e-6;
 /// Share of the natural residual below which the whole right side is rounding for the sensitivity.
 const ROUNDING_SHARE: f64 = 1e-3;
-/// Relative residual accepted when rounding stops all progress.
-const TIGHTEST_ACCEPTABLE: f64 = 1e-8;
 
 /// The system (Tᵀ F Q + Δ) q = −Tᵀ j, projected by Pᵀ.
 struct AdjointSystem<'a> {
@@ -57,19 +48,6 @@ struct AdjointIterate {
     rest: Vec<f64>,
     projected: Vec<f64>,
     residual: f64,
-}
-
-/// What follows a cycle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum NextCycle {
-    /// Another cycle in the same precision, or the end if the residual is small enough.
-    Continue,
-    /// Another cycle with products in double precision.
-    Double,
-    /// The same, from the beginning: the cycle has made things worse.
-    DoubleFromZero,
-    /// Rounding has stopped all progress.
-    Stop,
 }
 
 impl TornContact<'_> {
@@ -183,53 +161,5 @@ impl AdjointSystem<'_> {
         let multipliers = self.active.rows.test(&iterate.unknowns);
         let displacement = operator.displacement(operator.model.zeros(), &multipliers, &amplitudes);
         TornAdjoint { displacement, multipliers }
-    }
-}
-
-/// Judges a cycle by the residual before and after it.
-fn next_cycle(precision: Precision, previous: f64, residual: f64, goal: f64) -> NextCycle {
-    let within = |share: f64| residual <= share * previous;
-    if residual <= goal || within(SLOW_REDUCTION) {
-        NextCycle::Continue
-    } else if precision == Precision::Double && !within(STALLED_REDUCTION) {
-        NextCycle::Stop
-    } else if within(1.0) {
-        NextCycle::Double
-    } else {
-        NextCycle::DoubleFromZero
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const GOAL: f64 = 1e-10;
-
-    #[test]
-    fn a_cycle_that_pays_or_reaches_the_goal_is_followed_by_the_same() {
-        for precision in [Precision::Mixed, Precision::Double] {
-            assert_eq!(next_cycle(precision, 1.0, 0.05, GOAL), NextCycle::Continue);
-            assert_eq!(next_cycle(precision, 1.5 * GOAL, GOAL, GOAL), NextCycle::Continue);
-        }
-    }
-
-    #[test]
-    fn a_slow_cycle_in_single_precision_is_followed_by_double_precision() {
-        assert_eq!(next_cycle(Precision::Mixed, 1.0, 0.2, GOAL), NextCycle::Double);
-        assert_eq!(next_cycle(Precision::Mixed, 1.0, 1.0, GOAL), NextCycle::Double);
-    }
-
-    #[test]
-    fn a_harmful_cycle_in_single_precision_is_undone() {
-        assert_eq!(next_cycle(Precision::Mixed, 1.0, 1.1, GOAL), NextCycle::DoubleFromZero);
-        assert_eq!(next_cycle(Precision::Mixed, 1.0, f64::NAN, GOAL), NextCycle::DoubleFromZero);
-    }
-
-    #[test]
-    fn double_precision_goes_on_while_the_residual_halves() {
-        assert_eq!(next_cycle(Precision::Double, 1.0, 0.4, GOAL), NextCycle::Double);
-        assert_eq!(next_cycle(Precision::Double, 1.0, 0.6, GOAL), NextCycle::Stop);
-        assert_eq!(next_cycle(Precision::Double, 1.0, f64::NAN, GOAL), NextCycle::Stop);
     }
 }

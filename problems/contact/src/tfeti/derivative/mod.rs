@@ -3,12 +3,17 @@
 //! ```text
 //! j = ∂J/∂λ ─ adjoint: q, p ─┬─ shape derivative: ∂J/∂(column heights)
 //!                            └─ error estimate: J(state) − J(exact)
+//! changes of the column heights ─ shape loads: r, δe ─ tangents: δλ, changes of the openings, all columns in lockstep
 //! derivatives of the state ─ contraction: spectral radius of Φ′
 //! ```
 
 mod adjoint;
 mod contraction;
+mod cycles;
 mod error_estimate;
 mod shape_derivative;
+mod shape_loads;
+mod tangents;
 
 pub use shape_derivative::height_sensitivities;
+pub use tangents::MovedSurface;

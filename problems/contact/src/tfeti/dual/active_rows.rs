@@ -10,6 +10,7 @@
 
 use crate::equilibrium::ContactBoundary;
 use crate::equilibrium::law::Linearization;
+use crate::linear::entry::Entry;
 use crate::tfeti::torn::RowVector;
 
 /// What bounds the traction of a slip node.
@@ -76,40 +77,40 @@ impl<'a> ActiveRows<'a> {
     }
 
     /// T y.
-    pub fn trial(&self, unknowns: &[f64]) -> RowVector {
+    pub fn trial<V: Entry>(&self, unknowns: &[V]) -> RowVector<V> {
         self.expand(unknowns, self.trial_friction)
     }
 
     /// Q y.
-    pub fn test(&self, unknowns: &[f64]) -> RowVector {
+    pub fn test<V: Entry>(&self, unknowns: &[V]) -> RowVector<V> {
         self.expand(unknowns, 0.0)
     }
 
     /// Tᵀ r.
-    pub fn trial_transposed(&self, rows: &RowVector) -> Vec<f64> {
+    pub fn trial_transposed<V: Entry>(&self, rows: &RowVector<V>) -> Vec<V> {
         self.restrict(rows, self.trial_friction)
     }
 
     /// Qᵀ r.
-    pub fn test_transposed(&self, rows: &RowVector) -> Vec<f64> {
+    pub fn test_transposed<V: Entry>(&self, rows: &RowVector<V>) -> Vec<V> {
         self.restrict(rows, 0.0)
     }
 
     /// (Q + friction·e⊗n) y.
-    fn expand(&self, unknowns: &[f64], friction: f64) -> RowVector {
-        let mut result = vec![0.0; self.equality_count + self.boundary.row_count];
+    fn expand<V: Entry>(&self, unknowns: &[V], friction: f64) -> RowVector<V> {
+        let mut result = vec![V::ZERO; self.equality_count + self.boundary.row_count];
         let (equality, rows) = result.split_at_mut(self.equality_count);
         equality.copy_from_slice(&unknowns[..self.equality_count]);
         self.closed_nodes(|row, count, unknown, linearization| match *linearization {
             Linearization::Slip { direction, ratio } => {
                 rows[row] = unknowns[unknown];
                 for tangent in 1..count {
-                    rows[row + tangent] = friction * unknowns[unknown] * direction[tangent - 1];
+                    rows[row + tangent].add_scaled(friction * direction[tangent - 1], &unknowns[unknown]);
                 }
                 if count == 3 {
-                    let along = ratio.sqrt() * unknowns[unknown + 1];
-                    rows[row + 1] -= along * direction[1];
-                    rows[row + 2] += along * direction[0];
+                    let across = &unknowns[unknown + 1];
+                    rows[row + 1].add_scaled(-ratio.sqrt() * direction[1], across);
+                    rows[row + 2].add_scaled(ratio.sqrt() * direction[0], across);
                 }
             }
             _ => rows[row..row + count].copy_from_slice(&unknowns[unknown..unknown + count]),
@@ -118,10 +119,13 @@ impl<'a> ActiveRows<'a> {
     }
 
     /// (Q + friction·e⊗n)ᵀ r.
-    fn restrict(&self, all: &RowVector, friction: f64) -> Vec<f64> {
+    fn restrict<V: Entry>(&self, all: &RowVector<V>, friction: f64) -> Vec<V> {
         self.reduce(all, |rows, direction, ratio| {
-            let along: f64 = rows[1..].iter().zip(direction).map(|(row, e)| e * row).sum();
-            [rows[0] + friction * along, ratio.sqrt() * across(rows, direction)]
+            let mut normal = rows[0];
+            for (row, e) in rows[1..].iter().zip(direction) {
+                normal.add_scaled(friction * e, row);
+            }
+            [normal, across(rows, direction, ratio.sqrt())]
         })
     }
 
@@ -129,14 +133,14 @@ impl<'a> ActiveRows<'a> {
     /// their tangential forces on the stick nodes, and their part across the slip direction on the slip nodes.
     pub fn unknowns_of(&self, multipliers: &RowVector) -> Vec<f64> {
         self.reduce(multipliers, |rows, direction, ratio| {
-            [rows[0], if ratio > 0.0 { across(rows, direction) / ratio.sqrt() } else { 0.0 }]
+            [rows[0], if ratio > 0.0 { across(rows, direction, 1.0 / ratio.sqrt()) } else { 0.0 }]
         })
     }
 
     /// Unknowns from all rows: those of B_E and of stick nodes as they are, those of slip nodes by `slip(rows, e, β)`.
-    fn reduce(&self, all: &RowVector, slip: impl Fn(&[f64], [f64; 2], f64) -> [f64; 2]) -> Vec<f64> {
+    fn reduce<V: Entry>(&self, all: &RowVector<V>, slip: impl Fn(&[V], [f64; 2], f64) -> [V; 2]) -> Vec<V> {
         let (equality, rows) = all.split();
-        let mut unknowns = vec![0.0; self.dimension];
+        let mut unknowns = vec![V::ZERO; self.dimension];
         unknowns[..self.equality_count].copy_from_slice(equality);
         self.closed_nodes(|row, count, unknown, linearization| {
             let rows = &rows[row..row + count];
@@ -152,21 +156,21 @@ impl<'a> ActiveRows<'a> {
     }
 
     /// Adds `factor`·D y for a diagonal D that is `value(β)` on the slip rows and 0 elsewhere.
-    fn add_slip_diagonal(&self, reduced: &[f64], result: &mut [f64], factor: f64, value: impl Fn(f64) -> f64) {
+    fn add_slip_diagonal<V: Entry>(&self, reduced: &[V], result: &mut [V], factor: f64, value: impl Fn(f64) -> f64) {
         self.closed_nodes(|_, count, unknown, linearization| {
             if let (Linearization::Slip { ratio, .. }, 3) = (linearization, count) {
-                result[unknown + 1] += factor * value(*ratio) * reduced[unknown + 1];
+                result[unknown + 1].add_scaled(factor * value(*ratio), &reduced[unknown + 1]);
             }
         });
     }
 
     /// result += factor·Δ y.
-    pub fn add_compliance(&self, unknowns: &[f64], result: &mut [f64], factor: f64) {
+    pub fn add_compliance<V: Entry>(&self, unknowns: &[V], result: &mut [V], factor: f64) {
         self.add_slip_diagonal(unknowns, result, factor, |ratio| (1.0 - ratio) / self.stiffness);
     }
 
     /// result += Z y.
-    pub fn add_spring(&self, unknowns: &[f64], result: &mut [f64]) {
+    pub fn add_spring<V: Entry>(&self, unknowns: &[V], result: &mut [V]) {
         self.add_slip_diagonal(unknowns, result, 1.0, |ratio| (1.0 - ratio) * self.stiffness);
     }
 
@@ -193,7 +197,12 @@ impl<'a> ActiveRows<'a> {
     }
 }
 
-/// The part of the tangential rows of a node across a slip direction; 0 if there is one row.
-fn across(rows: &[f64], direction: [f64; 2]) -> f64 {
-    if rows.len() == 3 { direction[0] * rows[2] - direction[1] * rows[1] } else { 0.0 }
+/// The part of the tangential rows of a node across a slip direction, times a factor; 0 if there is one row.
+fn across<V: Entry>(rows: &[V], direction: [f64; 2], factor: f64) -> V {
+    let mut part = V::ZERO;
+    if let [_, first, second] = rows {
+        part.add_scaled(factor * direction[0], second);
+        part.add_scaled(-factor * direction[1], first);
+    }
+    part
 }

@@ -8,6 +8,7 @@
 
 use crate::error::ContactError;
 use crate::linear::dense::DenseLu;
+use crate::linear::right_side::RightSide;
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::active_rows::ActiveRows;
 use crate::tfeti::dual::coarse_space::CoarseSpace;
@@ -48,31 +49,34 @@ impl<'a> ActiveSet<'a> {
     }
 
     /// a with Gqᵀ a closest to −r: the rigid amplitudes that a reduced residual r asks for.
-    pub fn amplitudes(&self, residual: &[f64]) -> Vec<f64> {
+    pub fn amplitudes<V: RightSide>(&self, residual: &[V]) -> Vec<V> {
         let mut amplitudes = self.space.resultant(&self.rows.trial(residual));
-        self.coarse.solve_in_place(&mut amplitudes);
-        amplitudes.iter_mut().for_each(|entry| *entry = -*entry);
+        V::solve_dense(&self.coarse, &mut amplitudes);
+        amplitudes.iter_mut().for_each(|entry| entry.scale(-1.0));
         amplitudes
     }
 
     /// v ← P v.
-    pub fn project(&self, v: &mut [f64]) {
+    pub fn project<V: RightSide>(&self, v: &mut [V]) {
         let amplitudes = self.amplitudes(v);
         self.add_rigid(&amplitudes, v);
     }
 
     /// v += Gqᵀ a.
-    pub fn add_rigid(&self, amplitudes: &[f64], v: &mut [f64]) {
-        add_scaled(v, 1.0, &self.rows.test_transposed(&self.space.jumps(amplitudes)));
+    pub fn add_rigid<V: RightSide>(&self, amplitudes: &[V], v: &mut [V]) {
+        for (v, jump) in v.iter_mut().zip(self.rows.test_transposed(&self.space.jumps(amplitudes))) {
+            v.add_scaled(1.0, &jump);
+        }
     }
 
     /// y += Gqᵀ (G_T Gqᵀ)⁻¹ (target − G T y): the smallest change after which T y has the given resultants.
-    pub fn enforce(&self, y: &mut [f64], target: &[f64]) {
+    pub fn enforce<V: RightSide>(&self, y: &mut [V], target: &[V]) {
         let mut defect = self.space.resultant(&self.rows.trial(y));
         for (defect, target) in defect.iter_mut().zip(target) {
-            *defect = target - *defect;
+            defect.scale(-1.0);
+            defect.add_scaled(1.0, target);
         }
-        self.coarse.solve_in_place(&mut defect);
+        V::solve_dense(&self.coarse, &mut defect);
         self.add_rigid(&defect, y);
     }
 

@@ -5,6 +5,7 @@
 //! ```
 
 use crate::linear::csr::Csr;
+use crate::linear::entry::Entry;
 use crate::tfeti::torn::{RowVector, TornModel, TornSystem};
 use faer::Mat;
 use rayon::prelude::*;
@@ -76,15 +77,15 @@ impl CoarseSpace {
     }
 
     /// G λ of multipliers over all rows.
-    pub fn resultant(&self, multipliers: &[f64]) -> Vec<f64> {
-        let mut result = vec![0.0; self.rows.column_count()];
+    pub fn resultant<V: Entry>(&self, multipliers: &[V]) -> Vec<V> {
+        let mut result = vec![V::ZERO; self.rows.column_count()];
         self.transposed.multiply(multipliers, &mut result);
         result
     }
 
     /// Gᵀ a.
-    pub fn jumps(&self, amplitudes: &[f64]) -> RowVector {
-        let mut result = vec![0.0; self.row_count()];
+    pub fn jumps<V: Entry>(&self, amplitudes: &[V]) -> RowVector<V> {
+        let mut result = vec![V::ZERO; self.row_count()];
         self.rows.multiply(amplitudes, &mut result);
         RowVector::new(result, self.equality_count)
     }

@@ -1,5 +1,8 @@
 //! F = B K⁺ Bᵀ and the products around it; subdomains in parallel, sums in a fixed order.
 
+use crate::linear::entry::{Entry, Row};
+use crate::linear::real::Real;
+use crate::linear::right_side::RightSide;
 use crate::linear::vector::add_scaled;
 use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, TornVector};
 use rayon::prelude::*;
@@ -70,39 +73,81 @@ impl<'a> DualOperator<'a> {
     /// B K⁺ Bᵀ λ for a given product with K⁺.
     fn apply_with(&self, multipliers: &RowVector, solve: impl Fn(&SubdomainFactors, &mut [f64]) + Sync) -> RowVector {
         self.applications.fetch_add(1, Ordering::Relaxed);
-        let mut torn = self.scatter(multipliers);
-        self.for_each_subdomain(&mut torn, solve);
+        let mut torn = self.model.zeros();
+        self.solve_subdomains(multipliers, &mut torn.0, solve);
         self.gather(&torn)
     }
 
-    /// Bᵀ λ.
-    fn scatter(&self, multipliers: &RowVector) -> TornVector {
-        let mut torn = self.model.zeros();
-        self.model.constraints.transposed.multiply(multipliers, &mut torn.0);
-        torn
+    /// F Λ for a block of columns in its own precision, of which `count` are counted. `torn`: room for a torn block.
+    pub(crate) fn apply_columns<E: Real, const N: usize>(
+        &self,
+        multipliers: &[Row<E, N>],
+        torn: &mut [Row<E, N>],
+        count: usize,
+    ) -> RowVector<Row<E, N>> {
+        self.applications.fetch_add(count, Ordering::Relaxed);
+        self.solve_subdomains(multipliers, torn, |factors, part| RightSide::solve(&factors.inverse, part));
+        self.gather_columns(torn)
+    }
+
+    /// B K⁺ (r − BᵀΛ) for torn forces r (N) in their precision; `count` columns are counted. `torn`: room for a torn block.
+    pub(crate) fn free_jumps<E: Real, const N: usize>(
+        &self,
+        forces: &[Row<E, N>],
+        multipliers: &[Row<E, N>],
+        torn: &mut [Row<E, N>],
+        count: usize,
+    ) -> RowVector<Row<E, N>> {
+        self.applications.fetch_add(count, Ordering::Relaxed);
+        self.for_each_subdomain(torn, |first, factors, part| {
+            self.model.constraints.transposed.multiply_rows(first, multipliers, part);
+            for (load, force) in part.iter_mut().zip(&forces[first..]) {
+                *load = force.zip(load, |force, held| force - held);
+            }
+            RightSide::solve(&factors.inverse, part);
+        });
+        self.gather_columns(torn)
+    }
+
+    /// K⁺ Bᵀ λ for a given product with K⁺.
+    fn solve_subdomains<V: Entry>(
+        &self,
+        multipliers: &[V],
+        torn: &mut [V],
+        solve: impl Fn(&SubdomainFactors, &mut [V]) + Sync,
+    ) {
+        self.for_each_subdomain(torn, |first, factors, part| {
+            self.model.constraints.transposed.multiply_rows(first, multipliers, part);
+            solve(factors, part);
+        });
     }
 
     /// B u of a torn displacement, summed over all processes.
     pub fn gather(&self, torn: &TornVector) -> RowVector {
-        let mut rows = self.model.constraints.zeros();
-        self.model.constraints.rows.multiply(&torn.0, &mut rows);
-        self.model.communication.exchange(&mut rows);
+        self.gather_columns(&torn.0)
+    }
+
+    fn gather_columns<V: Entry>(&self, torn: &[V]) -> RowVector<V> {
+        let constraints = &self.model.constraints;
+        let mut rows = constraints.multiply(&constraints.rows, torn);
+        self.model.exchange(&mut rows);
         rows
     }
 
-    /// Works on the parts of a torn vector that belong to this process and clears the others.
-    fn for_each_subdomain(&self, torn: &mut TornVector, work: impl Fn(&SubdomainFactors, &mut [f64]) + Sync) {
+    /// Calls `work(first dof, factors, part)` with the parts of a torn vector that belong to this process and clears the others.
+    fn for_each_subdomain<V: Entry>(&self, torn: &mut [V], work: impl Fn(usize, &SubdomainFactors, &mut [V]) + Sync) {
         let size = self.model.pattern.pattern.dimension();
-        torn.0.par_chunks_mut(size).zip(&self.system.parts).for_each(|(values, part)| match &part.factors {
-            Some(factors) => work(factors, values),
-            None => values.fill(0.0),
+        let parts = torn.par_chunks_mut(size).zip(&self.system.parts).enumerate();
+        parts.for_each(|(index, (values, part))| match &part.factors {
+            Some(factors) => work(index * size, factors, values),
+            None => values.fill(V::ZERO),
         });
     }
 
     /// K⁺ f.
     pub fn loaded_displacement(&self) -> TornVector {
         let mut torn = self.model.zeros();
-        self.for_each_subdomain(&mut torn, |factors, part| {
+        self.for_each_subdomain(&mut torn.0, |_, factors, part| {
             if !factors.loaded_displacement.is_empty() {
                 part.copy_from_slice(&factors.loaded_displacement);
             }
@@ -112,8 +157,8 @@ impl<'a> DualOperator<'a> {
 
     /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere, from `loaded` = K⁺ f; method.md (4.2).
     pub fn displacement(&self, mut loaded: TornVector, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
-        let mut torn = self.scatter(multipliers);
-        self.for_each_subdomain(&mut torn, |factors, part| factors.inverse.solve_in_place(part));
+        let mut torn = self.model.zeros();
+        self.solve_subdomains(multipliers, &mut torn.0, |factors, part| factors.inverse.solve_in_place(part));
         add_scaled(&mut loaded.0, -1.0, &torn.0);
         let size = self.model.pattern.pattern.dimension();
         let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).zip(amplitudes.par_chunks(6));

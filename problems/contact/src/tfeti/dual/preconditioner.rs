@@ -5,7 +5,8 @@
 //! lumped:     B_D K_BB B_Dᵀ
 //! ```
 
-use crate::linear::vector::add_scaled;
+use crate::linear::entry::vectorized;
+use crate::linear::right_side::RightSide;
 use crate::tfeti::torn::{PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornSystem};
 use rayon::prelude::*;
 
@@ -26,42 +27,62 @@ impl<'a> Preconditioner<'a> {
 
     /// The product with a residual (mm) over all rows; result in N.
     pub fn apply(&self, residual: &RowVector) -> RowVector {
+        self.apply_columns(residual, &mut self.model.zeros().0)
+    }
+
+    /// The same for a vector or a block of columns, in its own precision. `torn`: room for a torn vector.
+    pub(crate) fn apply_columns<V: RightSide>(&self, residual: &RowVector<V>, torn: &mut [V]) -> RowVector<V> {
         if self.kind == PreconditionerKind::None {
             let mut result = residual.clone();
-            result.iter_mut().for_each(|entry| *entry *= self.stiffness);
+            result.iter_mut().for_each(|entry| entry.scale(self.stiffness));
             return result;
         }
-        let model = self.model;
-        let mut torn = model.zeros();
-        model.constraints.weighted_transposed.multiply(residual, &mut torn.0);
+        let (model, constraints) = (self.model, &self.model.constraints);
         let size = model.pattern.pattern.dimension();
-        torn.0.par_chunks_mut(size).zip(&self.system.parts).enumerate().for_each(|(index, (values, part))| match &part
-            .factors
-        {
-            Some(factors) if values.iter().any(|entry| *entry != 0.0) => self.apply_subdomain(index, factors, values),
-            Some(_) => {}
-            None => values.fill(0.0),
+        let parts = torn.par_chunks_mut(size).zip(&self.system.parts).enumerate();
+        parts.for_each(|(index, (values, part))| match &part.factors {
+            Some(factors) => {
+                constraints.weighted_transposed.multiply_rows(index * size, residual, values);
+                if values.iter().any(|entry| *entry != V::ZERO) {
+                    self.apply_subdomain(index, factors, values);
+                }
+            }
+            None => values.fill(V::ZERO),
         });
-        let mut result = model.constraints.zeros();
-        model.constraints.weighted.multiply(&torn.0, &mut result);
-        model.communication.exchange(&mut result);
+        let mut result = constraints.multiply(&constraints.weighted, torn);
+        model.exchange(&mut result);
         result
     }
 
     /// S or K_BB times the boundary part. Entries of the interior come out meaningless; nothing reads them, since B_D has no
     /// rows there.
-    fn apply_subdomain(&self, index: usize, factors: &SubdomainFactors, part: &mut [f64]) {
-        let pattern = &self.model.pattern.pattern;
-        let boundary = part.to_vec();
-        pattern.multiply(&factors.stiffness, &boundary, part);
-        let (Some(interior), Some(factor)) = (self.model.interior(index), &factors.interior) else { return };
-        let mut inner: Vec<f64> = interior.kept.iter().map(|&dof| part[dof]).collect();
-        factor.solve_in_place(&mut inner);
-        let (mut extended, mut image) = (vec![0.0; part.len()], vec![0.0; part.len()]);
-        for (&dof, value) in interior.kept.iter().zip(&inner) {
-            extended[dof] = *value;
+    fn apply_subdomain<V: RightSide>(&self, index: usize, factors: &SubdomainFactors, part: &mut [V]) {
+        let stiffness = &factors.stiffness;
+        let Some(class) = self.model.interior(index) else {
+            let whole = part.to_vec();
+            self.model.pattern.pattern.multiply(stiffness, &whole, part);
+            return;
+        };
+        let boundary: Vec<V> = class.boundary.iter().map(|&dof| part[dof]).collect();
+        let mut image = vec![V::ZERO; boundary.len()];
+        vectorized(
+            #[inline(always)]
+            || class.boundary_block.add_product(stiffness, 1.0, &boundary, &mut image),
+        );
+        if let Some(factor) = &factors.interior {
+            let mut inner = vec![V::ZERO; class.submatrix.kept.len()];
+            vectorized(
+                #[inline(always)]
+                || class.coupling.add_product(stiffness, 1.0, &boundary, &mut inner),
+            );
+            V::solve(factor, &mut inner);
+            vectorized(
+                #[inline(always)]
+                || class.coupling_transposed.add_product(stiffness, -1.0, &inner, &mut image),
+            );
         }
-        pattern.multiply(&factors.stiffness, &extended, &mut image);
-        add_scaled(part, -1.0, &image);
+        for (&dof, image) in class.boundary.iter().zip(image) {
+            part[dof] = image;
+        }
     }
 }

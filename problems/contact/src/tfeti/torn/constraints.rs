@@ -12,6 +12,7 @@ use crate::equilibrium::ContactBoundary;
 use crate::error::ContactError;
 use crate::lattice;
 use crate::linear::csr::Csr;
+use crate::linear::entry::Entry;
 use crate::scene::{BodyScene, Scene};
 use crate::tfeti::torn::vectors::RowVector;
 
@@ -98,6 +99,13 @@ impl Constraints {
     /// The zero vector over all rows.
     pub fn zeros(&self) -> RowVector {
         RowVector::new(vec![0.0; self.row_count()], self.equality_count)
+    }
+
+    /// A product with rows of B or B_D, as a vector over all rows.
+    pub(crate) fn multiply<V: Entry>(&self, rows: &Csr, torn: &[V]) -> RowVector<V> {
+        let mut result = vec![V::ZERO; self.row_count()];
+        rows.multiply(torn, &mut result);
+        RowVector::new(result, self.equality_count)
     }
 
     /// Given values, one per row.

@@ -10,7 +10,7 @@ use crate::body::elasticity::brick::Nodes;
 use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
-use crate::linear::symmetric::Submatrix;
+use crate::linear::symmetric::{LowerPattern, Submatrix, SymmetricBlock};
 use crate::linear::vector::{add_scaled, dot};
 use crate::tfeti::torn::rigid_modes::{orthonormal_modes, orthonormalise};
 use std::sync::Arc;
@@ -22,6 +22,35 @@ pub struct InteriorClass {
     pub submatrix: Submatrix,
     /// Its symbolic factor; none if there are no interior dofs.
     pub symbolic: Option<Arc<SymbolicFactor>>,
+    /// Dofs with rows, ascending.
+    pub boundary: Vec<usize>,
+    /// K_BB.
+    pub boundary_block: SymmetricBlock,
+    /// K_IB.
+    pub coupling: SymmetricBlock,
+    /// K_BI.
+    pub coupling_transposed: SymmetricBlock,
+}
+
+impl InteriorClass {
+    /// The class of given interior dofs; `order`: elimination order of all dofs.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when the symbolic analysis fails.
+    pub fn new(pattern: &LowerPattern, interior: &[bool], order: Vec<usize>) -> Result<Self, ContactError> {
+        let submatrix = Submatrix::new(pattern, interior);
+        let boundary: Vec<usize> = (0..interior.len()).filter(|&dof| !interior[dof]).collect();
+        let order: Vec<usize> = order.into_iter().filter_map(|dof| submatrix.kept.binary_search(&dof).ok()).collect();
+        let symbolic = (!order.is_empty()).then(|| SymbolicFactor::new(Arc::clone(&submatrix.pattern), order));
+        Ok(Self {
+            symbolic: symbolic.transpose()?.map(Arc::new),
+            boundary_block: SymmetricBlock::new(pattern, &boundary, &boundary),
+            coupling: SymmetricBlock::new(pattern, &submatrix.kept, &boundary),
+            coupling_transposed: SymmetricBlock::new(pattern, &boundary, &submatrix.kept),
+            boundary,
+            submatrix,
+        })
+    }
 }
 
 /// What every process knows of a subdomain: its rigid motions and their loads.

@@ -9,7 +9,7 @@ use crate::equilibrium::{Configuration, ContactProblem};
 use crate::error::ContactError;
 use crate::lattice;
 use crate::linear::cholesky::SymbolicFactor;
-use crate::linear::symmetric::Submatrix;
+use crate::linear::entry::Entry;
 use crate::linear::vector::dot;
 use crate::scene::BodyScene;
 use crate::tfeti::torn::communication::Communication;
@@ -171,9 +171,28 @@ impl TornModel {
             .collect()
     }
 
-    /// Interior dofs of a subdomain: those without rows.
-    pub fn interior(&self, subdomain: usize) -> Option<&Submatrix> {
-        self.subdomains[subdomain].interior.as_ref().map(|class| &class.submatrix)
+    /// The class of a subdomain by its interior dofs: those without rows; none if the preconditioner needs none.
+    pub fn interior(&self, subdomain: usize) -> Option<&InteriorClass> {
+        self.subdomains[subdomain].interior.as_deref()
+    }
+
+    /// Whether all subdomains belong to this process, so that nothing has to travel.
+    pub fn is_whole(&self) -> bool {
+        self.communication.owned(self.subdomains.len()) == (0..self.subdomains.len())
+    }
+
+    /// Replaces contributions to the rows of B by their sums over all processes, column by column.
+    pub fn exchange<V: Entry>(&self, rows: &mut [V]) {
+        if self.is_whole() {
+            return;
+        }
+        for column in 0..V::WIDTH {
+            let mut values: Vec<f64> = rows.iter().map(|row| row.get(column)).collect();
+            self.communication.exchange(&mut values);
+            for (row, value) in rows.iter_mut().zip(values) {
+                row.set(column, value);
+            }
+        }
     }
 
     /// The zero vector over torn dofs.
@@ -255,12 +274,7 @@ fn interior_class(
     if let Some(class) = classes.get(&marked) {
         return Ok(Arc::clone(class));
     }
-    let submatrix = Submatrix::new(&pattern.pattern, &marked);
-    let order = pattern.elimination_order(&[]).into_iter();
-    let order: Vec<usize> = order.filter_map(|dof| submatrix.kept.binary_search(&dof).ok()).collect();
-    let symbolic = (!order.is_empty()).then(|| SymbolicFactor::new(Arc::clone(&submatrix.pattern), order));
-    let symbolic = symbolic.transpose()?.map(Arc::new);
-    let class = Arc::new(InteriorClass { submatrix, symbolic });
+    let class = Arc::new(InteriorClass::new(&pattern.pattern, &marked, pattern.elimination_order(&[]))?);
     classes.insert(marked, Arc::clone(&class));
     Ok(class)
 }

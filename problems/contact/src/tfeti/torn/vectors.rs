@@ -2,10 +2,11 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// A vector over all rows of B, scaled as they are: gluing and supports (B_E) first, then the packed contact rows.
+/// A vector over all rows of B, scaled as they are: gluing and supports (B_E) first, then the packed contact rows. An entry is
+/// a number, or a row of a block of columns.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RowVector {
-    values: Vec<f64>,
+pub struct RowVector<V = f64> {
+    values: Vec<V>,
     equality_count: usize,
 }
 
@@ -13,41 +14,41 @@ pub struct RowVector {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TornVector(pub Vec<f64>);
 
-impl RowVector {
-    pub(crate) fn new(values: Vec<f64>, equality_count: usize) -> Self {
+impl<V> RowVector<V> {
+    pub(crate) fn new(values: Vec<V>, equality_count: usize) -> Self {
         Self { values, equality_count }
     }
 
-    pub(crate) fn into_values(self) -> Vec<f64> {
+    pub(crate) fn into_values(self) -> Vec<V> {
         self.values
     }
 
     /// The rows of B_E, and the packed contact rows.
-    pub fn split(&self) -> (&[f64], &[f64]) {
+    pub fn split(&self) -> (&[V], &[V]) {
         self.values.split_at(self.equality_count)
     }
 
     /// The packed contact rows.
-    pub fn contact(&self) -> &[f64] {
+    pub fn contact(&self) -> &[V] {
         self.split().1
     }
 
     /// The packed contact rows, to be changed.
-    pub fn contact_mut(&mut self) -> &mut [f64] {
+    pub fn contact_mut(&mut self) -> &mut [V] {
         &mut self.values[self.equality_count..]
     }
 }
 
-impl Deref for RowVector {
-    type Target = [f64];
+impl<V> Deref for RowVector<V> {
+    type Target = [V];
 
-    fn deref(&self) -> &[f64] {
+    fn deref(&self) -> &[V] {
         &self.values
     }
 }
 
-impl DerefMut for RowVector {
-    fn deref_mut(&mut self) -> &mut [f64] {
+impl<V> DerefMut for RowVector<V> {
+    fn deref_mut(&mut self) -> &mut [V] {
         &mut self.values
     }
 }

@@ -1,0 +1,303 @@
+//! Forward derivatives of a TFETI state: all columns in lockstep.
+//!
+//! ```text
+//! r = −∂(K u − f),   δe = Rᵀ r,   δd = B K⁺ r − ∂g
+//! Qᵀ F T y + Δ y − QᵀGᵀ δa = Qᵀ δd,   G T y = δe,      δλ = T y,   δw = δd − F δλ + Gᵀ δa
+//! ```
+//! The system of a Newton step with another right side; the adjoint solves with its transpose. With G T y = δe the forces
+//! r − Bᵀ T y are in equilibrium on every subdomain, so δd − F T y = B K⁺(r − Bᵀ T y) − ∂g is one product, free of rigid parts
+//! that would cancel. Directions are in single precision, and so is all else where the tolerance allows it; otherwise the
+//! residual is computed afresh in double precision after every cycle.
+
+use crate::body::mesh::Block;
+use crate::equilibrium::Tangents;
+use crate::equilibrium::law::Linearization;
+use crate::error::ContactError;
+use crate::linear::columns::{add_combination, norms};
+use crate::linear::entry::{Entry, LANES, Row};
+use crate::linear::gcr::gcr;
+use crate::linear::real::Real;
+use crate::tfeti::derivative::cycles::{
+    CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
+};
+use crate::tfeti::derivative::shape_loads::ShapeLoads;
+use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
+use crate::tfeti::torn::{RowVector, TornVector};
+use std::cell::RefCell;
+
+/// The surface that moves, and the state that it moves in.
+#[derive(Debug, Clone, Copy)]
+pub struct MovedSurface<'a> {
+    /// The lower body.
+    pub lower: &'a Block,
+    /// u over torn dofs, mm.
+    pub displacement: &'a TornVector,
+    /// The derivative selected at every contact node.
+    pub linearizations: &'a [Linearization],
+}
+
+/// Columns that advance in lockstep: the sums of a tile of the subdomain solves then fill the registers.
+const MAX_COLUMNS: usize = 5 * LANES;
+/// Relative residual below which rounding of the subdomain solves in double precision decides.
+const TIGHTEST_GOAL: f64 = 1e-11;
+/// Smallest relative residual for which single precision needs no check by a product in double precision.
+const TIGHTEST_SINGLE: f64 = 1e-4;
+/// Unit roundoff of single precision over that of double precision.
+const SINGLE_ROUNDING: f64 = (1_u64 << 29) as f64;
+/// Share of the tolerance that rounding of the subdomain solves in single precision may take.
+const MAX_ROUNDING_SHARE: f64 = 0.1;
+/// Krylov iterations allowed per cycle.
+const MAX_KRYLOV: usize = 400;
+
+/// The system of at most 8N changes of the heights, with residuals in precision D.
+struct TangentSystem<'a, D, const N: usize> {
+    contact: &'a TornContact<'a>,
+    active: &'a ActiveSet<'a>,
+    loads: ShapeLoads<D, N>,
+    /// −∂g in the rows of the contact nodes, mm.
+    approaches: Vec<Row<D, N>>,
+    count: usize,
+}
+
+/// Unknowns y with their residual.
+struct TangentIterate<D, const N: usize> {
+    unknowns: Vec<Row<D, N>>,
+    /// The residual without its rigid part, mm.
+    projected: Vec<Row<D, N>>,
+    /// Normal rows of δw.
+    openings: Vec<Row<D, N>>,
+    /// Norms of the projected residual.
+    residuals: Row<f64, N>,
+    /// Norms of the whole residual.
+    natural: Row<f64, N>,
+}
+
+impl TornContact<'_> {
+    /// Tangents for changes of the heights of the contact nodes, mm.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] when a column does not reach the tolerance, [`ContactError::Unheld`].
+    pub fn tangents(
+        &self,
+        surface: MovedSurface<'_>,
+        changes: &[Vec<f64>],
+        tolerance: f64,
+    ) -> Result<Tangents, ContactError> {
+        let active = self.active_set(surface.linearizations.to_vec(), Friction::Coulomb)?;
+        let mut tangents = Tangents { forces: Vec::new(), openings: Vec::new(), residual: 0.0, applications: 0 };
+        let batches = changes.len().div_ceil(MAX_COLUMNS).max(1);
+        for batch in changes.chunks(changes.len().div_ceil(batches).max(1)) {
+            match batch.len().div_ceil(LANES) {
+                0 | 1 => self.tangent_batch::<1>(&active, surface, batch, tolerance, &mut tangents)?,
+                2 | 3 => self.tangent_batch::<3>(&active, surface, batch, tolerance, &mut tangents)?,
+                _ => self.tangent_batch::<5>(&active, surface, batch, tolerance, &mut tangents)?,
+            }
+        }
+        tangents.applications = self.operator.applications();
+        Ok(tangents)
+    }
+
+    /// Appends the tangents of at most 8N changes.
+    fn tangent_batch<const N: usize>(
+        &self,
+        active: &ActiveSet<'_>,
+        surface: MovedSurface<'_>,
+        changes: &[Vec<f64>],
+        tolerance: f64,
+        tangents: &mut Tangents,
+    ) -> Result<(), ContactError> {
+        if self.single_is_enough(tolerance) {
+            let system = TangentSystem::<f32, N>::new(self, active, surface, changes);
+            if let Some(iterate) = system.solve_once(tolerance) {
+                system.append(&iterate, tangents);
+                return Ok(());
+            }
+        }
+        let system = TangentSystem::<f64, N>::new(self, active, surface, changes);
+        let iterate = system.solve_in_cycles(tolerance)?;
+        system.append(&iterate, tangents);
+        Ok(())
+    }
+
+    /// Whether single precision alone reaches a tolerance, judged by the condition of the subdomains.
+    fn single_is_enough(&self, tolerance: f64) -> bool {
+        let model = self.operator.model;
+        let parts = self.operator.system.parts.iter();
+        let mut errors: Vec<f64> =
+            parts.map(|part| part.factors.as_ref().map_or(0.0, |factors| factors.forward_error)).collect();
+        model.communication.sum(&mut errors);
+        let worst = errors.into_iter().fold(0.0, f64::max);
+        self.precision == Precision::Mixed
+            && tolerance >= TIGHTEST_SINGLE
+            && SINGLE_ROUNDING * worst <= MAX_ROUNDING_SHARE * tolerance
+    }
+}
+
+impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
+    fn new(
+        contact: &'a TornContact<'a>,
+        active: &'a ActiveSet<'a>,
+        surface: MovedSurface<'_>,
+        changes: &[Vec<f64>],
+    ) -> Self {
+        let operator = &contact.operator;
+        let loads = ShapeLoads::new(operator.model, operator.system, surface.lower, surface.displacement, changes);
+        // The gap F² − F_α falls as the surface rises.
+        let mut approaches = vec![Row::ZERO; contact.boundary.points.len()];
+        for (column, change) in changes.iter().enumerate() {
+            let nodes = approaches.iter_mut().zip(change).zip(&operator.model.constraints.normalisation);
+            nodes.for_each(|((approach, height), nu)| approach.set(column, height / nu));
+        }
+        Self { contact, active, loads, approaches, count: changes.len() }
+    }
+
+    /// Brings unknowns into equilibrium and computes their residual.
+    fn evaluate(&self, mut unknowns: Vec<Row<D, N>>) -> TangentIterate<D, N> {
+        let (rows, operator) = (&self.active.rows, &self.contact.operator);
+        self.active.enforce(&mut unknowns, &self.loads.resultants);
+        let mut torn = vec![Row::ZERO; operator.model.dof_count];
+        let mut jumps = operator.free_jumps(&self.loads.forces, &rows.trial(&unknowns), &mut torn, self.count);
+        for (point, approach) in self.contact.boundary.points.iter().zip(&self.approaches) {
+            jumps.contact_mut()[point.start].add_scaled(1.0, approach);
+        }
+        let mut projected = rows.test_transposed(&jumps);
+        rows.add_compliance(&unknowns, &mut projected, -1.0);
+        let natural = norms(&projected);
+        let openings = self.release(&mut projected, &jumps);
+        TangentIterate { unknowns, residuals: norms(&projected), projected, openings, natural }
+    }
+
+    /// y = 0, brought into equilibrium.
+    fn at_zero(&self) -> TangentIterate<D, N> {
+        self.evaluate(vec![Row::ZERO; self.active.rows.dimension()])
+    }
+
+    /// Takes the rigid part off a reduced residual or product; returns the normal rows of `jumps` without it.
+    fn release<E: Real>(&self, reduced: &mut [Row<E, N>], jumps: &RowVector<Row<E, N>>) -> Vec<Row<E, N>> {
+        let rigid = self.contact.space.jumps(&self.active.amplitudes(reduced));
+        for (entry, rigid) in reduced.iter_mut().zip(self.active.rows.test_transposed(&rigid)) {
+            entry.add_scaled(1.0, &rigid);
+        }
+        let points = self.contact.boundary.points.iter();
+        let sum = |start: usize| jumps.contact()[start].zip(&rigid.contact()[start], |jump, rigid| jump + rigid);
+        points.map(|point| sum(point.start)).collect()
+    }
+
+    /// One run of the Krylov method in precision E, towards residuals of `goals`, or by a factor `reduction` if that is more.
+    fn cycle<E: Real>(&self, iterate: &mut TangentIterate<D, N>, goals: &Row<f64, N>, reduction: f64) {
+        let (rows, contact) = (&self.active.rows, self.contact);
+        // Every column is brought to size one, so that no unit system leaves the range of single precision.
+        let sizes = iterate.residuals.map(|size| if size > 0.0 { size } else { 1.0 });
+        let targets = goals.zip(&sizes, |goal, size| (goal / size).max(reduction));
+        let scaled = |row: &Row<D, N>| row.zip(&sizes, |row, size| E::of(row.double() / size));
+        let residual = iterate.projected.iter().map(scaled).collect();
+        let torn = RefCell::new(vec![Row::<E, N>::ZERO; contact.operator.model.dof_count]);
+        let precondition = |v: &[Row<E, N>]| {
+            let image = contact.preconditioner.apply_columns(&rows.test(v), &mut torn.borrow_mut());
+            let mut z = rows.test_transposed(&image);
+            rows.add_spring(v, &mut z);
+            self.active.project(&mut z);
+            z
+        };
+        let apply = |z: &[Row<E, N>]| {
+            let image = contact.operator.apply_columns(&rows.trial(z), &mut torn.borrow_mut(), self.count);
+            let mut reduced = rows.test_transposed(&image);
+            rows.add_compliance(z, &mut reduced, 1.0);
+            let openings = self.release(&mut reduced, &image);
+            (reduced, openings)
+        };
+        let krylov = gcr(residual, &targets, MAX_KRYLOV, precondition, apply);
+        let factors = krylov.coefficients.iter().map(|factor| factor.zip(&sizes, |factor, size| factor * size));
+        let factors: Vec<Row<f64, N>> = factors.collect();
+        let terms: Vec<_> = factors.iter().copied().zip(krylov.directions.iter().map(Vec::as_slice)).collect();
+        add_combination(&mut iterate.unknowns, &terms);
+        let changes = factors.iter().map(|factor| factor.map(|factor| -factor));
+        let terms: Vec<_> = changes.zip(krylov.payloads.iter().map(Vec::as_slice)).collect();
+        add_combination(&mut iterate.openings, &terms);
+        iterate.residuals = krylov.residuals.zip(&sizes, |residual, size| residual * size);
+    }
+
+    /// Appends the tangents of an iterate.
+    fn append(&self, (iterate, residual): &(TangentIterate<D, N>, f64), tangents: &mut Tangents) {
+        tangents.residual = tangents.residual.max(*residual);
+        let multipliers = self.active.rows.trial(&iterate.unknowns);
+        let constraints = &self.contact.operator.model.constraints;
+        let scales: Vec<f64> = constraints.contact_scales(self.contact.boundary).collect();
+        for column in 0..self.count {
+            let rows = multipliers.contact().iter().zip(&scales);
+            tangents.forces.push(rows.map(|(row, nu)| row.get(column) / nu).collect());
+            let nodes = iterate.openings.iter().zip(&constraints.normalisation);
+            tangents.openings.push(nodes.map(|(opening, nu)| opening.get(column) * nu).collect());
+        }
+    }
+}
+
+impl<const N: usize> TangentSystem<'_, f32, N> {
+    /// One cycle in single precision, with its largest relative residual by the recurrence; none if it misses the tolerance.
+    fn solve_once(&self, tolerance: f64) -> Option<(TangentIterate<f32, N>, f64)> {
+        let mut iterate = self.at_zero();
+        let sizes = iterate.sizes();
+        self.cycle::<f32>(&mut iterate, &sizes.map(|size| tolerance * size), 0.0);
+        let residual = largest_share(&iterate.residuals, &sizes);
+        (residual <= tolerance).then_some((iterate, residual))
+    }
+}
+
+impl<const N: usize> TangentSystem<'_, f64, N> {
+    /// Cycles to a relative residual, each followed by products in double precision; also the largest relative residual.
+    fn solve_in_cycles(&self, tolerance: f64) -> Result<(TangentIterate<f64, N>, f64), ContactError> {
+        let mut precision = self.contact.precision;
+        let mut iterate = self.at_zero();
+        let sizes = iterate.sizes();
+        let goal = tolerance.max(TIGHTEST_GOAL);
+        let goals = sizes.map(|size| goal * size);
+        let mut residual = largest_share(&iterate.residuals, &sizes);
+        for _cycle in 0..MAX_CYCLES {
+            if residual <= goal {
+                break;
+            }
+            match precision {
+                Precision::Mixed => self.cycle::<f32>(&mut iterate, &goals, CYCLE_REDUCTION),
+                Precision::Double => self.cycle::<f64>(&mut iterate, &goals, 0.0),
+            }
+            iterate = self.evaluate(iterate.unknowns);
+            let previous = std::mem::replace(&mut residual, largest_share(&iterate.residuals, &sizes));
+            match next_cycle(precision, previous, residual, goal) {
+                NextCycle::Continue => {}
+                NextCycle::Double => precision = Precision::Double,
+                NextCycle::DoubleFromZero => {
+                    precision = Precision::Double;
+                    iterate = self.at_zero();
+                    residual = largest_share(&iterate.residuals, &sizes);
+                }
+                NextCycle::Stop => break,
+            }
+        }
+        if residual.is_nan() || residual > TIGHTEST_ACCEPTABLE.max(tolerance) {
+            return Err(ContactError::NotConverged {
+                solver: "tangents by GCR on TFETI",
+                residual,
+                tolerance,
+                iterations: MAX_KRYLOV,
+                history: vec![residual],
+            });
+        }
+        Ok((iterate, residual))
+    }
+}
+
+impl<D, const N: usize> TangentIterate<D, N> {
+    /// What relative residuals refer to: where equilibrium alone determines the forces, all of the right side is rigid and only
+    /// rounding is left of it.
+    fn sizes(&self) -> Row<f64, N> {
+        self.residuals.zip(&self.natural, |size, all| size.max(SMALLEST_PROJECTED_SHARE * all))
+    }
+}
+
+/// The largest residual over its size; NaN if a residual is.
+fn largest_share<const N: usize>(residuals: &Row<f64, N>, sizes: &Row<f64, N>) -> f64 {
+    residuals.iter().zip(sizes.iter()).fold(0.0, |largest: f64, (residual, size)| {
+        let share = if residual == 0.0 { 0.0 } else { residual / size };
+        if share.is_nan() || share > largest { share } else { largest }
+    })
+}
