@@ -224,7 +224,7 @@ fn foreign_journals_are_refused_and_left_alone() {
         ("\"evaluation\":2", "\"evaluation\":7", Some(3)),
         ("\"point\":[", "\"point\":[1.0,", Some(2)),
         ("\"answer\"", "\"reply\"", Some(2)),
-        ("{\"journal\":2", "[1, 2", Some(1)),
+        ("{\"journal\":3", "[1, 2", Some(1)),
     ] {
         let changed = text.replacen(old, new, 1);
         fs::write(folder.journal(), &changed).unwrap();

@@ -67,7 +67,7 @@ impl Case {
             start_height,
         };
         scene.validate()?;
-        check_continuation(&file.optimizer.continuation)?;
+        check_continuation(&file.optimizer)?;
         Ok(Self {
             scene,
             start,
@@ -153,7 +153,11 @@ fn start(
     Ok((mean, Some(controls)))
 }
 
-fn check_continuation(meshes: &[usize]) -> Result<(), SceneError> {
+fn check_continuation(optimizer: &OptimizerSection) -> Result<(), SceneError> {
+    let meshes = &optimizer.continuation;
+    if optimizer.starts > 1 && !meshes.is_empty() {
+        return Err(SceneError::out_of_range("optimizer.starts", optimizer.starts, "1 with optimizer.continuation"));
+    }
     match meshes.windows(2).find(|pair| pair[1] <= pair[0]) {
         Some(pair) => Err(SceneError::out_of_range(
             "optimizer.continuation",

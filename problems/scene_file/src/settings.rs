@@ -87,6 +87,9 @@ pub struct OptimizerSection {
     /// Growing meshes of a coarse-to-fine optimization, bricks along the axis that has most, the others in proportion; empty for one run on the mesh of the scene.
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub continuation: Vec<usize>,
+    /// Optimizations from so many starts on one mesh: the start of the scene, then random surfaces near it, always the same ones.
+    #[schemars(range(min = 1, max = 1000), extend("x-unit" = "1"))]
+    pub starts: usize,
 }
 
 impl Default for OptimizerSection {
@@ -100,6 +103,7 @@ impl Default for OptimizerSection {
             bundle_size: None,
             accuracy: AccuracyName::Tightest,
             continuation: vec![],
+            starts: 1,
         }
     }
 }

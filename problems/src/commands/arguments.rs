@@ -100,6 +100,9 @@ pub struct Arguments {
     /// Optimize on growing meshes with so many bricks per edge, each starting from the last optimum.
     #[arg(long, value_name = "N1,N2,...", value_delimiter = ',', value_parser = count("optimizer.continuation"))]
     pub continuation: Option<Vec<usize>>,
+    /// Optimize from so many starts: that of the scene, then random surfaces near it; reports how many optima they reach.
+    #[arg(long, value_name = "K", value_parser = count("optimizer.starts"))]
+    pub starts: Option<usize>,
     /// New folder for the report, controls, history and pressures; an optimization can be resumed from there [default: none].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -177,6 +180,7 @@ impl Arguments {
             ("--diagnose", self.diagnose, self.command == Command::Evaluate, "with evaluate only"),
             ("--time-limit", self.time_limit.is_some(), optimizing, limits),
             ("--continuation", self.continuation.is_some(), optimizing, limits),
+            ("--starts", self.starts.is_some(), self.command == Command::Optimize, "with optimize only"),
             ("--resume", self.resume.is_some(), optimizing, limits),
             ("--out", self.out.is_some(), !rechecking, "without recheck, which writes no file"),
             ("DIR", self.certified.is_some(), rechecking, "with recheck only"),
@@ -221,7 +225,7 @@ impl Arguments {
     }
 
     /// The options that stand for fields of the scene, with the fields and whether they are given.
-    fn fields(&self) -> [(&'static str, &'static str, bool); 16] {
+    fn fields(&self) -> [(&'static str, &'static str, bool); 17] {
         [
             ("mesh", "mesh.bricks", self.mesh.is_some()),
             ("subdomains", "mesh.subdomains", self.subdomains.is_some()),
@@ -239,6 +243,7 @@ impl Arguments {
             ("optimizer", "optimizer.method", self.optimizer.is_some()),
             ("max_evaluations", "optimizer.max_evaluations", self.max_evaluations.is_some()),
             ("continuation", "optimizer.continuation", self.continuation.is_some()),
+            ("starts", "optimizer.starts", self.starts.is_some()),
         ]
     }
 
@@ -323,6 +328,7 @@ impl Arguments {
         if let Some(meshes) = &self.continuation {
             file.optimizer.continuation.clone_from(meshes);
         }
+        file.optimizer.starts = self.starts.unwrap_or(file.optimizer.starts);
         if let Some(folder) = &self.out {
             file.output.folder = Some(folder.display().to_string());
         }

@@ -114,6 +114,25 @@ fn killed_runs_resume_to_the_same_bits_and_lose_one_evaluation_at_most() {
     }
 }
 
+/// Several starts: the best one is reported, and a resumed run repeats them.
+#[test]
+fn several_starts_are_reported_by_the_best_and_resumed() {
+    let options = ["--mesh", "6", "--starts", "3", "--json"];
+    let whole = succeeded(&options);
+    let runs = whole["stages"].as_array().unwrap();
+    let objectives: Vec<f64> = runs.iter().map(|run| run["objective"].as_f64().unwrap()).collect();
+    let starts: Vec<f64> = runs.iter().map(|run| run["objective_start"].as_f64().unwrap()).collect();
+    assert!(starts[0] != starts[1] && starts[1] != starts[2], "{starts:?}");
+    assert_eq!(whole["objective"].as_f64(), objectives.iter().copied().reduce(f64::min));
+    assert!((1..=3).contains(&whole["optima"].as_u64().unwrap()));
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    succeeded(&[&options[..], &["--max-evaluations", "4", "--out", text(&folder)]].concat());
+    let resumed = succeeded(&["--resume", text(&folder), "--max-evaluations", "150", "--json"]);
+    assert_eq!(found(&resumed), found(&whole));
+    refused(&["--starts", "2", "--continuation", "2,4"], &["--starts", "1 with optimizer.continuation"]);
+}
+
 #[test]
 fn both_kinds_of_restart_data_resume() {
     let scene = ["--mesh", "4", "--solver", "direct", "--json"];

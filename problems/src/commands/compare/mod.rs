@@ -94,7 +94,7 @@ fn check(parts: &[LoadedScene], session: &Session<'_>) -> Result<(), Failure> {
 fn cross(runs: &[(OptimizationRun, [SolvedShape; 2])]) -> Result<Comparison<'_>, Failure> {
     let missing = || Failure::computation("a run of the comparison is missing");
     let [(with, with_shapes), (without, without_shapes)] = runs else { return Err(missing()) };
-    let (Some(with), Some(without)) = (with.mesh_runs.last(), without.mesh_runs.last()) else { return Err(missing()) };
+    let (Some(with), Some(without)) = (with.chosen(), without.chosen()) else { return Err(missing()) };
     Ok(Comparison {
         runs: [with, without],
         own: [with_shapes, without_shapes],

@@ -40,7 +40,7 @@ pub fn report(
 ) -> Result<(String, [SolvedShape; 2]), Failure> {
     session.status.begin("reporting: ".into());
     let runs = &optimization.mesh_runs;
-    let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
+    let (Some(first), Some(last)) = (runs.first(), optimization.chosen()) else {
         return Err(Failure::computation("no mesh was begun"));
     };
     let solved = |controls| {

@@ -8,7 +8,10 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, interrupted, watch_interrupts};
 use crate::commands::optimize::mesh_run::{MeshRun, first_step, run_on_mesh};
 use crate::commands::optimize::stages::{MeshStage, stages};
+use nonsmooth::qp::project;
+use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Termination, Vector};
+use scene_file::MethodName;
 use std::path::Path;
 
 /// First step on every mesh but the first, in first steps of the first mesh. The gap at a coarse optimum says nothing about the
@@ -27,6 +30,13 @@ pub struct OptimizationRun {
 }
 
 impl OptimizationRun {
+    /// The run that the optimization is reported by: the last one, or the best one of several starts.
+    pub fn chosen(&self) -> Option<&MeshRun> {
+        let is_start = |run: &&MeshRun| run.name.as_ref().is_some_and(|name| name.starts_with("start_"));
+        let best = self.mesh_runs.iter().filter(is_start).min_by(|a, b| a.report.value.total_cmp(&b.report.value));
+        best.or(self.mesh_runs.last())
+    }
+
     /// Whether the time limit or an interruption ended it.
     pub fn was_cut_short(&self) -> bool {
         self.mesh_runs.last().is_some_and(ran_out_of_time)
@@ -34,7 +44,7 @@ impl OptimizationRun {
 
     /// Why it failed, if it did not end at a point that the optimizer vouches for, nor at a limit.
     pub fn failure(&self) -> Option<String> {
-        self.mesh_runs.last().and_then(|run| failed(&run.report.termination))
+        self.chosen().and_then(|run| failed(&run.report.termination))
     }
 
     /// Whether it ended at a limit or by an interruption, so that more evaluations may improve it.
@@ -69,19 +79,23 @@ pub fn optimize(
     watch_interrupts();
     let optimizer = &loaded.case.optimizer;
     let mut step = optimizer.first_step.unwrap_or_else(|| first_step(&first, &controls));
+    let start = controls.clone();
     let (mut mesh_runs, mut first) = (Vec::new(), Some(first));
     for stage in &stages {
         let objective = first.take().map_or_else(|| optimized_objective(&stage.case), Ok)?;
         let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
-        let start = (controls, step);
+        if let Some(seed) = stage.random_start {
+            controls = random_start(&objective, &start, step, seed)?;
+        }
+        let beginning = (controls, step);
         let limit = optimizer.time_limit.map(left);
-        let run = run_on_mesh(objective, stage, start, limit, folder.as_ref(), &session.status);
+        let run = run_on_mesh(objective, stage, beginning, limit, folder.as_ref(), &session.status);
         let run = run.inspect_err(|failure| {
             if let (Some(folder), 2, true) = (&folder, failure.status(), mesh_runs.is_empty()) {
                 folder.abandon();
             }
         })?;
-        if mesh_runs.is_empty() {
+        if mesh_runs.is_empty() && !optimizer.continuation.is_empty() {
             step *= LATER_FIRST_STEP;
         }
         controls = run.report.solution.clone();
@@ -92,6 +106,17 @@ pub fn optimize(
         }
     }
     Ok(OptimizationRun { mesh_runs, meshes: stages.len(), folder })
+}
+
+/// Largest change of a control at a random start, in first steps: several times the length on which contact changes.
+const RANDOM_CHANGE: f64 = 4.0;
+
+/// The start with random changes, moved into the admissible set; the same for the same seed.
+fn random_start(objective: &ContactObjective, start: &Vector, step: f64, seed: u64) -> Result<Vector, Failure> {
+    let set = objective.solver().problem().admissible.polyhedron();
+    let direction = seeded_direction(start.len(), seed);
+    let moved = start + &direction * (RANDOM_CHANGE * step / direction.amax());
+    project(set, &moved).map_err(|error| Failure::Computation(format!("start {seed}: {error}")))
 }
 
 /// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is continued,
@@ -128,13 +153,25 @@ const NUMBER_BYTES: u64 = 24;
 /// Bytes per torn node of the fields of one state (some 260 bytes per brick were written at 35³).
 const FIELD_BYTES: u64 = 300;
 
-/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states, and
-/// the rest.
+/// Jacobians that a run may keep, with the restart data behind each: twice as many as runs of the paper's examples need.
+const JACOBIANS: u64 = 40;
+
+/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states,
+/// Jacobians of pressures and gaps, and the rest.
 fn room(stages: &[MeshStage]) -> u64 {
-    let nodes = stages.iter().map(|stage| {
+    let bytes = stages.iter().map(|stage| {
         let scene = &stage.case.scene;
         let torn = scene.mesh.iter().zip(&scene.subdomains).map(|(cells, count)| (cells + count) as u64);
-        torn.product::<u64>() * if scene.upper.is_some() { 2 } else { 1 }
+        let nodes = torn.product::<u64>() * if scene.upper.is_some() { 2 } else { 1 };
+        let contact = ((scene.mesh[0] + 1) * (scene.mesh[1] + 1)) as u64;
+        let controls = scene.control_points.iter().product::<usize>() as u64;
+        let restart_data = 3 * NUMBER_BYTES * nodes;
+        let jacobian = 2 * 8 * contact * controls;
+        let kept = match stage.case.optimizer.method {
+            MethodName::Composite => JACOBIANS * (restart_data + jacobian),
+            MethodName::Bundle => 0,
+        };
+        3 * restart_data + 2 * FIELD_BYTES * nodes + kept
     });
-    (3 * 3 * NUMBER_BYTES + 2 * FIELD_BYTES) * nodes.max().unwrap_or(0) + (4 << 20)
+    bytes.max().unwrap_or(0) + (4 << 20)
 }

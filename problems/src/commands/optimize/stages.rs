@@ -1,22 +1,31 @@
-//! The growing meshes of a coarse-to-fine optimization.
+//! The runs of an optimization: one, one per growing mesh, or one per start.
 
 use scene_file::{Case, default_subdomains};
 
-/// One mesh of an optimization.
+/// One run of an optimization.
 #[derive(Debug, Clone)]
 pub struct MeshStage {
-    /// Name of the folder of its journal; none for a run on a single mesh.
+    /// Name of the folder of its journal; none for a single run.
     pub name: Option<String>,
-    /// The case on this mesh.
+    /// The case on its mesh.
     pub case: Case,
+    /// Number of its random start; none for a run that begins at the start of the scene or where the one before it ended.
+    pub random_start: Option<u64>,
 }
 
 /// The meshes of a case, in order; a case without continuation has one. The axis with most bricks gets the number asked for, the
 /// others keep their proportion to it.
 pub fn stages(case: &Case) -> Vec<MeshStage> {
     let meshes = &case.optimizer.continuation;
+    let starts = case.optimizer.starts;
+    if meshes.is_empty() && starts > 1 {
+        let random = |start: usize| (start > 1).then_some(start as u64);
+        let run =
+            |start| MeshStage { name: Some(format!("start_{start}")), case: case.clone(), random_start: random(start) };
+        return (1..=starts).map(run).collect();
+    }
     if meshes.is_empty() {
-        return vec![MeshStage { name: None, case: case.clone() }];
+        return vec![MeshStage { name: None, case: case.clone(), random_start: None }];
     }
     let longest = case.scene.mesh.iter().copied().max().unwrap_or(1);
     let stage = |&bricks: &usize| {
@@ -27,7 +36,7 @@ pub fn stages(case: &Case) -> Vec<MeshStage> {
         if !fits {
             case.scene.subdomains = case.scene.mesh.map(default_subdomains);
         }
-        MeshStage { name: Some(format!("stage_{bricks}")), case }
+        MeshStage { name: Some(format!("stage_{bricks}")), case, random_start: None }
     };
     meshes.iter().map(stage).collect()
 }

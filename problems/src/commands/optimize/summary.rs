@@ -38,7 +38,10 @@ struct OptimizationJson<'a> {
     residuals: [Residuals; 2],
     /// Distances of these states to the nearest kink.
     kinks: [Kink; 2],
-    /// One entry per mesh of a coarse-to-fine optimization.
+    /// Number of different values of Θ at confirmed ends, of an optimization from several starts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    optima: Option<usize>,
+    /// One entry per mesh of a coarse-to-fine optimization, or per start.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     stages: Vec<MeshRunJson<'a>>,
     /// The solver of the final state.
@@ -131,6 +134,18 @@ pub fn ending(report: &Report) -> Ending<'_> {
     Ending { reason: termination, text: termination.to_string(), confirmed: termination.is_confirmed() }
 }
 
+/// Relative difference of Θ beyond which two ends are two optima.
+const SAME_OPTIMUM: f64 = 1e-5;
+
+/// Number of different values of Θ at confirmed ends.
+fn optima(runs: &[MeshRun]) -> usize {
+    let confirmed = runs.iter().filter(|run| run.report.termination.is_confirmed());
+    let mut values: Vec<f64> = confirmed.map(|run| run.report.value).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup_by(|b, a| (*b - *a).abs() <= SAME_OPTIMUM * a.abs());
+    values.len()
+}
+
 /// One line per mesh; nothing for a run on a single mesh.
 pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
     let mut text = String::new();
@@ -138,9 +153,17 @@ pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
         let [n1, n2, n3] = run.objective.solver().problem().scene.mesh;
         let report = &run.report;
         text += &format!(
-            "stage {n1}x{n2}x{n3}: {:.6e} -> {:.6e} in {} evaluations, {:.1} s; {}\n",
-            report.start_value, report.value, report.counts.evaluations, report.seconds, report.termination
+            "{} on {n1}x{n2}x{n3}: {:.6e} -> {:.6e} in {} evaluations, {:.1} s; {}\n",
+            run.name.as_deref().unwrap_or_default().replace('_', " "),
+            report.start_value,
+            report.value,
+            report.counts.evaluations,
+            report.seconds,
+            report.termination
         );
+    }
+    if runs.iter().any(|run| run.name.as_ref().is_some_and(|name| name.starts_with("start_"))) {
+        text += &format!("optima:      {} different values at confirmed ends\n", optima(runs));
     }
     if runs.len() < meshes {
         text += &format!("stages:      {} of {meshes} begun\n", runs.len());
@@ -186,6 +209,7 @@ pub fn summary<'a>(
         peak_pressure: shapes.each_ref().map(|shape| shape.peak_pressure),
         residuals: shapes.each_ref().map(|shape| shape.state.forces.residuals),
         kinks: shapes.each_ref().map(|shape| shape.state.forces.kink),
+        optima: (runs.iter().filter(|run| run.name.is_some()).count() > 1).then(|| optima(runs)),
         stages: stages(runs),
         solver: shapes[1].state.solver,
         solver_reason: shapes[1].state.reason.as_deref(),

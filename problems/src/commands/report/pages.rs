@@ -96,14 +96,14 @@ fn page(objective: &ContactObjective, what: &str, lead: String, sections: Vec<Se
     Page { title, lead, sections }
 }
 
-/// "20 evaluations", on growing meshes "150 + 37 evaluations on growing meshes".
+/// "20 evaluations", on growing meshes or from several starts "150 + 37 evaluations in several runs".
 fn evaluations(runs: &[MeshRun]) -> String {
     let counts: Vec<String> = runs.iter().map(|run| run.report.counts.evaluations.to_string()).collect();
-    let growing = if counts.len() > 1 { " on growing meshes" } else { "" };
+    let growing = if counts.len() > 1 { " in several runs" } else { "" };
     format!("{} evaluations{growing}", counts.join(" + "))
 }
 
-/// The meshes of a coarse-to-fine optimization; empty for a single one.
+/// The meshes of a coarse-to-fine optimization, or the starts; empty for a single run.
 fn stages(runs: &[MeshRun]) -> Section {
     if runs.iter().all(|run| run.name.is_none()) {
         return Section::default();
@@ -120,9 +120,9 @@ fn stages(runs: &[MeshRun]) -> Section {
         ]
     });
     let head = ["bricks", "Θ at its start", "Θ at its end", "evaluations", "seconds", "ended"];
-    let words = "Pictures, course and certificate are those of the last mesh; the start is that of the first.";
+    let words = "Pictures, course and certificate are those of the last mesh, or of the best start; the start is that of the first run.";
     let rows: Vec<Vec<String>> = rows.collect();
-    Section::new("Growing meshes", vec![Block::table(head, rows), Block::Text(words.into())])
+    Section::new("Runs", vec![Block::table(head, rows), Block::Text(words.into())])
 }
 
 /// Control heights, one row per control point along x₁.
