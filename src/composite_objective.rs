@@ -10,16 +10,16 @@ use crate::{
 ///
 /// ```
 /// use nonsmooth::{BundleTrust, BundleTrustConfig, CompositeFunction, Matrix, Vector, composite::Maximum};
-/// // Minimax: max(x² + y⁴, (2 − x)² + (2 − y)², 2 e^{y − x}), all pieces at once.
+/// // Minimax: max(x⁴ + y², (2 − x)² + (2 − y)², 2 e^{y − x}), all pieces at once.
 /// let theta = CompositeFunction::new(2, Maximum, |p: &Vector| {
 ///     let (x, y) = (p[0], p[1]);
 ///     let e = 2.0 * (y - x).exp();
-///     let outputs = Vector::from_vec(vec![x * x + y.powi(4), (2.0 - x).powi(2) + (2.0 - y).powi(2), e]);
-///     let rows = [2.0 * x, 4.0 * y.powi(3), 2.0 * x - 4.0, 2.0 * y - 4.0, -e, e];
+///     let outputs = Vector::from_vec(vec![x.powi(4) + y * y, (2.0 - x).powi(2) + (2.0 - y).powi(2), e]);
+///     let rows = [4.0 * x.powi(3), 2.0 * y, 2.0 * x - 4.0, 2.0 * y - 4.0, -e, e];
 ///     (outputs, Matrix::from_row_slice(3, 2, &rows))
 /// });
-/// let report = BundleTrust::new(BundleTrustConfig::default())?.minimize(&theta, Vector::from_vec(vec![1.0, -0.1]))?;
-/// assert!((report.value - 1.952224).abs() < 1e-6);
+/// let report = BundleTrust::new(BundleTrustConfig::default())?.minimize(&theta, Vector::from_vec(vec![2.0, 2.0]))?;
+/// assert!((report.value - 2.0).abs() < 1e-6);
 /// assert!(report.termination.is_confirmed() && report.counts.evaluations < 12, "{report}");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
