@@ -7,6 +7,7 @@
 //! One linearization is pessimistic where a constraint becomes active inside c, so that ratios above 1 are common. After
 //! failures the model pauses, and cuts, curved model and exploration go on; it returns at the next center with a Jacobian.
 
+mod curvature;
 mod excursion;
 mod model;
 
@@ -18,6 +19,7 @@ use super::run::Run;
 use crate::composite::{Linearization, LinearizationRequest};
 use crate::report::{Origin, Termination};
 use crate::{Accuracy, NonsmoothObjective, Polyhedron, Vector};
+use curvature::Memory;
 use excursion::Excursion;
 use model::CompositeModel;
 use std::ops::ControlFlow::{self, Break, Continue};
@@ -52,6 +54,9 @@ pub(crate) struct Composite {
     failures: usize,
     /// Where the model is built: the center, if its Jacobian is known.
     base: Option<Base>,
+    memory: Memory,
+    /// Weights of the outputs at the last subproblem's solution.
+    weights: Option<Vector>,
     excursion: Option<Excursion>,
 }
 
@@ -80,6 +85,8 @@ impl Composite {
             pause: Pause::default(),
             failures: 0,
             base: None,
+            memory: Memory::default(),
+            weights: None,
             excursion: None,
         }
     }
@@ -87,7 +94,7 @@ impl Composite {
     /// What to ask of an evaluation; `below`: the value from which on the point becomes the center.
     pub(crate) fn request(&self, below: f64) -> LinearizationRequest {
         LinearizationRequest {
-            below: if self.excursion.is_some() { f64::INFINITY } else { below },
+            below: if self.excursion.is_some() || true { f64::INFINITY } else { below },
             ..Self::first_request()
         }
     }
@@ -152,18 +159,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         weight: f64,
         set: Option<&Polyhedron>,
     ) -> ControlFlow<Termination, Option<(Proposal, CompositeStep)>> {
-        let Some(outer) = self.objective.outer() else { return Continue(None) };
-        let model = CompositeModel {
-            outer,
-            linearization: &base.linearization,
-            value: outer.value(&base.linearization.outputs),
-            base: &base.point,
-            norm: &self.state.norm,
-            set: set.unwrap_or(&self.set),
-            weight,
-        };
         let before = self.solver.counts();
-        let step = model.solve(&mut self.solver);
+        let step = self.solve_composite(base, weight, set);
         self.count_solves(before);
         match step.and_then(|step| Ok((self.composite_proposal(base, &step, weight)?, step))) {
             Err(error @ SubproblemError::NotConvex { .. }) => {
@@ -174,6 +171,48 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
     }
 
+    /// Solves the subproblem, with the curvature of the outputs for the weights of its own solution.
+    fn solve_composite(
+        &mut self,
+        base: &Base,
+        weight: f64,
+        set: Option<&Polyhedron>,
+    ) -> Result<CompositeStep, SubproblemError> {
+        let (Some(outer), Some(composite)) = (self.objective.outer(), &mut self.composite) else {
+            return Err(SubproblemError::Unusable);
+        };
+        let jacobian = &base.linearization.jacobian;
+        let mut model = CompositeModel {
+            outer,
+            linearization: &base.linearization,
+            value: outer.value(&base.linearization.outputs),
+            base: &base.point,
+            norm: &self.state.norm,
+            set: set.unwrap_or(&self.set),
+            weight,
+            curvature: None,
+        };
+        if std::env::var("NOCURV").is_ok() || outer.curvature(&base.linearization.outputs, jacobian).is_some() {
+            return model.solve(&mut self.solver);
+        }
+        let passes: usize = std::env::var("PASSES").map_or(2, |t| t.parse().unwrap());
+        let mut curvature;
+        if composite.weights.is_none() {
+            composite.weights = Some(model.solve(&mut self.solver)?.weights());
+        }
+        let mut step = None;
+        for _ in 0..passes {
+            let Some(weights) = &composite.weights else { break };
+            curvature = composite.memory.curvature((&base.point, jacobian), weights, model.norm);
+            let model = CompositeModel { curvature: curvature.as_ref(), ..model };
+            let found = model.solve(&mut self.solver)?;
+            composite.weights = Some(found.weights());
+            step = Some(found);
+        }
+        model.curvature = None;
+        step.ok_or(SubproblemError::Unusable)
+    }
+
     /// Learns from a trial point and what its evaluation says about the outputs; whether it brought a Jacobian.
     pub(super) fn learn_structure(
         &mut self,
@@ -182,6 +221,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         linearization: Option<Result<Linearization, String>>,
     ) -> Option<Result<(), String>> {
         let composite = self.composite.as_mut()?;
+        if let Some(Ok(linearization)) = &linearization {
+            composite.memory.remember(&trial.proposal.trial, &linearization.jacobian);
+        }
         if composite.excursion.is_some() {
             return self.learn_excursion(trial, value, linearization);
         }
@@ -216,6 +258,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         composite.base = None;
         Some(linearization?.map(|linearization| {
             self.state.counts.jacobians += 1;
+            composite.memory.remember(point, &linearization.jacobian);
             composite.base = Some(Base { point: point.clone(), value, linearization });
         }))
     }
@@ -238,7 +281,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             cut_change: 0.0,
             aggregate_sizes: aggregate_sizes(std::iter::once((1.0, &aggregate)), sides, &self.set),
             slack_error: slack,
-            aggregate_norm: weight * length,
+            aggregate_norm: step.aggregate_norm,
             aggregate_error: error + slack,
             cut_error: error,
             cut_multipliers: vec![0.0; state.bundle.cuts().len()],

@@ -7,12 +7,12 @@
 //! w = Σ λ_j w_j:   Gᵀw + Aᵀμ + ν = −u W d,   error of w at c:  Σ λ_j (h(c) − h(c_j) − ⟨w_j, c − c_j⟩) ≥ 0
 //! ```
 
-use crate::bundle::norm::ScaledNorm;
+use crate::bundle::norm::{ScaledNorm, WeightedMetric};
 use crate::bundle::proposers::proposal::SubproblemError;
 use crate::bundle::proposers::subproblem::{self, Cuts};
 use crate::composite::{Linearization, OuterFunction};
 use crate::qp::{EpigraphQpSolver, Metric, QpSolution, project};
-use crate::{Polyhedron, Vector};
+use crate::{Matrix, Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Newton steps of one subproblem.
@@ -68,18 +68,22 @@ pub(crate) struct CompositeModel<'a> {
     pub set: &'a Polyhedron,
     /// u.
     pub weight: f64,
+    /// B, the curvature of the outputs; none: 0.
+    pub curvature: Option<&'a Matrix>,
 }
 
 /// A solved subproblem.
 #[derive(Debug, Clone)]
 pub(crate) struct CompositeStep {
     pub step: Vector,
-    /// h(c) − h(c + G d).
+    /// h(c) − h(c + G d) − dᵀBd/2.
     pub decrease: f64,
     /// Cuts with a multiplier.
     pub cuts: Vec<OuterCut>,
     pub row_multipliers: Vector,
     pub bound_multipliers: Vector,
+    /// ‖(B + u W) d‖*, the size of the aggregate.
+    pub aggregate_norm: f64,
 }
 
 impl CompositeStep {
@@ -108,7 +112,18 @@ impl CompositeModel<'_> {
 
     /// h(c + G d) − h(c) + u‖d‖²/2.
     fn merit(&self, step: &Vector) -> f64 {
-        self.outer.value(&self.outputs(step)) - self.value + 0.5 * self.weight * self.norm.squared(step)
+        self.outer.value(&self.outputs(step)) - self.value + 0.5 * (self.bend(step) + self.weight * self.norm.squared(step))
+    }
+
+    /// dᵀBd.
+    fn bend(&self, step: &Vector) -> f64 {
+        self.curvature.map_or(0.0, |curvature| step.dot(&(curvature * step)))
+    }
+
+    /// (B + u W) d.
+    fn pull(&self, step: &Vector) -> Vector {
+        let pull = self.norm.lower_index(step) * self.weight;
+        self.curvature.map_or(pull.clone(), |curvature| pull + curvature * step)
     }
 
     fn solve_by_newton(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
@@ -120,7 +135,10 @@ impl CompositeModel<'_> {
             let at = OuterCut::at(self.outer, self.outputs(&step));
             let Some(mut metric) = self.outer.curvature(&at.outputs, jacobian) else { break };
             self.norm.add_to(&mut metric, self.weight);
-            let slope = jacobian.tr_mul(&at.subgradient) + self.norm.lower_index(&step) * self.weight;
+            if let Some(curvature) = self.curvature {
+                metric += curvature;
+            }
+            let slope = jacobian.tr_mul(&at.subgradient) + self.pull(&step);
             let (slopes, point) = ([slope], self.base + &step);
             let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0] };
             let solution = subproblem::solve(solver, self.set, &point, Metric::Dense(&metric), cuts)?;
@@ -152,7 +170,14 @@ impl CompositeModel<'_> {
 
     fn solve_by_cuts(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
         let linearization = self.linearization;
-        let metric = self.norm.weighted(self.weight);
+        let metric = match self.curvature {
+            Some(curvature) => {
+                let mut metric = curvature.clone();
+                self.norm.add_to(&mut metric, self.weight);
+                WeightedMetric::Dense(metric)
+            }
+            None => self.norm.weighted(self.weight),
+        };
         let mut cuts = vec![OuterCut::at(self.outer, linearization.outputs.clone())];
         let (mut slopes, mut offsets, mut ids) = (vec![], vec![], vec![]);
         loop {
@@ -189,7 +214,8 @@ impl CompositeModel<'_> {
 
     fn solved(&self, step: Vector, cuts: Vec<OuterCut>, solution: &QpSolution) -> CompositeStep {
         CompositeStep {
-            decrease: self.value - self.outer.value(&self.outputs(&step)),
+            decrease: self.value - self.outer.value(&self.outputs(&step)) - 0.5 * self.bend(&step),
+            aggregate_norm: self.norm.dual_length(&self.pull(&step)),
             step,
             cuts,
             row_multipliers: Vector::from_column_slice(&solution.row_multipliers),
