@@ -41,6 +41,8 @@ const MAX_WEIGHTS: usize = 20;
 const MAX_PAUSE: usize = 64;
 /// Failures in a row before a pause.
 const PATIENCE: usize = 3;
+/// Longest step on from a rejected trial point, in lengths of the rejected step.
+const CONTRACTION: f64 = 0.5;
 /// Accuracy asked of a Jacobian.
 const JACOBIAN_ACCURACY: f64 = 1e-4;
 
@@ -54,6 +56,10 @@ pub(crate) struct Composite {
     failures: usize,
     /// Where the model is built: the center, if its Jacobian is known.
     base: Option<Base>,
+    /// A rejected trial point with its Jacobian.
+    rejected: Option<Base>,
+    /// Whether the pending trial point is a correction.
+    correcting: bool,
     memory: Memory,
     /// Weights of the outputs at the last subproblem's solution.
     weights: Option<Vector>,
@@ -85,6 +91,8 @@ impl Composite {
             pause: Pause::default(),
             failures: 0,
             base: None,
+            rejected: None,
+            correcting: false,
             memory: Memory::default(),
             weights: None,
             excursion: None,
@@ -135,6 +143,11 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
         let Some(base) = composite.base.clone().filter(|_| composite.pause.pass()) else { return Continue(None) };
         let mut weight = composite.weight;
+        if let Some(rejected) = composite.rejected.take() {
+            if let Some(proposal) = self.correction(&base, &rejected)? {
+                return Continue(Some(proposal));
+            }
+        }
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.composite_step(&base, weight, None)? else { return Continue(None) };
             if let Some(word) = self.composite_word(&proposal) {
@@ -151,6 +164,27 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         Continue(None)
     }
 
+    /// A step on from a rejected trial point, if it is so short that it leads below the center.
+    ///
+    /// A step along a curved kink of h leaves the kink, by second order in its length, and pays for it by first order (Maratos
+    /// effect): the model at its end leads back.
+    fn correction(&mut self, base: &Base, rejected: &Base) -> ControlFlow<Termination, Option<Proposal>> {
+        let Some(composite) = &mut self.composite else { return Continue(None) };
+        let weight = composite.weight / FACTOR;
+        let origin = &base.point - &rejected.point;
+        let Some((proposal, _)) = self.composite_step_near(rejected, weight, None, Some(&origin))? else { return Continue(None) };
+        let length = self.state.norm.length(&(&proposal.trial - &rejected.point));
+        let first = self.state.norm.length(&(&rejected.point - &base.point));
+        let predicted_decrease = base.value - rejected.value + proposal.predicted_decrease;
+        if length > CONTRACTION * first || predicted_decrease <= self.small() {
+            return Continue(None);
+        }
+        if let Some(composite) = &mut self.composite {
+            composite.correcting = true;
+        }
+        Continue(Some(Proposal { predicted_decrease, ..proposal }))
+    }
+
     /// The step of the model at a base with a weight, and the trial point that it leads to; none where the subproblem cannot be
     /// solved. `set`: the admissible set, if it is not that of the run.
     pub(super) fn composite_step(
@@ -159,8 +193,18 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         weight: f64,
         set: Option<&Polyhedron>,
     ) -> ControlFlow<Termination, Option<(Proposal, CompositeStep)>> {
+        self.composite_step_near(base, weight, set, None)
+    }
+
+    fn composite_step_near(
+        &mut self,
+        base: &Base,
+        weight: f64,
+        set: Option<&Polyhedron>,
+        origin: Option<&Vector>,
+    ) -> ControlFlow<Termination, Option<(Proposal, CompositeStep)>> {
         let before = self.solver.counts();
-        let step = self.solve_composite(base, weight, set);
+        let step = self.solve_composite(base, weight, set, origin);
         self.count_solves(before);
         match step.and_then(|step| Ok((self.composite_proposal(base, &step, weight)?, step))) {
             Err(error @ SubproblemError::NotConvex { .. }) => {
@@ -177,6 +221,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         base: &Base,
         weight: f64,
         set: Option<&Polyhedron>,
+        origin: Option<&Vector>,
     ) -> Result<CompositeStep, SubproblemError> {
         let (Some(outer), Some(composite)) = (self.objective.outer(), &mut self.composite) else {
             return Err(SubproblemError::Unusable);
@@ -191,6 +236,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             set: set.unwrap_or(&self.set),
             weight,
             curvature: None,
+            origin,
         };
         if std::env::var("NOCURV").is_ok() || outer.curvature(&base.linearization.outputs, jacobian).is_some() {
             return model.solve(&mut self.solver);
@@ -229,7 +275,17 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
         if trial.proposal.origin == Origin::CompositeModel {
             let ratio = trial.comparison.change / trial.comparison.model_change;
-            composite.learn(trial.proposal, Some(ratio), trial.serious);
+            let correcting = std::mem::take(&mut composite.correcting);
+            if trial.serious || !correcting {
+                composite.learn(trial.proposal, Some(ratio), trial.serious);
+            }
+            if !trial.serious && !correcting && std::env::var("NOCORR").is_err() {
+                if let Some(Ok(linearization)) = linearization {
+                    let point = trial.proposal.trial.clone();
+                    composite.rejected = Some(Base { point, value, linearization });
+                }
+                return None;
+            }
         }
         if !trial.serious {
             return None;
@@ -256,6 +312,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     ) -> Option<Result<(), String>> {
         let composite = self.composite.as_mut()?;
         composite.base = None;
+        composite.rejected = None;
         Some(linearization?.map(|linearization| {
             self.state.counts.jacobians += 1;
             composite.memory.remember(point, &linearization.jacobian);

@@ -70,6 +70,8 @@ pub(crate) struct CompositeModel<'a> {
     pub weight: f64,
     /// B, the curvature of the outputs; none: 0.
     pub curvature: Option<&'a Matrix>,
+    /// x̂ − x from the base to the point that ‖·‖ measures from; none: 0.
+    pub origin: Option<&'a Vector>,
 }
 
 /// A solved subproblem.
@@ -110,9 +112,15 @@ impl CompositeModel<'_> {
         &self.linearization.outputs + &self.linearization.jacobian * step
     }
 
-    /// h(c + G d) − h(c) + u‖d‖²/2.
+    /// h(c + G d) − h(c) + dᵀBd/2 + u(‖d − o‖² − ‖o‖²)/2 with the origin o.
     fn merit(&self, step: &Vector) -> f64 {
-        self.outer.value(&self.outputs(step)) - self.value + 0.5 * (self.bend(step) + self.weight * self.norm.squared(step))
+        let quadratic = self.bend(step) + self.weight * self.norm.squared(step);
+        self.outer.value(&self.outputs(step)) - self.value + 0.5 * quadratic + self.pull_to_origin().dot(step)
+    }
+
+    /// −u W o.
+    fn pull_to_origin(&self) -> Vector {
+        self.origin.map_or_else(|| Vector::zeros(self.base.len()), |origin| self.norm.lower_index(origin) * -self.weight)
     }
 
     /// dᵀBd.
@@ -120,9 +128,9 @@ impl CompositeModel<'_> {
         self.curvature.map_or(0.0, |curvature| step.dot(&(curvature * step)))
     }
 
-    /// (B + u W) d.
+    /// (B + u W) d − u W o.
     fn pull(&self, step: &Vector) -> Vector {
-        let pull = self.norm.lower_index(step) * self.weight;
+        let pull = self.norm.lower_index(step) * self.weight + self.pull_to_origin();
         self.curvature.map_or(pull.clone(), |curvature| pull + curvature * step)
     }
 
@@ -178,18 +186,20 @@ impl CompositeModel<'_> {
             }
             None => self.norm.weighted(self.weight),
         };
+        let pull = self.pull_to_origin();
         let mut cuts = vec![OuterCut::at(self.outer, linearization.outputs.clone())];
         let (mut slopes, mut offsets, mut ids) = (vec![], vec![], vec![]);
         loop {
             if let Some(newest) = cuts.last() {
-                slopes.push(linearization.jacobian.tr_mul(&newest.subgradient));
+                slopes.push(linearization.jacobian.tr_mul(&newest.subgradient) + &pull);
                 offsets.push(self.error(newest)?);
                 ids.push(ids.len() as u64);
             }
             let view = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids };
             let solution = subproblem::solve(solver, self.set, self.base, metric.metric(), view)?;
             let next = OuterCut::at(self.outer, self.outputs(&solution.step));
-            let (promised, gap) = (-solution.epigraph, next.value - self.value - solution.epigraph);
+            let change = next.value - self.value + pull.dot(&solution.step);
+            let (promised, gap) = (-solution.epigraph, change - solution.epigraph);
             if gap <= MET * promised + ROUNDING * self.value.abs() || cuts.len() >= MAX_CUTS {
                 for (cut, multiplier) in cuts.iter_mut().zip(&solution.cut_multipliers) {
                     cut.multiplier = *multiplier;
