@@ -31,7 +31,12 @@ impl Memory {
     }
 
     /// B at a point with its Jacobian, for weights; none where nothing is known.
-    pub(super) fn curvature(&self, (point, jacobian): (&Vector, &Matrix), weights: &Vector, norm: &ScaledNorm) -> Option<Matrix> {
+    pub(super) fn curvature(
+        &self,
+        (point, jacobian): (&Vector, &Matrix),
+        weights: &Vector,
+        norm: &ScaledNorm,
+    ) -> Option<Matrix> {
         let n = point.len();
         let slope = jacobian.tr_mul(weights);
         let (mut gram, mut mixed) = (Matrix::zeros(n, n), Matrix::zeros(n, n));
@@ -40,8 +45,9 @@ impl Memory {
             let size = step.norm_squared();
             if size > 0.0 {
                 let change = norm.dual_to_coordinates(&(theirs.tr_mul(weights) - &slope));
-                gram.ger(1.0 / (size * size), &step, &step, 1.0);
-                mixed.ger(1.0 / (size * size), &change, &step, 1.0);
+                let trust = 1.0 / (size * size);
+                gram.ger(trust, &step, &step, 1.0);
+                mixed.ger(trust, &change, &step, 1.0);
             }
         }
         let eigen = gram.symmetric_eigen();
@@ -52,11 +58,13 @@ impl Memory {
         let q = &eigen.eigenvectors;
         let right = q.tr_mul(&(&mixed + mixed.transpose())) * q;
         let values = &eigen.eigenvalues;
-        let fit = Matrix::from_fn(n, n, |i, j| right[(i, j)] / (values[i].max(0.0) + values[j].max(0.0) + UNSEEN * largest));
+        let fit =
+            Matrix::from_fn(n, n, |i, j| right[(i, j)] / (values[i].max(0.0) + values[j].max(0.0) + UNSEEN * largest));
         let fit = q * fit * q.transpose();
         let fit = ((&fit + fit.transpose()) * 0.5).symmetric_eigen();
         let positive = Matrix::from_diagonal(&fit.eigenvalues.map(|value| value.max(0.0)));
         let positive = &fit.eigenvectors * positive * fit.eigenvectors.transpose();
-        Some(norm.from_coordinates((&positive + positive.transpose()) * 0.5)).filter(|m| m.iter().all(|e| e.is_finite()))
+        Some(norm.from_coordinates((&positive + positive.transpose()) * 0.5))
+            .filter(|m| m.iter().all(|e| e.is_finite()))
     }
 }

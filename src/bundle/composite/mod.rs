@@ -37,12 +37,16 @@ const FACTOR: f64 = 10.0;
 const SHORTER: f64 = 0.3;
 /// Weights tried until a step is short enough.
 const MAX_WEIGHTS: usize = 20;
+/// Growth of a small predicted decrease, as the weight falls, from which on the weight matters.
+const LEAST_GAIN: f64 = 1.1;
 /// Longest pause after failures, evaluations.
 const MAX_PAUSE: usize = 64;
 /// Failures in a row before a pause.
 const PATIENCE: usize = 3;
 /// Longest step on from a rejected trial point, in lengths of the rejected step.
 const CONTRACTION: f64 = 0.5;
+/// Subproblems solved for weights and curvature that belong together.
+const PASSES: usize = 2;
 /// Accuracy asked of a Jacobian.
 const JACOBIAN_ACCURACY: f64 = 1e-4;
 
@@ -60,6 +64,10 @@ pub(crate) struct Composite {
     rejected: Option<Base>,
     /// Whether the pending trial point is a correction.
     correcting: bool,
+    /// Whether the pending trial point is one of the model's own.
+    proposing: bool,
+    /// Whether the model takes the curvature of the outputs into account: since a step has failed without it.
+    bends: bool,
     memory: Memory,
     /// Weights of the outputs at the last subproblem's solution.
     weights: Option<Vector>,
@@ -93,6 +101,8 @@ impl Composite {
             base: None,
             rejected: None,
             correcting: false,
+            proposing: false,
+            bends: false,
             memory: Memory::default(),
             weights: None,
             excursion: None,
@@ -102,7 +112,8 @@ impl Composite {
     /// What to ask of an evaluation; `below`: the value from which on the point becomes the center.
     pub(crate) fn request(&self, below: f64) -> LinearizationRequest {
         LinearizationRequest {
-            below: if self.excursion.is_some() || true { f64::INFINITY } else { below },
+            // What a rejected trial point of its own tells is used by the correction.
+            below: if self.proposing { f64::INFINITY } else { below },
             ..Self::first_request()
         }
     }
@@ -137,6 +148,14 @@ impl Composite {
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// The trial point of the composite model, none where it has none; ends the run at a point that it proves stationary.
     pub(super) fn composite_trial(&mut self) -> ControlFlow<Termination, Option<Proposal>> {
+        let proposal = self.next_composite_trial()?;
+        if let Some(composite) = &mut self.composite {
+            composite.proposing = proposal.is_some();
+        }
+        Continue(proposal)
+    }
+
+    fn next_composite_trial(&mut self) -> ControlFlow<Termination, Option<Proposal>> {
         let Some(composite) = &mut self.composite else { return Continue(None) };
         if let Some(excursion) = composite.excursion.take() {
             return self.continue_excursion(excursion);
@@ -147,19 +166,36 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             if let Some(proposal) = self.correction(&base, &rejected)? {
                 return Continue(Some(proposal));
             }
+            if let Some(composite) = &mut self.composite {
+                composite.bends = true;
+            }
         }
+        let (mut raised, mut last) = (false, None::<Proposal>);
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.composite_step(&base, weight, None)? else { return Continue(None) };
             if let Some(word) = self.composite_word(&proposal) {
                 return self.leave(Proof { word, base, step, proposal });
             }
-            if proposal.step_length > self.composite.as_ref().map_or(0.0, |composite| composite.longest) {
-                weight *= FACTOR;
-            } else if proposal.predicted_decrease > self.small() {
-                return Continue(Some(proposal));
-            } else {
-                weight /= FACTOR;
+            let longest = self.composite.as_ref().map_or(0.0, |composite| composite.longest);
+            if proposal.predicted_decrease > self.small() {
+                if proposal.step_length <= longest {
+                    return Continue(Some(proposal));
+                }
+                (weight, raised) = (weight * FACTOR, true);
+                continue;
             }
+            weight /= FACTOR;
+            if std::mem::take(&mut raised) {
+                // What a step short enough promises is little: only a longer one, with the curvature seen since, can tell.
+                if let Some(composite) = &mut self.composite {
+                    composite.longest = f64::INFINITY;
+                }
+            } else if last.is_some_and(|last| proposal.predicted_decrease < LEAST_GAIN * last.predicted_decrease) {
+                // The weight matters no more: the model's own last step, little as it promises, leads to a point that it can prove.
+                let seen = proposal.predicted_decrease > self.state.rounding() && longest == f64::INFINITY;
+                return Continue(Some(proposal).filter(|_| seen));
+            }
+            last = Some(proposal);
         }
         Continue(None)
     }
@@ -172,7 +208,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let Some(composite) = &mut self.composite else { return Continue(None) };
         let weight = composite.weight / FACTOR;
         let origin = &base.point - &rejected.point;
-        let Some((proposal, _)) = self.composite_step_near(rejected, weight, None, Some(&origin))? else { return Continue(None) };
+        let Some((proposal, _)) = self.composite_step_near(rejected, weight, None, Some(&origin))? else {
+            return Continue(None);
+        };
         let length = self.state.norm.length(&(&proposal.trial - &rejected.point));
         let first = self.state.norm.length(&(&rejected.point - &base.point));
         let predicted_decrease = base.value - rejected.value + proposal.predicted_decrease;
@@ -227,7 +265,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             return Err(SubproblemError::Unusable);
         };
         let jacobian = &base.linearization.jacobian;
-        let mut model = CompositeModel {
+        let model = CompositeModel {
             outer,
             linearization: &base.linearization,
             value: outer.value(&base.linearization.outputs),
@@ -238,24 +276,21 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             curvature: None,
             origin,
         };
-        if std::env::var("NOCURV").is_ok() || outer.curvature(&base.linearization.outputs, jacobian).is_some() {
+        if !composite.bends || outer.curvature(&base.linearization.outputs, jacobian).is_some() {
             return model.solve(&mut self.solver);
         }
-        let passes: usize = std::env::var("PASSES").map_or(2, |t| t.parse().unwrap());
-        let mut curvature;
         if composite.weights.is_none() {
             composite.weights = Some(model.solve(&mut self.solver)?.weights());
         }
         let mut step = None;
-        for _ in 0..passes {
+        for _ in 0..PASSES {
             let Some(weights) = &composite.weights else { break };
-            curvature = composite.memory.curvature((&base.point, jacobian), weights, model.norm);
+            let curvature = composite.memory.curvature((&base.point, jacobian), weights, model.norm);
             let model = CompositeModel { curvature: curvature.as_ref(), ..model };
             let found = model.solve(&mut self.solver)?;
             composite.weights = Some(found.weights());
             step = Some(found);
         }
-        model.curvature = None;
         step.ok_or(SubproblemError::Unusable)
     }
 
@@ -276,10 +311,13 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         if trial.proposal.origin == Origin::CompositeModel {
             let ratio = trial.comparison.change / trial.comparison.model_change;
             let correcting = std::mem::take(&mut composite.correcting);
+            if correcting && !trial.serious {
+                composite.bends = true;
+            }
             if trial.serious || !correcting {
                 composite.learn(trial.proposal, Some(ratio), trial.serious);
             }
-            if !trial.serious && !correcting && std::env::var("NOCORR").is_err() {
+            if !trial.serious && !correcting {
                 if let Some(Ok(linearization)) = linearization {
                     let point = trial.proposal.trial.clone();
                     composite.rejected = Some(Base { point, value, linearization });

@@ -120,7 +120,8 @@ impl CompositeModel<'_> {
 
     /// −u W o.
     fn pull_to_origin(&self) -> Vector {
-        self.origin.map_or_else(|| Vector::zeros(self.base.len()), |origin| self.norm.lower_index(origin) * -self.weight)
+        self.origin
+            .map_or_else(|| Vector::zeros(self.base.len()), |origin| self.norm.lower_index(origin) * -self.weight)
     }
 
     /// dᵀBd.
