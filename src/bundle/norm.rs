@@ -141,6 +141,32 @@ impl ScaledNorm {
         }
     }
 
+    /// M⁻¹ d, whose Euclidean length is ‖d‖.
+    pub(crate) fn to_coordinates(&self, d: &Vector) -> Vector {
+        match &self.0 {
+            Scale::Weights(weights) => d.zip_map(weights, |d, w| d * w.sqrt()),
+            Scale::Linear(Coordinates { inverse, .. }) => inverse * d,
+        }
+    }
+
+    /// Mᵀ g, whose Euclidean length is ‖g‖*.
+    pub(crate) fn dual_to_coordinates(&self, g: &Vector) -> Vector {
+        match &self.0 {
+            Scale::Weights(weights) => g.zip_map(weights, |g, w| g / w.sqrt()),
+            Scale::Linear(Coordinates { matrix, .. }) => matrix.tr_mul(g),
+        }
+    }
+
+    /// M⁻ᵀ B M⁻¹ for a quadratic form B of the coordinates.
+    pub(crate) fn from_coordinates(&self, form: Matrix) -> Matrix {
+        match &self.0 {
+            Scale::Weights(weights) => {
+                Matrix::from_fn(form.nrows(), form.ncols(), |i, j| form[(i, j)] * (weights[i] * weights[j]).sqrt())
+            }
+            Scale::Linear(Coordinates { inverse, .. }) => inverse.tr_mul(&form) * inverse,
+        }
+    }
+
     /// ‖x − y‖².
     pub fn squared_distance(&self, x: &Vector, y: &Vector) -> f64 {
         match &self.0 {

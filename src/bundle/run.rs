@@ -231,7 +231,10 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             Outcome::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;
                 event.value = Some(evaluation.value);
-                event.linearized = self.rebase(&center, evaluation.value, evaluation.linearization.take());
+                if let Some((known, noted)) = self.note(&center, evaluation.linearization.take()) {
+                    event.linearized = noted;
+                    self.rebase(&center, evaluation.value, known);
+                }
                 self.add_cut(center.clone(), &evaluation, false);
                 self.move_center(center, evaluation, accuracy);
                 self.state.bundle.retain(|cut| cut.id != old);

@@ -68,7 +68,9 @@ impl<'o> BundleTrust<'o> {
             clock,
         };
         let start = run.state.center.clone();
-        let linearized = run.rebase(&start, run.state.center_value, linearization);
+        let noted = run.note(&start, linearization);
+        let (known, linearized) = noted.unwrap_or((None, None));
+        run.rebase(&start, run.state.center_value, known);
         let seconds = run.seconds();
         if let Some(first) = run.state.history.first_mut() {
             first.seconds = seconds;

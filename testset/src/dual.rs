@@ -125,9 +125,10 @@ impl Dual {
         self.chain(self.value.ln(), self.value.recip())
     }
 
-    /// ln(1 + u).
-    pub fn ln_1p(&self) -> Self {
-        self.chain(self.value.ln_1p(), (1.0 + self.value).recip())
+    /// ln(1 + |u|) with the sign of u, which is smooth.
+    pub fn signed_ln_1p(&self) -> Self {
+        let size = self.value.abs();
+        self.chain(size.ln_1p().copysign(self.value), (1.0 + size).recip())
     }
 
     /// sin u.

@@ -1,72 +1,96 @@
 //! From a name of the table to its function.
 
+use crate::composition::Outer::{self, LargestMagnitude, Maximum};
+use crate::composition::{Composition, Term};
 use crate::dual::{Dual, Function};
+use crate::penalty::Colville;
 use crate::table::Record;
 use crate::{approximation, geometry, minimax, penalty, scalable};
 use std::sync::Arc;
 
-/// The function of a record, `None` for an unknown name.
-pub fn function(record: &Record) -> Option<Function> {
-    let plain: fn(&[Dual]) -> Dual = match record.name.as_str() {
-        "Rosenbrock" => minimax::rosenbrock,
-        "CB2" => minimax::cb2,
-        "CB3" => minimax::cb3,
-        "DEM" => minimax::dem,
-        "QL" => minimax::ql,
-        "Mifflin1" => minimax::mifflin1,
-        "Mifflin2" => minimax::mifflin2,
-        "WF" => minimax::wf,
-        "EVD52" => minimax::evd52,
-        "Davidon2" => minimax::davidon2,
-        "Polak3" => minimax::polak3,
-        "MAD1" => minimax::mad1,
-        "MAD4" => minimax::mad4,
-        "RosenSuzuki" => penalty::rosen_suzuki,
-        "Wong1" => penalty::wong1,
-        "Wong3" => penalty::wong3,
-        "Wong3lin" => penalty::wong3_linear,
-        "HS114" => penalty::hs114,
-        "Dembo5" => penalty::dembo5,
-        "ElAttar" => approximation::el_attar,
-        "PBC1" => approximation::pbc1,
-        "PBC3" => approximation::pbc3,
-        "OET6" => approximation::oet6,
-        "Watson20" => approximation::watson,
-        "PENTAGON" => geometry::pentagon,
-        "MAXL" => scalable::maxl,
-        "Goffin" => scalable::goffin,
-        "L1HILB" => scalable::l1_hilbert,
-        "GenMXHILB" => scalable::max_hilbert,
-        "ChainedLQ" => scalable::chained_lq,
-        "ChainedCB3II" => scalable::chained_cb3_ii,
-        "ActiveFaces" => scalable::active_faces,
-        "ChainedCrescentI" => scalable::chained_crescent_i,
-        "ChainedCrescentII" => scalable::chained_crescent_ii,
-        "ChebRosenN1_2" | "ChebRosenN1_5" => scalable::chebyshev_rosenbrock,
-        "NesterovWorst_20" => scalable::nesterov_worst,
-        _ => return with_data(record),
+/// The function of a record, with its structure if it has any; `None` for an unknown name.
+pub fn function(record: &Record) -> Option<(Function, Option<Composition>)> {
+    if record.name == "Rosenbrock" {
+        return Some((Arc::new(minimax::rosenbrock), None));
+    }
+    let composition = plain(record).or_else(|| with_data(record))?;
+    Some((composition.function(), Some(composition)))
+}
+
+/// The functions without data.
+fn plain(record: &Record) -> Option<Composition> {
+    let n = record.dimension;
+    let (outer, outputs): (Outer, fn(&[Dual]) -> Vec<Dual>) = match record.name.as_str() {
+        "CB2" => (Maximum, minimax::cb2),
+        "CB3" => (Maximum, minimax::cb3),
+        "DEM" => (Maximum, minimax::dem),
+        "QL" => (Maximum, minimax::ql),
+        "Mifflin1" => (Outer::Sum(vec![(20.0, Term::PositivePart), (1.0, Term::Itself)]), minimax::mifflin1),
+        "Mifflin2" => {
+            let terms = vec![(1.0, Term::Itself), (1.75, Term::Magnitude), (1.0, Term::Itself)];
+            (Outer::Sum(terms), minimax::mifflin2)
+        }
+        "WF" => (Maximum, minimax::wf),
+        "EVD52" => (Maximum, minimax::evd52),
+        "Davidon2" => (Maximum, minimax::davidon2),
+        "Polak3" => (Maximum, minimax::polak3),
+        "MAD1" => (Maximum, minimax::mad1),
+        "MAD4" => (Maximum, minimax::mad4),
+        "RosenSuzuki" => (Maximum, penalty::rosen_suzuki),
+        "Wong1" => (Maximum, penalty::wong1),
+        "Wong3" => (Maximum, penalty::wong3),
+        "Wong3lin" => (Maximum, penalty::wong3_linear),
+        "HS114" => (Maximum, penalty::hs114),
+        "Dembo5" => (Maximum, penalty::dembo5),
+        "ElAttar" => (Outer::sum_of(Term::Magnitude, 51), approximation::el_attar),
+        "PBC1" => (LargestMagnitude, approximation::pbc1),
+        "PBC3" => (LargestMagnitude, approximation::pbc3),
+        "OET6" => (LargestMagnitude, approximation::oet6),
+        "Watson20" => (LargestMagnitude, approximation::watson),
+        "PENTAGON" => (Maximum, geometry::pentagon),
+        "MAXL" => (LargestMagnitude, scalable::maxl),
+        "Goffin" => (Maximum, scalable::goffin),
+        "L1HILB" => (Outer::sum_of(Term::Magnitude, n), scalable::hilbert),
+        "GenMXHILB" => (LargestMagnitude, scalable::hilbert),
+        "ChainedLQ" => (Outer::sum_of(Term::Larger, n - 1), scalable::chained_lq),
+        "ChainedCB3II" => (Maximum, scalable::chained_cb3_ii),
+        "ActiveFaces" => (LargestMagnitude, scalable::active_faces),
+        "ChainedCrescentI" => (Maximum, scalable::chained_crescent_i),
+        "ChainedCrescentII" => (Outer::sum_of(Term::Larger, n - 1), scalable::chained_crescent_ii),
+        "ChebRosenN1_2" | "ChebRosenN1_5" => (scalable::chebyshev_rosenbrock_outer(n), scalable::chebyshev_rosenbrock),
+        "NesterovWorst_20" => (Maximum, scalable::nesterov_worst),
+        _ => return None,
     };
-    Some(Arc::new(plain))
+    Some(Composition::new(outer, outputs))
 }
 
 /// The functions with numeric data of their own.
-fn with_data(record: &Record) -> Option<Function> {
+fn with_data(record: &Record) -> Option<Composition> {
     Some(match record.name.as_str() {
-        "Shor" => minimax::shor(record.matrix("a"), record.vector("b")),
-        "Maxquad" => minimax::maxquad(),
-        "Steiner2" => geometry::steiner(geometry::Steiner {
-            x: record.vector("a_x"),
-            y: record.vector("a_y"),
-            to_fixed: record.vector("p"),
-            to_next: record.vector("pt"),
-        }),
-        "EQUIL" => geometry::equilibrium(record.matrix("a"), record.matrix("w"), record.vector("b")),
-        "KowalikOsborne" => approximation::kowalik_osborne(record.vector("y"), record.vector("t")),
-        "Colville1" => penalty::colville(penalty::Colville::new(record)),
+        "Shor" => Composition::new(Maximum, minimax::shor(record.matrix("a"), record.vector("b"))),
+        "Maxquad" => Composition::new(Maximum, minimax::maxquad()),
+        "Steiner2" => {
+            let data = geometry::Steiner {
+                x: record.vector("a_x"),
+                y: record.vector("a_y"),
+                to_fixed: record.vector("p"),
+                to_next: record.vector("pt"),
+            };
+            Composition::new(geometry::steiner_outer(&data), geometry::steiner(data))
+        }
+        "EQUIL" => {
+            let data = (record.matrix("a"), record.matrix("w"), record.vector("b"));
+            Composition::new(Maximum, geometry::equilibrium(data.0, data.1, data.2))
+        }
+        "KowalikOsborne" => {
+            Composition::new(LargestMagnitude, approximation::kowalik_osborne(record.vector("y"), record.vector("t")))
+        }
+        "Colville1" => Composition::new(Maximum, penalty::colville(Colville::new(record))),
         // The dual of Colville's problem shares its data, which the table holds once.
         "ShellDual" => {
             let primal = crate::table::records().into_iter().find(|primal| primal.name == "Colville1")?;
-            penalty::shell_dual(penalty::Colville::new(&primal))
+            let violations = primal.dimension + record.dimension;
+            Composition::new(penalty::shell_dual_outer(violations), penalty::shell_dual(Colville::new(&primal)))
         }
         _ => return None,
     })

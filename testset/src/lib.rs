@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 mod approximation;
+mod composition;
 mod dual;
 mod functions;
 mod geometry;
@@ -22,6 +23,7 @@ mod penalty;
 mod scalable;
 mod table;
 
+pub use composition::{Composition, Outer, Term};
 use dual::Function;
 
 /// With or without linear constraints.
@@ -72,6 +74,7 @@ pub struct Problem {
     /// Evaluations each solver needed for f − f* ≤ 1e-6 (1 + |f*|) at a feasible point; `None`: not reached.
     pub peers: BTreeMap<String, Option<usize>>,
     function: Function,
+    composition: Option<Composition>,
 }
 
 impl Problem {
@@ -108,12 +111,17 @@ impl Problem {
         bounds.chain(rows).fold(0.0, f64::max)
     }
 
+    /// The problem as a convex function of smooth outputs, if it is one with kinks.
+    pub fn composition(&self) -> Option<&Composition> {
+        self.composition.as_ref()
+    }
+
     fn differentiate(&self, x: &[f64]) -> (f64, Vec<f64>, f64) {
         assert_eq!(x.len(), self.dimension, "{}: dimension of the point", self.name);
         (self.function)(&dual::Dual::variables(x)).into_parts()
     }
 
-    fn new(record: table::Record, function: Function) -> Self {
+    fn new(record: table::Record, (function, composition): (Function, Option<Composition>)) -> Self {
         let n = record.dimension;
         let constrained = record.lower.is_some() || record.upper.is_some() || !record.rows.is_empty();
         Self {
@@ -135,6 +143,7 @@ impl Problem {
             optimal_value: record.fstar,
             peers: record.evaluations,
             function,
+            composition,
         }
     }
 }

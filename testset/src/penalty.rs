@@ -1,19 +1,17 @@
 //! Smooth programs with their nonlinear constraints as exact penalties ρ max(0, c₁, c₂, …).
 
-use std::sync::Arc;
-
+use crate::composition::{Outer, Term};
 use crate::dual::Dual;
-use crate::dual::Function;
 use crate::table::Record;
 
 /// f + ρ max(0, c₁, c₂, …) as the maximum of f and all f + ρ cᵢ.
-fn penalized(objective: Dual, weight: f64, constraints: impl IntoIterator<Item = Dual>) -> Dual {
+fn penalized(objective: Dual, weight: f64, constraints: impl IntoIterator<Item = Dual>) -> Vec<Dual> {
     let pieces: Vec<Dual> = constraints.into_iter().map(|c| &objective + weight * c).collect();
-    Dual::max([objective].into_iter().chain(pieces))
+    [objective].into_iter().chain(pieces).collect()
 }
 
 /// Rosen and Suzuki.
-pub fn rosen_suzuki(x: &[Dual]) -> Dual {
+pub fn rosen_suzuki(x: &[Dual]) -> Vec<Dual> {
     let [a, b, c, d] = [&x[0], &x[1], &x[2], &x[3]];
     let squares = [a.square(), b.square(), c.square(), d.square()];
     let weighted = |w: [f64; 4]| Dual::combination(w.into_iter().zip(&squares));
@@ -56,30 +54,39 @@ impl Colville {
 }
 
 /// Colville's first problem with weight 50 on the largest violation.
-pub fn colville(data: Colville) -> Function {
-    Arc::new(move |x| {
+pub fn colville(data: Colville) -> impl Fn(&[Dual]) -> Vec<Dual> {
+    move |x| {
         let objective = data.cubic(x) + data.quadratic(x) + dot(&data.e, x);
         penalized(objective, 50.0, data.a.iter().zip(&data.b).map(|(row, &b)| b - dot(row, x)))
-    })
+    }
 }
 
 /// The dual of Colville's first problem with weight 100 on the sum of the violations; x = (y, w).
-pub fn shell_dual(data: Colville) -> Function {
-    Arc::new(move |x| {
+///
+/// ```text
+/// 2 |c₁| + c₂ + 100 Σ max(cᵢ, 0)
+/// ```
+pub fn shell_dual(data: Colville) -> impl Fn(&[Dual]) -> Vec<Dual> {
+    move |x| {
         let (y, w) = x.split_at(data.d.len());
-        let objective = 2.0 * data.cubic(y).abs() + data.quadratic(y) - dot(&data.b, w);
         let stationarity = (0..y.len()).map(|j| {
             let multipliers = Dual::combination(data.a.iter().zip(w).map(|(row, w)| (row[j], w)));
             let quadratic = 2.0 * Dual::combination(data.c.iter().zip(y).map(|(row, y)| (row[j], y)));
-            (multipliers - quadratic - 3.0 * data.d[j] * y[j].square() - data.e[j]).positive_part()
+            multipliers - quadratic - 3.0 * data.d[j] * y[j].square() - data.e[j]
         });
-        let signs = x.iter().map(|x| (-x).positive_part());
-        objective + 100.0 * Dual::sum(stationarity.chain(signs))
-    })
+        let objective = [data.cubic(y), data.quadratic(y) - dot(&data.b, w)];
+        objective.into_iter().chain(stationarity).chain(x.iter().map(|x| -x)).collect()
+    }
+}
+
+/// The weights of [`shell_dual`] for a number of violations.
+pub fn shell_dual_outer(violations: usize) -> Outer {
+    let penalties = vec![(100.0, Term::PositivePart); violations];
+    Outer::Sum([vec![(2.0, Term::Magnitude), (1.0, Term::Itself)], penalties].concat())
 }
 
 /// Wong's first problem (Hock and Schittkowski 100), weight 10.
-pub fn wong1(x: &[Dual]) -> Dual {
+pub fn wong1(x: &[Dual]) -> Vec<Dual> {
     let objective = (&x[0] - 10.0).square()
         + 5.0 * (&x[1] - 12.0).square()
         + x[2].powi(4)
@@ -100,7 +107,7 @@ pub fn wong1(x: &[Dual]) -> Dual {
 }
 
 /// Wong's third problem with all seventeen constraints, weight 10.
-pub fn wong3(x: &[Dual]) -> Dual {
+pub fn wong3(x: &[Dual]) -> Vec<Dual> {
     let linear = [
         4.0 * &x[0] + 5.0 * &x[1] - 3.0 * &x[6] + 9.0 * &x[7] - 105.0,
         10.0 * &x[0] - 8.0 * &x[1] - 17.0 * &x[6] + 2.0 * &x[7],
@@ -111,7 +118,7 @@ pub fn wong3(x: &[Dual]) -> Dual {
 }
 
 /// Wong's third problem with its thirteen nonlinear constraints penalized.
-pub fn wong3_linear(x: &[Dual]) -> Dual {
+pub fn wong3_linear(x: &[Dual]) -> Vec<Dual> {
     penalized(wong3_objective(x), 10.0, wong3_constraints(x))
 }
 
@@ -160,7 +167,7 @@ fn wong3_constraints(x: &[Dual]) -> [Dual; 13] {
 }
 
 /// Alkylation process (Hock and Schittkowski 114), weight 500; an equation is a pair of inequalities.
-pub fn hs114(x: &[Dual]) -> Dual {
+pub fn hs114(x: &[Dual]) -> Vec<Dual> {
     let tolerance = 0.99;
     let objective = 5.04 * &x[0] + 0.035 * &x[1] + 10.0 * &x[2] + 3.36 * &x[4] - 0.063 * &x[3] * &x[6];
     let yield_ = 1.12 * &x[0] + &x[0] * &x[7] * (0.13167 - 0.00667 * &x[7]);
@@ -181,7 +188,7 @@ pub fn hs114(x: &[Dual]) -> Dual {
 }
 
 /// Dembo's fifth problem, heat exchangers in geometric form (Hock and Schittkowski 106), weight 10⁵.
-pub fn dembo5(x: &[Dual]) -> Dual {
+pub fn dembo5(x: &[Dual]) -> Vec<Dual> {
     let constraints = [
         (100.0 + (833.332_52 * &x[3] - 83_333.333) / &x[0]) / &x[5] - 1.0,
         (&x[3] + 1250.0 * (&x[4] - &x[3]) / &x[1]) / &x[6] - 1.0,

@@ -116,28 +116,19 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         Continue(Some(Proposal { predicted_decrease, ..proposal }))
     }
 
-    pub(super) fn learn_excursion(
-        &mut self,
-        trial: &Trial<'_>,
-        value: f64,
-        linearization: Option<Result<Linearization, String>>,
-    ) -> Option<Result<(), String>> {
-        let composite = self.composite.as_mut()?;
-        let excursion = composite.excursion.as_mut()?;
+    pub(super) fn learn_excursion(&mut self, trial: &Trial<'_>, value: f64, linearization: Option<Linearization>) {
+        let Some(composite) = &mut self.composite else { return };
+        let Some(excursion) = &mut composite.excursion else { return };
+        let point = &trial.proposal.trial;
         if trial.serious {
             composite.weight = excursion.weight;
             composite.excursion = None;
-            return self.rebase(&trial.proposal.trial, value, linearization);
-        }
-        let before = excursion.base.as_ref().map_or(f64::INFINITY, |base| base.value);
-        if value >= before {
+            self.rebase(point, value, linearization);
+        } else if excursion.base.as_ref().is_some_and(|base| value >= base.value) {
             excursion.weight *= super::FACTOR;
-            return None;
-        }
-        Some(linearization?.map(|linearization| {
-            self.state.counts.jacobians += 1;
+        } else {
             excursion.weight /= super::FACTOR;
-            excursion.base = Some(Base { point: trial.proposal.trial.clone(), value, linearization });
-        }))
+            excursion.base = linearization.map(|linearization| Base { point: point.clone(), value, linearization });
+        }
     }
 }

@@ -7,12 +7,12 @@
 //! w = Σ λ_j w_j:   Gᵀw + Aᵀμ + ν = −u W d,   error of w at c:  Σ λ_j (h(c) − h(c_j) − ⟨w_j, c − c_j⟩) ≥ 0
 //! ```
 
-use crate::bundle::norm::ScaledNorm;
+use crate::bundle::norm::{ScaledNorm, WeightedMetric};
 use crate::bundle::proposers::proposal::SubproblemError;
 use crate::bundle::proposers::subproblem::{self, Cuts};
 use crate::composite::{Linearization, OuterFunction};
 use crate::qp::{EpigraphQpSolver, Metric, QpSolution, project};
-use crate::{Polyhedron, Vector};
+use crate::{Matrix, Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 
 /// Newton steps of one subproblem.
@@ -68,13 +68,17 @@ pub(crate) struct CompositeModel<'a> {
     pub set: &'a Polyhedron,
     /// u.
     pub weight: f64,
+    /// B, the curvature of the outputs; none: 0.
+    pub curvature: Option<&'a Matrix>,
+    /// x̂ − x from the base to the point that ‖·‖ measures from; none: 0.
+    pub origin: Option<&'a Vector>,
 }
 
 /// A solved subproblem.
 #[derive(Debug, Clone)]
 pub(crate) struct CompositeStep {
     pub step: Vector,
-    /// h(c) − h(c + G d).
+    /// h(c) − h(c + G d) − dᵀBd/2.
     pub decrease: f64,
     /// Cuts with a multiplier.
     pub cuts: Vec<OuterCut>,
@@ -106,9 +110,27 @@ impl CompositeModel<'_> {
         &self.linearization.outputs + &self.linearization.jacobian * step
     }
 
-    /// h(c + G d) − h(c) + u‖d‖²/2.
+    /// h(c + G d) − h(c) + dᵀBd/2 + u(‖d − o‖² − ‖o‖²)/2 with the origin o.
     fn merit(&self, step: &Vector) -> f64 {
-        self.outer.value(&self.outputs(step)) - self.value + 0.5 * self.weight * self.norm.squared(step)
+        let quadratic = self.bend(step) + self.weight * self.norm.squared(step);
+        self.outer.value(&self.outputs(step)) - self.value + 0.5 * quadratic + self.pull_to_origin().dot(step)
+    }
+
+    /// −u W o.
+    fn pull_to_origin(&self) -> Vector {
+        self.origin
+            .map_or_else(|| Vector::zeros(self.base.len()), |origin| self.norm.lower_index(origin) * -self.weight)
+    }
+
+    /// dᵀBd.
+    fn bend(&self, step: &Vector) -> f64 {
+        self.curvature.map_or(0.0, |curvature| step.dot(&(curvature * step)))
+    }
+
+    /// (B + u W) d − u W o.
+    fn pull(&self, step: &Vector) -> Vector {
+        let pull = self.norm.lower_index(step) * self.weight + self.pull_to_origin();
+        self.curvature.map_or(pull.clone(), |curvature| pull + curvature * step)
     }
 
     fn solve_by_newton(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
@@ -120,7 +142,10 @@ impl CompositeModel<'_> {
             let at = OuterCut::at(self.outer, self.outputs(&step));
             let Some(mut metric) = self.outer.curvature(&at.outputs, jacobian) else { break };
             self.norm.add_to(&mut metric, self.weight);
-            let slope = jacobian.tr_mul(&at.subgradient) + self.norm.lower_index(&step) * self.weight;
+            if let Some(curvature) = self.curvature {
+                metric += curvature;
+            }
+            let slope = jacobian.tr_mul(&at.subgradient) + self.pull(&step);
             let (slopes, point) = ([slope], self.base + &step);
             let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0] };
             let solution = subproblem::solve(solver, self.set, &point, Metric::Dense(&metric), cuts)?;
@@ -152,19 +177,28 @@ impl CompositeModel<'_> {
 
     fn solve_by_cuts(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
         let linearization = self.linearization;
-        let metric = self.norm.weighted(self.weight);
+        let metric = match self.curvature {
+            Some(curvature) => {
+                let mut metric = curvature.clone();
+                self.norm.add_to(&mut metric, self.weight);
+                WeightedMetric::Dense(metric)
+            }
+            None => self.norm.weighted(self.weight),
+        };
+        let pull = self.pull_to_origin();
         let mut cuts = vec![OuterCut::at(self.outer, linearization.outputs.clone())];
         let (mut slopes, mut offsets, mut ids) = (vec![], vec![], vec![]);
         loop {
             if let Some(newest) = cuts.last() {
-                slopes.push(linearization.jacobian.tr_mul(&newest.subgradient));
+                slopes.push(linearization.jacobian.tr_mul(&newest.subgradient) + &pull);
                 offsets.push(self.error(newest)?);
                 ids.push(ids.len() as u64);
             }
             let view = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids };
             let solution = subproblem::solve(solver, self.set, self.base, metric.metric(), view)?;
             let next = OuterCut::at(self.outer, self.outputs(&solution.step));
-            let (promised, gap) = (-solution.epigraph, next.value - self.value - solution.epigraph);
+            let change = next.value - self.value + pull.dot(&solution.step);
+            let (promised, gap) = (-solution.epigraph, change - solution.epigraph);
             if gap <= MET * promised + ROUNDING * self.value.abs() || cuts.len() >= MAX_CUTS {
                 for (cut, multiplier) in cuts.iter_mut().zip(&solution.cut_multipliers) {
                     cut.multiplier = *multiplier;
@@ -189,7 +223,7 @@ impl CompositeModel<'_> {
 
     fn solved(&self, step: Vector, cuts: Vec<OuterCut>, solution: &QpSolution) -> CompositeStep {
         CompositeStep {
-            decrease: self.value - self.outer.value(&self.outputs(&step)),
+            decrease: self.value - self.outer.value(&self.outputs(&step)) - 0.5 * self.bend(&step),
             step,
             cuts,
             row_multipliers: Vector::from_column_slice(&solution.row_multipliers),

@@ -1,0 +1,110 @@
+//! What the composite model learns from an evaluation.
+
+use super::{Base, Composite, FACTOR};
+use crate::bundle::proposers::proposal::Proposal;
+use crate::bundle::proposers::proposer::Trial;
+use crate::bundle::run::Run;
+use crate::composite::Linearization;
+use crate::report::Origin;
+use crate::{NonsmoothObjective, Vector};
+
+/// A step with this share of the predicted decrease lets the weight fall.
+const GOOD_RATIO: f64 = 0.5;
+/// Length of the step after a rejected one, as a share of its length.
+const SHORTER: f64 = 0.3;
+/// Longest pause after failures, evaluations.
+const MAX_PAUSE: usize = 64;
+/// Failures in a row before a pause.
+const PATIENCE: usize = 3;
+
+impl Composite {
+    /// Learns what came of a step of its own: the ratio of the decrease to the one predicted, none if the oracle failed.
+    fn learn(&mut self, proposal: &Proposal, ratio: Option<f64>, accepted: bool) {
+        self.weight = proposal.weight;
+        if accepted {
+            self.failures = 0;
+            self.pause.succeed();
+            self.longest = f64::INFINITY;
+            if ratio.is_some_and(|ratio| ratio >= GOOD_RATIO) {
+                self.weight /= FACTOR;
+            }
+        } else {
+            self.failures += 1;
+            self.weight *= FACTOR;
+            self.longest = SHORTER * proposal.step_length;
+            if self.failures >= PATIENCE {
+                self.pause.fail(MAX_PAUSE);
+            }
+        }
+    }
+}
+
+impl<O: NonsmoothObjective> Run<'_, '_, O> {
+    /// Learns from a trial point and what its evaluation says about the outputs; whether it brought a Jacobian.
+    pub(in crate::bundle) fn learn_structure(
+        &mut self,
+        trial: &Trial<'_>,
+        value: f64,
+        linearization: Option<Result<Linearization, String>>,
+    ) -> Option<Result<(), String>> {
+        let point = &trial.proposal.trial;
+        let (known, noted) = self.note(point, linearization)?;
+        let composite = self.composite.as_mut()?;
+        if composite.excursion.is_some() {
+            self.learn_excursion(trial, value, known);
+            return noted;
+        }
+        let own = trial.proposal.origin == Origin::CompositeModel;
+        let correcting = std::mem::take(&mut composite.correcting);
+        if own && (trial.serious || !correcting) {
+            let ratio = trial.comparison.change / trial.comparison.model_change;
+            composite.learn(trial.proposal, Some(ratio), trial.serious);
+        }
+        if trial.serious {
+            self.rebase(point, value, known);
+        } else if own && correcting {
+            composite.bends = true;
+        } else if own {
+            let point = point.clone();
+            composite.rejected = known.map(|linearization| Base { point, value, linearization });
+        }
+        noted
+    }
+
+    /// Counts and remembers a Jacobian; the linearization, and whether there is one or why not. None without a composite model.
+    pub(in crate::bundle) fn note(
+        &mut self,
+        point: &Vector,
+        linearization: Option<Result<Linearization, String>>,
+    ) -> Option<(Option<Linearization>, Option<Result<(), String>>)> {
+        let composite = self.composite.as_mut()?;
+        Some(match linearization {
+            None => (None, None),
+            Some(Err(reason)) => (None, Some(Err(reason))),
+            Some(Ok(linearization)) => {
+                self.state.counts.jacobians += 1;
+                composite.memory.remember(point, &linearization.jacobian);
+                (Some(linearization), Some(Ok(())))
+            }
+        })
+    }
+
+    /// Takes note that the oracle failed at a trial point.
+    pub(in crate::bundle) fn shorten_composite(&mut self, proposal: &Proposal) {
+        let Some(composite) = &mut self.composite else { return };
+        if let Some(excursion) = &mut composite.excursion {
+            excursion.give_up();
+        } else if proposal.origin == Origin::CompositeModel {
+            composite.correcting = false;
+            composite.learn(proposal, None, false);
+        }
+    }
+
+    /// Moves the model to a new center, to be built there if the Jacobian is known.
+    pub(in crate::bundle) fn rebase(&mut self, point: &Vector, value: f64, linearization: Option<Linearization>) {
+        if let Some(composite) = &mut self.composite {
+            composite.rejected = None;
+            composite.base = linearization.map(|linearization| Base { point: point.clone(), value, linearization });
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Steps of the composite model: from a base, and on from a rejected trial point.
+
+use super::model::{CompositeModel, CompositeStep};
+use super::{Base, FACTOR};
+use crate::bundle::proposers::aggregate::{aggregate_sizes, slack_error};
+use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
+use crate::bundle::run::Run;
+use crate::report::{Origin, Termination};
+use crate::{NonsmoothObjective, Polyhedron, Vector};
+use std::ops::ControlFlow::{self, Break, Continue};
+
+/// Longest step on from a rejected trial point, in lengths of the rejected step.
+const CONTRACTION: f64 = 0.5;
+/// Subproblems solved for weights and curvature that belong together.
+const PASSES: usize = 2;
+
+impl<O: NonsmoothObjective> Run<'_, '_, O> {
+    /// A step on from a rejected trial point, if it is so short that it leads below the center.
+    ///
+    /// A step along a curved kink of h leaves the kink, by second order in its length, and pays for it by first order (Maratos
+    /// effect): the model at its end leads back.
+    pub(super) fn correction(&mut self, base: &Base, rejected: &Base) -> ControlFlow<Termination, Option<Proposal>> {
+        let Some(composite) = &mut self.composite else { return Continue(None) };
+        let weight = composite.weight / FACTOR;
+        let origin = &base.point - &rejected.point;
+        let Some((proposal, _)) = self.composite_step_near(rejected, weight, None, Some(&origin))? else {
+            return Continue(None);
+        };
+        let length = self.state.norm.length(&(&proposal.trial - &rejected.point));
+        let first = self.state.norm.length(&(&rejected.point - &base.point));
+        let predicted_decrease = base.value - rejected.value + proposal.predicted_decrease;
+        if length > CONTRACTION * first || predicted_decrease <= self.small() {
+            return Continue(None);
+        }
+        if let Some(composite) = &mut self.composite {
+            composite.correcting = true;
+        }
+        Continue(Some(Proposal { predicted_decrease, ..proposal }))
+    }
+
+    /// The step of the model at a base with a weight, and the trial point that it leads to; none where the subproblem cannot be
+    /// solved. `set`: the admissible set, if it is not that of the run.
+    pub(super) fn composite_step(
+        &mut self,
+        base: &Base,
+        weight: f64,
+        set: Option<&Polyhedron>,
+    ) -> ControlFlow<Termination, Option<(Proposal, CompositeStep)>> {
+        self.composite_step_near(base, weight, set, None)
+    }
+
+    fn composite_step_near(
+        &mut self,
+        base: &Base,
+        weight: f64,
+        set: Option<&Polyhedron>,
+        origin: Option<&Vector>,
+    ) -> ControlFlow<Termination, Option<(Proposal, CompositeStep)>> {
+        let before = self.solver.counts();
+        let step = self.solve_composite(base, weight, set, origin);
+        self.count_solves(before);
+        match step.and_then(|step| Ok((self.composite_proposal(base, &step, weight)?, step))) {
+            Err(error @ SubproblemError::NotConvex { .. }) => {
+                Break(Termination::SubproblemFailed { reason: error.to_string() })
+            }
+            Err(_) => Continue(None),
+            Ok(found) => Continue(Some(found)),
+        }
+    }
+
+    /// Solves the subproblem, with the curvature of the outputs for the weights of its own solution.
+    fn solve_composite(
+        &mut self,
+        base: &Base,
+        weight: f64,
+        set: Option<&Polyhedron>,
+        origin: Option<&Vector>,
+    ) -> Result<CompositeStep, SubproblemError> {
+        let (Some(outer), Some(composite)) = (self.objective.outer(), &mut self.composite) else {
+            return Err(SubproblemError::Unusable);
+        };
+        let jacobian = &base.linearization.jacobian;
+        let model = CompositeModel {
+            outer,
+            linearization: &base.linearization,
+            value: outer.value(&base.linearization.outputs),
+            base: &base.point,
+            norm: &self.state.norm,
+            set: set.unwrap_or(&self.set),
+            weight,
+            curvature: None,
+            origin,
+        };
+        if !composite.bends || outer.curvature(&base.linearization.outputs, jacobian).is_some() {
+            return model.solve(&mut self.solver);
+        }
+        if composite.weights.is_none() {
+            composite.weights = Some(model.solve(&mut self.solver)?.weights());
+        }
+        let mut step = None;
+        for _ in 0..PASSES {
+            let Some(weights) = &composite.weights else { break };
+            let curvature = composite.memory.curvature((&base.point, jacobian), weights, model.norm);
+            let model = CompositeModel { curvature: curvature.as_ref(), ..model };
+            let found = model.solve(&mut self.solver)?;
+            composite.weights = Some(found.weights());
+            step = Some(found);
+        }
+        step.ok_or(SubproblemError::Unusable)
+    }
+
+    fn composite_proposal(&self, base: &Base, step: &CompositeStep, weight: f64) -> Result<Proposal, SubproblemError> {
+        let state = &self.state;
+        let outputs = &base.linearization.outputs;
+        let errors = step.cuts.iter().map(|cut| cut.multiplier * cut.error(outputs, base.value).max(0.0));
+        let (error, length) = (errors.sum::<f64>(), state.norm.length(&step.step));
+        let rows = step.row_multipliers.rows(0, self.set.rows().nrows()).into_owned();
+        let sides = (&rows, &step.bound_multipliers);
+        let slack = slack_error(sides, &base.point, &self.set);
+        let aggregate = base.linearization.jacobian.tr_mul(&step.weights());
+        let trial = &base.point + &step.step;
+        let proposal = Proposal {
+            step: &trial - &state.center,
+            trial,
+            step_length: length,
+            predicted_decrease: step.decrease,
+            cut_change: 0.0,
+            aggregate_sizes: aggregate_sizes(std::iter::once((1.0, &aggregate)), sides, &self.set),
+            slack_error: slack,
+            aggregate_norm: state
+                .norm
+                .dual_length(&(&aggregate + self.set.rows().tr_mul(&rows) + &step.bound_multipliers)),
+            aggregate_error: error + slack,
+            cut_error: error,
+            cut_multipliers: vec![0.0; state.bundle.cuts().len()],
+            bound_multipliers: step.bound_multipliers.clone(),
+            row_multipliers: rows,
+            convexification: 0.0,
+            weight,
+            violation: 0.0,
+            origin: Origin::CompositeModel,
+        };
+        proposal.admissible(&self.set, state)
+    }
+
+    /// The word for a base that the model proves stationary.
+    pub(super) fn composite_word(&self, proposal: &Proposal) -> Option<Termination> {
+        if proposal.predicted_decrease > self.small() {
+            return None;
+        }
+        let remaining = self.state.decrease_bound(proposal, &self.set);
+        self.word_at_point(remaining)
+    }
+}
