@@ -158,7 +158,7 @@ impl ScaledNorm {
     }
 
     /// M⁻ᵀ B M⁻¹ for a quadratic form B of the coordinates.
-    pub(crate) fn from_coordinates(&self, form: Matrix) -> Matrix {
+    pub(crate) fn form_of_coordinates(&self, form: Matrix) -> Matrix {
         match &self.0 {
             Scale::Weights(weights) => {
                 Matrix::from_fn(form.nrows(), form.ncols(), |i, j| form[(i, j)] * (weights[i] * weights[j]).sqrt())

@@ -17,10 +17,13 @@ pub fn function(record: &Record) -> Option<(Function, Option<Composition>)> {
     Some((composition.function(), Some(composition)))
 }
 
+/// Smooth functions of the variables.
+type Smooth = fn(&[Dual]) -> Vec<Dual>;
+
 /// The functions without data.
 fn plain(record: &Record) -> Option<Composition> {
     let n = record.dimension;
-    let (outer, outputs): (Outer, fn(&[Dual]) -> Vec<Dual>) = match record.name.as_str() {
+    let (outer, outputs): (Outer, Smooth) = match record.name.as_str() {
         "CB2" => (Maximum, minimax::cb2),
         "CB3" => (Maximum, minimax::cb3),
         "DEM" => (Maximum, minimax::dem),

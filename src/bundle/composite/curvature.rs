@@ -64,7 +64,7 @@ impl Memory {
         let fit = ((&fit + fit.transpose()) * 0.5).symmetric_eigen();
         let positive = Matrix::from_diagonal(&fit.eigenvalues.map(|value| value.max(0.0)));
         let positive = &fit.eigenvectors * positive * fit.eigenvectors.transpose();
-        Some(norm.from_coordinates((&positive + positive.transpose()) * 0.5))
+        Some(norm.form_of_coordinates((&positive + positive.transpose()) * 0.5))
             .filter(|m| m.iter().all(|e| e.is_finite()))
     }
 }

@@ -17,6 +17,9 @@ const MAX_PAUSE: usize = 64;
 /// Failures in a row before a pause.
 const PATIENCE: usize = 3;
 
+/// Whether an evaluation brought a Jacobian, or why not; none where it was not asked for.
+pub(in crate::bundle) type Noted = Option<Result<(), String>>;
+
 impl Composite {
     /// Learns what came of a step of its own: the ratio of the decrease to the one predicted, none if the oracle failed.
     fn learn(&mut self, proposal: &Proposal, ratio: Option<f64>, accepted: bool) {
@@ -46,7 +49,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         trial: &Trial<'_>,
         value: f64,
         linearization: Option<Result<Linearization, String>>,
-    ) -> Option<Result<(), String>> {
+    ) -> Noted {
         let point = &trial.proposal.trial;
         let (known, noted) = self.note(point, linearization)?;
         let composite = self.composite.as_mut()?;
@@ -76,7 +79,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         &mut self,
         point: &Vector,
         linearization: Option<Result<Linearization, String>>,
-    ) -> Option<(Option<Linearization>, Option<Result<(), String>>)> {
+    ) -> Option<(Option<Linearization>, Noted)> {
         let composite = self.composite.as_mut()?;
         Some(match linearization {
             None => (None, None),

@@ -143,7 +143,7 @@ impl SymmetricBlock {
         Self { starts, entries: lists.concat() }
     }
 
-    /// y += factor·A_RC x for the values of the lower triangle; to be called inside [`vectorized`](super::entry::vectorized).
+    /// y += factor·A_RC x for the values of the lower triangle; to be called inside `entry::vectorized`.
     #[inline(always)]
     pub fn add_product<V: Entry>(&self, values: &[f64], factor: f64, x: &[V], y: &mut [V]) {
         for (y, range) in y.iter_mut().zip(self.starts.windows(2)) {
