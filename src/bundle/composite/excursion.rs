@@ -1,12 +1,12 @@
-//! The closing step: from a stationary point to the piece behind constraints that are nearly active there.
+//! Steps away from a point that is proved stationary, whose proof stands if they find nothing lower.
 //!
 //! ```text
+//! predicted > small/10:      the model's own last step: it costs one evaluation, and the model is at its best there
 //! s_i + S_i d ≤ −s_i/2 for the inactive constraints next to the point      one composite step with these rows, then go on
 //! ```
 //! The linearization at a stationary point sees one piece of c alone. Where a constraint inside c (an open contact node) is all
 //! but active, the neighbouring piece may lead lower. The excursion may rise above the center; it ends when the center is
-//! undercut, when its model promises no such thing any more, or after a few evaluations: then the proof of the stationary
-//! point stands.
+//! undercut, when its model promises no such thing any more, or after a few evaluations.
 
 use super::{Base, Composite, Proof};
 use crate::bundle::proposers::proposal::Proposal;
@@ -26,10 +26,15 @@ const NEAR: [f64; 3] = [0.3, 0.1, 0.03];
 /// One linearization is pessimistic where constraints become active: decreases up to this many times the predicted one are common.
 const PESSIMISM: f64 = 2.5;
 
+/// Share of a small decrease that is worth the model's own last step.
+const WORTH_A_STEP: f64 = 0.1;
+
 /// A run away from a stationary center.
 #[derive(Debug)]
 pub(crate) struct Excursion {
     proof: Box<Proof>,
+    /// Whether it is the model's own last step, before the closing step.
+    last_step: bool,
     /// Where its model is built; none before its first evaluation.
     base: Option<Base>,
     weight: f64,
@@ -43,8 +48,25 @@ impl Excursion {
 }
 
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
-    /// Ends the run with a proof, unless there are constraints next to the point to be closed first.
+    /// Ends the run with a proof, unless a last step or constraints next to the point to be closed come first.
     pub(super) fn leave(&mut self, proof: Proof) -> ControlFlow<Termination, Option<Proposal>> {
+        let worth = (WORTH_A_STEP * self.small()).max(self.state.rounding());
+        if proof.proposal.predicted_decrease <= worth {
+            return self.close(proof);
+        }
+        let (proposal, weight) = (proof.proposal.clone(), proof.proposal.weight);
+        self.depart(Excursion { proof: Box::new(proof), last_step: true, base: None, weight, left: 0 });
+        Continue(Some(proposal))
+    }
+
+    fn depart(&mut self, excursion: Excursion) {
+        if let Some(composite) = &mut self.composite {
+            composite.excursion = Some(excursion);
+        }
+    }
+
+    /// The first step behind constraints next to the point, or the end of the run with the proof where there are none.
+    fn close(&mut self, proof: Proof) -> ControlFlow<Termination, Option<Proposal>> {
         let inactive = proof.base.linearization.inactive.clone();
         for near in inactive.iter().flat_map(|_| NEAR) {
             let Some(set) = inactive.as_ref().and_then(|inactive| self.closing_set(&proof.base, inactive, near)) else {
@@ -52,11 +74,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             };
             let first_weight = Composite::new(self.state.first_weight).weight;
             if let Some((proposal, _)) = self.composite_step(&proof.base, first_weight, Some(&set))? {
-                if let Some(composite) = &mut self.composite {
-                    let left = MAX_EVALUATIONS - 1;
-                    let proof = Box::new(proof);
-                    composite.excursion = Some(Excursion { proof, base: None, weight: first_weight, left });
-                }
+                let (proof, left) = (Box::new(proof), MAX_EVALUATIONS - 1);
+                self.depart(Excursion { proof, last_step: false, base: None, weight: first_weight, left });
                 let predicted_decrease = self.small();
                 return Continue(Some(Proposal { predicted_decrease, ..proposal }));
             }
@@ -99,6 +118,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         &mut self,
         mut excursion: Excursion,
     ) -> ControlFlow<Termination, Option<Proposal>> {
+        if excursion.last_step {
+            return self.close(*excursion.proof);
+        }
         let base = excursion.base.take().filter(|_| excursion.left > 0);
         let Some(base) = base else { return self.prove(*excursion.proof) };
         let found = self.composite_step(&base, excursion.weight, None)?;
@@ -110,9 +132,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let predicted_decrease = (center - base.value + proposal.predicted_decrease).max(self.small());
         excursion.base = Some(base);
         excursion.left -= 1;
-        if let Some(composite) = &mut self.composite {
-            composite.excursion = Some(excursion);
-        }
+        self.depart(excursion);
         Continue(Some(Proposal { predicted_decrease, ..proposal }))
     }
 
