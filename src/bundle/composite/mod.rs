@@ -122,7 +122,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             return self.continue_excursion(excursion);
         }
         let Some(base) = composite.base.clone().filter(|_| composite.pause.pass()) else { return Continue(None) };
-        let mut weight = composite.weight;
+        let least = self.state.first_weight / self.method.config.weight_range;
+        let mut weight = composite.weight.max(least);
         if let Some(rejected) = composite.rejected.take() {
             if let Some(proposal) = self.correction(&base, &rejected)? {
                 return Continue(Some(proposal));
@@ -133,7 +134,10 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
         let (mut raised, mut last) = (false, None::<Proposal>);
         for _ in 0..MAX_WEIGHTS {
-            let Some((proposal, step)) = self.composite_step(&base, weight, None)? else { return Continue(None) };
+            let Some((proposal, step)) = self.composite_step(&base, weight, None)? else {
+                (weight, raised) = (weight * FACTOR, true);
+                continue;
+            };
             if let Some(word) = self.composite_word(&proposal) {
                 return self.leave(Proof { word, base, step, proposal });
             }
