@@ -17,8 +17,11 @@ pub enum Expected {
     Refused(&'static str),
     /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause. Solved by both is
     /// as good: rounding decides at the edge.
-    Limit([Option<&'static str>; 2], &'static str),
+    Limit(LimitKinds, &'static str),
 }
+
+/// Refusals that are true of total FETI, and of direct condensation; none for a state.
+pub type LimitKinds = [&'static [&'static str]; 2];
 
 /// A finding about a solved state, or what is wrong with it.
 pub type Check = Box<dyn Fn(&ContactProblem, &ContactForces) -> Result<String, String> + Send + Sync>;
@@ -61,7 +64,7 @@ impl ContactCase {
 
     /// Expects a known limit.
     #[must_use]
-    pub fn limit(mut self, kinds: [Option<&'static str>; 2], cause: &'static str) -> Self {
+    pub fn limit(mut self, kinds: LimitKinds, cause: &'static str) -> Self {
         self.expected = Expected::Limit(kinds, cause);
         self
     }

@@ -23,7 +23,7 @@ pub fn cases() -> Vec<Case> {
         });
         let mut case = ContactCase::new(scene).check(uniform(1.0, 0.05));
         if height <= 0.1 || height >= 1e4 {
-            case = case.limit([Some("BeyondPrecision"), None], FACTORS);
+            case = case.limit([&["BeyondPrecision"], &[]], FACTORS);
         }
         let case = case.case(GROUP, format!("height to width {:e}", height / 10.0));
         cases.push(if (1.0..=1e3).contains(&height) { case } else { case.slow() });
@@ -31,7 +31,7 @@ pub fn cases() -> Vec<Case> {
     for (label, size) in [("1000 : 1 plan", [10.0, 1e4]), ("1 : 1000 plan", [10.0, 1e-2])] {
         let scene = stacked(0.3, 1.0, 0.05).map(|scene| contact::scene::Scene { size, ..scene });
         let case = ContactCase::new(scene).check(uniform(1.0, 0.05));
-        let case = case.limit([Some("BeyondPrecision"), None], FACTORS);
+        let case = case.limit([&["BeyondPrecision"], &[]], FACTORS);
         cases.push(case.case(GROUP, label).slow());
     }
     for (label, height) in [
