@@ -158,6 +158,7 @@ impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> NonsmoothObjective fo
         if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
             evaluation.linearization = Some(self.linearize(request.point, &state, &evaluation.subgradient, wanted));
         }
+        evaluation.work = self.solver().work(&state);
         Ok(Answer::Accurate(evaluation))
     }
 }

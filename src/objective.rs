@@ -45,12 +45,14 @@ pub struct Evaluation<W> {
     /// Outputs and Jacobian of a composite objective, if the request asked for them; the text of the error where they cannot be
     /// had, which costs the run nothing but its composite model.
     pub linearization: Option<Result<Linearization, String>>,
+    /// Work that the evaluation took, in a unit of the oracle's own; 0 where none is counted. It goes into the records of a run.
+    pub work: usize,
 }
 
 impl<W> Evaluation<W> {
     /// A value and a subgradient that are exact up to rounding.
     pub fn exact(value: f64, subgradient: Vector, warm_start: W) -> Self {
-        Self { value, subgradient, error_bound: 0.0, warm_start, linearization: None }
+        Self { value, subgradient, error_bound: 0.0, warm_start, linearization: None, work: 0 }
     }
 }
 

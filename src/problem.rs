@@ -35,6 +35,12 @@ pub trait StateSolver {
     fn state_error(&self, _state: &Self::State) -> f64 {
         0.0
     }
+
+    /// Work that a state and what was derived from it have taken so far, in a unit of the solver's own (products with its operator,
+    /// for example); 0 (the default) where none is counted. It goes into the records of a run.
+    fn work(&self, _state: &Self::State) -> usize {
+        0
+    }
 }
 
 /// The derivative information of a [`StateSolver`]: one element of its coderivative; method.md (1.2).

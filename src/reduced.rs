@@ -64,6 +64,7 @@ impl<S: Coderivative, J: Cost<S::State>> NonsmoothObjective for ReducedObjective
             return Err(InputError::Dimension { what: "control", expected, found }.into());
         }
         let state = self.solver.solve(request.point, request.warm_start, request.accuracy)?;
-        Ok(Answer::Accurate(self.differentiate(request.point, &state)?))
+        let evaluation = self.differentiate(request.point, &state)?;
+        Ok(Answer::Accurate(Evaluation { work: self.solver.work(&state), ..evaluation }))
     }
 }

@@ -26,7 +26,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let accurate = matches!(answer, Answer::Accurate(_));
         let mut evaluation = answer.into_evaluation();
         let linearization = evaluation.linearization.take();
-        let value = evaluation.value;
+        let (value, work) = (evaluation.value, evaluation.work);
         let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
         let serious = accurate && comparison.is_serious(&self.method.config);
         self.state.failures = 0;
@@ -50,7 +50,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             self.move_center(proposal.trial.clone(), evaluation, accuracy);
         }
         let linearized = self.learn_structure(&trial, value, linearization);
-        self.record(&proposal, accuracy, Event { kind, value: Some(value), failure: None, linearized });
+        self.record(&proposal, accuracy, Event { kind, value: Some(value), failure: None, linearized, work });
     }
 
     /// Values that jump although the points almost coincide, and cuts above the values of a convex function, are noise.

@@ -17,11 +17,13 @@ pub(super) struct Event {
     pub failure: Option<String>,
     /// Whether a Jacobian that was asked for was returned; the reason if it could not be had.
     pub linearized: Option<Result<(), String>>,
+    /// Work that the evaluation took.
+    pub work: usize,
 }
 
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     pub(super) fn record(&mut self, proposal: &Proposal, accuracy: Accuracy, event: Event) {
-        let Event { kind, value, failure, linearized } = event;
+        let Event { kind, value, failure, linearized, work } = event;
         let origin = if kind == StepKind::Refinement { Origin::Given } else { proposal.origin };
         self.state.counts.trials.add(origin);
         let mut record = IterationRecord {
@@ -42,6 +44,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             failure,
             jacobian: false,
             note: None,
+            work,
             seconds: self.seconds(),
         };
         record.set_linearized(linearized);

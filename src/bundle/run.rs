@@ -226,11 +226,11 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let accuracy = self.wanted_accuracy(REFINEMENT_SHARE * proposal.predicted_decrease);
         let center = self.state.center.clone();
         self.state.center_accuracy = accuracy.tolerance();
-        let mut event = Event { kind: StepKind::Refinement, value: None, failure: None, linearized: None };
+        let mut event = Event { kind: StepKind::Refinement, value: None, failure: None, linearized: None, work: 0 };
         match self.evaluate(&center, accuracy, None) {
             Outcome::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;
-                event.value = Some(evaluation.value);
+                (event.value, event.work) = (Some(evaluation.value), evaluation.work);
                 if let Some((known, noted)) = self.note(&center, evaluation.linearization.take()) {
                     event.linearized = noted;
                     self.rebase(&center, evaluation.value, known);
@@ -258,7 +258,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.proposers.shorten(state, &self.method.config, proposal);
         self.shorten_composite(proposal);
         let failure = Some(error.to_string());
-        self.record(proposal, accuracy, Event { kind: StepKind::Failed, value: None, failure, linearized: None });
+        let event = Event { kind: StepKind::Failed, value: None, failure, linearized: None, work: 0 };
+        self.record(proposal, accuracy, event);
         if failures >= self.method.config.max_failures && proposal.origin == Origin::Cuts && close {
             return Break(Termination::OracleFailing { failures, last: error.to_string() });
         }

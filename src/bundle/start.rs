@@ -122,7 +122,7 @@ fn first_evaluation<O: NonsmoothObjective>(
         Outcome::MinusInfinity => return Err(OptimizeError::Oracle(OracleError::NotFinite { what: "value" })),
         Outcome::Failure(error) => return Err(OptimizeError::Oracle(error)),
     };
-    let Evaluation { value, subgradient, error_bound, warm_start, linearization } = evaluation;
+    let Evaluation { value, subgradient, error_bound, warm_start, linearization, work } = evaluation;
     let slope = norm.dual_length(&subgradient);
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
@@ -158,7 +158,7 @@ fn first_evaluation<O: NonsmoothObjective>(
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],
     };
-    state.history.push(first_record(&state, set, slope));
+    state.history.push(first_record(&state, set, slope, work));
     Ok((state, warm_start, linearization))
 }
 
@@ -175,7 +175,7 @@ fn natural_step(size: f64, value: f64, slope: f64) -> f64 {
     }
 }
 
-fn first_record(state: &State, set: &Polyhedron, slope: f64) -> IterationRecord {
+fn first_record(state: &State, set: &Polyhedron, slope: f64, work: usize) -> IterationRecord {
     IterationRecord {
         evaluation: 1,
         kind: StepKind::Start,
@@ -194,6 +194,7 @@ fn first_record(state: &State, set: &Polyhedron, slope: f64) -> IterationRecord 
         failure: None,
         jacobian: false,
         note: None,
+        work,
         seconds: 0.0,
     }
 }

@@ -81,6 +81,8 @@ pub enum RecordedAnswer {
         restart_data: bool,
         /// Outputs and Jacobian, if the oracle was asked for them and had an answer to that.
         linearization: Option<RecordedLinearization>,
+        /// Work that the evaluation took, in the oracle's unit.
+        work: usize,
     },
     /// The text of the [`OracleError`](crate::OracleError).
     Failed(String),

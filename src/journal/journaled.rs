@@ -183,7 +183,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
 
     /// An answer of the oracle as it is written down, with the text of its restart data.
     fn record(&self, evaluation: usize, answer: &Answer<O::WarmStart>) -> (RecordedAnswer, Option<String>) {
-        let Evaluation { value, subgradient, error_bound, warm_start, linearization } = answer.evaluation();
+        let Evaluation { value, subgradient, error_bound, warm_start, linearization, work } = answer.evaluation();
         let (restart_data, text) = self.text(evaluation, warm_start);
         let recorded = RecordedAnswer::Evaluated {
             value: *value,
@@ -195,6 +195,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
                 Ok(_) => RecordedLinearization::Stored,
                 Err(reason) => RecordedLinearization::Failed(reason.clone()),
             }),
+            work: *work,
         };
         (recorded, text)
     }
@@ -207,7 +208,15 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
     ) -> Result<Answer<RestartData<O::WarmStart>>, OracleError> {
         match entry.answer {
             RecordedAnswer::Failed(reason) => Err(OracleError::Failed(reason.into())),
-            RecordedAnswer::Evaluated { value, subgradient, error_bound, no_descent, restart_data, linearization } => {
+            RecordedAnswer::Evaluated {
+                value,
+                subgradient,
+                error_bound,
+                no_descent,
+                restart_data,
+                linearization,
+                work,
+            } => {
                 let data = if restart_data { None } else { serde_json::from_str("null").ok() };
                 let warm_start = RestartData { evaluation: entry.evaluation, data };
                 let subgradient = Vector::from_vec(subgradient);
@@ -216,7 +225,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
                     RecordedLinearization::Failed(reason) => Err(reason),
                 });
                 let exact = Evaluation::exact(value, subgradient, warm_start);
-                let evaluation = Evaluation { error_bound, linearization, ..exact };
+                let evaluation = Evaluation { error_bound, linearization, work, ..exact };
                 Ok(if no_descent { Answer::NoDescent(evaluation) } else { Answer::Accurate(evaluation) })
             }
         }
@@ -280,6 +289,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
             error_bound: inner.error_bound,
             warm_start: RestartData { evaluation, data: Some(inner.warm_start) },
             linearization: inner.linearization,
+            work: inner.work,
         };
         Ok(match result? {
             Answer::Accurate(inner) => Answer::Accurate(tag(inner)),

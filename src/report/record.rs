@@ -102,6 +102,9 @@ pub struct IterationRecord {
     /// What went wrong without failing the evaluation, such as a Jacobian that could not be had.
     #[serde(default)]
     pub note: Option<String>,
+    /// Work that the evaluation took, in the oracle's unit; 0 if it failed, or where none is counted.
+    #[serde(default)]
+    pub work: usize,
     /// Seconds since the start of the run when the evaluation was done.
     pub seconds: f64,
 }

@@ -234,6 +234,11 @@ impl<S: ContactSolver> StateSolver for ContactShape<S> {
         state.solution.warm_start()
     }
 
+    /// Products with the dual operator; 0 by direct condensation.
+    fn work(&self, state: &Self::State) -> usize {
+        state.work().dual_operator_applications
+    }
+
     /// Residual times load, N: the size of the error of the contact forces. For a cost, [`ContactShape::pull_back`] has the
     /// sharper estimate.
     fn state_error(&self, state: &Self::State) -> f64 {

@@ -85,16 +85,28 @@ fn subgradients_pass_the_taylor_test() {
 
 #[test]
 fn a_short_optimization_descends_and_stays_admissible() {
-    let result = run("hertz3d", &["--mesh", "6", "--max-evaluations", "25", "--json"]);
+    let result = run("hertz3d", &["--mesh", "6", "--max-evaluations", "8", "--solver", "newton", "--json"]);
     let (start, end) = (result["objective_start"].as_f64().unwrap(), result["objective"].as_f64().unwrap());
     assert!(start / end > 5.0, "{start} {end}");
     assert!(result["largest_constraint_violation"].as_f64().unwrap() <= 1e-9);
-    assert_eq!(result["evaluations"], 25);
-    assert_eq!(result["course"].as_array().unwrap().len(), 25);
+    assert_eq!([&result["evaluations"], &result["states"], &result["jacobians"]], [8, 8, 8]);
+    let course = result["course"].as_array().unwrap();
+    assert_eq!(course.len(), 8);
+    assert!(course.iter().all(|evaluation| evaluation["products"].as_u64() > Some(0)), "{result}");
     assert_eq!(result["controls"].as_array().unwrap().len(), 36);
     let termination = result["termination"]["text"].as_str().unwrap();
     assert!(termination.contains("limit"), "{termination}");
     assert!(result["certificate"]["aggregate_norm"].is_f64());
+}
+
+#[test]
+fn an_optimization_ends_by_itself_with_a_proof() {
+    let result = run("hertz3d", &["--mesh", "6", "--json"]);
+    assert_eq!(result["termination"]["confirmed"], true, "{result}");
+    assert!(result["states"].as_u64() <= Some(25), "{result}");
+    // Direct condensation has no products.
+    let course = result["course"].as_array().unwrap();
+    assert!(course.iter().all(|evaluation| evaluation["products"] == 0), "{result}");
 }
 
 #[test]

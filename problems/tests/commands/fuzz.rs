@@ -194,7 +194,7 @@ fn journal() -> String {
     let evaluated = |value: &str| {
         format!(
             "{{\"evaluated\":{{\"value\":{value},\"subgradient\":[1.5,-2e-3],\"error_bound\":0.0,\"no_descent\":false,\
-             \"restart_data\":true,\"linearization\":{{\"failed\":\"singular\"}}}}}}"
+             \"restart_data\":true,\"linearization\":{{\"failed\":\"singular\"}},\"work\":31}}}}"
         )
     };
     let text = "{\"journal\":3,\"identity\":\"a scene\",\"dimension\":2}\n".to_owned()

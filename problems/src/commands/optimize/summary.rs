@@ -64,6 +64,8 @@ struct CourseJson<'a> {
     origin: Origin,
     /// Whether the Jacobian of all pressures was computed.
     jacobian: bool,
+    /// Products with the dual operator.
+    products: usize,
     /// Seconds since the start.
     seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -77,6 +79,7 @@ fn course(record: &IterationRecord) -> CourseJson<'_> {
         kind: record.kind,
         origin: record.origin,
         jacobian: record.jacobian,
+        products: record.work,
         seconds: record.seconds,
         note: record.note.as_deref().or(record.failure.as_deref()),
     }
