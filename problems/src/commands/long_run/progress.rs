@@ -112,6 +112,7 @@ mod tests {
             failure: None,
             jacobian: false,
             note: None,
+            work: 0,
             seconds: 1.0,
         };
         // Ten evaluations after the resumption took 50 s: 120 more take ten minutes, the time limit leaves two.
