@@ -1,8 +1,8 @@
 //! Median times of what a state and its derivatives are made of: factorisation, product with F, state, adjoint, tangents for
 //! 36 changes of the heights.
 //!
-//! Signorini at the flat start on 12³ bricks in 2³ subdomains and on 24³ bricks in 4³. The last column relates each time to
-//! that of one product with F.
+//! Signorini at the flat start on 12³ bricks in 2³ subdomains and on 24³ bricks in 4³, and by direct condensation on 12³. The last
+//! column relates factorisations to one product with F, states and derivatives to a cold state with its adjoint.
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::equilibrium::{ContactProblem, ContactSolver};
@@ -32,39 +32,54 @@ fn median<T>(mut call: impl FnMut() -> T) -> f64 {
     seconds[seconds.len() / 2]
 }
 
-fn measure(mesh: usize, subdomains: usize) -> Result<(), Box<dyn Error>> {
-    let shape =
-        ContactShape::new(Scene { mesh: [mesh; 3], subdomains: [subdomains; 3], ..signorini()? }, SolverKind::Newton)?;
+fn shape(mesh: usize, subdomains: usize, kind: SolverKind) -> Result<ContactShape, Box<dyn Error>> {
+    let scene = Scene { mesh: [mesh; 3], subdomains: [subdomains; 3], ..signorini()? };
+    Ok(ContactShape::new(scene, kind)?)
+}
+
+fn print(size: &str, what: &str, seconds: f64, unit: f64) {
+    println!("{size:7} {what:32} {:10.3} {:8.2}", 1e3 * seconds, seconds / unit);
+}
+
+/// State and derivatives by a solver, in units of cold state and adjoint.
+fn derivatives(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
     let (problem, start, accuracy) = (shape.problem(), shape.start(), Accuracy::relative(1e-8)?);
-    let torn = TornSolver::new(Arc::new(ContactProblem::new(problem.scene.clone())?), PreconditionerKind::default())?;
-    let model = torn.model();
-    let blocks = problem.blocks(start.as_slice())?;
-    let system = model.factorize(&blocks)?;
-    let operator = DualOperator::new(model, &system);
-    let rows = operator.gather(&operator.loaded_displacement());
     let state = shape.solve(&start, None, accuracy)?;
     let dual = Vector::from_element(problem.boundary.dual_dimension(), 1.0);
     let unit = |control: usize| (0..start.len()).map(|i| f64::from(u8::from(i == control))).collect::<Vec<f64>>();
     let changes: Vec<Vec<f64>> = (0..start.len()).map(|control| problem.height_map.heights(&unit(control))).collect();
-    let tangents = |tolerance| median(|| shape.contact_solver().tangents(&state.solution, &changes, tolerance));
-
-    let product = median(|| operator.apply(&rows));
-    for (what, seconds) in [
-        ("product with F", product),
-        ("factorisation of all subdomains", median(|| model.factorize(&blocks))),
-        ("state, cold, to 1e-8", median(|| shape.solve(&start, None, accuracy))),
-        ("adjoint and shape derivative", median(|| shape.coderivative(&start, &state, &dual))),
-        ("tangents to 1e-2", tangents(1e-2)),
-        ("tangents to 1e-4", tangents(1e-4)),
-        ("tangents to rounding", tangents(0.0)),
-    ] {
-        println!("{mesh:3}/{subdomains} {what:32} {:10.3} {:8.1}", 1e3 * seconds, seconds / product);
+    let cold = median(|| shape.solve(&start, None, accuracy));
+    let adjoint = median(|| shape.coderivative(&start, &state, &dual));
+    print(size, "state, cold, to 1e-8", cold, cold + adjoint);
+    print(size, "adjoint and shape derivative", adjoint, cold + adjoint);
+    for (what, tolerance) in [("tangents to 1e-2", 1e-2), ("tangents to 1e-4", 1e-4), ("tangents to rounding", 0.0)] {
+        let seconds = median(|| shape.contact_solver().tangents(&state.solution, &changes, tolerance));
+        print(size, what, seconds, cold + adjoint);
     }
     Ok(())
 }
 
+/// The parts of total FETI, in units of one product with F.
+fn parts(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
+    let problem = ContactProblem::new(shape.problem().scene.clone())?;
+    let blocks = problem.blocks(shape.start().as_slice())?;
+    let torn = TornSolver::new(Arc::new(problem), PreconditionerKind::default())?;
+    let model = torn.model();
+    let system = model.factorize(&blocks)?;
+    let operator = DualOperator::new(model, &system);
+    let rows = operator.gather(&operator.loaded_displacement());
+    let product = median(|| operator.apply(&rows));
+    print(size, "product with F", product, product);
+    print(size, "factorisation of all subdomains", median(|| model.factorize(&blocks)), product);
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
-    println!("{:5} {:32} {:>10} {:>8}", "N/S", "", "ms", "products");
-    measure(12, 2)?;
-    measure(24, 4)
+    println!("{:7} {:32} {:>10} {:>8}", "", "", "ms", "units");
+    for (mesh, subdomains) in [(12, 2), (24, 4)] {
+        let (size, shape) = (format!("{mesh}/{subdomains}"), shape(mesh, subdomains, SolverKind::Newton)?);
+        parts(&size, &shape)?;
+        derivatives(&size, &shape)?;
+    }
+    derivatives("direct", &shape(12, 2, SolverKind::Direct)?)
 }
