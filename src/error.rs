@@ -95,6 +95,9 @@ pub enum OracleError {
         /// Text of the panic.
         message: String,
     },
+    /// The answer has a wrong size, or an entry that is not finite: a Jacobian among others.
+    #[error(transparent)]
+    Input(InputError),
     /// Any other failure of the problem behind the oracle.
     #[error("{0}")]
     Failed(#[source] Box<dyn std::error::Error + Send + Sync>),
@@ -102,7 +105,7 @@ pub enum OracleError {
 
 impl From<InputError> for OracleError {
     fn from(error: InputError) -> Self {
-        Self::Failed(Box::new(error))
+        Self::Input(error)
     }
 }
 

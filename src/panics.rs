@@ -9,9 +9,13 @@ pub(crate) fn evaluate_without_panic<O: NonsmoothObjective>(
     objective: &O,
     request: &Request<'_, O::WarmStart>,
 ) -> Result<Answer<O::WarmStart>, OracleError> {
-    // The state behind `&objective` may be torn after a panic; it is only evaluated again, never read.
-    catch_unwind(AssertUnwindSafe(|| objective.evaluate(request)))
-        .unwrap_or_else(|payload| Err(OracleError::Panicked { message: text(payload.as_ref()) }))
+    without_panic(|| objective.evaluate(request)).unwrap_or_else(|message| Err(OracleError::Panicked { message }))
+}
+
+/// Calls a function of the user; the text of its panic if it panics.
+pub(crate) fn without_panic<T>(function: impl FnOnce() -> T) -> Result<T, String> {
+    // What the function holds may be torn after a panic; it is only called again, never read.
+    catch_unwind(AssertUnwindSafe(function)).map_err(|payload| text(payload.as_ref()))
 }
 
 fn text(payload: &(dyn Any + Send)) -> String {

@@ -158,7 +158,7 @@ fn the_engine_finds_a_stationary_load() {
 fn wrong_controls_and_data_are_refused() {
     let theta = example(4).unwrap();
     let error = theta.solver().solve(&Vector::zeros(3), None, Accuracy::TIGHTEST).unwrap_err();
-    assert!(matches!(error, OracleError::Failed(_)) && error.to_string().contains("16"), "{error}");
+    assert!(matches!(error, OracleError::Input(_)) && error.to_string().contains("16"), "{error}");
     assert!(theta.solver().solve(&Vector::from_element(16, f64::NAN), None, Accuracy::TIGHTEST).is_err());
     let data = MembraneData {
         load: Box::new(|_| f64::NAN),

@@ -6,10 +6,13 @@ mod common;
 
 mod accuracy_cost;
 mod certificate;
+mod composite;
+mod composite_faults;
 mod evaluation_counts;
 mod feasibility;
 mod generic_use;
 mod inexact_oracle;
+mod kinks;
 mod linear_scaling;
 mod proposers;
 mod restart;

@@ -112,10 +112,9 @@ impl From<OracleError> for Failure {
     fn from(error: OracleError) -> Self {
         let text = error.to_string();
         match error {
-            OracleError::OutsideDomain { .. } => Self::Input(text),
+            OracleError::OutsideDomain { .. } | OracleError::Input(_) => Self::Input(text),
             OracleError::Failed(source)
-                if source.is::<InputError>()
-                    || matches!(source.downcast_ref(), Some(ContactError::NoEquilibrium { .. })) =>
+                if matches!(source.downcast_ref(), Some(ContactError::NoEquilibrium { .. })) =>
             {
                 Self::Input(text)
             }

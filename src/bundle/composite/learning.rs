@@ -1,5 +1,6 @@
 //! What the composite model learns from an evaluation.
 
+use super::kinks::Seen;
 use super::{Base, Composite, FACTOR};
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::Trial;
@@ -58,6 +59,16 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             return noted;
         }
         let own = trial.proposal.origin == Origin::CompositeModel;
+        if let (Some(outer), Some(base)) = (self.objective.outer(), &composite.base) {
+            let seen = Seen { outer, base, point, change: trial.comparison.change, end: known.as_ref() };
+            if !own {
+                if composite.kinks.remain(&seen) {
+                    composite.pause.prolong();
+                }
+            } else if composite.kinks.met(&seen, trial.proposal.predicted_decrease, trial.serious) {
+                composite.pause.fail(MAX_PAUSE);
+            }
+        }
         let correcting = std::mem::take(&mut composite.correcting);
         if own && (trial.serious || !correcting) {
             let ratio = trial.comparison.change / trial.comparison.model_change;

@@ -6,10 +6,12 @@
 //! ```
 //! One linearization is pessimistic where a constraint becomes active inside c, so that ratios above 1 are common. A rejected
 //! step is corrected from the model at its end; where that fails too, the subproblem takes the curvature of the outputs, as
-//! earlier Jacobians show it. After repeated failures the model pauses, and cuts, curved model and exploration go on.
+//! earlier Jacobians show it. After repeated failures, and as soon as a step fails on kinks of c, the model pauses, and cuts,
+//! curved model and exploration go on.
 
 mod curvature;
 mod excursion;
+mod kinks;
 mod learning;
 mod model;
 mod proof;
@@ -23,6 +25,7 @@ use crate::report::Termination;
 use crate::{Accuracy, NonsmoothObjective, Vector};
 use curvature::Memory;
 use excursion::Excursion;
+use kinks::Kinks;
 use std::ops::ControlFlow::{self, Continue};
 
 pub(crate) use model::CompositeStep;
@@ -59,6 +62,7 @@ pub(crate) struct Composite {
     /// Whether the model takes the curvature of the outputs into account: since a step has failed without it.
     bends: bool,
     memory: Memory,
+    kinks: Kinks,
     /// Weights of the outputs at the last subproblem's solution.
     weights: Option<Vector>,
     excursion: Option<Excursion>,
@@ -85,6 +89,7 @@ impl Composite {
             proposing: false,
             bends: false,
             memory: Memory::default(),
+            kinks: Kinks::default(),
             weights: None,
             excursion: None,
         }

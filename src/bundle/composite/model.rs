@@ -47,8 +47,14 @@ pub struct OuterCut {
 }
 
 impl OuterCut {
-    fn at(outer: &dyn OuterFunction, outputs: Vector) -> Self {
-        Self { value: outer.value(&outputs), subgradient: outer.subgradient(&outputs), outputs, multiplier: 0.0 }
+    fn at(outer: &dyn OuterFunction, outputs: Vector) -> Result<Self, SubproblemError> {
+        let (value, subgradient) = (outer.value(&outputs), outer.subgradient(&outputs));
+        let (expected, found) = (outputs.len(), subgradient.len());
+        if expected == found {
+            Ok(Self { value, subgradient, outputs, multiplier: 0.0 })
+        } else {
+            Err(SubproblemError::OuterSize { expected, found })
+        }
     }
 
     /// h(c) − h(c_j) − ⟨w_j, c − c_j⟩ ≥ 0 for a value h(c).
@@ -139,16 +145,19 @@ impl CompositeModel<'_> {
         let mut step = project(self.set, self.base)? - self.base;
         let mut merit = self.merit(&step);
         for _ in 0..MAX_NEWTON {
-            let at = OuterCut::at(self.outer, self.outputs(&step));
-            let Some(mut metric) = self.outer.curvature(&at.outputs, jacobian) else { break };
+            let at = OuterCut::at(self.outer, self.outputs(&step))?;
+            self.error(&at)?;
+            let Some(curvature) = self.outer.curvature(&at.outputs, jacobian) else { break };
+            let mut metric = curvature.clone();
             self.norm.add_to(&mut metric, self.weight);
-            if let Some(curvature) = self.curvature {
-                metric += curvature;
+            if let Some(bend) = self.curvature {
+                metric += bend;
             }
             let slope = jacobian.tr_mul(&at.subgradient) + self.pull(&step);
             let (slopes, point) = ([slope], self.base + &step);
             let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0] };
-            let solution = subproblem::solve(solver, self.set, &point, Metric::Dense(&metric), cuts)?;
+            let solution = subproblem::solve(solver, self.set, &point, Metric::Dense(&metric), cuts)
+                .map_err(|error| negative_curvature(curvature).unwrap_or_else(|| error.into()))?;
             let promised = -slopes[0].dot(&solution.step);
             if promised <= SOLVED * merit.abs() + ROUNDING * self.value.abs() {
                 return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], &solution));
@@ -186,7 +195,7 @@ impl CompositeModel<'_> {
             None => self.norm.weighted(self.weight),
         };
         let pull = self.pull_to_origin();
-        let mut cuts = vec![OuterCut::at(self.outer, linearization.outputs.clone())];
+        let mut cuts = vec![OuterCut::at(self.outer, linearization.outputs.clone())?];
         let (mut slopes, mut offsets, mut ids) = (vec![], vec![], vec![]);
         loop {
             if let Some(newest) = cuts.last() {
@@ -196,7 +205,8 @@ impl CompositeModel<'_> {
             }
             let view = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids };
             let solution = subproblem::solve(solver, self.set, self.base, metric.metric(), view)?;
-            let next = OuterCut::at(self.outer, self.outputs(&solution.step));
+            let next = OuterCut::at(self.outer, self.outputs(&solution.step))?;
+            self.error(&next)?;
             let change = next.value - self.value + pull.dot(&solution.step);
             let (promised, gap) = (-solution.epigraph, change - solution.epigraph);
             if gap <= MET * promised + ROUNDING * self.value.abs() || cuts.len() >= MAX_CUTS {
@@ -230,4 +240,12 @@ impl CompositeModel<'_> {
             bound_multipliers: Vector::from_column_slice(&solution.bound_multipliers),
         }
     }
+}
+
+/// The error of an outer function whose curvature has a negative eigenvalue that is no rounding.
+fn negative_curvature(curvature: Matrix) -> Option<SubproblemError> {
+    let finite = curvature.iter().all(|entry| entry.is_finite());
+    let eigenvalues = finite.then(|| curvature.symmetric_eigenvalues())?;
+    let eigenvalue = eigenvalues.min();
+    (eigenvalue < -MAX_EXCESS * eigenvalues.amax()).then_some(SubproblemError::NegativeCurvature { eigenvalue })
 }

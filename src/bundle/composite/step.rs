@@ -5,6 +5,7 @@ use super::{Base, FACTOR};
 use crate::bundle::proposers::aggregate::{aggregate_sizes, slack_error};
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::run::Run;
+use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
 use crate::{NonsmoothObjective, Polyhedron, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
@@ -57,12 +58,11 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         origin: Option<&Vector>,
     ) -> ControlFlow<Termination, Option<(Proposal, CompositeStep)>> {
         let before = self.solver.counts();
-        let step = self.solve_composite(base, weight, set, origin);
+        let solved = without_panic(|| self.solve_composite(base, weight, set, origin));
+        let step = solved.unwrap_or_else(|message| Err(SubproblemError::OuterPanicked { message }));
         self.count_solves(before);
         match step.and_then(|step| Ok((self.composite_proposal(base, &step, weight)?, step))) {
-            Err(error @ SubproblemError::NotConvex { .. }) => {
-                Break(Termination::SubproblemFailed { reason: error.to_string() })
-            }
+            Err(error) if error.blames_outer() => Break(Termination::SubproblemFailed { reason: error.to_string() }),
             Err(_) => Continue(None),
             Ok(found) => Continue(Some(found)),
         }

@@ -15,6 +15,11 @@ impl Pause {
         over
     }
 
+    /// Does not count the evaluation that has passed.
+    pub(crate) fn prolong(&mut self) {
+        self.left += 1;
+    }
+
     pub(crate) fn succeed(&mut self) {
         self.failures = 0;
     }

@@ -55,8 +55,27 @@ pub(crate) enum SubproblemError {
     Infeasible { violation: f64 },
     #[error("the outer function is not convex: a cut lies above it by {excess:.1e}")]
     NotConvex { excess: f64 },
+    #[error("the outer function is not convex: its curvature has the eigenvalue {eigenvalue:.1e}")]
+    NegativeCurvature { eigenvalue: f64 },
+    #[error("the subgradient of the outer function has {found} entries, expected {expected}")]
+    OuterSize { expected: usize, found: usize },
+    #[error("the outer function panicked: {message}")]
+    OuterPanicked { message: String },
     #[error("its solution is not finite or contradicts itself")]
     Unusable,
+}
+
+impl SubproblemError {
+    /// Whether it is a fault of the outer function, which no other step cures.
+    pub(crate) fn blames_outer(&self) -> bool {
+        matches!(
+            self,
+            Self::NotConvex { .. }
+                | Self::NegativeCurvature { .. }
+                | Self::OuterSize { .. }
+                | Self::OuterPanicked { .. }
+        )
+    }
 }
 
 impl Proposal {

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 mod accuracy;
+mod composite;
 mod headline;
 mod pins;
 mod stability;
