@@ -11,6 +11,7 @@ mod feasibility;
 mod generic_use;
 mod inexact_oracle;
 mod linear_scaling;
+mod many_variables;
 mod proposers;
 mod restart;
 mod terminations;

@@ -147,7 +147,7 @@ impl CompositeModel<'_> {
             }
             let slope = jacobian.tr_mul(&at.subgradient) + self.pull(&step);
             let (slopes, point) = ([slope], self.base + &step);
-            let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0] };
+            let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0], gram: None };
             let solution = subproblem::solve(solver, self.set, &point, Metric::Dense(&metric), cuts)?;
             let promised = -slopes[0].dot(&solution.step);
             if promised <= SOLVED * merit.abs() + ROUNDING * self.value.abs() {
@@ -194,7 +194,7 @@ impl CompositeModel<'_> {
                 offsets.push(self.error(newest)?);
                 ids.push(ids.len() as u64);
             }
-            let view = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids };
+            let view = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids, gram: None };
             let solution = subproblem::solve(solver, self.set, self.base, metric.metric(), view)?;
             let next = OuterCut::at(self.outer, self.outputs(&solution.step));
             let change = next.value - self.value + pull.dot(&solution.step);
