@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--perturb K] [--without PROPOSER]`
 //!
-//! `--perturb K` replaces every count by the median over 2K + 1 runs whose starts differ by a relative 1e-13: a single count hangs on
-//! the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size. `--without` switches off a proposer of
+//! `--perturb K` replaces every count by the median over 2K + 1 runs from x0 (1 + 1e-13 N(0, 1)), the first of them from x0 itself: a
+//! single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size. `--without` switches off a proposer of
 //! trial points, `curved-model` or `exploration`; it may be given twice.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
@@ -14,10 +14,13 @@ use testset::{Family, Problem};
 /// Evaluations that an unsolved run counts as in the penalised mean.
 const UNSOLVED: usize = 1000;
 
-/// Share of the entries, and the least size they count for, by which `--jitter` moves a start.
-const JITTER: (f64, f64) = (0.1, 1.0);
-/// The same for `--perturb`.
-const PERTURBATION: (f64, f64) = (1e-13, 0.0);
+/// Evaluations after which a run ends, and which an unsolved problem counts as in the plain means.
+const BUDGET: usize = 2000;
+
+/// Share of the entries by which `--jitter` moves a start.
+const JITTER: f64 = 0.1;
+/// Standard deviation of the relative change of every entry by `--perturb`.
+const PERTURBATION: f64 = 1e-13;
 
 const LEVELS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 
@@ -27,6 +30,7 @@ struct Row {
     name: String,
     dimension: usize,
     constrained: bool,
+    convex: bool,
     /// Evaluations to each of the levels.
     evaluations: [Option<usize>; 4],
     mpbngc: Option<usize>,
@@ -50,6 +54,8 @@ struct Summary {
     compared: usize,
     /// The same over all runs; an unsolved one counts as 1000 evaluations, and so does a missing MPBNGC.
     penalised_mean: f64,
+    /// Geometric means of the evaluations to 1e-6 over all, the convex and the other problems; an unsolved one counts as 2000.
+    means: [f64; 3],
     /// Sum over the unconstrained problems that all nine peers solve.
     common_sum: usize,
     common_mpbngc: usize,
@@ -75,7 +81,7 @@ fn main() {
     let jitter: u64 = value("--jitter").and_then(|text| text.parse().ok()).unwrap_or(0);
     let perturb: u64 = value("--perturb").and_then(|text| text.parse().ok()).unwrap_or(0);
     let rows: Vec<Row> = problems
-        .flat_map(|problem| (0..=jitter).map(move |seed| moved(&problem, seed, JITTER)))
+        .flat_map(|problem| (0..=jitter).map(move |seed| jittered(&problem, seed)))
         .map(|problem| median_run(&problem, perturb, scale, &config))
         .collect();
     let summary = summarize(&rows, scale);
@@ -104,8 +110,7 @@ fn config(args: &[String]) -> Result<BundleTrustConfig, String> {
 /// The row of the problem with the medians of its counts over 2·`perturb` + 1 runs from starts that differ by rounding.
 fn median_run(problem: &Problem, perturb: u64, scale: f64, config: &BundleTrustConfig) -> Row {
     let mut row = run(problem, scale, config);
-    let others: Vec<Row> =
-        (1..=2 * perturb).map(|seed| run(&moved(problem, seed, PERTURBATION), scale, config)).collect();
+    let others: Vec<Row> = (1..=2 * perturb).map(|seed| run(&perturbed(problem, seed), scale, config)).collect();
     let levels = row.evaluations;
     let with = |first, of: fn(&Row, usize) -> Option<usize>, level| {
         median(std::iter::once(first).chain(others.iter().map(|row| of(row, level))).collect())
@@ -121,14 +126,37 @@ fn median(mut counts: Vec<Option<usize>>) -> Option<usize> {
     counts[counts.len() / 2]
 }
 
-/// The problem with another start, moved by a share of its size; the original one for seed 0.
-fn moved(problem: &Problem, seed: u64, (share, least): (f64, f64)) -> Problem {
-    let mut moved = problem.clone();
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ problem.dimension as u64;
-    for x in moved.start.iter_mut().filter(|_| seed > 0) {
+/// Numbers in [0, 1) that follow from a seed.
+fn uniform(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let uniform = (state >> 11) as f64 / (1_u64 << 53) as f64;
-        *x += share * (2.0 * uniform - 1.0) * x.abs().max(least);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+/// The state of the random numbers of a problem.
+fn state(problem: &Problem, seed: u64) -> u64 {
+    seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ problem.dimension as u64
+}
+
+/// The problem with another start, moved by a share of its size; the original one for seed 0.
+fn jittered(problem: &Problem, seed: u64) -> Problem {
+    let mut moved = problem.clone();
+    let mut next = uniform(state(problem, seed));
+    for x in moved.start.iter_mut().filter(|_| seed > 0) {
+        *x += JITTER * (2.0 * next() - 1.0) * x.abs().max(1.0);
+    }
+    moved
+}
+
+/// The problem with every entry of its start multiplied by 1 + 1e-13 N(0, 1).
+fn perturbed(problem: &Problem, seed: u64) -> Problem {
+    let mut moved = problem.clone();
+    let mut next = uniform(state(problem, seed));
+    for x in &mut moved.start {
+        let length = (-2.0 * (1.0 - next()).ln()).sqrt();
+        *x *= 1.0 + PERTURBATION * length * (std::f64::consts::TAU * next()).cos();
     }
     moved
 }
@@ -143,8 +171,7 @@ fn run(problem: &Problem, scale: f64, settings: &BundleTrustConfig) -> Row {
         log.borrow_mut().push((value, feasible));
         (value, Vector::from_vec(gradient) / scale)
     });
-    let budget = if problem.dimension >= 50 { 3000 } else { 2000 };
-    let config = BundleTrustConfig { max_evaluations: budget, ..settings.clone() };
+    let config = BundleTrustConfig { max_evaluations: BUDGET, ..settings.clone() };
     let report = BundleTrust::new(config)
         .expect("the settings are valid")
         .constraints(constraints(problem, scale))
@@ -174,6 +201,7 @@ fn row(problem: &Problem, log: &[(f64, bool)], report: Option<Report>) -> Row {
         name: problem.name.clone(),
         dimension: problem.dimension,
         constrained: problem.family == Family::LinearlyConstrained,
+        convex: problem.convex,
         evaluations: LEVELS.map(hit),
         mpbngc: problem.peers.get("mpbngc").copied().flatten(),
         best_peer: best.as_ref().map(|best| best.0),
@@ -199,6 +227,10 @@ fn summarize(rows: &[Row], scale: f64) -> Summary {
         let peer = row.mpbngc.or(row.best_peer).unwrap_or(UNSOLVED);
         (row.evaluations[2].unwrap_or(UNSOLVED) as f64 / peer as f64).ln()
     });
+    let mean = |rows: &mut dyn Iterator<Item = &Row>| {
+        let logs: Vec<f64> = rows.map(|row| (row.evaluations[2].unwrap_or(BUDGET) as f64).ln()).collect();
+        (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp()
+    };
     let common = || rows.iter().filter(|row| row.all_peers_solve && !row.constrained);
     Summary {
         scale,
@@ -207,6 +239,11 @@ fn summarize(rows: &[Row], scale: f64) -> Summary {
         geometric_mean_to_mpbngc: (pairs.iter().sum::<f64>() / pairs.len().max(1) as f64).exp(),
         compared: pairs.len(),
         penalised_mean: (penalised.sum::<f64>() / rows.len().max(1) as f64).exp(),
+        means: [
+            mean(&mut rows.iter()),
+            mean(&mut rows.iter().filter(|row| row.convex)),
+            mean(&mut rows.iter().filter(|row| !row.convex)),
+        ],
         common_mpbngc: common().filter_map(|row| row.mpbngc).sum(),
         common_sum: common().filter_map(|row| row.evaluations[2]).sum(),
         common_unsolved: common().filter(|row| row.evaluations[2].is_none()).count(),
@@ -238,7 +275,8 @@ fn print_row(row: &Row) {
 
 fn print_summary(summary: &Summary) {
     println!(
-        "solved {}/{} unconstrained, {}/{} constrained; geometric mean to MPBNGC {:.3} over {} (penalised {:.3}); common sum {} (MPBNGC {}, {} unsolved); \
+        "solved {}/{} unconstrained, {}/{} constrained; geometric mean to MPBNGC {:.3} over {} (penalised {:.3}); \
+         mean evaluations {:.2}, convex {:.2}, others {:.2}; common sum {} (MPBNGC {}, {} unsolved); \
          infeasible evaluations {}; aborted {}; stationary but not solved {}",
         summary.solved_unconstrained.0,
         summary.solved_unconstrained.1,
@@ -247,6 +285,9 @@ fn print_summary(summary: &Summary) {
         summary.geometric_mean_to_mpbngc,
         summary.compared,
         summary.penalised_mean,
+        summary.means[0],
+        summary.means[1],
+        summary.means[2],
         summary.common_sum,
         summary.common_mpbngc,
         summary.common_unsolved,

@@ -18,7 +18,7 @@ pub(super) const NOISE_MARGIN: f64 = 8.0;
 /// Cuts in the bundle beyond the number of variables, unless `bundle_size` is set.
 const EXTRA_CUTS: usize = 15;
 /// Largest number of cuts, unless `bundle_size` is set.
-const MAX_CUTS: usize = 150;
+const MAX_CUTS: usize = 500;
 
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// Serious or null: updates weight, bundle and center.
@@ -59,8 +59,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let change = evaluation.value - state.center_value;
         let promised = evaluation.error_bound + state.center_error_bound() + state.rounding();
         if proposal.step_length <= NOISE_STEP * state.length_scale() {
-            let slopes = state.bundle.cuts().iter().map(|cut| state.norm.dual_length(&cut.subgradient));
-            let steepest = slopes.fold(state.norm.dual_length(&evaluation.subgradient), f64::max);
+            let steepest = state.bundle.dual_lengths().fold(state.norm.dual_length(&evaluation.subgradient), f64::max);
             if change.abs() > STEEPNESS_MARGIN * steepest * proposal.step_length + NOISE_MARGIN * promised {
                 state.noise = state.noise.max(change.abs());
             }
@@ -77,7 +76,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + EXTRA_CUTS).min(MAX_CUTS));
         let state = &mut self.state;
         state.bundle.make_room(size, state.center_id);
-        state.bundle.push(Cut {
+        let cut = Cut {
             id: state.next_id,
             point,
             value: evaluation.value,
@@ -86,7 +85,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             certified,
             multiplier: 0.0,
             idle: 0,
-        });
+        };
+        state.bundle.push(cut, &state.norm);
         state.next_id += 1;
         self.forget_model();
     }

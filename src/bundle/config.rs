@@ -96,7 +96,7 @@ pub struct BundleTrustConfig {
     pub scaling: VariableScaling,
     /// Accuracy asked of the oracle. Default always the tightest; an oracle that ignores the request is not affected.
     pub accuracy: AccuracyPolicy,
-    /// Largest number of cuts. Default none: n + 15, at most 150. ≥ 2. A large bundle remembers cuts that mislead a
+    /// Largest number of cuts. Default none: n + 15, at most 500. ≥ 2. A large bundle remembers cuts that mislead a
     /// nonconvex run; a small one forgets kinks.
     pub bundle_size: Option<usize>,
     /// Share m_S of the predicted decrease that makes a step serious. Default 0.02; in (0, 0.5).

@@ -6,8 +6,11 @@
 //! ```
 
 use super::norm::ScaledNorm;
+use super::pairs::Pairs;
 use crate::Vector;
+use crate::qp::kernels::difference_dot;
 use serde::{Deserialize, Serialize};
+use std::cell::Cell;
 
 /// A multiplier above this makes a cut active: stopping test, noise and certificate speak of it. Σ λ = 1.
 pub(crate) const LEAST_ACTIVE_MULTIPLIER: f64 = 1e-9;
@@ -55,11 +58,7 @@ impl Cut {
 
     /// e = value − Θ(y) − ⟨g, x − y⟩, the linearization error at a point x with the value given.
     pub fn linearization_error(&self, x: &Vector, value: f64) -> f64 {
-        let mut slope = 0.0;
-        for (g, (x, y)) in self.subgradient.iter().zip(x.iter().zip(self.point.iter())) {
-            slope += g * (x - y);
-        }
-        value - self.value - slope
+        value - self.value - difference_dot(self.subgradient.as_slice(), x.as_slice(), self.point.as_slice())
     }
 }
 
@@ -72,19 +71,28 @@ struct ConcavePair {
     allowance: f64,
 }
 
+/// ‖g‖* and ‖y‖ of a cut, and how far its linearization varies at the center they were formed for.
+#[derive(Debug, Clone)]
+struct Sizes {
+    dual_length: f64,
+    point_length: f64,
+    spread: Cell<Option<(u64, Spread)>>,
+}
+
+/// Σ |g_k| length_k of a cut, for the size of the variables near the center and for their reach.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spread {
+    pub size: f64,
+    pub reach: f64,
+}
+
 /// The cuts of a run and the pairs of them that prove nonconvexity.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Bundle {
     cuts: Vec<Cut>,
-    pairs: Vec<ConcavePair>,
-    /// How many of `cuts` have been compared with all before them.
-    compared: usize,
-}
-
-impl From<Vec<Cut>> for Bundle {
-    fn from(cuts: Vec<Cut>) -> Self {
-        Self { cuts, ..Self::default() }
-    }
+    sizes: Vec<Sizes>,
+    concave: Vec<ConcavePair>,
+    pairs: Pairs,
 }
 
 impl Bundle {
@@ -96,8 +104,36 @@ impl Bundle {
         self.cuts.iter().find(|cut| cut.id == id)
     }
 
-    pub(crate) fn push(&mut self, cut: Cut) {
+    /// Takes in a cut and compares it with all others.
+    pub(crate) fn push(&mut self, cut: Cut, norm: &ScaledNorm) {
+        let (dual_length, point_length) = (norm.dual_length(&cut.subgradient), norm.length(&cut.point));
+        self.sizes.push(Sizes { dual_length, point_length, spread: Cell::new(None) });
         self.cuts.push(cut);
+        self.pairs.push(&self.cuts, norm);
+        self.note_concave_pairs();
+    }
+
+    /// ‖g‖* of the cuts in their order.
+    pub(crate) fn dual_lengths(&self) -> impl Iterator<Item = f64> {
+        self.sizes.iter().map(|sizes| sizes.dual_length)
+    }
+
+    /// ‖y‖ of the cuts in their order.
+    pub(crate) fn point_lengths(&self) -> impl Iterator<Item = f64> {
+        self.sizes.iter().map(|sizes| sizes.point_length)
+    }
+
+    /// How far the linearization of the cut at a position varies at a center; formed once per center.
+    pub(crate) fn spread(&self, position: usize, center: u64, form: impl FnOnce(&Cut) -> Spread) -> Spread {
+        let known = &self.sizes[position].spread;
+        match known.get() {
+            Some((id, spread)) if id == center => spread,
+            _ => {
+                let spread = form(&self.cuts[position]);
+                known.set(Some((center, spread)));
+                spread
+            }
+        }
     }
 
     /// Removes the cut that has been idle longest, or the one of smallest multiplier; never the protected one.
@@ -122,10 +158,9 @@ impl Bundle {
 
     fn remove(&mut self, index: usize) {
         let cut = self.cuts.remove(index);
-        self.pairs.retain(|pair| pair.ids.0 != cut.id && pair.ids.1 != cut.id);
-        if index < self.compared {
-            self.compared -= 1;
-        }
+        self.sizes.remove(index);
+        self.concave.retain(|pair| pair.ids.0 != cut.id && pair.ids.1 != cut.id);
+        self.pairs.remove(index);
     }
 
     /// Stores the multipliers of a subproblem, given in the order of the cuts.
@@ -136,28 +171,40 @@ impl Bundle {
         }
     }
 
-    /// Compares new cuts with all others.
-    pub(crate) fn compare_pairs(&mut self, norm: &ScaledNorm) {
-        for j in self.compared..self.cuts.len() {
-            for i in 0..j {
-                let (a, b) = (&self.cuts[i], &self.cuts[j]);
-                let squared_distance = norm.squared_distance(&a.point, &b.point);
-                for (from, to) in [(a, b), (b, a)].into_iter().filter(|(_, to)| !to.certified) {
-                    let error = from.linearization_error(&to.point, to.value);
-                    if error < 0.0 {
-                        let allowance = from.error_bound + to.error_bound + 1e-9 * (from.value.abs() + to.value.abs());
-                        self.pairs.push(ConcavePair { ids: (from.id, to.id), error, squared_distance, allowance });
-                    }
+    /// Looks for concave pairs with the newest cut.
+    fn note_concave_pairs(&mut self) {
+        let newest = self.cuts.len() - 1;
+        for i in 0..newest {
+            let squared_distance = self.pairs.distance(i, newest);
+            for (i, j) in [(i, newest), (newest, i)].into_iter().filter(|(_, j)| !self.cuts[*j].certified) {
+                let (error, from, to) = (self.pair_error(i, j), &self.cuts[i], &self.cuts[j]);
+                if error < 0.0 {
+                    let allowance = from.error_bound + to.error_bound + 1e-9 * (from.value.abs() + to.value.abs());
+                    self.concave.push(ConcavePair { ids: (from.id, to.id), error, squared_distance, allowance });
                 }
             }
         }
-        self.compared = self.cuts.len();
+    }
+
+    /// What every two cuts have in common.
+    pub(crate) fn pairs(&self) -> &Pairs {
+        &self.pairs
+    }
+
+    /// E_ij of two cuts, given by their positions.
+    pub(crate) fn pair_error(&self, i: usize, j: usize) -> f64 {
+        self.cuts[j].value - self.cuts[i].value - self.pairs.slope(i, j)
+    }
+
+    /// The position of a cut.
+    pub(crate) fn position(&self, id: u64) -> Option<usize> {
+        self.cuts.iter().position(|cut| cut.id == id)
     }
 
     /// Curvatures −E_ij/‖y_i − y_j‖² proven by pairs farther apart than `resolution`, ascending.
     pub(crate) fn proven_curvatures(&self, resolution: f64, value_resolution: f64) -> Vec<f64> {
         let mut curvatures: Vec<f64> = self
-            .pairs
+            .concave
             .iter()
             .filter(|pair| -pair.error > pair.allowance + value_resolution)
             .filter(|pair| pair.squared_distance > resolution * resolution)

@@ -20,6 +20,7 @@ pub(crate) mod cut;
 mod finish;
 pub(crate) mod norm;
 mod oracle;
+mod pairs;
 mod proposers;
 mod run;
 mod scales;

@@ -8,6 +8,7 @@ use super::config::VariableScaling;
 use super::coordinates::Coordinates;
 use crate::checks::check_size;
 use crate::qp::Metric;
+use crate::qp::kernels::{weighted_squared_distance, weighted_squares};
 use crate::{InputError, Matrix, Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -115,7 +116,7 @@ impl ScaledNorm {
     /// ‖d‖².
     pub fn squared(&self, d: &Vector) -> f64 {
         match &self.0 {
-            Scale::Weights(weights) => weights.iter().zip(d.iter()).map(|(w, d)| w * d * d).sum(),
+            Scale::Weights(weights) => weighted_squares(weights.as_slice(), d.as_slice()),
             Scale::Linear(Coordinates { inverse, .. }) => (inverse * d).norm_squared(),
         }
     }
@@ -149,6 +150,19 @@ impl ScaledNorm {
         }
     }
 
+    /// Whether W is the identity.
+    pub(crate) fn is_euclidean(&self) -> bool {
+        matches!(&self.0, Scale::Weights(weights) if weights.iter().all(|weight| *weight == 1.0))
+    }
+
+    /// W⁻¹ g, the direction that a subgradient belongs to.
+    pub(crate) fn raise_index(&self, g: &Vector) -> Vector {
+        match &self.0 {
+            Scale::Weights(weights) => g.component_div(weights),
+            Scale::Linear(Coordinates { matrix, .. }) => matrix * matrix.tr_mul(g),
+        }
+    }
+
     /// Mᵀ g, whose Euclidean length is ‖g‖*.
     pub(crate) fn dual_to_coordinates(&self, g: &Vector) -> Vector {
         match &self.0 {
@@ -170,9 +184,7 @@ impl ScaledNorm {
     /// ‖x − y‖².
     pub fn squared_distance(&self, x: &Vector, y: &Vector) -> f64 {
         match &self.0 {
-            Scale::Weights(weights) => {
-                weights.iter().zip(x.iter().zip(y.iter())).map(|(w, (x, y))| w * (x - y) * (x - y)).sum()
-            }
+            Scale::Weights(weights) => weighted_squared_distance(weights.as_slice(), x.as_slice(), y.as_slice()),
             Scale::Linear(_) => self.squared(&(x - y)),
         }
     }

@@ -50,6 +50,8 @@ pub struct Run<'r, 'o, O: NonsmoothObjective> {
     pub(super) proposers: Proposers,
     /// The model of center and bundle, as long as they stay.
     pub(super) model: Option<Model>,
+    /// The model before: the next one takes over the slopes that stay.
+    pub(super) former_model: Option<Model>,
     /// The answer of the last plain subproblem, as long as center and bundle are those it was solved for.
     pub(super) proposal: Option<Proposal>,
     pub(super) termination: Option<Termination>,
@@ -142,8 +144,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// An answer that drowns all others in rounding is none.
     fn check_slope(&self, answer: Answer<O::WarmStart>) -> Outcome<O::WarmStart> {
         let state = &self.state;
-        let slopes = state.bundle.cuts().iter().map(|cut| state.norm.dual_length(&cut.subgradient));
-        let allowed = MAX_RELATIVE_SLOPE * slopes.fold(state.first_weight * state.first_step, f64::max);
+        let allowed =
+            MAX_RELATIVE_SLOPE * state.bundle.dual_lengths().fold(state.first_weight * state.first_step, f64::max);
         let size = state.norm.dual_length(&answer.evaluation().subgradient);
         if size <= allowed || allowed == 0.0 {
             Outcome::Answer(answer)
@@ -183,7 +185,8 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     fn ask<T>(&mut self, question: impl FnOnce(&mut Proposers, &mut Position<'_>) -> T) -> T {
         let (small, before) = (self.small(), self.solver.counts());
         let config = &self.method.config;
-        let model = self.model.take().unwrap_or_else(|| Model::new(&mut self.state, config));
+        let former = &mut self.former_model;
+        let model = self.model.take().unwrap_or_else(|| Model::new(&mut self.state, config, former.take()));
         let (state, set, solver) = (&self.state, &self.set, &mut self.solver);
         let answer = question(&mut self.proposers, &mut Position { state, set, solver, model: &model, small });
         self.model = Some(model);
@@ -193,7 +196,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
 
     /// Drops model and answer, because center or bundle change.
     pub(super) fn forget_model(&mut self) {
-        self.model = None;
+        self.former_model = self.model.take().or(self.former_model.take());
         self.proposal = None;
     }
 

@@ -11,10 +11,12 @@
 //! anywhere has seen no variation: nothing is small yet.
 
 use super::config::BundleTrustConfig;
-use super::cut::Cut;
+use super::cut::Spread;
 use super::proposers::proposal::Proposal;
 use super::state::State;
+use crate::qp::kernels::dot_terms;
 use crate::{Polyhedron, Vector};
+use std::rc::Rc;
 
 /// ε: sizes below this share of what a variable has passed through are not told from zero.
 const LEAST_SHARE: f64 = 1e-8;
@@ -28,15 +30,34 @@ const MAX_VALUE_SHARE: f64 = 10.0;
 /// near a minimum are that much smaller than the terms of their linearizations.
 const SHIFTED_SHARE: f64 = 0.02;
 
+/// How large the variables are at a center.
+#[derive(Debug)]
+pub(crate) struct Lengths {
+    size: Vector,
+    reach: Vector,
+    /// ‖size‖².
+    squared: f64,
+}
+
 impl State {
     /// How far each variable has been from zero or from its start.
     pub(crate) fn reach(&self) -> Vector {
         self.center.zip_map(&self.start, |x, start| x.abs().max((x - start).abs()))
     }
 
-    /// The size of each variable near the center.
-    fn size(&self) -> Vector {
-        self.center.zip_map(&self.reach(), |x, reach| x.abs().max(LEAST_SHARE * reach))
+    /// The lengths that belong to the center; formed once per center.
+    fn lengths(&self) -> Rc<Lengths> {
+        let mut known = self.lengths.borrow_mut();
+        match &*known {
+            Some((center, lengths)) if *center == self.center_id => Rc::clone(lengths),
+            _ => {
+                let reach = self.reach();
+                let size = self.center.zip_map(&reach, |x, reach| x.abs().max(LEAST_SHARE * reach));
+                let lengths = Rc::new(Lengths { squared: self.norm.squared(&size), size, reach });
+                *known = Some((self.center_id, Rc::clone(&lengths)));
+                lengths
+            }
+        }
     }
 
     /// The length of the variables near the center.
@@ -49,30 +70,43 @@ impl State {
         config.objective_scale.unwrap_or_else(|| {
             let highest = self.bundle.cuts().iter().map(|cut| cut.value).fold(self.start_value, f64::max);
             let drop = (highest - self.center_value).max(0.0);
-            let mut variation = drop.min(self.linear_variation(&self.size()));
+            let mut variation = drop.min(self.linear_variation());
             let size = self.center_value.abs();
             if size > 0.0 {
                 variation *= (MAX_VALUE_SHARE * variation / size).clamp(SHIFTED_SHARE, 1.0);
             }
-            let least = LEAST_VALUE_SHARE * drop.min(self.active_variation(&self.reach()));
+            let least = LEAST_VALUE_SHARE * drop.min(self.active_variation());
             size.clamp(least.min(variation), variation)
         })
     }
 
-    /// Median of Σ |g_i| length_i over the cuts within the size of the variables.
-    fn linear_variation(&self, lengths: &Vector) -> f64 {
-        let radius = self.norm.squared(&self.size());
-        let near = |cut: &&Cut| self.norm.squared_distance(&self.center, &cut.point) <= radius;
+    /// Σ |g_i| size_i and Σ |g_i| reach_i of the cut at a position.
+    fn spread(&self, position: usize, lengths: &Lengths) -> Spread {
+        self.bundle.spread(position, self.center_id, |cut| {
+            let slope = cut.subgradient.as_slice();
+            Spread {
+                size: dot_terms(slope, lengths.size.as_slice()),
+                reach: dot_terms(slope, lengths.reach.as_slice()),
+            }
+        })
+    }
+
+    /// Median of Σ |g_i| size_i over the cuts within the size of the variables.
+    fn linear_variation(&self) -> f64 {
+        let lengths = self.lengths();
+        let Some(center) = self.bundle.position(self.center_id) else { return 0.0 };
+        let near = |i: &usize| self.bundle.pairs().distance(*i, center) <= lengths.squared;
         let mut terms: Vec<f64> =
-            self.bundle.cuts().iter().filter(near).map(|cut| cut.subgradient.abs().dot(lengths)).collect();
+            (0..self.bundle.cuts().len()).filter(near).map(|i| self.spread(i, &lengths).size).collect();
         terms.sort_by(f64::total_cmp);
         terms.get(terms.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// Σ λ_j Σ |g_ji| length_i: the terms that cancel in the aggregate subgradient.
-    pub(crate) fn active_variation(&self, lengths: &Vector) -> f64 {
-        let cuts = self.bundle.cuts().iter().filter(|cut| cut.is_active());
-        cuts.map(|cut| cut.multiplier * cut.subgradient.abs().dot(lengths)).sum()
+    /// Σ λ_j Σ |g_ji| reach_i: the terms that cancel in the aggregate subgradient.
+    pub(crate) fn active_variation(&self) -> f64 {
+        let lengths = self.lengths();
+        let cuts = self.bundle.cuts().iter().enumerate().filter(|(_, cut)| cut.is_active());
+        cuts.map(|(i, cut)| cut.multiplier * self.spread(i, &lengths).reach).sum()
     }
 
     /// ẽ + Σ |z̃_i| reach_i: what a convex Θ can still fall within reach and in the box.

@@ -199,7 +199,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// reach that is a rounding of zero proves nothing.
     fn meaningful_bound(&self, proposal: &Proposal, limit: f64) -> f64 {
         let bound = self.state.decrease_bound(proposal, &self.set);
-        let seen = self.state.active_variation(&self.state.reach());
+        let seen = self.state.active_variation();
         let meaningful = proposal.aggregate_norm == 0.0 || seen >= LEAST_SEEN_VARIATION * limit;
         if meaningful { bound } else { f64::INFINITY }
     }

@@ -15,6 +15,7 @@ use crate::composite::Linearization;
 use crate::qp::{EpigraphQpSolver, QpError, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{Accuracy, Evaluation, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector};
+use std::cell::RefCell;
 use std::ops::ControlFlow::Break;
 use std::time::Instant;
 
@@ -61,6 +62,7 @@ impl<'o> BundleTrust<'o> {
             solver: EpigraphQpSolver::default(),
             proposers,
             model: None,
+            former_model: None,
             proposal: None,
             termination: None,
             composite,
@@ -143,7 +145,7 @@ fn first_evaluation<O: NonsmoothObjective>(
         center: start,
         center_value: value,
         center_id: 1,
-        bundle: Bundle::from(vec![cut]),
+        bundle: Bundle::default(),
         next_id: 2,
         weight,
         first_weight: weight,
@@ -157,7 +159,9 @@ fn first_evaluation<O: NonsmoothObjective>(
         failures: 0,
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],
+        lengths: RefCell::default(),
     };
+    state.bundle.push(cut, &state.norm);
     state.history.push(first_record(&state, set, slope, work));
     Ok((state, warm_start, linearization))
 }

@@ -1,9 +1,12 @@
 //! Everything a run carries from step to step.
 
-use super::cut::{Bundle, Cut};
+use super::cut::Bundle;
 use super::norm::ScaledNorm;
+use super::scales::Lengths;
 use crate::report::{Counts, IterationRecord};
 use crate::{BundleTrustConfig, Vector};
+use std::cell::RefCell;
+use std::rc::Rc;
 
 /// State of a run between two steps. The weight is u = 1/t of the trust parameter t.
 #[derive(Debug, Clone)]
@@ -35,6 +38,8 @@ pub(crate) struct State {
     pub failures: usize,
     pub counts: Counts,
     pub history: Vec<IterationRecord>,
+    /// The lengths that belong to a center.
+    pub lengths: RefCell<Option<(u64, Rc<Lengths>)>>,
 }
 
 impl State {
@@ -46,9 +51,9 @@ impl State {
 
     /// Rounding level of the model: what differences of the values behind its active cuts cannot resolve.
     pub(crate) fn rounding(&self) -> f64 {
-        let cuts = self.bundle.cuts().iter().filter(|cut| !cut.is_idle());
-        let sizes =
-            cuts.map(|cut| cut.value.abs().max(self.norm.dual_length(&cut.subgradient) * self.norm.length(&cut.point)));
+        let lengths = self.bundle.dual_lengths().zip(self.bundle.point_lengths());
+        let cuts = self.bundle.cuts().iter().zip(lengths).filter(|(cut, _)| !cut.is_idle());
+        let sizes = cuts.map(|(cut, (slope, point))| cut.value.abs().max(slope * point));
         8.0 * f64::EPSILON * sizes.fold(self.center_value.abs(), f64::max)
     }
 
@@ -58,12 +63,15 @@ impl State {
         self.norm.length(&self.center).max(travelled).max(self.norm.length(&self.start))
     }
 
-    /// Linearization errors of all cuts at the center, in their order.
-    pub(crate) fn errors_at_center(&self) -> Vec<f64> {
-        let error = |cut: &Cut| {
-            if cut.id == self.center_id { 0.0 } else { cut.linearization_error(&self.center, self.center_value) }
+    /// Linearization errors of all cuts at the center and their squared distances from it, in their order. `center` is the position
+    /// of the center's cut.
+    pub(crate) fn errors_at_center(&self, center: usize) -> (Vec<f64>, Vec<f64>) {
+        let pairs = self.bundle.pairs();
+        let error = |i: usize| {
+            if i == center { 0.0 } else { self.bundle.pair_error(i, center) }
         };
-        self.bundle.cuts().iter().map(error).collect()
+        let count = self.bundle.cuts().len();
+        ((0..count).map(error).collect(), (0..count).map(|i| pairs.distance(i, center)).collect())
     }
 
     /// Error that the oracle promised for the center's value.

@@ -8,12 +8,13 @@
 //! Reference: \[DanielGraggKaufmanStewart1976\] (updating of Gram–Schmidt factors with reorthogonalisation).
 
 use super::kernels::{Rotation, add_scaled, dot, norm};
+use super::triangular::Triangular;
 
 /// Factors of the active normals restricted to the coordinates that are not fixed.
 pub(super) struct Factor {
     columns: Vec<Vec<f64>>,
     orthogonal: Vec<Vec<f64>>,
-    triangular: Vec<Vec<f64>>,
+    triangular: Triangular,
     fixed: Vec<bool>,
 }
 
@@ -40,7 +41,12 @@ impl Split {
 
 impl Factor {
     pub(super) fn new(height: usize) -> Self {
-        Self { columns: Vec::new(), orthogonal: Vec::new(), triangular: Vec::new(), fixed: vec![false; height] }
+        Self {
+            columns: Vec::new(),
+            orthogonal: Vec::new(),
+            triangular: Triangular::default(),
+            fixed: vec![false; height],
+        }
     }
 
     pub(super) fn columns(&self) -> &[Vec<f64>] {
@@ -78,30 +84,22 @@ impl Factor {
 
     /// Appends a column whose split is not dependent.
     pub(super) fn push(&mut self, column: Vec<f64>, split: Split) {
-        let Split { mut coefficients, mut remainder, distance, .. } = split;
+        let Split { coefficients, mut remainder, distance, .. } = split;
         remainder.iter_mut().for_each(|entry| *entry /= distance);
-        coefficients.push(distance);
         self.columns.push(column);
         self.orthogonal.push(remainder);
-        self.triangular.push(coefficients);
+        self.triangular.push(coefficients, distance);
     }
 
     /// Removes the column at a position; the later ones move up.
     pub(super) fn remove(&mut self, position: usize) {
         self.columns.remove(position);
-        self.triangular.remove(position);
-        let count = self.triangular.len();
-        for k in position..count {
-            let rotation = Rotation::onto_first(self.triangular[k][k], self.triangular[k][k + 1]);
-            for column in &mut self.triangular[k..] {
-                let (head, tail) = column.split_at_mut(k + 1);
-                rotation.apply(&mut head[k], &mut tail[0]);
-            }
-            self.triangular[k].truncate(k + 1);
-            let (head, tail) = self.orthogonal.split_at_mut(k + 1);
+        let orthogonal = &mut self.orthogonal;
+        self.triangular.remove(position, |k, rotation| {
+            let (head, tail) = orthogonal.split_at_mut(k + 1);
             rotation.apply_to_slices(&mut head[k], &mut tail[0]);
-        }
-        self.orthogonal.truncate(count);
+        });
+        self.orthogonal.truncate(self.columns.len());
     }
 
     /// Fixes a coordinate: deletes its row. `split` is the split of the unit vector, not dependent.
@@ -115,7 +113,7 @@ impl Factor {
             let rotation = Rotation::onto_first(last, coefficients[k]);
             last = last.hypot(coefficients[k]);
             rotation.apply_to_slices(&mut extra, &mut self.orthogonal[k]);
-            for (column, extra) in self.triangular[k..].iter_mut().zip(&mut extra_row[k..]) {
+            for (column, extra) in self.triangular.columns_mut()[k..].iter_mut().zip(&mut extra_row[k..]) {
                 rotation.apply(extra, &mut column[k]);
             }
             self.orthogonal[k][coordinate] = 0.0;
@@ -129,8 +127,8 @@ impl Factor {
         extra[coordinate] = 1.0;
         let mut extra_row: Vec<f64> = self.columns.iter().map(|column| column[coordinate]).collect();
         for k in 0..self.orthogonal.len() {
-            let rotation = Rotation::onto_first(self.triangular[k][k], extra_row[k]);
-            for (column, extra) in self.triangular[k..].iter_mut().zip(&mut extra_row[k..]) {
+            let rotation = Rotation::onto_first(self.triangular.columns_mut()[k][k], extra_row[k]);
+            for (column, extra) in self.triangular.columns_mut()[k..].iter_mut().zip(&mut extra_row[k..]) {
                 rotation.apply(&mut column[k], extra);
             }
             rotation.apply_to_slices(&mut self.orthogonal[k], &mut extra);
@@ -140,18 +138,11 @@ impl Factor {
 
     /// Solves Rᵀ y = b in place.
     pub(super) fn solve_transposed(&self, rhs: &mut [f64]) {
-        for (k, column) in self.triangular.iter().enumerate() {
-            let known = dot(&column[..k], &rhs[..k]);
-            rhs[k] = (rhs[k] - known) / column[k];
-        }
+        self.triangular.solve_transposed(rhs);
     }
 
     /// Solves R x = b in place.
     pub(super) fn solve(&self, rhs: &mut [f64]) {
-        for (k, column) in self.triangular.iter().enumerate().rev() {
-            rhs[k] /= column[k];
-            let value = rhs[k];
-            add_scaled(&mut rhs[..k], -value, &column[..k]);
-        }
+        self.triangular.solve(rhs);
     }
 }

@@ -16,17 +16,22 @@ mod answer;
 mod certificate;
 mod coordinates;
 mod factor;
+mod gram;
+#[cfg(test)]
+mod gram_tests;
 #[cfg(feature = "interior-point")]
 mod interior_point;
-mod kernels;
+pub(crate) mod kernels;
 mod pricing;
 mod problem;
 mod projection;
 mod settle;
 mod solver;
+mod triangular;
 mod working_set;
 
 pub use certificate::kkt_residual;
+pub(crate) use gram::Gram;
 pub use problem::{EpigraphQp, Metric, QpCounts, QpError, QpMethod, QpSolution};
 pub use projection::project;
 pub use solver::EpigraphQpSolver;

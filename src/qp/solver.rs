@@ -3,6 +3,7 @@
 use super::active_set::Outcome;
 use super::answer::{WANTED, assemble};
 use super::coordinates::{Coordinates, CoordinatesCache};
+use super::gram::{Gram, GramMemory};
 #[cfg(feature = "interior-point")]
 use super::interior_point;
 use super::problem::{EpigraphQp, QpCounts, QpError, QpMethod, QpSolution};
@@ -34,6 +35,7 @@ const REQUIRED: f64 = 1e-10;
 pub struct EpigraphQpSolver {
     memory: Vec<Remembered>,
     coordinates: CoordinatesCache,
+    gram: GramMemory,
     counts: QpCounts,
 }
 
@@ -104,6 +106,22 @@ impl EpigraphQpSolver {
             other => self.fall_back(qp, &coordinates, other)?,
         };
         self.finish(qp, best)
+    }
+
+    /// Solves one QP with a diagonal metric whose slopes have known inner products: first in the space of the multipliers, from the
+    /// working set that the last such call has left; what that leaves open as [`solve`](Self::solve) does.
+    ///
+    /// # Errors
+    /// As [`solve`](Self::solve).
+    pub(crate) fn solve_with_products(&mut self, qp: &EpigraphQp<'_>, gram: Gram<'_>) -> Result<QpSolution, QpError> {
+        match self.gram.solve(qp, gram, WANTED) {
+            Some(solution) => {
+                self.counts.solves += 1;
+                self.counts.pivots += solution.pivots;
+                Ok(solution)
+            }
+            None => self.solve(qp),
+        }
     }
 
     fn finish(&mut self, qp: &EpigraphQp<'_>, best: Attempt) -> Result<QpSolution, QpError> {

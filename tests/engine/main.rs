@@ -14,6 +14,7 @@ mod generic_use;
 mod inexact_oracle;
 mod kinks;
 mod linear_scaling;
+mod many_variables;
 mod proposers;
 mod restart;
 mod terminations;

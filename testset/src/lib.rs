@@ -25,6 +25,7 @@ mod table;
 
 pub use composition::{Composition, Outer, Term};
 use dual::Function;
+pub use scalable::Scalable;
 
 /// With or without linear constraints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

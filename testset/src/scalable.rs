@@ -83,3 +83,78 @@ fn crescent_pieces(pair: &[Dual]) -> [Dual; 2] {
 fn total(x: &[Dual]) -> Dual {
     Dual::combination(x.iter().map(|x| (1.0, x)))
 }
+
+/// A function of any number of variables whose value and subgradient take work in proportion to that number, which that of a
+/// [`Dual`] does not.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Scalable {
+    /// The name of its kind.
+    pub name: &'static str,
+    /// Start point.
+    pub start: Vec<f64>,
+    /// Optimal value.
+    pub optimal_value: f64,
+    function: fn(&[f64]) -> (f64, Vec<f64>),
+}
+
+impl Scalable {
+    /// ChainedLQ of n ≥ 2 variables.
+    pub fn chained_lq(n: usize) -> Self {
+        let optimal_value = -std::f64::consts::SQRT_2 * (n - 1) as f64;
+        Self { name: "ChainedLQ", start: vec![-0.5; n], optimal_value, function: chained_lq_at }
+    }
+
+    /// ChainedCB3II of n ≥ 2 variables.
+    pub fn chained_cb3_ii(n: usize) -> Self {
+        Self {
+            name: "ChainedCB3II",
+            start: vec![2.0; n],
+            optimal_value: 2.0 * (n - 1) as f64,
+            function: chained_cb3_ii_at,
+        }
+    }
+
+    /// MAXQ of n variables, max xᵢ², from ±i. Source: M. Haarala, K. Miettinen, M. Mäkelä, Optim. Methods Softw. 19 (2004).
+    pub fn maxq(n: usize) -> Self {
+        let start = (1..=n).map(|i| if i <= n / 2 { i as f64 } else { -(i as f64) }).collect();
+        Self { name: "MAXQ", start, optimal_value: 0.0, function: maxq_at }
+    }
+
+    /// Value and one subgradient.
+    pub fn evaluate(&self, x: &[f64]) -> (f64, Vec<f64>) {
+        (self.function)(x)
+    }
+}
+
+fn chained_lq_at(x: &[f64]) -> (f64, Vec<f64>) {
+    let (mut value, mut gradient) = (0.0, vec![0.0; x.len()]);
+    for (k, pair) in x.windows(2).enumerate() {
+        let (link, slopes, _) = Dual::max(chained_lq(&Dual::variables(pair))).into_parts();
+        value += link;
+        slopes.iter().enumerate().for_each(|(i, slope)| gradient[k + i] += slope);
+    }
+    (value, gradient)
+}
+
+fn chained_cb3_ii_at(x: &[f64]) -> (f64, Vec<f64>) {
+    let mut sums = [0.0; 3].map(|zero| (zero, vec![zero; x.len()]));
+    for (k, pair) in x.windows(2).enumerate() {
+        let link = Dual::variables(pair);
+        for (sum, piece) in sums.iter_mut().zip(cb3_pieces(&link[0], &link[1])) {
+            let (value, slopes, _) = piece.into_parts();
+            sum.0 += value;
+            slopes.iter().enumerate().for_each(|(i, slope)| sum.1[k + i] += slope);
+        }
+    }
+    let [first, second, third] = sums;
+    let larger = if second.0 > first.0 { second } else { first };
+    if third.0 > larger.0 { third } else { larger }
+}
+
+fn maxq_at(x: &[f64]) -> (f64, Vec<f64>) {
+    let largest = (1..x.len()).fold(0, |best, i| if x[i] * x[i] > x[best] * x[best] { i } else { best });
+    let mut gradient = vec![0.0; x.len()];
+    gradient[largest] = 2.0 * x[largest];
+    (x[largest] * x[largest], gradient)
+}

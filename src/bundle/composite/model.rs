@@ -155,7 +155,7 @@ impl CompositeModel<'_> {
             }
             let slope = jacobian.tr_mul(&at.subgradient) + self.pull(&step);
             let (slopes, point) = ([slope], self.base + &step);
-            let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0] };
+            let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0], gram: None };
             let solution = subproblem::solve(solver, self.set, &point, Metric::Dense(&metric), cuts)
                 .map_err(|error| negative_curvature(curvature).unwrap_or_else(|| error.into()))?;
             let promised = -slopes[0].dot(&solution.step);
@@ -203,7 +203,7 @@ impl CompositeModel<'_> {
                 offsets.push(self.error(newest)?);
                 ids.push(ids.len() as u64);
             }
-            let view = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids };
+            let view = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids, gram: None };
             let solution = subproblem::solve(solver, self.set, self.base, metric.metric(), view)?;
             let next = OuterCut::at(self.outer, self.outputs(&solution.step))?;
             self.error(&next)?;

@@ -15,8 +15,12 @@ pub(crate) fn aggregate_sizes<'g>(
 ) -> Vector {
     let (mut sum, mut terms) = (bounds.clone(), bounds.abs());
     for (multiplier, subgradient) in subgradients {
-        sum.axpy(multiplier, subgradient, 1.0);
-        terms.axpy(multiplier, &subgradient.abs(), 1.0);
+        let entries = sum.as_mut_slice().iter_mut().zip(terms.as_mut_slice()).zip(subgradient.as_slice());
+        for ((sum, terms), slope) in entries {
+            let term = multiplier * slope;
+            *sum += term;
+            *terms += term.abs();
+        }
     }
     sum += set.rows().tr_mul(rows);
     terms += set.rows().abs().tr_mul(&rows.abs());

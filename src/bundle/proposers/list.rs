@@ -41,6 +41,9 @@ impl Proposers {
             }
         }
         let mut chosen = proposed.pop().unwrap_or(plain);
+        if self.rivals.is_empty() {
+            return chosen;
+        }
         chosen.cut_change = position.model.cuts().change(&chosen.step);
         chosen
     }

@@ -5,7 +5,7 @@
 //! ```
 
 use super::proposal::FEASIBILITY;
-use crate::qp::{EpigraphQp, EpigraphQpSolver, Metric, QpError, QpSolution};
+use crate::qp::{EpigraphQp, EpigraphQpSolver, Gram, Metric, QpError, QpSolution};
 use crate::{Polyhedron, Vector};
 
 /// Relative violation of a row that a center may have.
@@ -17,6 +17,8 @@ pub(crate) struct Cuts<'a> {
     pub slopes: &'a [Vector],
     pub offsets: &'a [f64],
     pub ids: &'a [u64],
+    /// Inner products of the slopes, where the metric is the run's own times a weight.
+    pub gram: Option<Gram<'a>>,
 }
 
 impl Cuts<'_> {
@@ -36,7 +38,7 @@ pub(crate) fn solve(
 ) -> Result<QpSolution, QpError> {
     let at_center = set.rows() * center;
     let terms = set.rows().abs() * center.abs();
-    solver.solve(&EpigraphQp {
+    let qp = EpigraphQp {
         metric,
         slopes: cuts.slopes,
         offsets: cuts.offsets,
@@ -46,7 +48,11 @@ pub(crate) fn solve(
         row_upper: &slack(set.row_upper(), &at_center, &terms, f64::max),
         lower: &(set.lower() - center),
         upper: &(set.upper() - center),
-    })
+    };
+    match cuts.gram {
+        Some(gram) => solver.solve_with_products(&qp, gram),
+        None => solver.solve(&qp),
+    }
 }
 
 /// Sides of the rows as seen from the center; what is rounding of the center counts as zero, so that d = 0 is admissible. Rows

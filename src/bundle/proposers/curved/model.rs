@@ -27,19 +27,21 @@ impl CurvedModel {
     /// The model q at the center, from the bundle and its plain model.
     pub(super) fn new(state: &State, plain: Cuts<'_>, settings: &CurvedModelConfig) -> Self {
         let mut model = Self::default();
-        let Some(center) = state.bundle.cut(state.center_id) else { return model };
-        let curvature = |cut, same_piece| Curvature::around(cut, state, (same_piece, settings.least_cosine));
+        let Some(center) = state.bundle.position(state.center_id) else { return model };
+        let curvature = |position, same_piece| Curvature::around(position, state, (same_piece, settings.least_cosine));
         let around = curvature(center, settings.same_piece_at_center);
-        for ((cut, slope), &offset) in state.bundle.cuts().iter().zip(plain.slopes).zip(plain.offsets) {
+        for (i, (cut, (slope, &offset))) in
+            state.bundle.cuts().iter().zip(plain.slopes.iter().zip(plain.offsets)).enumerate()
+        {
             let p = &state.center - &cut.point;
             let half = 0.5 * around.along(&p);
-            let error = center.linearization_error(&cut.point, cut.value);
-            let is_center = cut.id == center.id;
+            let error = state.bundle.pair_error(center, i);
+            let is_center = i == center;
             let contradicts = error - half > settings.contradiction * (half + error.abs());
             if !is_center && !cut.certified && !contradicts {
                 continue;
             }
-            let piece = if is_center { around.clone() } else { curvature(cut, settings.same_piece) };
+            let piece = if is_center { around.clone() } else { curvature(i, settings.same_piece) };
             model.slopes.push(slope + piece.apply(&p));
             model.offsets.push((offset - 0.5 * piece.along(&p)).max(0.0));
             model.ids.push(cut.id);
@@ -50,7 +52,7 @@ impl CurvedModel {
 
     /// The pieces without their curvature.
     pub(super) fn cuts(&self) -> Cuts<'_> {
-        Cuts { slopes: &self.slopes, offsets: &self.offsets, ids: &self.ids }
+        Cuts { slopes: &self.slopes, offsets: &self.offsets, ids: &self.ids, gram: None }
     }
 
     /// Σ λ_i B_i.

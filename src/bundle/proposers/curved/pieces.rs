@@ -19,21 +19,22 @@ pub(super) struct Curvature {
 }
 
 impl Curvature {
-    /// The curvature around a cut; errors of a pair agree if the smaller is at least `same_piece` times the larger, and r and s
-    /// of a rank-one update have at least the cosine given.
-    pub(super) fn around(base: &Cut, state: &State, (same_piece, least_cosine): (f64, f64)) -> Self {
+    /// The curvature around the cut at a position; errors of a pair agree if the smaller is at least `same_piece` times the larger,
+    /// and r and s of a rank-one update have at least the cosine given.
+    pub(super) fn around(base: usize, state: &State, (same_piece, least_cosine): (f64, f64)) -> Self {
         let mut curvature = Self::default();
+        let (bundle, own) = (&state.bundle, base);
+        let base = &bundle.cuts()[own];
         // The value of a certified cut says nothing about curvature.
         if base.certified {
             return curvature;
         }
-        let distance = |cut: &Cut| state.norm.squared_distance(&base.point, &cut.point);
-        let mut cuts: Vec<(f64, &Cut)> = state.bundle.cuts().iter().map(|cut| (distance(cut), cut)).collect();
-        cuts.retain(|(distance, cut)| cut.id != base.id && *distance > 0.0 && !cut.certified);
-        cuts.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.id.cmp(&b.1.id)));
-        for (_, cut) in cuts {
-            let errors =
-                [base.linearization_error(&cut.point, cut.value), cut.linearization_error(&base.point, base.value)];
+        let distances = |(i, cut)| (bundle.pairs().distance(own, i), i, cut);
+        let mut cuts: Vec<(f64, usize, &Cut)> = bundle.cuts().iter().enumerate().map(distances).collect();
+        cuts.retain(|(distance, _, cut)| cut.id != base.id && *distance > 0.0 && !cut.certified);
+        cuts.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.2.id.cmp(&b.2.id)));
+        for (_, i, cut) in cuts {
+            let errors = [bundle.pair_error(own, i), bundle.pair_error(i, own)];
             let (low, high) = (errors[0].min(errors[1]), errors[0].max(errors[1]));
             // What the oracle leaves open must not pass for curvature.
             let open = base.error_bound + cut.error_bound;

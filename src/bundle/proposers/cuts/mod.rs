@@ -12,13 +12,14 @@ mod weight;
 use super::aggregate::{aggregate_sizes, slack_error};
 use super::proposal::{Proposal, SubproblemError};
 use super::proposer::{Position, Proposer, Trial};
-use super::subproblem;
+use super::subproblem::{self, Cuts};
 use crate::bundle::config::BundleTrustConfig;
+use crate::bundle::norm::WeightedMetric;
 use crate::bundle::state::State;
 use crate::qp::QpSolution;
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
-use model::Model;
+use model::{Model, PRODUCTS_DIMENSION};
 
 /// The cutting-plane model with the weight of the run.
 #[derive(Debug)]
@@ -28,7 +29,10 @@ impl Proposer for PlainCuts {
     fn propose(&mut self, at: &mut Position<'_>, _proposed: &[Proposal]) -> Result<Option<Proposal>, SubproblemError> {
         let (state, model) = (at.state, at.model);
         let quadratic = state.norm.weighted(state.weight);
-        let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), model.cuts())?;
+        let many = state.center.len() >= PRODUCTS_DIMENSION && matches!(quadratic, WeightedMetric::Diagonal(_));
+        let gram = if many { model.products(state) } else { None };
+        let cuts = Cuts { gram, ..model.cuts() };
+        let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
         let proposal = interpret(solution, (state, at.set), model);
         // Every solution has −v ≥ u‖d‖²; one that promises less is not a solution.
         let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();

@@ -12,6 +12,8 @@ use crate::bundle::acceptance::NOISE_MARGIN;
 use crate::bundle::config::{BundleTrustConfig, Convexity};
 use crate::bundle::proposers::subproblem::Cuts;
 use crate::bundle::state::State;
+use crate::qp::Gram;
+use std::collections::HashMap;
 
 /// Slopes and offsets of the model, in the order of the cuts.
 #[derive(Debug, Clone)]
@@ -25,6 +27,8 @@ pub(crate) struct Model {
     shares: Vec<f64>,
     /// Position of the center's cut.
     center: Option<usize>,
+    /// Inner products of tilted slopes, where they are used.
+    tilted: Option<Vec<Vec<f64>>>,
 }
 
 /// A cut this much steeper than the median drowns the others in rounding and is mixed with the center's cut.
@@ -35,22 +39,30 @@ const LEAST_PAIR_DISTANCE: f64 = 1e-6;
 const LEAST_PAIR_ERROR: f64 = 1e-9;
 /// The same for the errors at the center, as a share of the one of pairs.
 const CENTER_SHARE: f64 = 0.1;
+/// Number of variables from which subproblems are solved with the inner products of the slopes: with fewer, orthogonal factors of the
+/// slopes cost little.
+pub(super) const PRODUCTS_DIMENSION: usize = 100;
 
 impl Model {
-    /// Builds the model at the center.
-    pub(crate) fn new(state: &mut State, config: &BundleTrustConfig) -> Self {
-        state.bundle.compare_pairs(&state.norm);
-        let errors: Vec<f64> = state.errors_at_center();
-        let distances: Vec<f64> =
-            state.bundle.cuts().iter().map(|cut| state.norm.squared_distance(&state.center, &cut.point)).collect();
+    /// Builds the model at the center. Slopes that stay are taken over from the `former` model.
+    pub(crate) fn new(state: &mut State, config: &BundleTrustConfig, former: Option<Self>) -> Self {
+        let center = state.bundle.position(state.center_id);
+        let (errors, distances) = state.errors_at_center(center.unwrap_or(0));
         let rounding = state.rounding();
         let c = match config.convexity {
             Convexity::Unknown => convexification(state, config, &errors, &distances),
             Convexity::Convex => 0.0,
         };
-        let center = state.bundle.cuts().iter().position(|cut| cut.id == state.center_id);
-        let mut model =
-            Self { slopes: vec![], offsets: vec![], ids: vec![], convexification: c, shares: vec![], center };
+        let mut known = former.map(Self::into_plain_slopes).unwrap_or_default();
+        let mut model = Self {
+            slopes: vec![],
+            offsets: vec![],
+            ids: vec![],
+            convexification: c,
+            shares: vec![],
+            center,
+            tilted: None,
+        };
         for (cut, (&error, &distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(&distances)) {
             // A value that may be too high by its promised error must not put the cut above Θ.
             let promised = if cut.id == state.center_id { 0.0 } else { cut.excess() + state.center_error_bound() };
@@ -65,14 +77,31 @@ impl Model {
                 }
                 Convexity::Unknown => (error + c * distance).max(error.abs()) + promised,
             };
-            let tilt = state.norm.lower_index(&(&state.center - &cut.point));
-            model.slopes.push(if c > 0.0 { &cut.subgradient - tilt * (2.0 * c) } else { cut.subgradient.clone() });
+            model.slopes.push(if c > 0.0 {
+                let tilt = state.norm.lower_index(&(&state.center - &cut.point));
+                &cut.subgradient - tilt * (2.0 * c)
+            } else {
+                known.remove(&cut.id).unwrap_or_else(|| cut.subgradient.clone())
+            });
             model.offsets.push(offset);
             model.ids.push(cut.id);
         }
         state.nonconvex |= c > 0.0;
         model.soften(state);
+        let mixed = model.shares.iter().any(|share| *share < 1.0);
+        if c > 0.0 && !mixed && state.center.len() >= PRODUCTS_DIMENSION {
+            model.tilted = model.tilted_products(state);
+        }
         model
+    }
+
+    /// The slopes that are subgradients as they are, by the identities of their cuts.
+    fn into_plain_slopes(self) -> HashMap<u64, Vector> {
+        if self.convexification > 0.0 {
+            return HashMap::new();
+        }
+        let slopes = self.ids.into_iter().zip(self.slopes).zip(self.shares);
+        slopes.filter(|(_, share)| *share == 1.0).map(|(slope, _)| slope).collect()
     }
 
     /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut: still below the model, and with the same
@@ -80,7 +109,11 @@ impl Model {
     fn soften(&mut self, state: &State) {
         self.shares = vec![1.0; self.slopes.len()];
         let Some(center) = self.center else { return };
-        let norms: Vec<f64> = self.slopes.iter().map(|slope| state.norm.dual_length(slope)).collect();
+        let norms: Vec<f64> = if self.convexification > 0.0 {
+            self.slopes.iter().map(|slope| state.norm.dual_length(slope)).collect()
+        } else {
+            state.bundle.dual_lengths().collect()
+        };
         let mut sorted = norms.clone();
         sorted.sort_by(f64::total_cmp);
         let limit = MAX_RELATIVE_SLOPE * sorted[sorted.len() / 2].max(norms[center]);
@@ -93,9 +126,38 @@ impl Model {
         }
     }
 
+    /// The inner products of the slopes for a weight, formed from those of the bundle; none where a cut was mixed.
+    pub(crate) fn products<'s>(&'s self, state: &'s State) -> Option<Gram<'s>> {
+        let rows = match &self.tilted {
+            Some(tilted) => tilted,
+            None if self.convexification > 0.0 || self.shares.iter().any(|share| *share < 1.0) => return None,
+            None => state.bundle.pairs().products(),
+        };
+        let (slots, lasting) = (state.bundle.pairs().slots(), self.tilted.is_none());
+        Some(Gram { rows, slots, weight: state.weight, lasting })
+    }
+
+    /// Inner products of the tilted slopes by slots.
+    ///
+    /// ```text
+    /// ⟨h_i, W⁻¹h_j⟩ = ⟨g_i, W⁻¹g_j⟩ − 2c (⟨g_i, p_j⟩ + ⟨g_j, p_i⟩) + 4c² p_iᵀW p_j
+    /// ```
+    fn tilted_products(&self, state: &State) -> Option<Vec<Vec<f64>>> {
+        let (pairs, c, center) = (state.bundle.pairs(), self.convexification, self.center?);
+        let mut rows = pairs.products().to_vec();
+        for (i, &row) in pairs.slots().iter().enumerate() {
+            for (j, &column) in pairs.slots().iter().enumerate() {
+                let crossed = pairs.slope(i, center) - pairs.slope(i, j) + pairs.slope(j, center) - pairs.slope(j, i);
+                let distances = pairs.distance(i, center) + pairs.distance(j, center) - pairs.distance(i, j);
+                rows[row][column] += 2.0 * c * (c * distances - crossed);
+            }
+        }
+        Some(rows)
+    }
+
     /// The cuts as the subproblem sees them.
     pub(crate) fn cuts(&self) -> Cuts<'_> {
-        Cuts { slopes: &self.slopes, offsets: &self.offsets, ids: &self.ids }
+        Cuts { slopes: &self.slopes, offsets: &self.offsets, ids: &self.ids, gram: None }
     }
 
     /// Multipliers of the cuts themselves from those of the subproblem.

@@ -1,0 +1,395 @@
+//! Dual active-set method in the space of the multipliers, for cuts whose inner products are known.
+//!
+//! ```text
+//! min over π   ½ πᵀG π / u + eᵀπ,   π ≥ 0,  Σ π = 1         G = ⟨g_i, W⁻¹ g_j⟩,  H = u W
+//! d = −Σ π_j W⁻¹ g_j / u,    w_j = e_j − g_jᵀd = −(value of cut j),    at the solution  w_j = −v where π_j > 0,  w_j ≥ −v elsewhere
+//! ```
+//! With m cuts of which k are held, a pivot costs O(k² + m k) and no pass over the n variables; the working set and its factor
+//! R, RᵀR = G + s 𝟏𝟏ᵀ on the cuts held, stay from one problem to the next. Each round forms d and the values of all cuts in the
+//! variables themselves, and repeats the pivots from there, so that the answer has the accuracy of the data and not that of G.
+//! What it cannot finish goes to the method that works with orthogonal factors.
+//! Reference: \[Kiwiel1986\].
+
+use super::certificate::LENGTH_SHARE;
+use super::kernels::{add_scaled, dot, dot_terms};
+use super::problem::{EpigraphQp, QpMethod, QpSolution};
+use super::triangular::Triangular;
+use crate::Vector;
+
+/// Inner products of the slopes of a QP in the metric W, and the weight u of H = u W.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Gram<'a> {
+    /// Rows by slots.
+    pub rows: &'a [Vec<f64>],
+    /// The slot of each cut.
+    pub slots: &'a [usize],
+    /// u.
+    pub weight: f64,
+    /// Whether cuts with identities known from the call before have the inner products they had then.
+    pub lasting: bool,
+}
+
+/// The working set and its factor after a call.
+#[derive(Debug, Clone, Default)]
+pub(super) struct GramMemory {
+    held: Vec<u64>,
+    multipliers: Vec<f64>,
+    factor: Triangular,
+    shift: f64,
+    lasting: bool,
+}
+
+/// A squared distance from the span of the cuts held, relative to the squared length, that is rounding.
+const DEPENDENT: f64 = 1e-13;
+/// Rate of an exchanged multiplier that is rounding.
+const LEAST_RATE: f64 = 1e-11;
+/// Excess of a cut, relative to its terms, that is rounding.
+const ROUNDING: f64 = 1e-14;
+/// Rounds, each with the values of all cuts formed anew.
+const ROUNDS: usize = 4;
+
+/// A problem under way.
+struct Dual<'a> {
+    qp: &'a EpigraphQp<'a>,
+    gram: Gram<'a>,
+    factor: &'a mut Triangular,
+    /// s.
+    shift: f64,
+    held: Vec<usize>,
+    multipliers: Vec<f64>,
+    /// w by slots.
+    gradient: Vec<f64>,
+    is_held: Vec<bool>,
+    /// Cuts that rounding asked for.
+    skipped: Vec<usize>,
+    /// Times ‖g_j‖ and the machine precision: rounding of w_j.
+    drift: f64,
+    pivots: usize,
+}
+
+impl GramMemory {
+    /// The answer if it comes out with a relative KKT residual of at most `wanted`, and no row or bound is violated there.
+    pub(super) fn solve(&mut self, qp: &EpigraphQp<'_>, gram: Gram<'_>, wanted: f64) -> Option<QpSolution> {
+        let mut factor = std::mem::take(&mut self.factor);
+        let mut dual = Dual::new(qp, gram, &mut factor, self.shift);
+        if self.lasting && gram.lasting && !self.held.is_empty() {
+            dual.resume(&self.held, &self.multipliers);
+        } else {
+            dual.rebuild(&self.held, &self.multipliers);
+        }
+        let solution = dual.run(wanted).filter(|solution| satisfies_sides(qp, &solution.step));
+        self.held = dual.held.iter().map(|&j| qp.cut_ids[j]).collect();
+        self.multipliers = std::mem::take(&mut dual.multipliers);
+        (self.shift, self.lasting) = (dual.shift, gram.lasting);
+        self.factor = factor;
+        if solution.is_none() {
+            *self = Self::default();
+        }
+        solution
+    }
+}
+
+impl<'a> Dual<'a> {
+    fn new(qp: &'a EpigraphQp<'a>, gram: Gram<'a>, factor: &'a mut Triangular, shift: f64) -> Self {
+        Self {
+            qp,
+            gram,
+            factor,
+            shift,
+            held: vec![],
+            multipliers: vec![],
+            gradient: vec![],
+            is_held: vec![false; qp.slopes.len()],
+            skipped: vec![],
+            drift: 0.0,
+            pivots: 0,
+        }
+    }
+
+    fn product(&self, i: usize, j: usize) -> f64 {
+        self.gram.rows[self.gram.slots[i]][self.gram.slots[j]]
+    }
+
+    /// ‖g_j‖ in the dual norm of W.
+    fn norm(&self, j: usize) -> f64 {
+        self.product(j, j).sqrt()
+    }
+
+    /// Goes on with the working set before; cuts that have left it take their columns along.
+    fn resume(&mut self, ids: &[u64], multipliers: &[f64]) {
+        let mut removed = 0;
+        for (k, (id, &multiplier)) in ids.iter().zip(multipliers).enumerate() {
+            if let Some(j) = self.qp.cut_ids.iter().position(|known| known == id) {
+                self.held.push(j);
+                self.multipliers.push(multiplier);
+                self.is_held[j] = true;
+            } else {
+                self.factor.remove(k - removed, |_, _| {});
+                removed += 1;
+            }
+        }
+        self.normalise();
+    }
+
+    /// Factorises the working set before anew.
+    fn rebuild(&mut self, ids: &[u64], multipliers: &[f64]) {
+        self.factor.clear();
+        let mut lengths: Vec<f64> = (0..self.qp.slopes.len()).map(|j| self.product(j, j)).collect();
+        lengths.retain(|length| *length > 0.0);
+        lengths.sort_by(f64::total_cmp);
+        self.shift = lengths.get(lengths.len() / 2).copied().unwrap_or(1.0);
+        for (id, &multiplier) in ids.iter().zip(multipliers) {
+            if let Some(j) = self.qp.cut_ids.iter().position(|known| known == id)
+                && let Ok((column, diagonal)) = self.column(j)
+            {
+                self.hold(j, multiplier, column, diagonal);
+            }
+        }
+        self.normalise();
+    }
+
+    /// Makes the multipliers sum up to one; without any, the cut of largest dual value is held.
+    fn normalise(&mut self) {
+        let sum: f64 = self.multipliers.iter().sum();
+        if sum > 0.0 {
+            self.multipliers.iter_mut().for_each(|multiplier| *multiplier /= sum);
+            return;
+        }
+        let value = |j: usize| 0.5 * self.product(j, j) / self.gram.weight + self.qp.offsets[j];
+        let best = (0..self.qp.slopes.len()).min_by(|&i, &j| value(i).total_cmp(&value(j)));
+        self.factor.clear();
+        self.held.iter().for_each(|&j| self.is_held[j] = false);
+        self.held.clear();
+        self.multipliers.clear();
+        if let Some(best) = best
+            && let Ok((column, diagonal)) = self.column(best)
+        {
+            self.hold(best, 1.0, column, diagonal);
+        }
+    }
+
+    /// The column that a cut adds to R; where the cut depends on those held, its coefficients.
+    fn column(&self, j: usize) -> Result<(Vec<f64>, f64), Vec<f64>> {
+        let mut column: Vec<f64> = self.held.iter().map(|&i| self.product(i, j) + self.shift).collect();
+        self.factor.solve_transposed(&mut column);
+        let squared = self.product(j, j) + self.shift;
+        let rest = squared - dot(&column, &column);
+        if rest > DEPENDENT * squared {
+            return Ok((column, rest.sqrt()));
+        }
+        self.factor.solve(&mut column);
+        Err(column)
+    }
+
+    fn hold(&mut self, j: usize, multiplier: f64, column: Vec<f64>, diagonal: f64) {
+        self.factor.push(column, diagonal);
+        self.held.push(j);
+        self.multipliers.push(multiplier);
+        self.is_held[j] = true;
+        self.pivots += 1;
+    }
+
+    fn release(&mut self, position: usize) {
+        self.factor.remove(position, |_, _| {});
+        let j = self.held.remove(position);
+        self.multipliers.remove(position);
+        self.is_held[j] = false;
+        self.pivots += 1;
+    }
+
+    /// Changes the multiplier of a cut in w.
+    fn shift_gradient(&mut self, j: usize, change: f64) {
+        self.drift += change.abs() * self.norm(j) / self.gram.weight;
+        add_scaled(&mut self.gradient, change / self.gram.weight, &self.gram.rows[self.gram.slots[j]]);
+    }
+
+    /// w_j of the cuts held.
+    fn held_gradient(&self) -> Vec<f64> {
+        self.held.iter().map(|&j| self.gradient[self.gram.slots[j]]).collect()
+    }
+
+    /// Runs rounds of pivots until the answer is accurate.
+    fn run(&mut self, wanted: f64) -> Option<QpSolution> {
+        self.gradient = vec![0.0; self.gram.rows.len()];
+        for (&slot, offset) in self.gram.slots.iter().zip(self.qp.offsets) {
+            self.gradient[slot] = *offset;
+        }
+        for k in 0..self.held.len() {
+            self.shift_gradient(self.held[k], self.multipliers[k]);
+        }
+        let mut placed = vec![0.0; self.qp.slopes.len()];
+        let mut step = Vector::zeros(self.qp.dimension());
+        for _ in 0..ROUNDS {
+            self.pivot()?;
+            self.place(&mut step, &mut placed);
+            let values = self.values(&step);
+            let epigraph = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let residual = self.residual(&step, &values, epigraph);
+            if residual <= wanted {
+                return Some(self.answer(step, epigraph, residual));
+            }
+            for (&slot, value) in self.gram.slots.iter().zip(&values) {
+                self.gradient[slot] = -value;
+            }
+            self.drift = self.length(&step);
+            self.skipped.clear();
+        }
+        None
+    }
+
+    /// Moves d by what the multipliers have changed since the last call.
+    fn place(&self, step: &mut Vector, placed: &mut [f64]) {
+        let mut sum = vec![0.0; step.len()];
+        let mut now = vec![0.0; placed.len()];
+        self.held.iter().zip(&self.multipliers).for_each(|(&j, &multiplier)| now[j] = multiplier);
+        for ((now, placed), slope) in now.iter().zip(placed).zip(self.qp.slopes) {
+            if now != placed {
+                add_scaled(&mut sum, now - *placed, slope.as_slice());
+                *placed = *now;
+            }
+        }
+        for (k, (step, sum)) in step.iter_mut().zip(sum).enumerate() {
+            *step -= sum / self.qp.metric.diagonal_entry(k);
+        }
+    }
+
+    /// The values of all cuts at d.
+    fn values(&self, step: &Vector) -> Vec<f64> {
+        let cuts = self.qp.slopes.iter().zip(self.qp.offsets);
+        cuts.map(|(slope, offset)| dot(slope.as_slice(), step.as_slice()) - offset).collect()
+    }
+
+    /// ‖d‖ in the norm of W.
+    fn length(&self, step: &Vector) -> f64 {
+        let squares = step.iter().enumerate().map(|(k, d)| d * d * self.qp.metric.diagonal_entry(k));
+        (squares.sum::<f64>() / self.gram.weight).sqrt()
+    }
+
+    /// The parts of the KKT residual that do not hold by construction: Σ π = 1 and complementarity. Only cuts below the highest
+    /// one by more than their offsets explain need the size of their terms.
+    fn residual(&self, step: &Vector, values: &[f64], epigraph: f64) -> f64 {
+        let steepest = (0..values.len()).map(|j| self.norm(j)).fold(0.0, f64::max);
+        let share = LENGTH_SHARE * (self.length(step) + steepest / self.gram.weight);
+        let mut worst = (self.multipliers.iter().sum::<f64>() - 1.0).abs();
+        for (&j, &multiplier) in self.held.iter().zip(&self.multipliers) {
+            let gap = multiplier.abs().min(1.0) * (epigraph - values[j]);
+            let known = self.qp.offsets[j].abs() + epigraph.abs() + share * self.norm(j);
+            if gap > 0.0 {
+                worst = worst.max(gap / (known + dot_terms(self.qp.slopes[j].as_slice(), step.as_slice())));
+            }
+            worst = worst.max(-multiplier);
+        }
+        if worst.is_nan() || !epigraph.is_finite() { f64::INFINITY } else { worst }
+    }
+
+    fn answer(&self, step: Vector, epigraph: f64, kkt_residual: f64) -> QpSolution {
+        let mut cut_multipliers = vec![0.0; self.qp.slopes.len()];
+        self.held.iter().zip(&self.multipliers).for_each(|(&j, multiplier)| cut_multipliers[j] = multiplier.max(0.0));
+        QpSolution {
+            epigraph,
+            cut_multipliers,
+            row_multipliers: vec![0.0; self.qp.rows.nrows()],
+            bound_multipliers: vec![0.0; step.len()],
+            step,
+            kkt_residual,
+            pivots: self.pivots,
+            method: QpMethod::ActiveSet,
+        }
+    }
+
+    /// Pivots until every cut is satisfied; none if that does not come to an end.
+    fn pivot(&mut self) -> Option<()> {
+        let limit = self.pivots + 100 + 5 * self.qp.slopes.len();
+        loop {
+            let level = self.settle();
+            if self.pivots > limit || !level.is_finite() {
+                return None;
+            }
+            let Some(j) = self.most_violated(level) else { return Some(()) };
+            self.enter(j)?;
+            if !self.is_held[j] {
+                self.skipped.push(j);
+            }
+        }
+    }
+
+    /// Moves to the equality solution of the cuts held; multipliers that would change sign leave. Returns −v.
+    fn settle(&mut self) -> f64 {
+        loop {
+            let mut ones = vec![1.0; self.held.len()];
+            let mut change = self.held_gradient();
+            self.factor.solve_transposed(&mut ones);
+            self.factor.solve_transposed(&mut change);
+            let level = dot(&ones, &change) / dot(&ones, &ones);
+            change.iter_mut().zip(&ones).for_each(|(y, h)| *y = (level * h - *y) * self.gram.weight);
+            self.factor.solve(&mut change);
+            let blocks = change.iter().zip(&self.multipliers).enumerate();
+            let shares = blocks.filter(|(_, (d, l))| *l + *d < 0.0).map(|(k, (d, l))| ((l / -d).clamp(0.0, 1.0), k));
+            let first = shares.reduce(|a, b| if b.0 < a.0 { b } else { a });
+            let share = first.map_or(1.0, |(share, _)| share);
+            for k in 0..self.held.len() {
+                self.multipliers[k] += share * change[k];
+                self.shift_gradient(self.held[k], share * change[k]);
+            }
+            match first {
+                Some((_, position)) => {
+                    let left = self.multipliers[position];
+                    self.shift_gradient(self.held[position], -left);
+                    self.release(position);
+                }
+                None => return level,
+            }
+        }
+    }
+
+    /// The cut farthest below the level −v.
+    fn most_violated(&self, level: f64) -> Option<usize> {
+        let mut worst: Option<(f64, usize)> = None;
+        for j in (0..self.qp.slopes.len()).filter(|&j| !self.is_held[j]) {
+            let excess = level - self.gradient[self.gram.slots[j]];
+            let rounding =
+                ROUNDING * (level.abs() + self.qp.offsets[j].abs()) + 4.0 * f64::EPSILON * self.norm(j) * self.drift;
+            let distance = excess / (self.product(j, j) + self.shift).sqrt();
+            let is_worse = worst.is_none_or(|(largest, _)| distance > largest);
+            if excess > rounding && is_worse && !self.skipped.contains(&j) {
+                worst = Some((distance, j));
+            }
+        }
+        worst.map(|(_, j)| j)
+    }
+
+    /// Takes in a cut, exchanging cuts held against it as long as it depends on them; none if nothing can be exchanged.
+    fn enter(&mut self, j: usize) -> Option<()> {
+        let mut multiplier = 0.0;
+        loop {
+            let rates = match self.column(j) {
+                Ok((column, diagonal)) => {
+                    self.hold(j, multiplier, column, diagonal);
+                    return Some(());
+                }
+                Err(rates) => rates,
+            };
+            let falling = rates.iter().zip(&self.multipliers).enumerate().filter(|(_, (x, _))| **x > LEAST_RATE);
+            let lengths = falling.map(|(k, (x, l))| (l / x, k));
+            let (length, position) = lengths.reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+            for k in 0..self.held.len() {
+                self.multipliers[k] -= length * rates[k];
+                self.shift_gradient(self.held[k], -length * rates[k]);
+            }
+            multiplier += length;
+            self.shift_gradient(j, length);
+            let left = self.multipliers[position];
+            self.shift_gradient(self.held[position], -left);
+            self.release(position);
+        }
+    }
+}
+
+/// Whether a step leaves no row and no bound.
+fn satisfies_sides(qp: &EpigraphQp<'_>, step: &Vector) -> bool {
+    let inside = |value: f64, lower: f64, upper: f64| value >= lower && value <= upper;
+    let bounds = step.iter().zip(qp.lower.iter().zip(qp.upper));
+    let rows = (0..qp.rows.nrows()).map(|i| qp.rows.row(i).iter().zip(step.iter()).map(|(a, d)| a * d).sum::<f64>());
+    bounds.into_iter().all(|(d, (lower, upper))| inside(*d, *lower, *upper))
+        && rows.enumerate().all(|(i, value)| inside(value, qp.row_lower[i], qp.row_upper[i]))
+}
