@@ -10,7 +10,8 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use testset::kit;
 
-const SCENES: [&str; 6] = ["signorini", "hertz", "signorini_frictionless", "flat_punch", "tangential", "thin_layer"];
+const SCENES: [&str; 7] =
+    ["signorini", "hertz", "signorini_frictionless", "flat_punch", "tangential", "thin_layer", "just_touching"];
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")

@@ -209,7 +209,8 @@ impl Corpus {
     /// The inputs; files go to the folder `scratch`.
     fn new(scratch: &Path) -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
-        let names = ["signorini", "hertz", "signorini_frictionless", "flat_punch", "tangential", "thin_layer"];
+        let names =
+            ["signorini", "hertz", "signorini_frictionless", "flat_punch", "tangential", "thin_layer", "just_touching"];
         let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
         let mut scenes: Vec<String> = names.iter().map(|name| read(&format!("{name}.toml"))).collect();
         let printed = scenes.iter().map(|text| SceneFile::parse(text, "x").unwrap().print().unwrap());

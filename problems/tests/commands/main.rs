@@ -19,6 +19,7 @@ mod certificates;
 mod compare;
 mod contact3d;
 mod fuzz;
+mod just_touching;
 mod long_runs;
 mod loosely_held;
 mod messages;
