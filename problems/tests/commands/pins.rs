@@ -12,6 +12,9 @@
 //! Those of total FETI were replaced by the commit "Forward derivatives by total FETI": the preconditioner multiplies with the blocks
 //! of K instead of all of K twice. Measured: Θ by at most 7e-16, every entry of ξ by at most 4.6e-15 of the largest, histories of 60
 //! evaluations by at most 2e-13 over the first 15 and 1.3e-4 after that (signorini3d, mesh 6, where rounding leads them apart).
+//! Histories were replaced by the commit "Pins after the subproblems in the space of the multipliers": inner products are summed in
+//! another order. Measured: at most 1.6e-9 of the largest entry; signorini3d, mesh 6, leaves the history before by more than 1e-8 at
+//! evaluation 42, and its best of 60 is lower by 3.4e-4; the marks 1.4985e16 and 1.4835e16 come after 30 and 34 evaluations as before.
 
 use crate::binary;
 use serde_json::Value;
