@@ -24,7 +24,7 @@ const MEASURED: [(&str, usize); 42] = [
     ("Colville1", 30),
     ("ElAttar", 90),
     ("Maxquad", 43),
-    ("Steiner2", 95),
+    ("Steiner2", 96),
     ("MAXL", 22),
     ("Goffin", 51),
     ("L1HILB", 15),
@@ -43,22 +43,22 @@ const MEASURED: [(&str, usize); 42] = [
     ("MAD4", 20),
     ("PENTAGON", 13),
     ("EQUIL", 46),
-    ("Wong3lin", 120),
+    ("Wong3lin", 137),
     ("HS114", 101),
     ("Dembo5", 69),
     ("GenMXHILB", 13),
-    ("ChainedLQ", 109),
+    ("ChainedLQ", 118),
     ("ChainedCB3II", 23),
     ("ActiveFaces", 2),
     ("ChainedCrescentI", 56),
     ("ChainedCrescentII", 164),
     ("ChebRosenN1_2", 88),
-    ("NesterovWorst_20", 121),
+    ("NesterovWorst_20", 131),
 ];
 /// Sum over the unconstrained problems that all nine peers solve.
-const COMMON_SUM: f64 = 412.0;
+const COMMON_SUM: f64 = 424.0;
 /// Geometric mean of the ratio to MPBNGC over the problems both solve.
-const MEAN: f64 = 0.718;
+const MEAN: f64 = 0.721;
 
 fn evaluations(problem: &Problem) -> Option<usize> {
     let (count, hit) = (Cell::new(0), Cell::new(None));

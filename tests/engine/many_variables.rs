@@ -33,7 +33,7 @@ fn check(problem: &Scalable, config: BundleTrustConfig, (pinned, allowed): (usiz
 
 #[test]
 fn a_chain_of_a_thousand_kinks_is_solved() {
-    check(&Scalable::chained_lq(1000), BundleTrustConfig::default(), (243, 600));
+    check(&Scalable::chained_lq(1000), BundleTrustConfig::default(), (135, 600));
 }
 
 #[test]

@@ -78,7 +78,7 @@ pub struct OptimizerSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
     pub first_step: Option<f64>,
-    /// Largest number of cuts kept. Default controls + 15, at most 150.
+    /// Largest number of cuts kept. Default controls + 15, at most 500.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 2, max = 10_000), extend("x-unit" = "1"))]
     pub bundle_size: Option<usize>,

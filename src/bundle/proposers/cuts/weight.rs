@@ -4,7 +4,7 @@
 //! u_int = 2u(1 − (Θ(y) − Θ(x̂))/v)                 minimiser of the parabola through both values and the slope v
 //! serious:  u ← max(u_int, u/8)   if the weight is not fresh and Θ(y) − Θ(x̂) ≤ m_R v;   u/2 after three in a row
 //! null:     u ← min(u_int, 10u)   if the new error exceeds max(ε_v, 2|v|) after three in a row
-//!           u ← 1.4u              if ẽ > 30 u‖d‖² after three in a row and Θ looks convex
+//!           u ← 2u                if ẽ > 10 u‖d‖² after three in a row, of many variables, and Θ looks convex
 //! ```
 //! v = −predicted decrease. Reference: \[Kiwiel1990\] (proximity control); SS/NS tests: \[SchrammZowe1992\].
 
@@ -17,9 +17,11 @@ use crate::bundle::state::State;
 const CONCAVITY: f64 = 1e-10;
 
 /// Aggregate errors beyond this many times u‖d‖² raise the weight.
-const MAX_ERROR_RATIO: f64 = 30.0;
+const MAX_ERROR_RATIO: f64 = 10.0;
 /// The factor by which they do.
-const ERROR_INCREASE: f64 = 1.4;
+const ERROR_INCREASE: f64 = 2.0;
+/// Variables from which on they do: of few variables the cuts around the center are complete before that matters.
+const MANY_VARIABLES: usize = 100;
 
 /// Weight after a serious step; call before the center moves.
 pub(super) fn after_serious(state: &mut State, config: &BundleTrustConfig, comparison: &Comparison) {
@@ -50,12 +52,16 @@ pub(super) fn after_null(state: &mut State, config: &BundleTrustConfig, trial: &
     } else if error(comparison) > variation.max(-2.0 * comparison.model_change) && state.streak < -3 {
         let changed = state.set_weight(interpolated.min(config.weight_increase * u).max(u), config);
         state.streak = if changed { -1 } else { (state.streak - 1).min(-1) };
-    } else if !state.nonconvex && state.streak < -2 && rests_on_errors(trial.proposal) {
+    } else if may_rest_on_errors(state) && rests_on_errors(trial.proposal) {
         let changed = state.set_weight(ERROR_INCREASE * u, config);
         state.streak = if changed { -1 } else { state.streak - 1 };
     } else {
         state.streak = (state.streak - 1).min(-1);
     }
+}
+
+fn may_rest_on_errors(state: &State) -> bool {
+    !state.nonconvex && state.streak < -2 && state.center.len() >= MANY_VARIABLES
 }
 
 /// Whether the predicted decrease v = u‖d‖² + ẽ is nearly all error: the cuts were taken too far away to hold around the center,
