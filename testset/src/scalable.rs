@@ -85,7 +85,7 @@ fn total(x: &[Dual]) -> Dual {
 }
 
 /// A function of any number of variables whose value and subgradient take work in proportion to that number, which that of a
-/// [`Dual`] does not.
+/// `Dual` does not.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Scalable {
