@@ -1,31 +1,31 @@
 //! Dot products and rotations of plain slices.
 
-/// xᵀ y with eight independent sums.
-pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
+/// Σ term(x_i, y_i, …) with eight independent sums.
+#[inline(always)]
+fn sum_of<const K: usize>(vectors: [&[f64]; K], term: impl Fn([f64; K]) -> f64) -> f64 {
+    let length = vectors.iter().map(|vector| vector.len()).min().unwrap_or(0);
+    let count = length / 8;
+    let blocks = vectors.map(|vector| &vector.as_chunks::<8>().0[..count]);
+    let rest = vectors.map(|vector| &vector[8 * count..length]);
+    let tail: f64 = (0..length - 8 * count).map(|i| term(rest.map(|rest| rest[i]))).sum();
     let mut sums = [0.0; 8];
-    let (x_blocks, y_blocks) = (x.chunks_exact(8), y.chunks_exact(8));
-    let tail: f64 = x_blocks.remainder().iter().zip(y_blocks.remainder()).map(|(a, b)| a * b).sum();
-    for (a, b) in x_blocks.zip(y_blocks) {
-        for k in 0..8 {
-            sums[k] += a[k] * b[k];
+    for i in 0..count {
+        let block = blocks.map(|blocks| &blocks[i]);
+        for (k, sum) in sums.iter_mut().enumerate() {
+            *sum += term(block.map(|block| block[k]));
         }
     }
     tail + ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
 }
 
-/// Σ g_i (x_i − y_i) with eight independent sums.
+/// xᵀ y.
+pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
+    sum_of([x, y], |[x, y]| x * y)
+}
+
+/// Σ g_i (x_i − y_i).
 pub(crate) fn difference_dot(g: &[f64], x: &[f64], y: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (blocks, rest) = g.as_chunks::<8>();
-    let (x_blocks, x_rest) = x.as_chunks::<8>();
-    let (y_blocks, y_rest) = y.as_chunks::<8>();
-    let tail: f64 = rest.iter().zip(x_rest.iter().zip(y_rest)).map(|(g, (x, y))| g * (x - y)).sum();
-    for (g, (x, y)) in blocks.iter().zip(x_blocks.iter().zip(y_blocks)) {
-        for k in 0..8 {
-            sums[k] += g[k] * (x[k] - y[k]);
-        }
-    }
-    tail + ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
+    sum_of([g, x, y], |[g, x, y]| g * (x - y))
 }
 
 /// gᵀ(y − x), hᵀ(y − x), gᵀr and |y − x|² in one pass, with four independent sums each.
@@ -51,47 +51,19 @@ pub(crate) fn pair_sums(g: &[f64], x: &[f64], h: &[f64], y: &[f64], r: &[f64]) -
     sums.map(|lanes| (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]))
 }
 
-/// Σ w_i (x_i − y_i)² with eight independent sums.
+/// Σ w_i (x_i − y_i)².
 pub(crate) fn weighted_squared_distance(w: &[f64], x: &[f64], y: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (blocks, rest) = w.as_chunks::<8>();
-    let (x_blocks, x_rest) = x.as_chunks::<8>();
-    let (y_blocks, y_rest) = y.as_chunks::<8>();
-    let tail: f64 = rest.iter().zip(x_rest.iter().zip(y_rest)).map(|(w, (x, y))| w * (x - y) * (x - y)).sum();
-    for (w, (x, y)) in blocks.iter().zip(x_blocks.iter().zip(y_blocks)) {
-        for k in 0..8 {
-            sums[k] += w[k] * (x[k] - y[k]) * (x[k] - y[k]);
-        }
-    }
-    tail + ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
+    sum_of([w, x, y], |[w, x, y]| w * (x - y) * (x - y))
 }
 
-/// Σ w_i x_i² with eight independent sums.
+/// Σ w_i x_i².
 pub(crate) fn weighted_squares(w: &[f64], x: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (blocks, rest) = w.as_chunks::<8>();
-    let (x_blocks, x_rest) = x.as_chunks::<8>();
-    let tail: f64 = rest.iter().zip(x_rest).map(|(w, x)| w * x * x).sum();
-    for (w, x) in blocks.iter().zip(x_blocks) {
-        for k in 0..8 {
-            sums[k] += w[k] * x[k] * x[k];
-        }
-    }
-    tail + ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
+    sum_of([w, x], |[w, x]| w * x * x)
 }
 
 /// Σ |x_i y_i|: size of the terms of a dot product.
 pub(crate) fn dot_terms(x: &[f64], y: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (x_blocks, x_rest) = x.as_chunks::<8>();
-    let (y_blocks, y_rest) = y.as_chunks::<8>();
-    let tail: f64 = x_rest.iter().zip(y_rest).map(|(a, b)| (a * b).abs()).sum();
-    for (a, b) in x_blocks.iter().zip(y_blocks) {
-        for k in 0..8 {
-            sums[k] += (a[k] * b[k]).abs();
-        }
-    }
-    tail + ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
+    sum_of([x, y], |[x, y]| (x * y).abs())
 }
 
 /// y += factor · x.

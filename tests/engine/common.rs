@@ -59,15 +59,3 @@ pub fn plane(normal: &[f64], side: f64, half_width: f64) -> Polyhedron {
         .with_rows(&Matrix::from_row_slice(1, n, normal), &v(&[side]), &v(&[side]))
         .unwrap()
 }
-
-/// Whether the dense kernels round as on the processor that wrote the pinned counts.
-#[cfg(target_arch = "x86_64")]
-pub fn rounds_alike() -> bool {
-    std::arch::is_x86_feature_detected!("avx512f")
-}
-
-/// Whether the dense kernels round as on the processor that wrote the pinned counts.
-#[cfg(not(target_arch = "x86_64"))]
-pub fn rounds_alike() -> bool {
-    false
-}

@@ -4,9 +4,9 @@
 //! instructions by the processor, and a run may take another course where they round differently. On such processors the margins
 //! are: each problem 15 % and 2 evaluations above the pinned count, and 5 % for the sum over the problems that all peers solve and
 //! for the geometric mean to MPBNGC.
-use crate::common::rounds_alike;
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Vector};
 use std::cell::Cell;
+use testset::kit::rounds_alike;
 use testset::{Family, Problem};
 
 /// Evaluations to f − f* ≤ 1e-6 (1 + |f*|). Not pinned: ChebRosenN1_5, which is not solved, and ShellDual, where the last bit

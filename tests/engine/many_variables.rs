@@ -1,9 +1,9 @@
 //! Many variables: the work per evaluation grows in proportion to cuts × variables, and the evaluations stay few.
 
-use crate::common::rounds_alike;
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Report, Vector};
 use std::cell::Cell;
 use testset::Scalable;
+use testset::kit::rounds_alike;
 
 /// A run until f − f* ≤ 1e-6 (1 + |f*|), and the evaluations that took.
 fn run(problem: &Scalable, config: BundleTrustConfig) -> (Option<usize>, Report) {

@@ -5,7 +5,8 @@ use super::{Base, Composite, FACTOR};
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::Trial;
 use crate::bundle::run::Run;
-use crate::composite::Linearization;
+use crate::composite::{Linearization, OuterFunction};
+use crate::panics::without_panic;
 use crate::report::Origin;
 use crate::{NonsmoothObjective, Vector};
 
@@ -91,13 +92,18 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         point: &Vector,
         linearization: Option<Result<Linearization, String>>,
     ) -> Option<(Option<Linearization>, Noted)> {
-        let composite = self.composite.as_mut()?;
+        let (composite, outer) = (self.composite.as_mut()?, self.objective.outer());
         Some(match linearization {
             None => (None, None),
             Some(Err(reason)) => (None, Some(Err(reason))),
             Some(Ok(linearization)) => {
                 self.state.counts.jacobians += 1;
-                composite.memory.remember(point, &linearization.jacobian);
+                // An outer function with a curvature of its own needs none of the outputs.
+                let Linearization { outputs, jacobian, .. } = &linearization;
+                let bends = |outer: &dyn OuterFunction| outer.curvature(outputs, jacobian).is_none();
+                if outer.is_some_and(|outer| without_panic(|| bends(outer)).unwrap_or_default()) {
+                    composite.memory.remember(point, jacobian);
+                }
                 (Some(linearization), Some(Ok(())))
             }
         })

@@ -139,7 +139,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
         let (mut raised, mut last) = (false, None::<Proposal>);
         for _ in 0..MAX_WEIGHTS {
-            let Some((proposal, step)) = self.composite_step(&base, weight, None)? else {
+            let Some((proposal, step)) = self.composite_step(&base, weight, None, None)? else {
                 (weight, raised) = (weight * FACTOR, true);
                 continue;
             };

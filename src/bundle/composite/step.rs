@@ -24,7 +24,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let Some(composite) = &mut self.composite else { return Continue(None) };
         let weight = composite.weight / FACTOR;
         let origin = &base.point - &rejected.point;
-        let Some((proposal, _)) = self.composite_step_near(rejected, weight, None, Some(&origin))? else {
+        let Some((proposal, _)) = self.composite_step(rejected, weight, None, Some(&origin))? else {
             return Continue(None);
         };
         let length = self.state.norm.length(&(&proposal.trial - &rejected.point));
@@ -40,17 +40,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     }
 
     /// The step of the model at a base with a weight, and the trial point that it leads to; none where the subproblem cannot be
-    /// solved. `set`: the admissible set, if it is not that of the run.
+    /// solved. `set`: the admissible set, if it is not that of the run; `origin`: from the base to the point that lengths are
+    /// measured from, if it is not the base.
     pub(super) fn composite_step(
-        &mut self,
-        base: &Base,
-        weight: f64,
-        set: Option<&Polyhedron>,
-    ) -> ControlFlow<Termination, Option<(Proposal, CompositeStep)>> {
-        self.composite_step_near(base, weight, set, None)
-    }
-
-    fn composite_step_near(
         &mut self,
         base: &Base,
         weight: f64,
