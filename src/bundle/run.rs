@@ -95,7 +95,9 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.check_length(&proposal)?;
         let accuracy = self.wanted_accuracy(proposal.predicted_decrease);
         let target = self.state.center_value - self.method.config.serious_fraction * proposal.predicted_decrease;
-        match self.evaluate(&proposal.trial, accuracy, Some(target)) {
+        // What a rejected trial point of the composite model tells is used by its correction.
+        let below = if proposal.origin == Origin::CompositeModel { f64::INFINITY } else { target };
+        match self.evaluate(&proposal.trial, accuracy, Some(target), below) {
             Outcome::MinusInfinity => return Break(Termination::UnboundedBelow),
             Outcome::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
             Outcome::Answer(answer) => self.accept_or_reject(proposal, accuracy, answer),
@@ -130,9 +132,16 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         })
     }
 
-    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>) -> Outcome<O::WarmStart> {
+    /// `below`: the value up to which a Jacobian is wanted.
+    fn evaluate(
+        &mut self,
+        point: &Vector,
+        accuracy: Accuracy,
+        target: Option<f64>,
+        below: f64,
+    ) -> Outcome<O::WarmStart> {
         self.state.counts.evaluations += 1;
-        let linearization = self.composite.as_ref().map(|model| model.request(target.unwrap_or(f64::INFINITY)));
+        let linearization = self.composite.is_some().then(|| Composite::request(below));
         let warm_start = self.warm_start.as_ref();
         let request = Request { point, warm_start, accuracy, descent_target: target, linearization };
         match evaluate(self.objective, &request) {
@@ -230,7 +239,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         let center = self.state.center.clone();
         self.state.center_accuracy = accuracy.tolerance();
         let mut event = Event { kind: StepKind::Refinement, value: None, failure: None, linearized: None, work: 0 };
-        match self.evaluate(&center, accuracy, None) {
+        match self.evaluate(&center, accuracy, None, f64::INFINITY) {
             Outcome::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;
                 (event.value, event.work) = (Some(evaluation.value), evaluation.work);

@@ -117,7 +117,7 @@ fn first_evaluation<O: NonsmoothObjective>(
         AccuracyPolicy::OnDemand { coarsest, .. } => Accuracy::relative(coarsest)?,
         AccuracyPolicy::Tightest => Accuracy::TIGHTEST,
     };
-    let wanted = objective.outer().filter(|_| config.composite_model).map(|_| Composite::first_request());
+    let wanted = objective.outer().filter(|_| config.composite_model).map(|_| Composite::request(f64::INFINITY));
     let request = Request { linearization: wanted, accuracy, ..Request::tight(&start) };
     let evaluation = match evaluate(objective, &request) {
         Outcome::Answer(answer) => answer.into_evaluation(),

@@ -57,8 +57,6 @@ pub(crate) struct Composite {
     rejected: Option<Base>,
     /// Whether the pending trial point is a correction.
     correcting: bool,
-    /// Whether the pending trial point is one of the model's own.
-    proposing: bool,
     /// Whether the model takes the curvature of the outputs into account: since a step has failed without it.
     bends: bool,
     memory: Memory,
@@ -86,7 +84,6 @@ impl Composite {
             base: None,
             rejected: None,
             correcting: false,
-            proposing: false,
             bends: false,
             memory: Memory::default(),
             kinks: Kinks::default(),
@@ -95,33 +92,16 @@ impl Composite {
         }
     }
 
-    /// What to ask of an evaluation; `below`: the value from which on the point becomes the center.
-    pub(crate) fn request(&self, below: f64) -> LinearizationRequest {
-        LinearizationRequest {
-            // What a rejected trial point of its own tells is used by the correction.
-            below: if self.proposing { f64::INFINITY } else { below },
-            ..Self::first_request()
-        }
-    }
-
-    /// What to ask of the first evaluation.
-    pub(crate) fn first_request() -> LinearizationRequest {
+    /// What to ask of an evaluation; `below`: the value up to which a Jacobian is wanted.
+    pub(crate) fn request(below: f64) -> LinearizationRequest {
         let accuracy = Accuracy::relative(JACOBIAN_ACCURACY).unwrap_or(Accuracy::TIGHTEST);
-        LinearizationRequest { accuracy, below: f64::INFINITY }
+        LinearizationRequest { accuracy, below }
     }
 }
 
 impl<O: NonsmoothObjective> Run<'_, '_, O> {
     /// The trial point of the composite model, none where it has none; ends the run at a point that it proves stationary.
     pub(super) fn composite_trial(&mut self) -> ControlFlow<Termination, Option<Proposal>> {
-        let proposal = self.next_composite_trial()?;
-        if let Some(composite) = &mut self.composite {
-            composite.proposing = proposal.is_some();
-        }
-        Continue(proposal)
-    }
-
-    fn next_composite_trial(&mut self) -> ControlFlow<Termination, Option<Proposal>> {
         let Some(composite) = &mut self.composite else { return Continue(None) };
         if let Some(excursion) = composite.excursion.take() {
             return self.continue_excursion(excursion);
