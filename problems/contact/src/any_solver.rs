@@ -22,16 +22,16 @@ use std::sync::{Arc, OnceLock};
 const MAX_CONDENSED_BYTES: f64 = 4e9;
 /// Products with F that total FETI is always allowed: states of the smallest scenes take some tens.
 const MIN_PRODUCTS: usize = 100;
-/// Share of the largest residual of a state above which the state of total FETI is found anew by direct condensation: the two
-/// measure forces and lengths in different units, and a defect of the gluing grows along a slender body.
+/// Share of [`MAX_RESIDUAL`] above which a state of total FETI is found anew by direct condensation: the two solvers measure
+/// forces and lengths in different units, and a defect of the gluing grows along a slender body.
 const COMFORTABLE_SHARE: f64 = 0.01;
 /// Poisson's ratio from which total FETI takes hundreds of products and more.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.499;
 /// Longest over shortest edge of a brick from which total FETI takes hundreds of products and more.
 const EXTREME_BRICK: f64 = 30.0;
 
-/// Products with F, by operations, up to which a state by direct condensation with all its derivatives takes less time than one by
-/// total FETI: dense operations are the faster ones (docs/scaling.md).
+/// Cost of a state by direct condensation, in products with F of as many operations, up to which it takes less time with all its
+/// derivatives than one by total FETI: dense operations are the faster ones (docs/scaling.md).
 const MAX_PRODUCTS_WITH_JACOBIANS: usize = 1000;
 
 /// What a solver will be asked for.
@@ -110,7 +110,7 @@ impl From<DirectSolver> for AnySolver {
 }
 
 impl AnySolver {
-    /// The solver of a kind; `preconditioner` is for total FETI.
+    /// The solver of a kind, for states and adjoints; `preconditioner` is for total FETI.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
@@ -122,7 +122,7 @@ impl AnySolver {
         Self::for_use(problem, kind, preconditioner, Wanted::States)
     }
 
-    /// The solver of a kind; `preconditioner` is for total FETI.
+    /// As [`AnySolver::new`], for what is `wanted` of the solver: the choice of [`SolverKind::Auto`] depends on it.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
@@ -225,7 +225,7 @@ impl AutoSolver {
         }
     }
 
-    /// The shape of a state of total FETI solved by direct condensation: where derivatives on TFETI do not converge.
+    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on total FETI.
     fn condensed(&self, state: &TornState) -> Result<(&DirectSolver, ContactState<DirectState>), ContactError> {
         let configuration = Configuration::of(&self.problem, state.blocks().to_vec())?;
         let direct = self.direct()?;

@@ -3,8 +3,9 @@
 //! ```text
 //! S: α ↦ y = (λ_N; λ_T),    D*S(α)(y*):  one adjoint solve + one pass over the elements             method.md (5.1)
 //! ```
-//! The only file that knows both the framework and the mechanics. Dual of the state: the normal forces of all contact nodes,
-//! then, with friction, two tangential forces per node ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries).
+//! Contact solvers know nothing of the framework: this module and [`crate::cost`] translate. A dual of the state has one entry
+//! per normal force, then, with friction, two per node for the tangential forces
+//! ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries).
 
 use crate::equilibrium::{ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolverState, ValueError};
 use crate::error::{ContactError, SceneError};
@@ -48,7 +49,7 @@ impl ContactShape {
     /// Checks a scene and prepares its solver.
     ///
     /// # Errors
-    /// [`SceneError`] for a bad field; a failing symbolic analysis is reported as the scene's size.
+    /// [`SceneError`] for a bad field, a scene that needs more memory than there is, or a size whose symbolic analysis fails.
     pub fn new(scene: Scene, kind: SolverKind) -> Result<Self, SceneError> {
         Self::with_preconditioner(scene, kind, PreconditionerKind::default())
     }
@@ -113,7 +114,7 @@ impl<S: ContactSolver> ContactShape<S> {
         self.solver.diagnose(&state.solution).map_err(oracle)
     }
 
-    /// What is implausible about a state, for at most a tenth of its work.
+    /// What is implausible about a state; the check for uniqueness takes at most a tenth of the state's products with F.
     ///
     /// # Errors
     /// [`OracleError::Failed`] for a state of another mesh.
@@ -145,7 +146,8 @@ impl<S: ContactSolver> ContactShape<S> {
         left_out
     }
 
-    /// One element of D*S(α)(y*), and what the residual of the state does to a function with the gradient y* there.
+    /// One element of D*S(α)(y*), method.md (5.1), and the error that the residual of the state causes in a function whose
+    /// gradient there is y*, method.md (5.3).
     ///
     /// # Errors
     /// [`OracleError`] on wrong sizes, and when the adjoint does not converge.
@@ -234,7 +236,7 @@ impl<S: ContactSolver> StateSolver for ContactShape<S> {
         state.solution.warm_start()
     }
 
-    /// Products with the dual operator; 0 by direct condensation.
+    /// Products with the dual operator, adjoints included; 0 by direct condensation alone.
     fn work(&self, state: &Self::State) -> usize {
         state.work().dual_operator_applications
     }

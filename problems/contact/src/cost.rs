@@ -48,8 +48,8 @@ impl PressureCost {
         Ok(Self { measure, is_root: false, areas, dual_dimension: boundary.dual_dimension() })
     }
 
-    /// The same cost in a form that can be computed for the pressures of a scene: where Σσ^p may be no double, its root
-    /// (Σσ^p)^{1/p}, which has the same minimisers. Meshes and shapes have no say in that.
+    /// The same cost in a form that can be computed for the pressures of a scene: where Σσ^p may leave the range of doubles, its
+    /// root (Σσ^p)^{1/p}, which has the same minimisers. The choice depends neither on the mesh nor on the shape.
     #[must_use]
     pub fn normalised_for(self, scene: &Scene) -> Self {
         let PressureMeasure::Norm { exponent } = self.measure else { return self };

@@ -1,9 +1,9 @@
-//! −∂(K u − f): the nodal forces that changes of the column heights put on a body at rest in u; method.md (5.2).
+//! −∂(K u − f): the nodal forces that changes of the column heights cause at a fixed displacement u; method.md (5.2).
 //!
 //! ```text
 //! x₃ of layer k is F·k/n₃:   r = −Σ_nodes (k/n₃) δF_column ∂(K u − f)/∂x₃
 //! ```
-//! The forward twin of [`shape_sensitivity`](super::shape_sensitivity): −pᵀ∂(K u − f) there is pᵀr here.
+//! The adjoint counterpart is [`shape_sensitivity`](super::shape_sensitivity): its −pᵀ∂(K u − f) is pᵀr.
 
 use crate::body::elasticity::Material;
 use crate::body::elasticity::brick::DOFS;

@@ -28,7 +28,7 @@ pub fn loaded_faces(grid: &Grid, face: Face, place: Option<&Subdomain>) -> Vec<[
     faces
 }
 
-/// ∂(weight of the second corner)/∂x₃ of the first, for the four corners of a face, mm.
+/// ∂(weight of corner b)/∂x₃ of corner a as `[a][b]`, for the four corners of a face, mm.
 pub fn weight_derivatives(block: &Block, face: &[[usize; 3]; 4]) -> [[f64; 4]; 4] {
     let nodes = face.map(|node| block.coordinates(node));
     std::array::from_fn(|moved| {
@@ -38,7 +38,7 @@ pub fn weight_derivatives(block: &Block, face: &[[usize; 3]; 4]) -> [[f64; 4]; 4
     })
 }
 
-/// Adds ∂(p·f)/∂x₃ of the face's nodes to `add(node, value)`, for a traction and adjoint displacements `p(node)`.
+/// Passes ∂(p·f)/∂x₃ of every node of a face to `add(node, value)`, for a traction and adjoint displacements `p(node)`.
 pub fn height_derivative(
     block: &Block,
     face: &[[usize; 3]; 4],

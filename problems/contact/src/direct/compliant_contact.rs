@@ -125,7 +125,7 @@ impl CompliantContact {
     }
 
     /// Moves the bodies by the rigid motions of given unknowns: d := d + R a, a := 0. Jumps of nodes in contact are small
-    /// numbers then, and no longer differences of large ones. Returns where they were.
+    /// numbers then, and no longer differences of large ones. Returns the placement before.
     pub(super) fn recentre(&mut self, unknowns: &mut [f64]) -> Placement {
         let before = self.placement.clone();
         let (_, amplitudes) = unknowns.split_at_mut(self.compliance.nrows());

@@ -1,7 +1,7 @@
 //! One body condensed onto its contact nodes by a sparse Cholesky factorisation with the contact dofs last.
 //!
 //! ```text
-//! K + σ I_c = L Lᵀ,   S = L₂₂ L₂₂ᵀ − σ I,   f_c = (S + σ I) x_c with (K + σ I_c) x = f
+//! K + σ I_c = L Lᵀ,   S = L₂₂ L₂₂ᵀ − σ I,   f̂_c = (S + σ I) x_c with (K + σ I_c) x = f
 //! ```
 //! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly.
 
@@ -33,7 +33,7 @@ pub struct CondensationPattern {
 pub struct CondensedBody {
     /// S over contact dofs 3·node + component, N/mm.
     pub(crate) schur: Mat<f64>,
-    /// f_c, N.
+    /// f̂_c, the loads condensed onto the contact dofs, N.
     pub(crate) load: Vec<f64>,
     factor: NumericFactor,
     full_load: Vec<f64>,

@@ -1,7 +1,7 @@
 //! Contraction and condition of a condensed state, from its assembled matrices.
 //!
 //! ```text
-//! Tresca matrix·(dλ, da) = e dΨ on the slip rows,   Φ′ = 𝓕 ∂λ_N/∂Ψ over the sliding nodes
+//! M (dλ; da) = e dΨ on the slip rows,   M: Newton's matrix with slip bounds given (Tresca),   Φ′ = 𝓕 ∂λ_N/∂Ψ over the sliding nodes
 //! ```
 
 use crate::direct::compliant_contact::CompliantContact;
@@ -43,8 +43,8 @@ impl CompliantContact {
         spectral_radius(count, &map)
     }
 
-    /// 𝓕 ‖∂λ_N/∂λ_T‖₂ over the closed nodes by power iteration: what the slip bounds contract by, at most, as long as the same
-    /// nodes are closed, whichever of them slide and wherever to. 0 without friction or closed nodes.
+    /// 𝓕 ‖∂λ_N/∂λ_T‖₂ over the closed nodes by power iteration: it bounds the contraction of the slip bounds as long as the same
+    /// nodes are closed, whichever of them slide and in whatever direction. 0 without friction or closed nodes.
     pub(super) fn estimate_contraction(&self, linearizations: &[Linearization]) -> f64 {
         let boundary = &self.problem.boundary;
         let all_sliding: Vec<Linearization> = linearizations

@@ -1,9 +1,9 @@
 //! Direct condensation onto the contact nodes: an independent path, and the one that finds loosely held equilibria.
 //!
 //! ```text
-//! S u_c = f_c − λ,   S = K_cc − K_ci K_ii⁻¹ K_ic,   f_c = f_c − K_ci K_ii⁻¹ f_i            (per body, whole and untorn)
+//! S u_c = f̂_c − λ,   S = K_cc − K_ci K_ii⁻¹ K_ic,   f̂_c = f_c − K_ci K_ii⁻¹ f_i           (per body, whole and untorn)
 //! ```
-//! Nothing of the total FETI path is used: neither rows, nor coarse space, nor Krylov methods.
+//! The solution uses nothing of total FETI: neither its constraint rows, nor its coarse space, nor its Krylov methods.
 
 mod adjoint;
 mod compliant_body;

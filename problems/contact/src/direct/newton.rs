@@ -6,8 +6,8 @@
 //! From the bonded state, δ = 0 is enough in most scenes. With a large compliance δ of its own every contact node yields, and
 //! Newton's method converges from the bonded guess also where few nodes hold the bodies; the state of every δ is the start of
 //! the next. A proximal spring in the rigid block of the derivative keeps it regular where the closed nodes leave a motion
-//! free; the residual does not hold it, so that the state does not depend on it. Open nodes are eliminated from every step.
-//! Once the residual comes near the rounding of d + R a, the bodies are taken to where they are: d := d + R a, a := 0.
+//! free; the residual does not contain it, so that the state does not depend on it. Open nodes are eliminated from every step.
+//! Once the residual comes near the rounding of d + R a, the bodies are moved by these motions: d := d + R a, a := 0.
 
 use crate::direct::compliant_contact::CompliantContact;
 use crate::equilibrium::Stage;
@@ -16,27 +16,27 @@ use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::norm;
 use faer::Mat;
 
-/// Compliances that the first problem is tried with.
+/// Compliances that the first problem is tried with, one after the other until Newton's method converges.
 const FIRST_COMPLIANCES: [f64; 6] = [0.0, 1.0, 1e2, 1e4, 1e6, 1e8];
 /// Compliance below which it is set to 0.
 const LAST_COMPLIANCE: f64 = 1e-6;
-/// Factor of the compliance after the first success.
+/// Factor of the compliance in the first step that lowers it.
 const SHRINKAGE: f64 = 0.25;
-/// Smallest factor of the compliance.
+/// Smallest factor of the compliance in one step.
 const SMALLEST_FACTOR: f64 = 1e-4;
-/// Factor of the compliance that is no progress any more.
+/// Factor of the compliance above which a step is no progress any more.
 const LARGEST_FACTOR: f64 = 0.999;
 /// Proximal springs, relative to the mean contact stiffness, tried one after the other.
 pub(super) const SPRINGS: [f64; 2] = [1e-8, 1e-6];
 /// Newton steps for one compliance.
 const MAX_STEPS: usize = 30;
-/// Newton steps in all for one spring.
+/// Newton steps that lowering the compliance may take with one spring.
 const MAX_TOTAL_STEPS: usize = 600;
 /// Halvings of one step.
 const MAX_HALVINGS: usize = 6;
-/// Decrease asked of a step of length one.
+/// Relative decrease of the residual asked of a step of length one.
 const SUFFICIENT_DECREASE: f64 = 1e-4;
-/// Times its rounding floor that a residual is seen to reach.
+/// Multiple of its rounding floor up to which a residual counts as having reached it.
 pub(super) const FLOOR_REACHED: f64 = 100.0;
 /// Tightest relative residual aimed at: below it rounding decides.
 const TIGHTEST: f64 = 1e-13;
@@ -50,7 +50,7 @@ pub(super) struct Reached {
     pub(super) unknowns: Vec<f64>,
     /// Derivatives selected there.
     pub(super) linearizations: Vec<Linearization>,
-    /// Whether they solve the problem without compliance of its own.
+    /// Whether they solve the problem without a compliance of the contact nodes (δ = 0).
     pub(super) solved: bool,
     /// Relative residual after every Newton step, at the compliance of the step.
     pub(super) history: Vec<f64>,

@@ -3,7 +3,7 @@
 //! ```text
 //! standard:         σ = λ tr(ε) I + 2μ ε                          at the point
 //! mean dilatation:  σ = κ θ̄ I + 2μ (ε − ⅓ tr(ε) I),  θ̄ = D(u)/V  over the brick      (mean_dilatation.rs)
-//! σ_vM = √( ½[(σ₁₁ − σ₂₂)² + (σ₂₂ − σ₃₃)² + (σ₃₃ − σ₁₁)²] + 3(σ₁₂² + σ₂₃² + σ₁₃²) )            \[Mises1913\]
+//! σ_vM = √( ½[(σ₁₁ − σ₂₂)² + (σ₂₂ − σ₃₃)² + (σ₃₃ − σ₁₁)²] + 3(σ₁₂² + σ₂₃² + σ₁₃²) )              [Mises1913]
 //! ```
 //! At the centre of a trilinear brick the stress converges one order faster than elsewhere \[Barlow1976\], so that is where it
 //! is taken for pictures. Tensors are six numbers in the order 11, 22, 33, 12, 23, 13.
@@ -17,7 +17,7 @@ pub type SymmetricTensor = [f64; 6];
 /// Row and column of each of the six components.
 pub const COMPONENTS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
 
-/// Stress of one brick, as its stiffness matrix understands it.
+/// Stress of one brick, consistent with its stiffness matrix.
 #[derive(Debug, Clone, Copy)]
 pub struct BrickStress<'a> {
     nodes: &'a Nodes<f64>,

@@ -100,7 +100,7 @@ impl Grid {
         cell * share(i, self.cells[0]) * share(j, self.cells[1])
     }
 
-    /// The axis across a face, and the layer of nodes along it.
+    /// The axis normal to a face, and the index along this axis of the layer of nodes on the face.
     pub fn side(&self, face: Face) -> (usize, usize) {
         match face {
             Face::X1Min => (0, 0),
