@@ -119,7 +119,7 @@ pub enum ContactError {
         j: usize,
         /// Position along x₃.
         k: usize,
-        /// Smallest Jacobian determinant (over the unit cube), mm³.
+        /// Jacobian determinant at the first such column of nodes, from the unit cube, mm³.
         determinant: f64,
     },
     /// The load has a resultant along a motion that nothing holds.
@@ -145,7 +145,7 @@ pub enum ContactError {
         /// Norm of the resultants of the loads, N.
         resultant: f64,
     },
-    /// A factorisation met a matrix that is not positive definite, or its residual check failed.
+    /// A symbolic analysis failed, a matrix is not positive definite, or a factorisation did not pass its residual check.
     #[error("{what}: {reason}")]
     Factorization {
         /// Which matrix.

@@ -10,7 +10,7 @@ use crate::work_estimate::factor_values;
 const NUMBER: f64 = 8.0;
 /// Dual vectors that a solve keeps: directions, their images and jumps, Krylov bases.
 const DUAL_VECTORS: f64 = 140.0;
-/// Share of the boundary layer's factor in that of a subdomain, for the interior matrix of the Dirichlet preconditioner.
+/// Size of the factor of the interior matrix, which the Dirichlet preconditioner needs, over that of a subdomain's factor.
 const INTERIOR_SHARE: f64 = 0.45;
 /// Share of a subdomain's factor that its copy in single precision adds.
 const SINGLE_PRECISION_SHARE: f64 = 0.5;
@@ -19,7 +19,7 @@ const STIFFNESS_PER_DOF: f64 = 41.0;
 /// Share of the available memory that may be used.
 const USABLE: f64 = 0.9;
 
-/// Estimated bytes for a scene.
+/// Estimated bytes for a scene. The kind `auto` counts as total FETI: it condenses what takes little memory only.
 pub(crate) fn estimate(scene: &Scene, kind: SolverKind, preconditioner: PreconditionerKind) -> f64 {
     let bodies = if scene.upper.is_some() { 2.0 } else { 1.0 };
     let nodes = |cells: [f64; 3]| cells.iter().map(|cells| cells + 1.0).product::<f64>();

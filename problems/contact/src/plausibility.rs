@@ -1,7 +1,7 @@
 //! Whether a state means what it seems to mean: linear elasticity, the mesh, the contact zone, uniqueness.
 //!
-//! A warning does not say that the state is wrong: it solves the discrete problem to rounding. It says that the discrete
-//! problem may be far from the body it stands for. Every warning has a code that does not change.
+//! A warning does not say that the state is wrong: the state solves the discrete problem to its accuracy. It says that the
+//! discrete problem may be far from the body it stands for. Every warning has a code that does not change.
 
 use crate::body::elasticity::brick::{self, DOFS, Nodes};
 use crate::equilibrium::{ContactForces, ContactProblem, ContactStatus, SolvedBody};
@@ -98,7 +98,7 @@ fn deformation(bodies: &[SolvedBody], found: &mut Vec<Warning>) {
         )
     });
     warn(found, rotation > MAX_ROTATION, "large-rotation", || {
-        format!("the largest rotation is {rotation:.3} (linear elasticity: at most {MAX_ROTATION})")
+        format!("the largest rotation is {rotation:.3} rad (linear elasticity: at most {MAX_ROTATION} rad)")
     });
     warn(found, strain > MAX_STRAIN, "large-strain", || {
         let (strain, allowed) = (100.0 * strain, 100.0 * MAX_STRAIN);

@@ -10,7 +10,8 @@ use crate::equilibrium::Work;
 use crate::scene::Scene;
 use crate::solver_kind::SolverKind;
 
-/// Products with F after which total FETI gives up where direct condensation cannot follow; what direct condensation may cost.
+/// Products with F after which total FETI gives up where bodies are too large to be condensed. The Newton steps of direct
+/// condensation may cost as many operations.
 pub(crate) const MAX_PRODUCTS: usize = 20_000;
 /// Fill of a factor with the contact dofs last, relative to one in free order.
 const CONTACT_LAST: f64 = 1.3;

@@ -1,7 +1,7 @@
 """Reads the files that `vtk_files` makes with VTK's own readers. Optional: needs `pip install vtk`.
 
     cargo run --release -p problems --example fields -- FOLDER
-    python3 problems/tests/read_vtu.py FOLDER
+    python3 problems/contact/tests/read_vtu.py FOLDER
 
 Checks, for every file that FOLDER/fields.pvd lists: readers report no error, arrays have their components and no NaN, all
 hexahedra have a positive scaled Jacobian and together the volume inside the outer surface, quadrilaterals point upwards, the von

@@ -1,4 +1,4 @@
-//! Forward derivative of the condensed problem: all columns on one factorisation.
+//! Forward derivative of the condensed problem: all columns on one factorisation; method.md (5.4).
 //!
 //! ```text
 //! r = −∂(K u − f),   r_c: what it puts on the contact dofs,   δd = B C r_c − ∂g,   δe = Nᵀ r_c

@@ -6,7 +6,7 @@ use crate::error::ContactError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Residuals of other kinds that an iterate may have, in the Newton residual that it was solved to: they are measured in other norms.
+/// Factor by which other residuals of an iterate may exceed its Newton residual, since they are measured in other norms.
 const OTHER_NORMS: f64 = 4.0;
 
 /// Largest residual of a state that any solver returns, unless a coarser one is asked for.
@@ -17,7 +17,7 @@ pub const MAX_RESIDUAL: f64 = 1e-8;
 pub struct Residuals {
     /// Resultant of loads and contact forces along the motions that supports leave free, over the total load.
     pub equilibrium: f64,
-    /// Largest of |min(λ_N, c·(gap opening))| over the total load.
+    /// Largest of |min(λ_N, c·(remaining gap))| over the total load.
     pub complementarity: f64,
     /// Largest excess of |λ_T| over 𝓕λ_N, over the total load.
     pub friction_cone: f64,
@@ -37,7 +37,8 @@ impl Residuals {
         )
     }
 
-    /// Refuses a state whose residuals are above what is allowed, or above [`MAX_RESIDUAL`] where less is asked for.
+    /// Refuses a state whose largest residual is above both [`MAX_RESIDUAL`] and four times `allowed`, the Newton residual asked
+    /// for: the other residuals are measured in other norms.
     ///
     /// # Errors
     /// [`ContactError::Inaccurate`] with the residuals.
@@ -70,7 +71,8 @@ impl fmt::Display for Residuals {
 /// How far the state is from the nearest point where S is not differentiable.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Kink {
-    /// Smallest over all nodes of |x_N|/max|x_N| and ||x_T| − 𝓕x_N|/max(|x_T|, 𝓕x_N), x = λ + c(B u − g).
+    /// Smallest over all nodes of |x_N|/max|x_N| and, for closed nodes with friction, ||x_T| − 𝓕x_N|/max(|x_T|, 𝓕x_N), with
+    /// x = λ + c(B u − g).
     pub smallest_margin: f64,
     /// Nodes whose margin is at most [`WEAKLY_ACTIVE`]; their derivative is a selection.
     pub weakly_active: usize,
@@ -98,7 +100,7 @@ impl Kink {
     }
 }
 
-/// |λ − Π(λ + c w)| entry by entry, for packed multipliers λ and jumps w = B u − g.
+/// λ − Π(λ + c w) entry by entry, for packed multipliers λ and jumps w = B u − g; `stiffness` is c.
 pub fn projection_residual(boundary: &ContactBoundary, forces: &[f64], jumps: &[f64], stiffness: f64) -> Vec<f64> {
     let mut residual = vec![0.0; boundary.row_count];
     for point in &boundary.points {

@@ -5,7 +5,7 @@ use crate::equilibrium::modes::{Motion, RigidScene};
 use crate::equilibrium::{ContactProblem, Stage};
 use crate::error::ContactError;
 
-/// The undeformed configuration of a shape, seen to have an equilibrium as rigid bodies.
+/// The undeformed configuration of a shape, checked to have an equilibrium as rigid bodies.
 #[derive(Debug)]
 pub struct Configuration {
     /// The bodies, lower first.

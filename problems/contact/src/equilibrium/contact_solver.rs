@@ -61,7 +61,7 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     fn diagnose(&self, state: &Self::State) -> Result<Diagnosis, ContactError>;
 
     /// A rough estimate of the contraction of the slip bounds at a solved shape, for at most so many products with the dual
-    /// operator; 0 without sliding nodes.
+    /// operator; 0 where no node slides (total FETI) or no node is closed (direct condensation). See method.md section 4.
     ///
     /// # Errors
     /// [`ContactError`] from the linear system.
@@ -86,7 +86,7 @@ pub struct Tangents {
     pub openings: Vec<Vec<f64>>,
     /// Relative residual of the linearized contact problems.
     pub residual: f64,
-    /// Products with the dual operator F, one per column; 0 for direct condensation.
+    /// Products with the dual operator F, every column counted; 0 for direct condensation.
     pub applications: usize,
 }
 

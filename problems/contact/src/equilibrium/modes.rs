@@ -1,7 +1,7 @@
 //! Rigid body motions of the whole scene: what supports leave free, what contact must carry, what nothing holds.
 //!
 //! ```text
-//! equilibrium needs   Z^T (f − Bᵀλ) = 0   for the motions Z that supports leave free, with λ in the friction cone
+//! equilibrium needs   Zᵀ (f − Bᵀλ) = 0   for the motions Z that supports leave free, with λ in the friction cone
 //! ```
 //! A load outside that cone has no equilibrium and is refused before any iteration; a motion that neither supports nor
 //! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero, so λ does not change).
@@ -30,9 +30,9 @@ pub fn motions(point: [f64; 3], centre: [f64; 3], length: f64) -> [[f64; 3]; MOT
 pub struct RigidScene {
     /// Number of bodies, 1 or 2.
     pub bodies: usize,
-    /// Held dofs: (body, point, component).
+    /// Held dofs: (body, point in mm, component).
     pub held: Vec<(usize, [f64; 3], usize)>,
-    /// Nodal loads: (body, point, force).
+    /// Nodal loads: (body, point in mm, force in N).
     pub loads: Vec<(usize, [f64; 3], [f64; 3])>,
     /// Contact nodes: position on the lower and (if there is one) on the upper body.
     pub contact: Vec<[[f64; 3]; 2]>,

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Work spent on one state and its subgradient.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Work {
-    /// Semismooth Newton steps; for the descent, derivatives taken (one per product with F).
+    /// Semismooth Newton steps; in the descent of total FETI, which recycles all directions, one per new direction.
     pub newton_steps: usize,
     /// Tresca problems of the successive approximations.
     pub fixed_point_steps: usize,
@@ -67,7 +67,7 @@ pub struct StageSeconds {
     pub factorization: f64,
     /// Coarse space: G and the part of its matrix that all active sets share.
     pub coarse_space: f64,
-    /// Newton iteration: coarse factors, Krylov, dual operator.
+    /// Iteration for the contact forces, whatever its method: coarse factors, Krylov spaces, products with F.
     pub newton: f64,
     /// Displacements and certificates.
     pub recovery: f64,
@@ -96,7 +96,7 @@ pub struct ContactState<S> {
     pub forces: ContactForces,
     /// What derivative, diagnosis and displacements are computed from.
     pub solution: S,
-    /// Force that residuals are relative to, N.
+    /// Force that residuals are relative to, N; zero for bodies at rest.
     pub load: f64,
     /// The solver that found it.
     pub solver: SolverKind,

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 pub enum ContactStatus {
     /// No contact: λ_N = 0.
     Open,
-    /// Closed, |λ_T| < 𝓕λ_N, no tangential jump.
+    /// Closed, |λ_T| ≤ 𝓕λ_N, no tangential jump; also a closed node that supports keep from sliding.
     Stick,
-    /// Closed, |λ_T| = 𝓕λ_N.
+    /// Closed, |λ_T| = 𝓕λ_N; without friction, every closed node that is free to slide.
     Slip,
 }
 

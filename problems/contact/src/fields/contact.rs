@@ -25,8 +25,8 @@ pub struct ContactFields {
     pub status: Vec<ContactStatus>,
     /// Gap before loading, mm; negative where the shapes overlap.
     pub gap: Vec<f64>,
-    /// Gap that is left under load, mm; ≥ 0 up to the accuracy of the state. Less the `opening` of
-    /// [`ContactForces`], which counts the jump against the gap.
+    /// Gap that is left under load, mm; ≥ 0 up to the accuracy of the state. It is minus the `opening` of [`ContactForces`], the
+    /// normal jump less the gap.
     pub remaining_gap: Vec<f64>,
     /// ∂J/∂(height of the contact node), unit of J per mm, where it was asked for: see
     /// [`ContactShape::height_sensitivity`](crate::contact_shape::ContactShape::height_sensitivity).

@@ -38,7 +38,7 @@ pub fn products<E: Real, const N: usize>(list: &[&[Row<E, N>]], b: &[Row<E, N>])
     sums
 }
 
-/// |a|₂ per column, with squares in double precision: no unit system leaves its range.
+/// |a|₂ per column, with squares in double precision, so that they neither overflow nor underflow whatever the units.
 pub fn norms<E: Real, const N: usize>(a: &[Row<E, N>]) -> Row<f64, N> {
     let square = |a: &[Row<E, N>]| {
         vectorized(

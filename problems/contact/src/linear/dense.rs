@@ -179,8 +179,8 @@ pub fn multiply_columns(matrix: &Mat<f64>, columns: &Mat<f64>) -> Mat<f64> {
     product
 }
 
-/// Largest over smallest singular value of a square matrix after the rows are brought to equal length; infinite for a singular matrix, none
-/// when the singular values cannot be found.
+/// Largest over smallest singular value of a square matrix after the rows are brought to equal length; infinite for a singular
+/// matrix, none when the singular values cannot be found.
 pub fn spectral_condition(matrix: &Mat<f64>) -> Option<f64> {
     let mut scaled = matrix.clone();
     for row in 0..scaled.nrows() {

@@ -107,7 +107,7 @@ impl<E: Real, const N: usize> Row<E, N> {
         self.0.iter().flatten().copied()
     }
 
-    /// Calls `change` with every number.
+    /// The row of what `change` makes of every number.
     #[inline(always)]
     pub fn map(self, change: impl Fn(E) -> E) -> Self {
         Row(self.0.map(|lanes| lanes.map(&change)))

@@ -29,7 +29,7 @@ fn reached<const N: usize>(residuals: &Row<f64, N>, targets: &Row<f64, N>) -> bo
 }
 
 /// Minimises |r − A x| per column over growing Krylov spaces until every norm is at most its target, `max_iterations` is
-/// reached, or the largest share of a target does not halve for long; the caller judges the residuals.
+/// reached, or the largest ratio of a norm to its target does not halve in 40 iterations; the caller judges the residuals.
 ///
 /// `precondition(r)` returns M r; `apply(z)` returns (A z, payload).
 pub fn gcr<E: Real, P, const N: usize>(

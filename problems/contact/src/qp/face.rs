@@ -24,7 +24,7 @@ pub struct Face {
 }
 
 impl Face {
-    /// The face of x; with `release`, blocks whose gradient points into the set are let go.
+    /// The face of x; with `release`, blocks whose negative gradient points into the set are let go.
     pub(crate) fn new(set: &SeparableSet, x: &[f64], gradient: &[f64], release: bool) -> Self {
         let mut parts = Vec::new();
         for block in set.blocks() {

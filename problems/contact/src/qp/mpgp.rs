@@ -4,7 +4,7 @@
 //! min q(x) = ½ xᵀHx − xᵀb,  x ∈ Ω            g = H x − b,   g̃ = (x − P_Ω(x − αg))/α,   α = 1/|H|
 //!
 //! proportioning step  when the chopped part of g̃ outweighs the free part: first step of a sweep that lets go
-//!                     every active constraint whose gradient points inwards
+//!                     every active constraint whose negative gradient points inwards
 //! cg step             conjugate gradients in the face, preconditioned there
 //! expansion step      the end of a sweep that left Ω or slid along a circle: projection, gradient from x
 //! ```

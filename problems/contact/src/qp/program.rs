@@ -24,7 +24,7 @@ impl QuadraticProgram<'_> {
     }
 }
 
-/// Constants of the outer loop.
+/// Constants of the outer loop; see [`smalse`](crate::qp::smalse) for ρ, M, β, η and μ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SmalseSettings {
     /// ρ over |H|/|C|², > 0. Default 1.
@@ -65,10 +65,10 @@ impl SmalseSettings {
     pub fn validate(&self) -> Result<(), QpError> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         setting("penalty", self.penalty, "finite and > 0", positive(self.penalty))?;
-        setting("first M", self.first_m, "finite and > 0", positive(self.first_m))?;
+        setting("first_m", self.first_m, "finite and > 0", positive(self.first_m))?;
         setting("beta", self.beta, "in (0, 1)", self.beta > 0.0 && self.beta < 1.0)?;
         setting("eta", self.eta, "> 0", self.eta > 0.0)?;
-        setting("Lanczos steps", self.norm_steps as f64, "at least 1", self.norm_steps > 0)?;
+        setting("norm_steps", self.norm_steps as f64, "at least 1", self.norm_steps > 0)?;
         self.inner.validate()
     }
 }

@@ -248,7 +248,7 @@ mod tests {
     #[test]
     fn reduced_gradient_vanishes_at_a_minimiser() {
         let set = disc(2.0);
-        // Gradient pointing out of every active constraint: nothing can move.
+        // The negative gradient points out of every active constraint: nothing can move.
         let reduced = set.reduced_gradient(&[-1.0, 3.0, 0.0, -2.0], &[5.0, -1.0, 0.0, 1.0], 0.1);
         assert!(reduced.iter().all(|g| g.abs() < 1e-14), "{reduced:?}");
         let (free, chopped) = set.split(&[-1.0, 3.0, 0.0, -2.0], &[-1.0, 2.0, 3.0, 0.0], &[-1.0, 2.0, 3.0, 0.0]);

@@ -46,7 +46,7 @@ impl Smalse<'_> {
     /// the solution that the data suggest.
     ///
     /// # Errors
-    /// [`QpError`]; also when rounding stops the iteration above a thousand times the tolerance.
+    /// [`QpError`]; [`QpError::NotConverged`] also when rounding stops the iteration above a thousand times the tolerance.
     pub fn solve(&self, start: &WarmStart, tolerance: f64) -> Result<SmalseSolution, QpError> {
         self.check(start)?;
         let norm_h = self.norm(start)?;
@@ -174,7 +174,7 @@ const SLOW: usize = 10;
 const STALLED: usize = 3;
 /// Multiple of the rounding of C x below which C x − e means nothing.
 const BLURRED: f64 = 1e3;
-/// Factor of ρ when it was not.
+/// Factor of ρ when the updates of μ have not halved C x − e.
 const RAISE: f64 = 4.0;
 /// Lanczos steps for |C|.
 const ROW_NORM_STEPS: usize = 10;
@@ -269,7 +269,7 @@ impl<'a> State<'a> {
         self.checkpoint = (infeasibility, 0);
     }
 
-    /// Step 3; returns the state of affairs.
+    /// Step 3, the update of μ and M; returns the solution so far.
     fn update(&mut self, solver: &Smalse<'_>, norm_rho: f64, outer: usize) -> SmalseSolution {
         let reduced = self.program.set.reduced_gradient(&self.point.x, &self.point.gradient, 1.0 / norm_rho);
         let equalities = self.program.equalities;

@@ -37,7 +37,7 @@ pub struct BodyScene {
 }
 
 impl BodyScene {
-    /// Components held at a node of this body.
+    /// Which of u₁, u₂, u₃ supports hold at node (i, j, k) of this body.
     pub fn held(&self, grid: &Grid, position: [usize; 3]) -> [bool; 3] {
         let mut held = [false; 3];
         for support in &self.supports {

@@ -13,7 +13,7 @@ pub enum SplineKind {
     Bezier,
 }
 
-/// A tensor-product spline surface with d₁ × d₂ control heights, index i·d₂ + j.
+/// A tensor-product spline surface with m₁ × m₂ control heights, index i·m₂ + j.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SplineSurface {
     bases: [Basis; 2],

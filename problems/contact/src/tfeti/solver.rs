@@ -131,7 +131,7 @@ impl TornSolver {
     ///
     /// # Errors
     /// [`ContactError`]: inverted elements, no equilibrium, what the method returns, and [`ContactError::Inaccurate`] when the
-    /// residuals of its state are above 1e-8 and above `allowed`.
+    /// residuals of its state are above both 1e-8 and four times `allowed`.
     pub fn solve_by<T: Default>(
         &self,
         controls: &[f64],
@@ -307,7 +307,7 @@ impl TornSolver {
         Ok(whole_bodies(&self.model, &state.blocks, &state.displacement))
     }
 
-    /// Strain energy ½ uᵀK u of the bodies of this process, N·mm.
+    /// Strain energy ½ uᵀK u of the subdomains of this process, N·mm.
     pub fn strain_energy(&self, state: &TornState) -> f64 {
         let pattern = &self.model.pattern.pattern;
         let mut image = vec![0.0; pattern.dimension()];
@@ -375,7 +375,7 @@ impl TornState {
         &self.displacement.0
     }
 
-    /// Force that residuals are relative to, N.
+    /// Force that residuals are relative to, N; zero for bodies at rest.
     pub fn load(&self) -> f64 {
         self.load
     }

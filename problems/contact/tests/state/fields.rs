@@ -85,7 +85,7 @@ fn both_solvers_give_the_same_fields() {
     }
 }
 
-/// Force that the bricks of layer k of a body pass upwards: ∫ σ₃ⱼ·∂ⱼφ dV with φ rising from 0 to 1 through the layer.
+/// Force that the bricks of a layer of a body pass upwards: ∫ σ ∇φ dV with φ rising from 0 to 1 through the layer.
 fn section_force(fields: &BodyFields, scene: &contact::scene::BodyScene, layer: usize) -> [f64; 3] {
     let grid = &fields.block.grid;
     let mut force = [0.0; 3];

@@ -116,7 +116,7 @@ fn a_load_that_pulls_away_is_refused_naming_the_direction() {
     }
 }
 
-/// A block pressed onto a fixed block by a flat plate of equal size: held by contact only, apart from the lower body's base.
+/// Two blocks of equal size, the upper one pressed onto the lower one, whose base is fixed. Contact alone holds the upper one.
 fn plates(friction: f64, push: f64) -> Scene {
     let material = Material::new(1000.0, 0.0).unwrap();
     Scene {

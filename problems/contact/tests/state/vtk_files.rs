@@ -196,7 +196,7 @@ fn the_list_names_every_file_with_its_time() {
     assert_eq!(found, expected);
 }
 
-/// Two hexahedra's worth of nothing but names and numbers.
+/// One quadrilateral with one array of data on its points.
 fn small(name: &str, values: Values) -> UnstructuredGrid {
     UnstructuredGrid {
         description: "a < b & c".to_owned(),

@@ -17,11 +17,11 @@ use crate::tfeti::dual::{ActiveSet, Friction, TornContact};
 const MAX_STEPS: usize = 12;
 /// Relative length of a new basis vector that counts as zero: the space is invariant.
 const INVARIANT: f64 = 1e-4;
-/// Relative reduction of the linear solves: the estimate is meant to two digits.
+/// Relative reduction of the linear solves: two digits of the estimate are meant to be right.
 const REDUCTION: f64 = 1e-5;
 /// Relative reduction of the one linear solve of a rough estimate.
 const ROUGH_REDUCTION: f64 = 0.1;
-/// Times its target that the residual of a linear solve may be.
+/// Multiple of its target that the residual of a linear solve may reach.
 const MAX_MISS: f64 = 1e3;
 /// Krylov iterations allowed per solve.
 const MAX_KRYLOV: usize = 600;

@@ -1,4 +1,4 @@
-//! What the residual of a state does to a function of its contact forces: the adjoint weighs it.
+//! The error that the residual of a state causes in a function of its contact forces: the adjoint weighs it; method.md (5.3).
 //!
 //! ```text
 //! r = λ − Π(λ + c w),   w = B u − g;     p, η: the adjoint of j = ∂J/∂λ;     ψ = j − B p − η/c

@@ -1,9 +1,9 @@
-//! What changes of the column heights put on the torn lower body.
+//! The forces that changes of the column heights cause on the torn lower body.
 //!
 //! ```text
 //! r = −∂(K u − f) per subdomain of the lower body,   δe = Rᵀ r
 //! ```
-//! The forward twin of [`height_sensitivities`](super::height_sensitivities).
+//! The adjoint counterpart is [`height_sensitivities`](super::height_sensitivities).
 
 use crate::body::mesh::Block;
 use crate::body::shape_force::shape_forces;

@@ -1,4 +1,4 @@
-//! Forward derivatives of a TFETI state: all columns in lockstep.
+//! Forward derivatives of a TFETI state: all columns in lockstep; method.md (5.4).
 //!
 //! ```text
 //! r = −∂(K u − f),   δe = Rᵀ r,   δd = B K⁺ r − ∂g

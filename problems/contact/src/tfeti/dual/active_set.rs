@@ -48,7 +48,7 @@ impl<'a> ActiveSet<'a> {
         Ok(Self { rows, space, coarse })
     }
 
-    /// a with Gqᵀ a closest to −r: the rigid amplitudes that a reduced residual r asks for.
+    /// a = −(G_T Gqᵀ)⁻¹ G_T r: r + Gqᵀ a = P r is the reduced residual r without its rigid part.
     pub fn amplitudes<V: RightSide>(&self, residual: &[V]) -> Vec<V> {
         let mut amplitudes = self.space.resultant(&self.rows.trial(residual));
         V::solve_dense(&self.coarse, &mut amplitudes);
@@ -69,7 +69,7 @@ impl<'a> ActiveSet<'a> {
         }
     }
 
-    /// y += Gqᵀ (G_T Gqᵀ)⁻¹ (target − G T y): the smallest change after which T y has the given resultants.
+    /// y += Gqᵀ (G_T Gqᵀ)⁻¹ (target − G T y): T y has the given resultants then; the change is the smallest if T = Q.
     pub fn enforce<V: RightSide>(&self, y: &mut [V], target: &[V]) {
         let mut defect = self.space.resultant(&self.rows.trial(y));
         for (defect, target) in defect.iter_mut().zip(target) {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! repeat:  derivatives D at the iterate;  v = (what the active rows demand at once) + T P M P (reduced residual),  G v = 0
-//!          F v (the only product);  iterate := best combination of all directions so far   ([`Recycled`])
+//!          F v (the only product);  iterate := best combination of all directions so far   (recycling.rs)
 //! ```
 //! A Newton step with GMRES spends one product on its particular part and starts its Krylov space anew; here the space grows
 //! over the whole solve, derivatives follow every product, and the residual falls at the rate of the linear problem. The

@@ -12,19 +12,19 @@ use crate::tfeti::newton::recycling::Recycled;
 use crate::tfeti::newton::settings::NewtonSettings;
 use crate::tfeti::newton::stagnation::{circles, stagnates};
 
-/// First forcing term.
+/// First and largest forcing term.
 const FIRST_FORCING: f64 = 0.3;
 /// Forcing term after a shortened step.
 const SHORTENED_FORCING: f64 = 0.01;
-/// Halvings of a step.
+/// Lengths of a step that are tried, each half of the one before.
 const MAX_HALVINGS: usize = 6;
-/// Decrease asked of a step of length one.
+/// Relative decrease of the residual asked of a step of length one.
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
 impl TornContact<'_> {
-    /// Solves from given multipliers (over all rows) of a similar problem, or from the bonded problem. Where inexact steps do not converge, a
-    /// second run solves every linear system as accurately as rounding allows. The residual that decides, and that certifies
-    /// the state, comes from a fresh product with F.
+    /// Solves from given multipliers (over all rows) of a similar problem, or from the bonded problem. Where inexact steps do
+    /// not converge, a second run solves every linear system as accurately as rounding allows. The residual that decides, and
+    /// that certifies the state, comes from a fresh product with F.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],

@@ -16,7 +16,7 @@ use crate::tfeti::torn::RowVector;
 pub struct LinearAccuracy {
     /// Norm of the projected residual aimed at, mm.
     pub target: f64,
-    /// Reduction of its first value that is enough.
+    /// Reduction of the first projected residual that is enough.
     pub reduction: f64,
     /// Krylov iterations allowed per cycle.
     pub max_krylov: usize,

@@ -19,7 +19,7 @@ use faer::Mat;
 
 /// Share of the residual that a round may leave for another one to be worth its dense algebra.
 const MAX_SHARE_LEFT: f64 = 0.5;
-/// Rounds in a row.
+/// Rounds of one combination.
 const MAX_ROUNDS: usize = 4;
 /// Smallest and largest relative ridge of the normal equations: combinations below it carry no digits.
 const RIDGES: [f64; 2] = [1e-14, 1e-6];
@@ -61,7 +61,7 @@ impl Recycled {
         self.products.push(self.jumps.iter().map(|other| dot(other.split().0, last)).collect());
     }
 
-    /// Combines the directions as long as the residual falls well; returns the residual.
+    /// Combines the directions, again while a round at least halves the residual; returns the residual.
     pub fn combine(&self, contact: &TornContact<'_>, iterate: &mut Iterate, residual: f64) -> f64 {
         let mut position = Position::of(self, iterate);
         let mut best = residual;

@@ -9,7 +9,7 @@ use crate::error::ContactError;
 use crate::tfeti::dual::TornContact;
 use crate::tfeti::newton::settings::NewtonSettings;
 
-/// Times its rounding floor that a residual is seen to reach.
+/// Multiple of its rounding floor up to which a residual counts as having reached it.
 const FLOOR_REACHED: f64 = 10.0;
 
 impl TornContact<'_> {

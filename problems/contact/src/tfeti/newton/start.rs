@@ -37,8 +37,8 @@ impl TornContact<'_> {
         self.bonded(LinearAccuracy::start(max_products), recycled)
     }
 
-    /// The start that Newton converges from: contact rows glued, solved roughly. Nodes that only forces beyond all
-    /// proportion to the load could close start open; where bodies have to travel to meet, the first to meet start closed.
+    /// The bonded problem: contact rows glued, solved roughly. A node that only forces out of all proportion to the load could
+    /// close starts open; where bodies have to travel to meet, the nodes that meet first start closed.
     pub(crate) fn bonded(
         &self,
         accuracy: LinearAccuracy,

@@ -1,4 +1,4 @@
-//! The rows of B: gluing and supports (B_E), then contact, orthonormal and untouched between nodes.
+//! The rows of B: gluing and supports (B_E), then contact. They are orthonormal; geometry does not enter.
 //!
 //! ```text
 //! gluing of m copies:  (m − 1) Helmert rows;   supports: one row per copy (no gluing of that dof)
@@ -16,7 +16,7 @@ use crate::linear::entry::Entry;
 use crate::scene::{BodyScene, Scene};
 use crate::tfeti::torn::vectors::RowVector;
 
-/// B, B_D and their transposes over torn dofs; geometry does not enter.
+/// B, B_D and their transposes over torn dofs; the same for all shapes.
 #[derive(Debug)]
 pub struct Constraints {
     /// B: rows × torn dofs.

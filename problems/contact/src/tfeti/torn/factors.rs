@@ -58,7 +58,7 @@ impl InteriorClass {
 pub struct SubdomainRigid {
     /// Orthonormal rigid modes, six columns.
     pub modes: Vec<Vec<f64>>,
-    /// Resultants Rᵀ f of the loads along them.
+    /// Resultants Rᵀ f of the loads along them, N.
     pub resultants: Vec<f64>,
 }
 
