@@ -3,8 +3,8 @@
 //! ```text
 //! S: α ↦ y = (λ_N; λ_T),    D*S(α)(y*):  one adjoint solve + one pass over the elements             method.md (5.1)
 //! ```
-//! Contact solvers know nothing of the framework: this module and [`crate::cost`] translate. A dual of the state has one entry
-//! per normal force, then, with friction, two per node for the tangential forces
+//! Contact solvers use no trait of the framework: this module and [`crate::cost`] implement them. A dual of the state has one
+//! entry per normal force, then, with friction, two per node for the tangential forces
 //! ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries).
 
 use crate::equilibrium::{ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolverState, ValueError};
@@ -80,7 +80,7 @@ impl ContactShape {
         memory::check(&scene, kind, preconditioner)?;
         let problem = Arc::new(ContactProblem::new(scene)?);
         let solver = AnySolver::for_use(problem, kind, preconditioner, wanted)
-            .map_err(|error| SceneError::out_of_range("mesh", error, "a size that can be factored"))?;
+            .map_err(|error| SceneError::out_of_range("mesh.bricks", error, "a size that can be factored"))?;
         Ok(Self { solver })
     }
 }

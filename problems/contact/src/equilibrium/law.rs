@@ -42,7 +42,7 @@ impl Linearization {
         Self::Slip { direction: [x[1] / length, second], ratio: radius / length }
     }
 
-    /// D over the `count` rows of a node (1, 2 or 3), zero elsewhere.
+    /// D = ∂Π/∂x over the `count` rows of a node (1, 2 or 3), zero elsewhere.
     pub fn derivative(&self, count: usize, friction: f64) -> [[f64; 3]; 3] {
         let mut block = [[0.0; 3]; 3];
         match *self {

@@ -1,4 +1,4 @@
-//! Linear algebra that the contact solvers stand on; the only place that knows faer.
+//! Linear algebra of the contact solvers: factorisations by faer, Krylov methods, sparse products, blocks of columns.
 
 pub mod cholesky;
 pub(crate) mod columns;

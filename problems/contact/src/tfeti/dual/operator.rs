@@ -8,7 +8,7 @@ use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, Tor
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Precision of the products with F inside Krylov spaces; residuals and certificates are always double.
+/// Precision of the products with F inside Krylov spaces; residuals and certificates of states are always double.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Precision {

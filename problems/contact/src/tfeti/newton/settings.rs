@@ -12,7 +12,7 @@ pub struct NewtonSettings {
     pub acceptable: f64,
     /// Newton steps allowed.
     pub max_steps: usize,
-    /// Krylov iterations allowed per Newton step.
+    /// Krylov iterations allowed per Newton step; the descent ends with twice as many directions.
     pub max_krylov: usize,
     /// Products with F allowed in all.
     pub max_products: usize,

@@ -27,7 +27,7 @@ pub struct AugmentedLagrangianSettings {
     /// Accuracy of a Tresca problem relative to the change of the slip bound that it brings about. Default 0.2 (0.1 takes
     /// some five per cent more products, 0.3 some five per cent fewer).
     pub adaptivity: f64,
-    /// Fixed point steps allowed. Default 60.
+    /// Fixed point steps allowed, one Tresca problem each. Default 60.
     pub max_fixed_point_steps: usize,
     /// Whether the preconditioner is used inside faces. Default true.
     pub precondition: bool,

@@ -1,4 +1,4 @@
-//! What passes between processes: the only place where the solver meets its environment.
+//! What passes between the processes of a run, and nothing else does.
 //!
 //! Every process works on a range of subdomains: it assembles, factors and solves only those. Dual vectors (multipliers, rows
 //! of B u) and the coarse problem are replicated, so that dot products, Newton's decisions and coarse solves are local and the
