@@ -34,7 +34,8 @@ struct Kept {
 }
 
 impl Register {
-    /// Locks the list of a folder; `begun` makes it if it does not exist, else there may be none.
+    /// Locks the list of a folder. With `begun`, a list that does not exist is made; without, there is none then. A file that is
+    /// no list is none either.
     ///
     /// # Errors
     /// [`Failure::Input`] if another process holds it; [`Failure::Computation`] with the system's reason.
