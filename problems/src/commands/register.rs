@@ -13,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 /// The list.
 pub const REGISTER: &str = "nonsmooth-files.txt";
 const HEADER: &str = "# The files that the program wrote here. It locks this list while it works.\n";
-/// The journal of a run; its restart data lie beside it.
+/// The journal of a run; its restart data and Jacobians lie beside it.
 pub const JOURNAL: &str = "journal.jsonl";
 /// Ending of a file that is being written.
 pub const UNFINISHED: &str = ".tmp";
