@@ -1,6 +1,6 @@
 //! A closure as objective: the geometric median of three points (the Fermat point of a triangle).
 //!
-//! Θ(x) = Σ |x − pᵢ| is smooth but at the points themselves. For the triangle (0,0), (1,0), (½, √3/2) the Fermat point is the
+//! Θ(x) = Σ |x − pᵢ| is smooth except at the points themselves. For the triangle (0,0), (1,0), (½, √3/2) the Fermat point is the
 //! centre (½, √3/6), Θ = √3.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Report, Vector};

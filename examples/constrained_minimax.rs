@@ -1,4 +1,4 @@
-//! Minimax with constraints: the best straight line a + b t under √t that meets it at t = 1.
+//! Minimax with constraints: the straight line a + b t that meets √t at t = 1 and is as close to it as possible on [0, 1].
 //!
 //! ```text
 //! min over (a, b) of  max over 0 ≤ t ≤ 1 of |√t − a − b t|    subject to  a + b = 1,  0 ≤ a

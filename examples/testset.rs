@@ -3,8 +3,8 @@
 //! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--perturb K] [--without PROPOSER]`
 //!
 //! `--perturb K` replaces every count by the median over 2K + 1 runs from x0 (1 + 1e-13 N(0, 1)), the first of them from x0 itself: a
-//! single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size. `--without` switches off a proposer of
-//! trial points, `curved-model` or `exploration`; it may be given twice.
+//! single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size.
+//! `--without` switches off a proposer of trial points, `curved-model` or `exploration`; it may be given twice.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 use serde::Serialize;

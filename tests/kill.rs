@@ -100,7 +100,7 @@ fn spawn(name: &str, folder: &PathBuf) -> Child {
     Command::new(executable).arg(CHILD).arg(name).arg(folder).stdout(Stdio::null()).spawn().unwrap()
 }
 
-/// Kills the child; the evaluations in the journal it leaves, none if there are none or if it had ended.
+/// Kills the child; returns the number of evaluations in the journal that it leaves, none if there are none or if it had ended.
 fn kill(child: &mut Child, folder: &Path) -> Option<usize> {
     child.kill().unwrap();
     let status = child.wait().unwrap();

@@ -41,7 +41,7 @@ impl Journal {
         Self::file(folder.as_ref()).exists()
     }
 
-    /// Reads the journal of a folder, which is not changed; none if there is none, or if the run ended before its first
+    /// Reads the journal of a folder, which is not changed; `None` if there is none, or if the run ended before its first
     /// line was written.
     ///
     /// # Errors
@@ -56,7 +56,7 @@ impl Journal {
     }
 
     /// Reads the bytes of a journal; `path` stands in messages. A last line without its end, which was being written when
-    /// the run ended, does not count; none if that is the first one.
+    /// the run ended, does not count; `None` if that is the first one.
     ///
     /// # Errors
     /// [`JournalError::Line`] and [`JournalError::Version`].

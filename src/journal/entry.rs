@@ -21,7 +21,7 @@ pub struct Entry {
     /// Descent target of the request.
     #[serde(with = "exact")]
     pub target: Option<f64>,
-    /// Outputs and Jacobian that were asked for.
+    /// Request for outputs and Jacobian; none if they were not asked for.
     pub linearization: Option<RecordedRequest>,
     /// Number of the evaluation whose restart data the request carried.
     pub restarted_from: Option<usize>,
@@ -38,7 +38,7 @@ pub struct RecordedRequest {
     /// Relative accuracy of the Jacobian.
     #[serde(with = "exact")]
     pub accuracy: f64,
-    /// Value above which it is not wanted.
+    /// Value of Θ above which the Jacobian is not wanted.
     #[serde(with = "exact")]
     pub below: f64,
 }

@@ -16,7 +16,7 @@ pub enum JournalError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A whole line is not what stands there in a journal.
+    /// A complete line is neither a first line nor the entry that is expected there.
     #[error("{}: line {line}: {reason}", path.display())]
     Line {
         /// The file.

@@ -33,9 +33,9 @@ struct State {
     journal: Writer,
     /// Number of evaluations in the journal when it was opened.
     held: usize,
-    /// Those of them that are still to be asked for.
+    /// Entries of the journal that have not answered a request yet.
     replay: VecDeque<Entry>,
-    /// Seconds at which those that were asked for again had been computed.
+    /// `seconds` of the entries that have answered a request.
     replayed: Vec<f64>,
     /// Number of the last evaluation.
     evaluation: usize,
@@ -155,7 +155,7 @@ impl<O> Journaled<O> {
 }
 
 impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O> {
-    /// Restart data as the oracle returned them; with a warning, none if they are lost.
+    /// Restart data as the oracle returned them; `None`, with a warning, if they are lost.
     fn read(&self, evaluation: usize) -> Option<O::WarmStart> {
         let text = self.state.borrow().journal.restart_data(evaluation);
         let data = text.map_err(|error| error.to_string());
@@ -265,7 +265,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
             descent_target: request.descent_target,
             linearization: request.linearization,
         };
-        // The optimizer treats a panic as a failed evaluation, and so has the journal.
+        // The optimizer treats a panic as a failed evaluation; the journal has to record it as one.
         evaluate_without_panic(&self.inner, &inner)
     }
 

@@ -36,7 +36,7 @@
 //! | file in the folder | what it holds |
 //! |---|---|
 //! | `journal.jsonl` | version, identity and dimension in the first line; an [`Entry`] in every other |
-//! | `warm_start_K.json` | restart data of evaluation K: of the last one, of the one that it was restarted from, and of those that a Jacobian was computed from |
+//! | `warm_start_K.json` | restart data of evaluation K: the last one, the one that it was restarted from, and those behind a stored Jacobian |
 //! | `linearization_K.bin` | outputs and Jacobian of evaluation K of a composite objective, with a checksum |
 //!
 //! Numbers are written so that they read back as the same bits; `"inf"`, `"-inf"` and `"NaN"` stand for what JSON lacks. Restart
@@ -47,7 +47,8 @@
 //!
 //! A journal of another objective is refused ([`JournalError`]). Everything after that is a warning ([`Journaled::warnings`]),
 //! and the run goes on: lines that cannot be written are tried again with every evaluation; restart data that are lost are
-//! replaced by none; a Jacobian whose file is lost or torn is computed again, to the same bits; where a request differs from the recorded one, the rest of the journal is dropped and computed again.
+//! replaced by none; a Jacobian whose file is lost or torn is computed again, to the same bits; where a request differs from the
+//! recorded one, the rest of the journal is dropped and computed again.
 
 mod contents;
 mod entry;

@@ -14,7 +14,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// Both.
+    /// Both kinds.
     pub(super) const ALL: [Self; 2] = [Self::WarmStart, Self::Linearization];
 
     fn affixes(self) -> (&'static str, &'static str) {

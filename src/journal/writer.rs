@@ -29,13 +29,13 @@ pub(super) struct Writer {
     pending: Vec<Pending>,
     /// Files that lie in the folder.
     kept: Vec<(Kind, usize)>,
-    /// Evaluations whose restart data a Jacobian was computed from, which must be had again if its file is lost.
+    /// Evaluations whose restart data a Jacobian was computed from: they are kept to compute it again if its file is lost.
     origins: Vec<usize>,
 }
 
 impl Writer {
-    /// Continues the journal of a folder, a last line that is not whole being cut off, or begins one. With the entries that
-    /// the journal holds.
+    /// Continues the journal of a folder, or begins one; returns it with the entries that it holds. A last line that is not
+    /// whole is cut off.
     pub fn open(folder: &Path, identity: &str, dimension: usize) -> Result<(Self, Vec<Entry>), JournalError> {
         fs::create_dir_all(folder).map_err(JournalError::file(folder))?;
         let path = Journal::file(folder);
@@ -80,8 +80,8 @@ impl Writer {
         restart_files::write(&self.folder, Kind::Linearization, evaluation, &bytes)
     }
 
-    /// Adds an evaluation. Its restart data are kept, those that it was itself restarted from, and those that Jacobians were
-    /// computed from; no others, since the next request can carry only one of the first two.
+    /// Adds an evaluation. Restart data are kept of this evaluation, of the one that it was restarted from, and of those that
+    /// Jacobians were computed from; no others, since the next request can carry only one of the first two.
     ///
     /// # Errors
     /// The system's reason; what was not written is tried again with the next evaluation.
@@ -120,7 +120,7 @@ impl Writer {
         kept
     }
 
-    /// Removes all other files.
+    /// Removes the files that are not needed.
     fn keep(&mut self, is_needed: impl Fn(Kind, usize) -> bool) -> io::Result<()> {
         for (kind, evaluation) in self.kept.iter().filter(|(kind, evaluation)| !is_needed(*kind, *evaluation)) {
             restart_files::remove(&self.folder, *kind, *evaluation)?;

@@ -22,7 +22,7 @@ pub(super) enum Outcome {
         /// Relative violation of that side.
         violation: f64,
     },
-    /// The cap on the pivots was reached or a number was lost.
+    /// The cap on the pivots was reached or v is no longer finite.
     Stalled,
 }
 
@@ -35,7 +35,7 @@ enum Entry {
 }
 
 impl WorkingSet<'_> {
-    /// Takes in equalities and the given members, and makes sure of one cut.
+    /// Holds the equalities, the given members and at least one cut; the multipliers of the cuts sum up to one.
     pub(super) fn start(&mut self, warm: &[Active]) {
         for k in 0..self.qp.dimension() {
             self.hold_equality(Member::Bound(k));
@@ -138,7 +138,7 @@ impl WorkingSet<'_> {
     }
 
     /// Changes of the held multipliers per unit of a dependent side's multiplier, in the metric's coordinates:
-    /// R x = −Qᵀ ã for the columns, what remains for the fixed coordinates.
+    /// R x = −Qᵀ ã gives them for the columns, what remains of the normal gives them for the fixed coordinates.
     fn exchange_rates(&self, column: &[f64], coefficients: &[f64], sign: f64) -> ExchangeRates {
         let mut columns: Vec<f64> = coefficients.iter().map(|entry| -sign * entry).collect();
         self.factor.solve(&mut columns);

@@ -6,9 +6,9 @@
 //! dual              |Σ π − 1|,  −π_j,  multipliers of open or wrong sides relative to t
 //! complementarity   (relative size of the multiplier) · (relative slack)
 //! ```
-//! ℓ = |d| + max_j |g_j| in the norms of the metric, the length of the unconstrained step, gives a side a size where all its terms
-//! vanish, as at d = 0. b is the largest distance |side| / |a| of any row or bound (0 for cuts): sides are differences, and at
-//! an active row of the center what is left of them is rounding of that size.
+//! ℓ = |d| + max_j |g_j| in the norms of the metric gives a side a size where all its terms vanish, as at d = 0; |g_j| is the
+//! length of the unconstrained step of cut j alone. b is the largest distance |side| / |a| of any row or bound (0 for cuts):
+//! sides are differences, and what is left of an active row's side at the center is rounding of that size.
 //! Every part is a quotient of like quantities, so the residual does not depend on the units of values and variables.
 
 use crate::Vector;

@@ -19,7 +19,7 @@ use crate::Vector;
 /// Inner products of the slopes of a QP in the metric W, and the weight u of H = u W.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gram<'a> {
-    /// Rows by slots.
+    /// The inner products ⟨g_i, W⁻¹ g_j⟩, by the slots of both cuts.
     pub rows: &'a [Vec<f64>],
     /// The slot of each cut.
     pub slots: &'a [usize],
@@ -45,7 +45,7 @@ const DEPENDENT: f64 = 1e-13;
 const LEAST_RATE: f64 = 1e-11;
 /// Excess of a cut, relative to its terms, that is rounding.
 const ROUNDING: f64 = 1e-14;
-/// Rounds, each with the values of all cuts formed anew.
+/// Largest number of rounds; each forms the values of all cuts anew.
 const ROUNDS: usize = 4;
 
 /// A problem under way.
@@ -53,16 +53,16 @@ struct Dual<'a> {
     qp: &'a EpigraphQp<'a>,
     gram: Gram<'a>,
     factor: &'a mut Triangular,
-    /// s.
+    /// The shift s of RᵀR = G + s 𝟏𝟏ᵀ.
     shift: f64,
     held: Vec<usize>,
     multipliers: Vec<f64>,
-    /// w by slots.
+    /// w_j, by slots.
     gradient: Vec<f64>,
     is_held: Vec<bool>,
-    /// Cuts that rounding asked for.
+    /// Cuts that are violated by rounding alone and are not taken in again.
     skipped: Vec<usize>,
-    /// Times ‖g_j‖ and the machine precision: rounding of w_j.
+    /// A length: its product with ‖g_j‖ and the machine precision is the size of the rounding of w_j.
     drift: f64,
     pivots: usize,
 }
@@ -115,7 +115,7 @@ impl<'a> Dual<'a> {
         self.product(j, j).sqrt()
     }
 
-    /// Goes on with the working set before; cuts that have left it take their columns along.
+    /// Goes on with the working set of the last call, without the cuts that are no longer in the problem.
     fn resume(&mut self, ids: &[u64], multipliers: &[f64]) {
         let mut removed = 0;
         for (k, (id, &multiplier)) in ids.iter().zip(multipliers).enumerate() {
@@ -131,7 +131,7 @@ impl<'a> Dual<'a> {
         self.normalise();
     }
 
-    /// Factorises the working set before anew.
+    /// Factorises the working set of the last call anew.
     fn rebuild(&mut self, ids: &[u64], multipliers: &[f64]) {
         self.factor.clear();
         let mut lengths: Vec<f64> = (0..self.qp.slopes.len()).map(|j| self.product(j, j)).collect();
@@ -197,7 +197,7 @@ impl<'a> Dual<'a> {
         self.pivots += 1;
     }
 
-    /// Changes the multiplier of a cut in w.
+    /// Adds to w what a change of a cut's multiplier contributes.
     fn shift_gradient(&mut self, j: usize, change: f64) {
         self.drift += change.abs() * self.norm(j) / self.gram.weight;
         add_scaled(&mut self.gradient, change / self.gram.weight, &self.gram.rows[self.gram.slots[j]]);
@@ -265,8 +265,8 @@ impl<'a> Dual<'a> {
         (squares.sum::<f64>() / self.gram.weight).sqrt()
     }
 
-    /// The parts of the KKT residual that do not hold by construction: Σ π = 1 and complementarity. Only cuts below the highest
-    /// one by more than their offsets explain need the size of their terms.
+    /// The parts of the KKT residual that do not hold by construction: Σ π = 1 and complementarity. The size of
+    /// a cut's terms is formed only where a held cut lies below the highest one.
     fn residual(&self, step: &Vector, values: &[f64], epigraph: f64) -> f64 {
         let steepest = (0..values.len()).map(|j| self.norm(j)).fold(0.0, f64::max);
         let share = LENGTH_SHARE * (self.length(step) + steepest / self.gram.weight);
@@ -385,7 +385,7 @@ impl<'a> Dual<'a> {
     }
 }
 
-/// Whether a step leaves no row and no bound.
+/// Whether a step satisfies all rows and bounds.
 fn satisfies_sides(qp: &EpigraphQp<'_>, step: &Vector) -> bool {
     let inside = |value: f64, lower: f64, upper: f64| value >= lower && value <= upper;
     let bounds = step.iter().zip(qp.lower.iter().zip(qp.upper));

@@ -3,7 +3,7 @@
 //! ```text
 //! d = s W d̂,  v = s² v̂,  W = diag(H)^{-1/2}:      min v̂ + ½ d̂ᵀ (W H W) d̂,   every row divided by its norm
 //! ```
-//! s starts at the length of the free step and is lowered until d̂ is of order one.
+//! s starts at the length of the free step and is multiplied by |d̂| until d̂ is of order one, three times at most.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{

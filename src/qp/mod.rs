@@ -1,4 +1,4 @@
-//! Convex quadratic programs with an epigraph variable: data, certificate, and two solvers.
+//! Convex quadratic programs with an epigraph variable: data, certificate, and solvers.
 //!
 //! ```text
 //! min over (d, v)   v + ½ dᵀ H d
@@ -7,9 +7,9 @@
 //!                   lower ≤ d ≤ upper           (multipliers ν, signed likewise)
 //! KKT:              H d + Σ π_j g_j + Aᵀ μ + ν = 0
 //! ```
-//! [`EpigraphQpSolver`] is a warm-started dual active-set method; what it cannot finish goes to an interior-point method
-//! (feature `interior-point`, on by default) and comes back to it for a polish. Every answer carries its [`kkt_residual`], computed from the data alone.
-//! [`project`] is the Euclidean projection onto a polyhedron, a special case.
+//! [`EpigraphQpSolver`] is a warm-started dual active-set method. What it cannot finish goes to an interior-point method (feature
+//! `interior-point`, on by default), whose answer the active-set method polishes. Every answer carries its [`kkt_residual`],
+//! computed from the data alone. [`project`] is the Euclidean projection onto a polyhedron, a special case.
 
 mod active_set;
 mod answer;

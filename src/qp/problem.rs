@@ -95,7 +95,7 @@ pub struct QpSolution {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct QpCounts {
-    /// Calls of `solve`.
+    /// Quadratic programs taken on; those with unusable data are not counted.
     pub solves: usize,
     /// Changes of the active set.
     pub pivots: usize,
@@ -107,7 +107,7 @@ pub struct QpCounts {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum QpError {
-    /// The data cannot be worked with.
+    /// The data have a wrong size or a value that is not allowed.
     #[error(transparent)]
     Input(#[from] InputError),
     /// No point satisfies rows and box.

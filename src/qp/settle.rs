@@ -3,7 +3,7 @@
 //! ```text
 //! H d + Nᵀ λ = 0,  N d − s v = b,  sᵀ λ = 1          (N: active normals, b: the sides they are held at)
 //! residuals   r = −(H d + Nᵀ λ),  ρ = b − N d + s v,  σ = 1 − sᵀ λ
-//! correction  q = H⁻¹ r,  (Ã Ãᵀ) δλ + s δ = N q − ρ,  sᵀ δλ = σ,  δv = δ + c² σ,  δd = q − H⁻¹ Nᵀ δλ
+//! correction  q = H⁻¹ r,  (ÃᵀÃ) δλ + s δ = N q − ρ,  sᵀ δλ = σ,  δv = δ + c² σ,  δd = q − H⁻¹ Nᵀ δλ
 //! ```
 //! The residuals are formed from the data of the QP at the current (d, v, λ), so every pass refines the one before. The step
 //! d is a variable of its own, not a function of λ: with a small H the rounding of λ alone would move it by eps |g| / H.

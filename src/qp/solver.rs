@@ -109,7 +109,7 @@ impl EpigraphQpSolver {
     }
 
     /// Solves one QP with a diagonal metric whose slopes have known inner products: first in the space of the multipliers, from the
-    /// working set that the last such call has left; what that leaves open as [`solve`](Self::solve) does.
+    /// working set that the last such call has left, and, where that does not succeed, as [`solve`](Self::solve) does.
     ///
     /// # Errors
     /// As [`solve`](Self::solve).

@@ -3,8 +3,9 @@
 //! ```text
 //! column of a member:  ã = (L⁻¹ normal, c s),   s = 1 for a cut, 0 otherwise
 //! ```
-//! The extra entry c carries the equality Σ π = 1 into the orthogonal factors: Ã ÃᵀS = A Aᵀ + c² s sᵀ is regular whenever
-//! the active cuts are affinely independent, and s = Rᵀ Qᵀ(last unit vector) / c comes for free as the last row of Q.
+//! The extra entry c carries the equality Σ π = 1 into the orthogonal factors: ÃᵀÃ = N H⁻¹Nᵀ + c² s sᵀ, with the active normals
+//! as rows of N, is regular whenever the vectors (normal, s) of the active members are linearly independent. The last row of Q
+//! is c R⁻ᵀs, so that the factors hold s as well.
 //! With a diagonal metric an active bound is no column: it fixes its coordinate.
 
 use crate::Vector;

@@ -26,7 +26,7 @@ pub struct Certificate {
     pub aggregate_norm: f64,
     /// ẽ ≥ 0, in units of Θ.
     pub aggregate_error: f64,
-    /// What the model promised at the weight below.
+    /// Decrease that the model predicts at `weight`, in units of Θ.
     pub predicted_decrease: f64,
     /// The weight u of the subproblem.
     pub weight: f64,
@@ -40,7 +40,7 @@ pub struct Certificate {
     pub row_multipliers: Vector,
     /// Multipliers ν of the bounds, signed likewise.
     pub bound_multipliers: Vector,
-    /// Largest distance of a cut with a positive multiplier, in the run's norm.
+    /// Largest distance from x̂ of a cut with a positive multiplier, in the run's norm.
     pub active_radius: f64,
     /// Noise promised by the oracle or seen in its values, in units of Θ.
     pub noise: f64,
@@ -57,7 +57,7 @@ pub struct CertificateCheck {
     pub aggregate_norm: f64,
     /// ẽ computed from cuts and multipliers.
     pub aggregate_error: f64,
-    /// |Σ λ − 1| and the largest negative λ.
+    /// The larger of |Σ λ − 1| and the largest −λ_i.
     pub multiplier_defect: f64,
     /// Relative violation of the set at the point.
     pub violation: f64,

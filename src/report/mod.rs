@@ -38,7 +38,7 @@ pub struct Report {
     pub history: Vec<IterationRecord>,
     /// Largest relative violation of the admissible set among all points evaluated.
     pub largest_violation: f64,
-    /// Things that went wrong without ending the run, for whoever completes the report; the method itself has none.
+    /// What went wrong without ending the run: [`Journaled::complete`](crate::Journaled::complete) adds to it, the method does not.
     pub warnings: Vec<String>,
     /// Seconds used; with those of earlier invocations after [`Journaled::complete`](crate::Journaled::complete).
     pub seconds: f64,

@@ -76,13 +76,13 @@ pub struct IterationRecord {
     pub value: Option<f64>,
     /// Θ at the center after the step.
     pub center_value: f64,
-    /// What the model promised, ≥ 0.
+    /// Decrease that the model predicted, ≥ 0, in units of Θ.
     pub predicted_decrease: f64,
     /// Norm of the aggregate subgradient, constraints included.
     pub aggregate_norm: f64,
     /// Aggregate error, ≥ 0.
     pub aggregate_error: f64,
-    /// The weight u = 1/t of the subproblem.
+    /// The weight u of the quadratic term of the subproblem.
     pub weight: f64,
     /// Length of the step in scaled variables.
     pub step_length: f64,

@@ -29,7 +29,7 @@ pub enum StopRule {
         /// Relative decrease that counts as progress.
         relative: f64,
     },
-    /// The model promises less than this, in units of Θ.
+    /// The model predicts a decrease of at most this, in units of Θ.
     PredictedDecreaseBelow(f64),
     /// One of the rules holds.
     Any(Vec<StopRule>),

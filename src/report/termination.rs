@@ -13,7 +13,7 @@ pub enum Termination {
     Stationary {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
-        /// Θ declared convex: how far Θ can lie above its minimum within reach, in units of Θ.
+        /// If Θ is declared convex: how far Θ can lie above its minimum within reach, in units of Θ.
         #[serde(default)]
         gap: Option<f64>,
     },

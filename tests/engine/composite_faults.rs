@@ -146,7 +146,7 @@ fn a_closure_that_returns_no_matrix_of_numbers_is_a_typed_error() {
     assert!(matches!(&error, OptimizeError::Oracle(inner) if wanted(inner)), "{error}");
 }
 
-/// The reason of a run that its subproblem ended, from (3, 1), where the best point must lie or be undercut.
+/// The reason why the subproblem ended a run from (3, 1); the best point must be the start or a better one.
 fn reason(outer: impl OuterFunction) -> String {
     let theta = CompositeFunction::new(2, &outer, |x: &Vector| (x.clone(), Matrix::identity(2, 2)));
     let set = Polyhedron::boxed(v(&[-5.0, -5.0]), v(&[5.0, 5.0])).unwrap();

@@ -84,8 +84,8 @@ fn total(x: &[Dual]) -> Dual {
     Dual::combination(x.iter().map(|x| (1.0, x)))
 }
 
-/// A function of any number of variables whose value and subgradient take work in proportion to that number, which that of a
-/// `Dual` does not.
+/// A function of any number of variables whose value and subgradient take work in proportion to that number; with `Dual`, whose
+/// every operation carries a gradient, the work would grow with its square.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Scalable {

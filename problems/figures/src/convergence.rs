@@ -46,7 +46,7 @@ pub struct Convergence {
 pub struct Step {
     /// What it was; every kind gets a mark of its own.
     pub kind: String,
-    /// The value; none if there is none, which is marked at the foot.
+    /// The value; none for a failed evaluation, whose mark stands at the foot of the frame.
     pub value: Option<f64>,
     /// The best value after it.
     pub best: f64,

@@ -8,7 +8,7 @@ use super::canvas::{Canvas, LABEL, Place, Stroke};
 use super::colours;
 use super::scale::{Axis, extent};
 
-/// Steps of colour, about.
+/// About the number of colours of a scale.
 const STEPS: usize = 24;
 
 /// One colour scale for all values of a figure, in steps whose ends are multiples of a round number.

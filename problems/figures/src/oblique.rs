@@ -4,10 +4,10 @@
 //! to the right  r = (cos φ, sin φ, 0),   up  u = (−sin ε sin φ, sin ε cos φ, cos ε),   towards the viewer  w = r × u
 //! place on the drawing = scale · (p·r, −p·u),   depth = p·w,   φ = 35°, ε = 30°
 //! ```
-//! Of a box the faces x₁ = max, x₂ = 0 and x₃ = max are seen. A quad is turned towards the viewer if its corners run round it
-//! as those of the seen side. If all quads of a sheet are, or none is, nothing of the sheet is hidden by itself and it is filled
-//! as a whole; else the quads turned towards the viewer (all, if the sheet
-//! is a surface without a body) are drawn one over the other, the furthest first.
+//! Of a box the faces x₁ = max, x₂ = 0 and x₃ = max are seen. A quad is turned towards the viewer if its corners run round it on
+//! the drawing in the same sense as those of a quad whose outside is seen. If all quads of a sheet are turned towards the viewer,
+//! or none is, no part of the sheet hides another, and the sheet is filled as a whole. Otherwise the quads turned towards the viewer
+//! (all quads, if the sheet is a surface without a body) are drawn one over the other, the furthest first.
 
 use super::canvas::{Canvas, INK, Place, Stroke};
 use super::levels::{ColourScale, Lattice, fill};

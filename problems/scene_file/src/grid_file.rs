@@ -5,7 +5,7 @@ use contact::error::SceneError;
 use contact::scene::HeightGrid;
 use std::path::Path;
 
-/// Longest edge of a grid, numbers.
+/// Most heights along an edge of a grid.
 const LARGEST: usize = 2000;
 
 /// Largest file of a grid, bytes.

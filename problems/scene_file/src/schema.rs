@@ -53,7 +53,7 @@ impl<'s> Node<'s> {
         self.keyword(word).and_then(Value::as_str).map(|text| text.split_whitespace().collect::<Vec<_>>().join(" "))
     }
 
-    /// The tables one of which a tagged table is, with their tags `form`.
+    /// The tables among which the tag `form` chooses, each with its tag; empty for other places.
     pub(super) fn forms(&self) -> Vec<(&'s str, Node<'s>)> {
         let choices = self.inner["oneOf"].as_array().map_or(&[][..], Vec::as_slice);
         let tag = |choice: &'s Value| choice["properties"]["form"]["const"].as_str();

@@ -136,7 +136,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// What a scene and these options did not need, in words.
+    /// What was left out because the scene does not need it or an option says so, in words.
     pub fn left_out(&self, shape: &ContactShape) -> Vec<&'static str> {
         let mut left_out = shape.left_out();
         left_out.extend(self.no_checks.then_some("checks of uniqueness and plausibility (--no-checks)"));

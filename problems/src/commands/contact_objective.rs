@@ -8,8 +8,8 @@ use contact::plausibility::Warning;
 use nonsmooth::{Accuracy, CompositeObjective, Cost, StateSolver, Vector};
 use scene_file::{Case, MethodName};
 
-/// Θ of a scene: the pressure measure of the contact state that the control heights lead to. Where Σσ^p may be no double, its
-/// p-th root.
+/// Θ of a scene: the pressure measure of the contact state that the control heights lead to. Where Σσ^p may lie outside the range
+/// of doubles, Θ is its p-th root.
 pub type ContactObjective = CompositeObjective<ContactShape, PressureCost>;
 
 /// Θ of a case, for single shapes.

@@ -58,7 +58,7 @@ impl Failure {
     }
 }
 
-/// Why a run failed, if it ended neither at a point that the optimizer vouches for nor at a limit.
+/// The end of a run in words, if failures of the oracle or of the subproblem ended it; none for every other end.
 pub fn failed(termination: &Termination) -> Option<String> {
     let failed = matches!(termination, Termination::OracleFailing { .. } | Termination::SubproblemFailed { .. });
     failed.then(|| termination.to_string())

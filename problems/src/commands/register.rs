@@ -13,7 +13,7 @@ use std::sync::{Mutex, PoisonError};
 /// The list.
 pub const REGISTER: &str = "nonsmooth-files.txt";
 const HEADER: &str = "# The files that the program wrote here. It locks this list while it works.\n";
-/// The journal of a run; its restart data lie beside it.
+/// The journal of a run; its restart data and Jacobians lie beside it.
 pub const JOURNAL: &str = "journal.jsonl";
 /// Ending of a file that is being written.
 pub const UNFINISHED: &str = ".tmp";
@@ -34,7 +34,8 @@ struct Kept {
 }
 
 impl Register {
-    /// Locks the list of a folder; `begun` makes it if it does not exist, else there may be none.
+    /// Locks the list of a folder. With `begun`, a list that does not exist is made; without, there is none then. A file that is
+    /// no list is none either.
     ///
     /// # Errors
     /// [`Failure::Input`] if another process holds it; [`Failure::Computation`] with the system's reason.

@@ -28,7 +28,7 @@ const MAX_SHORTENINGS: usize = 16;
 struct VerificationJson {
     #[serde(flatten)]
     test: TaylorTest,
-    /// Largest step up to which no contact node changes its status.
+    /// Largest step of the table, mm: no contact node changes its status over it, unless every step tried was too long.
     smooth_step: f64,
     smallest_margin: f64,
     weakly_active: usize,

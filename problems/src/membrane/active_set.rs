@@ -3,7 +3,7 @@
 //! ```text
 //! active = { λ + (ψ − u) > 0 };    u = ψ on the active nodes,   A u = b elsewhere;   λ = A u − b        until the set stays
 //! ```
-//! A is an M-matrix, so that u grows and the inactive part only shrinks after the first step: the method ends.
+//! A is an M-matrix: from the second step on u ≥ ψ, u grows and the active set only shrinks, so that the method ends.
 
 use crate::membrane::{MembraneGrid, MembraneState};
 use contact::linear::FactorizationError;

@@ -74,7 +74,7 @@ impl std::fmt::Display for NodeStatus {
 pub struct NodeValues {
     /// λ_N, compression positive.
     pub normal_force: f64,
-    /// λ_T, the force of the node on the support; it opposes the tangential load.
+    /// λ_T, the tangential force of the node on the support; the node feels −λ_T, see the equilibrium in the module head.
     pub tangential_force: f64,
     /// n, the height of the node.
     pub height: f64,

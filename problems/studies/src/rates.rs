@@ -18,7 +18,7 @@ pub struct Extrapolation {
     pub misfit: f64,
 }
 
-/// Rates tried.
+/// Rates p that are tried: the first, the last, and their distance.
 const RATES: (f64, f64, f64) = (0.5, 3.0, 0.02);
 
 /// Fits the model to the values of three meshes or more; none for fewer, and where a value is not finite.

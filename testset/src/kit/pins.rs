@@ -9,7 +9,7 @@ use serde_json::Value;
 /// How far a number may be off where the kernels round differently.
 const OTHER_PROCESSOR: f64 = 1e-8;
 
-/// Entries of a history that are compared there.
+/// Entries of a history that are compared on such a processor.
 const COMMON_HISTORY: usize = 15;
 
 /// Whether the dense kernels round as on the processor that wrote the pins and the tables of the pages.

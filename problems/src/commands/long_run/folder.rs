@@ -163,7 +163,7 @@ impl RunFolder {
         keep_scene(&self.folder, loaded.file.clone())
     }
 
-    /// Takes a run back that its input does not let begin, unless it is an older one.
+    /// Takes a new run back whose input turned out to be wrong; a run that is continued stays.
     pub fn abandon(&self) {
         if !self.resumed {
             self.folder.abandon();

@@ -1,8 +1,8 @@
 //! Runs that survive: every evaluation is kept on disk, interruption ends a run orderly, a run continues bit by bit.
 //!
 //! ```text
-//! DIR/scene.toml, *.csv, start.json     the run as stated                       folder.rs
-//! DIR/journal.jsonl, warm_start_K.json  every evaluation, restart data          nonsmooth::journal
+//! DIR/scene.toml, *.csv, start.json                              the run as stated                            folder.rs
+//! DIR/journal.jsonl, warm_start_K.json, linearization_K.bin      every evaluation, restart data, Jacobians    nonsmooth::journal
 //! ```
 //! `--resume` reads the run as stated from the folder and runs it again; the journal answers as long as it lasts.
 

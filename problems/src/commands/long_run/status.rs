@@ -15,7 +15,7 @@ use tracing_subscriber::layer::Context;
 
 /// Time between two drawings of the line.
 const REDRAW_INTERVAL: Duration = Duration::from_millis(200);
-/// Begin of the line and the control sequence that erases it.
+/// Return to the beginning of the line, and the control sequence that erases it.
 const ERASE: &str = "\r\x1b[2K";
 
 /// A line that is overwritten in place, below the lines that stay. Copies are handles of the same line.

@@ -19,7 +19,7 @@ pub struct MeshRun {
     pub report: Report,
     /// Number of evaluations that were answered from the journal.
     pub replayed: usize,
-    /// Name of the mesh's folder; none for a run on a single mesh.
+    /// Name of the folder of its journal; none for a single run.
     pub name: Option<String>,
     /// The controls that it started from.
     pub initial_controls: Vector,
@@ -113,7 +113,7 @@ pub fn first_step(objective: &ContactObjective, initial_controls: &Vector) -> f6
 /// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first step:
 /// bodies that contact holds follow the surface as a whole, so that Θ hardly depends on its mean height.
 ///
-/// M = I + (κ − 1)/n · 1 1ᵀ stretches the mean by κ and leaves differences alone.
+/// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and leaves differences alone.
 pub fn mean_height_coordinates(initial_controls: &Vector, first_step: f64) -> Matrix {
     let count = initial_controls.len();
     let stretch = (initial_controls.mean().abs() / first_step).max(1.0);

@@ -21,9 +21,9 @@ const LATER_FIRST_STEP: f64 = 0.2;
 
 /// An optimization that has ended.
 pub struct OptimizationRun {
-    /// The runs on its meshes, in order; at least one.
+    /// The runs, one per mesh or one per start, in order; at least one.
     pub mesh_runs: Vec<MeshRun>,
-    /// Number of meshes asked for.
+    /// Number of runs asked for: meshes, or starts.
     pub meshes: usize,
     /// The folder in which it is kept.
     pub folder: Option<RunFolder>,
@@ -42,7 +42,7 @@ impl OptimizationRun {
         self.mesh_runs.last().is_some_and(ran_out_of_time)
     }
 
-    /// Why it failed, if it did not end at a point that the optimizer vouches for, nor at a limit.
+    /// Why it failed, if failures of the oracle or of the subproblem ended the run that it is reported by.
     pub fn failure(&self) -> Option<String> {
         self.chosen().and_then(|run| failed(&run.report.termination))
     }

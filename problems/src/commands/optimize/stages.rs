@@ -13,8 +13,8 @@ pub struct MeshStage {
     pub random_start: Option<u64>,
 }
 
-/// The meshes of a case, in order; a case without continuation has one. The axis with most bricks gets the number asked for, the
-/// others keep their proportion to it.
+/// The runs of a case, in order: one per mesh of its continuation, else one per start. On the meshes of a continuation, the axis
+/// with most bricks gets the number asked for, and the others keep their proportion to it.
 pub fn stages(case: &Case) -> Vec<MeshStage> {
     let meshes = &case.optimizer.continuation;
     let starts = case.optimizer.starts;

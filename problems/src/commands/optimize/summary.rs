@@ -106,7 +106,7 @@ struct CertificateJson {
     noise: f64,
 }
 
-/// One mesh of a coarse-to-fine optimization.
+/// One of several runs: a mesh of a coarse-to-fine optimization, or a start.
 #[derive(Debug, Serialize)]
 struct MeshRunJson<'a> {
     mesh: [usize; 3],
@@ -149,7 +149,7 @@ fn optima(runs: &[MeshRun]) -> usize {
     values.len()
 }
 
-/// One line per mesh; nothing for a run on a single mesh.
+/// One line per mesh or start; nothing for a single run.
 pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
     let mut text = String::new();
     for run in runs.iter().filter(|run| run.name.is_some()) {
@@ -174,7 +174,7 @@ pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
     text
 }
 
-/// The JSON of an optimization: the run on its last mesh, and an entry for every mesh if there are several.
+/// The JSON of an optimization: the run `last` that it is reported by, and an entry for every run if there are several.
 pub fn summary<'a>(
     last: &'a MeshRun,
     runs: &'a [MeshRun],

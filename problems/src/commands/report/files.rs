@@ -110,7 +110,7 @@ impl<'a> ReportFolder<'a> {
     }
 }
 
-/// The files of an optimization, of which `last` is the run on the last mesh.
+/// The files of an optimization; `last` is the run that it is reported by: the last mesh, or the best start.
 pub fn write_optimization(
     folder: &Folder,
     loaded: &LoadedScene,

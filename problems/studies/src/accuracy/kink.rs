@@ -40,10 +40,11 @@ pub struct KinkRow {
 pub const SLACK: f64 = 1e-5;
 /// Mesh of the constructed kinks.
 pub const MESH: usize = 4;
-/// Length of the line searched and steps on it, relative to the height of the body.
+/// Length of the line searched, relative to the height of the body.
 const REACH: f64 = 0.02;
+/// Number of steps on that line.
 const STEPS: usize = 40;
-/// Bisections: down to rounding.
+/// Most bisections; rounding ends them earlier.
 const BISECTIONS: usize = 60;
 /// First step of the one-sided differences, relative to the height of the body, and how often it is divided by four.
 const DIFFERENCE: f64 = 2e-5;

@@ -173,7 +173,7 @@ fn torn_dofs(mesh: usize) -> f64 {
     (3 * case.subdomains.pow(3) * (case.ratio() + 1).pow(3)) as f64
 }
 
-/// As the command `optimize` does it, with a policy of accuracy.
+/// As the command `optimize` with `--optimizer bundle` does it, but with a given policy of accuracy.
 fn minimize(
     objective: &ContactObjective,
     start: Vector,

@@ -46,7 +46,7 @@ pub fn row(scene: SceneName, case: Case, variant: Variant) -> Result<Row, Failur
     let mut restart = None;
     let cold = median(|| {
         if restart.is_some() {
-            // Bodies that keep their shape are factored again: a cold state owns nothing.
+            // A solver keeps the factors of bodies whose shape has not changed; a cold state must not have them.
             solver = variant.solver(&problem)?;
         }
         let (sample, state) = sample(&solver, &controls, None)?;

@@ -15,12 +15,12 @@ pub enum Expected {
     Solved,
     /// All paths refuse with an error of this kind.
     Refused(&'static str),
-    /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause. Solved by both is
-    /// as good: rounding decides at the edge.
+    /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause. A case that both
+    /// solve is as good, since rounding decides at the edge.
     Limit(LimitKinds, &'static str),
 }
 
-/// Refusals that are true of total FETI, and of direct condensation; none for a state.
+/// Kinds of refusals that are expected of total FETI, then of direct condensation; an empty list expects a state.
 pub type LimitKinds = [&'static [&'static str]; 2];
 
 /// A finding about a solved state, or what is wrong with it.

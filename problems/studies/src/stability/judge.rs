@@ -8,8 +8,8 @@ use crate::stability::record::{Outcome, Path, Record};
 use contact::equilibrium::{ContactForces, ContactProblem};
 use std::sync::Arc;
 
-/// Largest certificate of a solved state: relative residuals. The solvers accept a Newton residual of 1e-9, and four times as much of
-/// the residuals that are measured in other norms.
+/// Largest relative residual of a solved state. A Newton residual of 1e-9 is accepted where rounding stops a solver; residuals in
+/// other norms may be four times as large. The solvers themselves refuse a state only above 1e-8.
 const CERTIFICATE: f64 = 4e-9;
 /// Largest difference of forces between independent paths, over the largest force. Forces are less accurate than residuals
 /// by the condition of the problem.

@@ -15,7 +15,7 @@ const RADII: [f64; 4] = [1e-8, 1e-7, 1e-6, 1e-5];
 const LARGEST_RESIDUAL: f64 = 1e-3;
 /// A side within this relative distance is active.
 const ACTIVE_SIDE: f64 = 1e-6;
-/// Gradients per variable, and beyond.
+/// Number of gradients per variable, and how many there are besides.
 const SAMPLES: (usize, usize) = (4, 20);
 
 /// Whether the gradients around a point of the changed problem balance each other and the active constraints.

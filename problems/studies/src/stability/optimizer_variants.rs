@@ -9,9 +9,9 @@ use std::cell::Cell;
 use testset::Problem;
 use testset::kit::jitter;
 
-/// Half the width of the small sides of a box with one wide side, times the largest entry of the start.
+/// Bound of the entries in a box with one wide side, in largest entries of the start (at least 1).
 const SMALL_SIDE: f64 = 100.0;
-/// The wide side reaches up to this.
+/// Upper bound of the first entry in that box.
 const WIDE_SIDE: f64 = 1e8;
 /// Every how many calls one fails.
 const FAILING: usize = 10;

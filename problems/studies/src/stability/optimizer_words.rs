@@ -1,7 +1,8 @@
 //! What the optimizer says at the end of a run, held against what is true: the collection in all its variants.
 //!
-//! A word is false if it is *confirmed* above the gap and the point is not shown to be Clarke stationary, *confirmed* where the
-//! oracle is noisy and says so, or a *noise limit* of a convex function above ten times the noise; and if a run ends by a failure of the oracle or the subproblem above the gap although the oracle answers at the best point.
+//! A word is false if it is *confirmed* above the gap and the function is convex or the point is not shown to be Clarke stationary,
+//! *confirmed* where the oracle is noisy and says so, or a *noise limit* of a convex function above ten times the noise. A failure
+//! is false if a run ends by a failure of the oracle or of the subproblem above the gap although the oracle answers at the best point.
 
 use crate::stability::optimizer_stationarity::is_clarke_stationary;
 use crate::stability::optimizer_variants::{Changed, Variant, variants};

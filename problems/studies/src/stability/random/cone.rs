@@ -9,7 +9,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use contact::direct::CompliantContact;
 
-/// Programs solved with friction.
+/// Most programs that are solved with friction.
 const MAX_PROGRAMS: usize = 12;
 /// Relative change of s that ends the fixed point.
 const SETTLED: f64 = 1e-9;

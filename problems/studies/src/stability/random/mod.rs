@@ -19,11 +19,11 @@ use std::time::Instant;
 const MAX_RESIDUAL: f64 = 1e-8;
 /// Relative difference of Θ up to which two paths agree.
 const MAX_DIFFERENCE: f64 = 1e-6;
-/// Times the effect of the rounding of the heights that two paths may differ by.
+/// Two paths may differ by this many times the effect that the rounding of the heights has on Θ.
 const MAX_ROUNDINGS: f64 = 10.0;
-/// Times the operations of the cheaper path that the default may take, besides one factorisation.
+/// The default may take this many times the operations of the cheapest path, and one factorisation besides.
 const MAX_COST: f64 = 3.0;
-/// Every so many scenes the cone programs are solved although the default has found a state.
+/// Of so many scenes, one has its cone programs solved although the default has found a state.
 const CONE_EVERY: usize = 10;
 
 /// What is counted.

@@ -15,7 +15,7 @@ use std::sync::Arc;
 const EXPONENT: i32 = 4;
 /// Share of the load below which contact forces are rounding.
 const NOTHING: f64 = 1e-6;
-/// Roundings of the gaps that jumps may differ by.
+/// Jumps may differ by this many roundings of their terms.
 const JUMP_ROUNDINGS: f64 = 50.0;
 /// Relative residual asked of states.
 const TOLERANCE: f64 = 1e-12;
@@ -45,7 +45,7 @@ pub struct Examined {
     /// Operations per part of a state.
     pub estimate: WorkEstimate,
     contact: Result<CompliantContact, ContactError>,
-    /// Unit of Θ: that of pressures of the size of the load's rounding.
+    /// Least Θ that differences of Θ are taken relative to: that of a pressure of 1e-6 of the load over the base.
     pub smallest: f64,
 }
 
