@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! reach_i = max(|x̂_i|, |x̂_i − x⁰_i|)        size_i = max(|x̂_i|, ε reach_i)
-//! variation = min( highest value seen − Θ(x̂),  median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂ )
+//! variation = min( highest value seen − Θ(x̂),  max( median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂,
+//!                                                    Σ_k size_k Σ_i |w_i| |G_ik| of a composite Θ ) )
 //! scale     = |Θ(x̂)| clamped to [ε min(highest − Θ(x̂), Σ_j λ_j Σ_i |g_ji| reach_i), variation]
 //! bound     = ẽ + Σ_i |z̃_i| reach_i ≥ Θ(x̂) − Θ(y)        if Θ is convex and |y_i − x̂_i| ≤ reach_i
 //! ```
@@ -70,7 +71,7 @@ impl State {
         config.objective_scale.unwrap_or_else(|| {
             let highest = self.bundle.cuts().iter().map(|cut| cut.value).fold(self.start_value, f64::max);
             let drop = (highest - self.center_value).max(0.0);
-            let mut variation = drop.min(self.linear_variation());
+            let mut variation = drop.min(self.linear_variation().max(self.output_variation()));
             let size = self.center_value.abs();
             if size > 0.0 {
                 variation *= (MAX_VALUE_SHARE * variation / size).clamp(SHIFTED_SHARE, 1.0);
@@ -100,6 +101,12 @@ impl State {
             (0..self.bundle.cuts().len()).filter(near).map(|i| self.spread(i, &lengths).size).collect();
         terms.sort_by(f64::total_cmp);
         terms.get(terms.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// Σ_k size_k Σ_i |w_i| |G_ik|: how far the terms of Gᵀw let Θ vary, also where they cancel, as at a smooth minimum.
+    fn output_variation(&self) -> f64 {
+        let slopes = self.output_slopes.as_ref();
+        slopes.map_or(0.0, |slopes| dot_terms(slopes.as_slice(), self.lengths().size.as_slice()))
     }
 
     /// Σ λ_j Σ |g_ji| reach_i: the terms that cancel in the aggregate subgradient.

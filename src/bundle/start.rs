@@ -159,6 +159,7 @@ fn first_evaluation<O: NonsmoothObjective>(
         failures: 0,
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],
+        output_slopes: None,
         lengths: RefCell::default(),
     };
     state.bundle.push(cut, &state.norm);

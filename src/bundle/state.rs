@@ -38,6 +38,8 @@ pub(crate) struct State {
     pub failures: usize,
     pub counts: Counts,
     pub history: Vec<IterationRecord>,
+    /// Σ_i |w_i| |G_ik| for every variable k, the terms that cancel in Gᵀw at the center; none where no outputs are known there.
+    pub output_slopes: Option<Vector>,
     /// The lengths that belong to a center.
     pub lengths: RefCell<Option<(u64, Rc<Lengths>)>>,
 }

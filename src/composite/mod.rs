@@ -12,8 +12,10 @@
 //! References: \[Fletcher1982\], \[LewisWright2016\] (proximal method for composite minimization), \[Sagastizabal2013\]
 //! (composite bundle method).
 
+mod epigraph;
 mod linearization;
 mod outer;
 
+pub use epigraph::Epigraph;
 pub use linearization::{InactiveConstraints, Linearization, LinearizationRequest};
 pub use outer::{EuclideanNorm, FnOuter, Maximum, OuterFunction, SumOfPowers, weighted_gram};

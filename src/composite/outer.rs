@@ -1,5 +1,6 @@
 //! Convex functions of the outputs.
 
+use super::epigraph::Epigraph;
 use crate::{Matrix, Vector};
 
 /// A convex function h: Rᵐ → R with one subgradient, and its curvature where it has one.
@@ -15,6 +16,12 @@ pub trait OuterFunction {
     fn curvature(&self, _outputs: &Vector, _jacobian: &Matrix) -> Option<Matrix> {
         None
     }
+
+    /// The cones behind h, if it is built from some: where h has no curvature, the subproblem is then solved by an interior-point
+    /// method (feature `interior-point`; by cuts without it), and errors of subgradients are taken from the conjugate h*.
+    fn epigraph(&self) -> Option<Epigraph> {
+        None
+    }
 }
 
 impl<H: OuterFunction + ?Sized> OuterFunction for &H {
@@ -28,6 +35,10 @@ impl<H: OuterFunction + ?Sized> OuterFunction for &H {
 
     fn curvature(&self, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
         (**self).curvature(outputs, jacobian)
+    }
+
+    fn epigraph(&self) -> Option<Epigraph> {
+        (**self).epigraph()
     }
 }
 
@@ -70,6 +81,10 @@ impl OuterFunction for SumOfPowers {
         let p = self.exponent;
         (p >= 2.0).then(|| weighted_gram(jacobian, &outputs.map(|output| p * (p - 1.0) * output.abs().powf(p - 2.0))))
     }
+
+    fn epigraph(&self) -> Option<Epigraph> {
+        Some(Epigraph::SumOfPowers { exponent: self.exponent })
+    }
 }
 
 /// h(c) = |c|₂.
@@ -84,6 +99,10 @@ impl OuterFunction for EuclideanNorm {
     fn subgradient(&self, outputs: &Vector) -> Vector {
         let size = outputs.norm();
         if size > 0.0 { outputs / size } else { Vector::zeros(outputs.len()) }
+    }
+
+    fn epigraph(&self) -> Option<Epigraph> {
+        Some(Epigraph::EuclideanNorm)
     }
 }
 

@@ -78,7 +78,8 @@ fn solve_scaled(qp: &EpigraphQp<'_>, weights: &Vector, length: f64) -> Result<(I
     Ok((InteriorAnswer { solution, actives }, reached))
 }
 
-fn settings() -> DefaultSettings<f64> {
+/// Settings for the most that double precision gives.
+pub(crate) fn settings() -> DefaultSettings<f64> {
     DefaultSettings {
         verbose: false,
         max_threads: 1,
@@ -166,7 +167,8 @@ fn scaled_metric(qp: &EpigraphQp<'_>, weights: &Vector) -> CscMatrix<f64> {
     compressed(n + 1, &columns)
 }
 
-fn compressed(height: usize, columns: &[Vec<(usize, f64)>]) -> CscMatrix<f64> {
+/// A sparse matrix from its columns, each a list of rows and values.
+pub(crate) fn compressed(height: usize, columns: &[Vec<(usize, f64)>]) -> CscMatrix<f64> {
     let mut starts = vec![0];
     let (mut indices, mut values) = (Vec::new(), Vec::new());
     for column in columns {

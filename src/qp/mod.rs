@@ -20,7 +20,7 @@ mod gram;
 #[cfg(test)]
 mod gram_tests;
 #[cfg(feature = "interior-point")]
-mod interior_point;
+pub(crate) mod interior_point;
 pub(crate) mod kernels;
 mod pricing;
 mod problem;

@@ -4,7 +4,8 @@
 //! z̃ = Gᵀ Σ λ_j w_j + Aᵀμ + ν,   w_j ∈ ∂h(c_j),     e_j = h(c) − h(c_j) − ⟨w_j, c − c_j⟩ ≥ 0,   Σ λ_j e_j = h(c) − ⟨w, c⟩ + h*(w)
 //! ```
 //! The last equation holds where Σ λ_j w_j is a subgradient at all c_j with a multiplier, as it is for one c_j; otherwise the
-//! sum is an upper bound of the right side.
+//! sum is an upper bound of the right side. Where h is built from cones, w_j may be any w with a conjugate, and ⟨w, c_j⟩ − h*(w) stands
+//! for h(c_j).
 
 use super::Certificate;
 use crate::bundle::OuterCut;
@@ -34,7 +35,7 @@ pub struct CompositeProof {
 pub struct ProofCheck {
     /// |h(c) − Θ(x̂)|/|Θ(x̂)|.
     pub value: f64,
-    /// h(c_j) and w_j against the outer function.
+    /// h(c_j) and w_j against the outer function; ⟨w_j, c_j⟩ − h*(w_j), where h is built from cones.
     pub outer: f64,
     /// Gᵀw_j against the subgradients of the certificate's cuts, and e_j against their errors (relative to Θ(x̂)).
     pub cuts: f64,
@@ -67,9 +68,19 @@ impl CompositeProof {
         for (own, cut) in self.cuts.iter().zip(&certificate.cuts) {
             check_size("outputs of a cut", m, own.outputs.len())?;
             check_size("subgradient of the outer function", m, own.subgradient.len())?;
-            let at = outer.value(&own.outputs);
-            raise(&mut check.outer, relative((at - own.value).abs(), at.abs().max(own.value.abs())));
-            raise(&mut check.outer, distance(&outer.subgradient(&own.outputs), &own.subgradient));
+            match outer.epigraph() {
+                Some(epigraph) => {
+                    let (product, conjugate) =
+                        (own.subgradient.dot(&own.outputs), epigraph.conjugate(&own.subgradient));
+                    let size = product.abs() + conjugate.abs();
+                    raise(&mut check.outer, relative((product - conjugate - own.value).abs(), size));
+                }
+                None => {
+                    let at = outer.value(&own.outputs);
+                    raise(&mut check.outer, relative((at - own.value).abs(), at.abs().max(own.value.abs())));
+                    raise(&mut check.outer, distance(&outer.subgradient(&own.outputs), &own.subgradient));
+                }
+            }
             raise(&mut check.cuts, distance(&self.jacobian.tr_mul(&own.subgradient), &cut.subgradient));
             let seen = cut.linearization_error(&certificate.point, certificate.value);
             raise(&mut check.cuts, relative((own.error(&self.outputs, value) - seen).abs(), theta));

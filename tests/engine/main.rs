@@ -10,6 +10,7 @@ mod composite;
 mod composite_faults;
 mod evaluation_counts;
 mod feasibility;
+mod fits;
 mod generic_use;
 mod inexact_oracle;
 mod kinks;

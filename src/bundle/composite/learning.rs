@@ -12,6 +12,11 @@ use crate::{NonsmoothObjective, Vector};
 
 /// A step with this share of the predicted decrease lets the weight fall.
 const GOOD_RATIO: f64 = 0.5;
+/// A step of the model with the curvature of the outputs that falls by this many times the predicted decrease has met less of
+/// that curvature: twice as much is what a straight line gives.
+const STRAIGHT_RATIO: f64 = 1.5;
+/// By which the share of that curvature falls then, and rises after a rejected step.
+const BEND_FACTOR: f64 = 4.0;
 /// Length of the step after a rejected one, as a share of its length.
 const SHORTER: f64 = 0.3;
 /// Longest pause after failures, evaluations.
@@ -33,9 +38,13 @@ impl Composite {
             if ratio.is_some_and(|ratio| ratio >= GOOD_RATIO) {
                 self.weight /= FACTOR;
             }
+            if ratio.is_some_and(|ratio| ratio >= STRAIGHT_RATIO) {
+                self.bend /= BEND_FACTOR;
+            }
         } else {
             self.failures += 1;
             self.weight *= FACTOR;
+            self.bend = (self.bend * BEND_FACTOR).min(1.0);
             self.longest = SHORTER * proposal.step_length;
             if self.failures >= PATIENCE {
                 self.pause.fail(MAX_PAUSE);
@@ -122,9 +131,17 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
 
     /// Moves the model to a new center, to be built there if the Jacobian is known.
     pub(in crate::bundle) fn rebase(&mut self, point: &Vector, value: f64, linearization: Option<Linearization>) {
+        let outer = self.objective.outer();
+        self.state.output_slopes = outer.zip(linearization.as_ref()).and_then(|(outer, known)| terms(outer, known));
         if let Some(composite) = &mut self.composite {
             composite.rejected = None;
             composite.base = linearization.map(|linearization| Base { point: point.clone(), value, linearization });
         }
     }
+}
+
+/// |G|ᵀ|w| for w ∈ ∂h(c); none where h gives no such w.
+fn terms(outer: &dyn OuterFunction, Linearization { outputs, jacobian, .. }: &Linearization) -> Option<Vector> {
+    let weights = without_panic(|| outer.subgradient(outputs)).ok()?;
+    (weights.len() == outputs.len()).then(|| jacobian.abs().tr_mul(&weights.abs()))
 }

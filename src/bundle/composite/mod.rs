@@ -9,6 +9,8 @@
 //! earlier Jacobians show it. After repeated failures, and as soon as a step fails on kinks of c, the model pauses, and cuts,
 //! curved model and exploration go on.
 
+#[cfg(feature = "interior-point")]
+mod cones;
 mod curvature;
 mod excursion;
 mod kinks;
@@ -59,6 +61,8 @@ pub(crate) struct Composite {
     correcting: bool,
     /// Whether the model takes the curvature of the outputs into account: since a step has failed without it.
     bends: bool,
+    /// The share of that curvature that steps have confirmed, at most 1.
+    bend: f64,
     memory: Memory,
     kinks: Kinks,
     /// Weights of the outputs at the last subproblem's solution.
@@ -85,6 +89,7 @@ impl Composite {
             rejected: None,
             correcting: false,
             bends: false,
+            bend: 1.0,
             memory: Memory::default(),
             kinks: Kinks::default(),
             weights: None,

@@ -3,13 +3,20 @@
 //! ```text
 //! min over d   h(c + G d) + u‖d‖²/2,   x + d ∈ U
 //! h smooth:    Newton's method, each step a quadratic program with Gᵀ∇²h G + u W, and a line search
+//! of cones:    an interior-point method (cones.rs), judged by weak duality
 //! else:        max_j h(c_j) + ⟨w_j, c + G d − c_j⟩ in place of h, cuts added until they meet h
 //! w = Σ λ_j w_j:   Gᵀw + Aᵀμ + ν = −u W d,   error of w at c:  Σ λ_j (h(c) − h(c_j) − ⟨w_j, c − c_j⟩) ≥ 0
 //! ```
 
+#[cfg(feature = "interior-point")]
+use super::cones::{self, ConeAnswer};
 use crate::bundle::norm::{ScaledNorm, WeightedMetric};
+#[cfg(feature = "interior-point")]
+use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::SubproblemError;
 use crate::bundle::proposers::subproblem::{self, Cuts};
+#[cfg(feature = "interior-point")]
+use crate::composite::Epigraph;
 use crate::composite::{Linearization, OuterFunction};
 use crate::qp::{EpigraphQpSolver, Metric, QpSolution, project};
 use crate::{Matrix, Polyhedron, Vector};
@@ -23,6 +30,12 @@ const MAX_CUTS: usize = 1000;
 const SOLVED: f64 = 1e-9;
 /// The same for the gap between h and its cuts.
 const MET: f64 = 1e-6;
+/// What the interior-point method may leave of the promised decrease: a trial point needs no more, and a proof has its own test.
+#[cfg(feature = "interior-point")]
+const MET_BY_CONES: f64 = 0.1;
+/// The same in units of the size of h: beyond it double precision does not take that method where G is ill-conditioned.
+#[cfg(feature = "interior-point")]
+const LEFT_BY_CONES: f64 = 1e-10;
 /// Rounding of h in units of its size.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// A cut above h by more than this share of the sizes of its terms is no rounding: h is not convex.
@@ -38,9 +51,9 @@ const SUFFICIENT_DECREASE: f64 = 1e-4;
 pub struct OuterCut {
     /// Where h was evaluated, c_j.
     pub outputs: Vector,
-    /// h(c_j).
+    /// h(c_j), or ⟨w_j, c_j⟩ − h*(w_j) ≤ h(c_j).
     pub value: f64,
-    /// w_j ∈ ∂h(c_j).
+    /// w_j ∈ ∂h(c_j), or any w_j whose conjugate is known.
     pub subgradient: Vector,
     /// λ_j ≥ 0; Σ λ_j = 1.
     pub multiplier: f64,
@@ -107,8 +120,49 @@ impl CompositeModel<'_> {
         solver.forget();
         match self.outer.curvature(outputs, jacobian) {
             Some(_) => self.solve_by_newton(solver),
-            None => self.solve_by_cuts(solver),
+            None => {
+                #[cfg(feature = "interior-point")]
+                if let Some(epigraph) = self.outer.epigraph() {
+                    return self.solve_by_cones(solver, epigraph);
+                }
+                self.solve_by_cuts(solver, vec![])
+            }
         }
+    }
+
+    /// The answer of the interior-point method, where weak duality says that it is good enough; cuts else, its own first.
+    #[cfg(feature = "interior-point")]
+    fn solve_by_cones(
+        &self,
+        solver: &mut EpigraphQpSolver,
+        epigraph: Epigraph,
+    ) -> Result<CompositeStep, SubproblemError> {
+        let Some(ConeAnswer { step, weights, sides }) = cones::solve(self, epigraph) else {
+            return self.solve_by_cuts(solver, vec![]);
+        };
+        let step = project(self.set, &(self.base + step))? - self.base;
+        let outputs = self.outputs(&step);
+        let value = weights.dot(&outputs) - epigraph.conjugate(&weights);
+        let cut = OuterCut { value, subgradient: weights, outputs, multiplier: 1.0 };
+        self.error(&cut)?;
+        let slope = self.linearization.jacobian.tr_mul(&cut.subgradient) + self.pull(&step);
+        let residual = slope + self.set.rows().tr_mul(&sides.0) + &sides.1;
+        let slack = slack_error((&sides.0, &sides.1), &(self.base + &step), self.set);
+        let left =
+            self.outer.value(&cut.outputs) - value + slack + self.norm.dual_length(&residual) * self.norm.length(&step);
+        if left <= -MET_BY_CONES * self.merit(&step) + LEFT_BY_CONES * self.value.abs() {
+            return Ok(self.solved(step, vec![cut], sides));
+        }
+        let there = OuterCut::at(self.outer, cut.outputs.clone())?;
+        self.solve_by_cuts(solver, vec![cut, there])
+    }
+
+    /// B + u W.
+    fn metric(&self) -> WeightedMetric {
+        let Some(curvature) = self.curvature else { return self.norm.weighted(self.weight) };
+        let mut metric = curvature.clone();
+        self.norm.add_to(&mut metric, self.weight);
+        WeightedMetric::Dense(metric)
     }
 
     /// c + G d.
@@ -123,7 +177,7 @@ impl CompositeModel<'_> {
     }
 
     /// −u W o.
-    fn pull_to_origin(&self) -> Vector {
+    pub(super) fn pull_to_origin(&self) -> Vector {
         self.origin
             .map_or_else(|| Vector::zeros(self.base.len()), |origin| self.norm.lower_index(origin) * -self.weight)
     }
@@ -160,10 +214,10 @@ impl CompositeModel<'_> {
                 .map_err(|error| negative_curvature(curvature).unwrap_or_else(|| error.into()))?;
             let promised = -slopes[0].dot(&solution.step);
             if promised <= SOLVED * merit.abs() + ROUNDING * self.value.abs() {
-                return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], &solution));
+                return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], multipliers(&solution)));
             }
             let Some((next, lower)) = self.search(&step, &solution.step, merit, promised) else {
-                return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], &solution));
+                return Ok(self.solved(step, vec![OuterCut { multiplier: 1.0, ..at }], multipliers(&solution)));
             };
             (step, merit) = (next, lower);
         }
@@ -184,21 +238,19 @@ impl CompositeModel<'_> {
         None
     }
 
-    fn solve_by_cuts(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
+    /// `known`: cuts to begin with, beside that at the base.
+    fn solve_by_cuts(
+        &self,
+        solver: &mut EpigraphQpSolver,
+        known: Vec<OuterCut>,
+    ) -> Result<CompositeStep, SubproblemError> {
         let linearization = self.linearization;
-        let metric = match self.curvature {
-            Some(curvature) => {
-                let mut metric = curvature.clone();
-                self.norm.add_to(&mut metric, self.weight);
-                WeightedMetric::Dense(metric)
-            }
-            None => self.norm.weighted(self.weight),
-        };
-        let pull = self.pull_to_origin();
-        let mut cuts = vec![OuterCut::at(self.outer, linearization.outputs.clone())?];
+        let (metric, pull) = (self.metric(), self.pull_to_origin());
+        let mut cuts = known;
+        cuts.push(OuterCut::at(self.outer, linearization.outputs.clone())?);
         let (mut slopes, mut offsets, mut ids) = (vec![], vec![], vec![]);
         loop {
-            if let Some(newest) = cuts.last() {
+            for newest in &cuts[slopes.len()..] {
                 slopes.push(linearization.jacobian.tr_mul(&newest.subgradient) + &pull);
                 offsets.push(self.error(newest)?);
                 ids.push(ids.len() as u64);
@@ -214,7 +266,7 @@ impl CompositeModel<'_> {
                     cut.multiplier = *multiplier;
                 }
                 cuts.retain(|cut| cut.multiplier > 0.0);
-                return Ok(self.solved(solution.step.clone(), cuts, &solution));
+                return Ok(self.solved(solution.step.clone(), cuts, multipliers(&solution)));
             }
             cuts.push(next);
         }
@@ -231,15 +283,16 @@ impl CompositeModel<'_> {
         Ok(error.max(0.0))
     }
 
-    fn solved(&self, step: Vector, cuts: Vec<OuterCut>, solution: &QpSolution) -> CompositeStep {
-        CompositeStep {
-            decrease: self.value - self.outer.value(&self.outputs(&step)) - 0.5 * self.bend(&step),
-            step,
-            cuts,
-            row_multipliers: Vector::from_column_slice(&solution.row_multipliers),
-            bound_multipliers: Vector::from_column_slice(&solution.bound_multipliers),
-        }
+    /// `sides`: multipliers of the rows and of the bounds.
+    fn solved(&self, step: Vector, cuts: Vec<OuterCut>, sides: (Vector, Vector)) -> CompositeStep {
+        let decrease = self.value - self.outer.value(&self.outputs(&step)) - 0.5 * self.bend(&step);
+        CompositeStep { decrease, step, cuts, row_multipliers: sides.0, bound_multipliers: sides.1 }
     }
+}
+
+/// Multipliers of the rows and of the bounds.
+fn multipliers(solution: &QpSolution) -> (Vector, Vector) {
+    (Vector::from_column_slice(&solution.row_multipliers), Vector::from_column_slice(&solution.bound_multipliers))
 }
 
 /// The error of an outer function whose curvature has a negative eigenvalue that is no rounding.

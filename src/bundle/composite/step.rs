@@ -93,6 +93,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         for _ in 0..PASSES {
             let Some(weights) = &composite.weights else { break };
             let curvature = composite.memory.curvature((&base.point, jacobian), weights, model.norm);
+            let curvature = curvature.map(|curvature| curvature * composite.bend);
             let model = CompositeModel { curvature: curvature.as_ref(), ..model };
             let found = model.solve(&mut self.solver)?;
             composite.weights = Some(found.weights());

@@ -36,22 +36,37 @@ pub(crate) fn solve(
     metric: Metric<'_>,
     cuts: Cuts<'_>,
 ) -> Result<QpSolution, QpError> {
-    let at_center = set.rows() * center;
-    let terms = set.rows().abs() * center.abs();
+    let room = Room::around(set, center);
     let qp = EpigraphQp {
         metric,
         slopes: cuts.slopes,
         offsets: cuts.offsets,
         cut_ids: cuts.ids,
         rows: set.rows(),
-        row_lower: &slack(set.row_lower(), &at_center, &terms, f64::min),
-        row_upper: &slack(set.row_upper(), &at_center, &terms, f64::max),
-        lower: &(set.lower() - center),
-        upper: &(set.upper() - center),
+        row_lower: &room.rows.0,
+        row_upper: &room.rows.1,
+        lower: &room.bounds.0,
+        upper: &room.bounds.1,
     };
     match cuts.gram {
         Some(gram) => solver.solve_with_products(&qp, gram),
         None => solver.solve(&qp),
+    }
+}
+
+/// The admissible set as seen from a point: lower and upper sides of A d and of d.
+pub(crate) struct Room {
+    pub rows: (Vector, Vector),
+    pub bounds: (Vector, Vector),
+}
+
+impl Room {
+    pub(crate) fn around(set: &Polyhedron, center: &Vector) -> Self {
+        let at_center = set.rows() * center;
+        let terms = set.rows().abs() * center.abs();
+        let lower = slack(set.row_lower(), &at_center, &terms, f64::min);
+        let upper = slack(set.row_upper(), &at_center, &terms, f64::max);
+        Self { rows: (lower, upper), bounds: (set.lower() - center, set.upper() - center) }
     }
 }
 
