@@ -15,7 +15,9 @@ const GOOD_RATIO: f64 = 0.5;
 /// A step of the model with the curvature of the outputs that falls by this many times the predicted decrease has met less of
 /// that curvature: twice as much is what a straight line gives.
 const STRAIGHT_RATIO: f64 = 1.5;
-/// By which the share of that curvature falls then, and rises after a rejected step.
+/// Such steps in a row from which on the share of that curvature falls: single ones come from constraints that become active.
+const STRAIGHT_STEPS: usize = 3;
+/// By which that share falls, and rises after a rejected step.
 const BEND_FACTOR: f64 = 4.0;
 /// Length of the step after a rejected one, as a share of its length.
 const SHORTER: f64 = 0.3;
@@ -38,12 +40,14 @@ impl Composite {
             if ratio.is_some_and(|ratio| ratio >= GOOD_RATIO) {
                 self.weight /= FACTOR;
             }
-            if ratio.is_some_and(|ratio| ratio >= STRAIGHT_RATIO) {
+            self.straight = if ratio.is_some_and(|ratio| ratio >= STRAIGHT_RATIO) { self.straight + 1 } else { 0 };
+            if self.straight >= STRAIGHT_STEPS {
                 self.bend /= BEND_FACTOR;
             }
         } else {
             self.failures += 1;
             self.weight *= FACTOR;
+            self.straight = 0;
             self.bend = (self.bend * BEND_FACTOR).min(1.0);
             self.longest = SHORTER * proposal.step_length;
             if self.failures >= PATIENCE {

@@ -63,6 +63,8 @@ pub(crate) struct Composite {
     bends: bool,
     /// The share of that curvature that steps have confirmed, at most 1.
     bend: f64,
+    /// Serious steps in a row that have met less of it than predicted.
+    straight: usize,
     memory: Memory,
     kinks: Kinks,
     /// Weights of the outputs at the last subproblem's solution.
@@ -90,6 +92,7 @@ impl Composite {
             correcting: false,
             bends: false,
             bend: 1.0,
+            straight: 0,
             memory: Memory::default(),
             kinks: Kinks::default(),
             weights: None,
