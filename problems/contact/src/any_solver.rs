@@ -110,23 +110,11 @@ impl From<DirectSolver> for AnySolver {
 }
 
 impl AnySolver {
-    /// The solver of a kind; `preconditioner` is for total FETI.
+    /// The solver of a kind; `preconditioner` is for total FETI, `wanted` for the choice of `auto`.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn new(
-        problem: Arc<ContactProblem>,
-        kind: SolverKind,
-        preconditioner: PreconditionerKind,
-    ) -> Result<Self, ContactError> {
-        Self::for_use(problem, kind, preconditioner, Wanted::States)
-    }
-
-    /// The solver of a kind; `preconditioner` is for total FETI.
-    ///
-    /// # Errors
-    /// [`ContactError::Factorization`] when a symbolic analysis fails.
-    pub fn for_use(
         problem: Arc<ContactProblem>,
         kind: SolverKind,
         preconditioner: PreconditionerKind,
