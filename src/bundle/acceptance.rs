@@ -7,7 +7,7 @@ use super::proposers::proposal::Proposal;
 use super::proposers::proposer::{Comparison, Trial};
 use super::run::Run;
 use crate::report::StepKind;
-use crate::{Accuracy, Answer, Evaluation, NonsmoothObjective, Vector};
+use crate::{Accuracy, Answer, Evaluation, Vector};
 
 /// Only steps shorter than this share of the length scale tell noise from slope.
 const NOISE_STEP: f64 = 1e-4;
@@ -20,9 +20,9 @@ const EXTRA_CUTS: usize = 15;
 /// Largest number of cuts, unless `bundle_size` is set.
 const MAX_CUTS: usize = 500;
 
-impl<O: NonsmoothObjective> Run<'_, '_, O> {
+impl Run<'_, '_> {
     /// Serious or null: updates weight, bundle and center.
-    pub(super) fn accept_or_reject(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<O::WarmStart>) {
+    pub(super) fn accept_or_reject(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<()>) {
         let accurate = matches!(answer, Answer::Accurate(_));
         let mut evaluation = answer.into_evaluation();
         let linearization = evaluation.linearization.take();
@@ -47,14 +47,14 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         };
         self.add_cut(proposal.trial.clone(), &evaluation, !accurate);
         if serious {
-            self.move_center(proposal.trial.clone(), evaluation, accuracy);
+            self.move_center(proposal.trial.clone(), value, accuracy);
         }
         let linearized = self.learn_structure(&trial, value, linearization);
         self.record(&proposal, accuracy, Event { kind, value: Some(value), failure: None, linearized, work });
     }
 
     /// Values that jump although the points almost coincide, and cuts above the values of a convex function, are noise.
-    fn watch_noise(&mut self, proposal: &Proposal, evaluation: &Evaluation<O::WarmStart>) {
+    fn watch_noise(&mut self, proposal: &Proposal, evaluation: &Evaluation<()>) {
         let state = &mut self.state;
         let change = evaluation.value - state.center_value;
         let promised = evaluation.error_bound + state.center_error_bound() + state.rounding();
@@ -72,7 +72,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         }
     }
 
-    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<O::WarmStart>, certified: bool) {
+    pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<()>, certified: bool) {
         let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + EXTRA_CUTS).min(MAX_CUTS));
         let state = &mut self.state;
         state.bundle.make_room(size, state.center_id);
@@ -91,12 +91,12 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         self.forget_model();
     }
 
-    /// Makes the newest cut the center.
-    pub(super) fn move_center(&mut self, point: Vector, evaluation: Evaluation<O::WarmStart>, accuracy: Accuracy) {
+    /// Makes the newest cut the center; it is that of the last evaluation.
+    pub(super) fn move_center(&mut self, point: Vector, value: f64, accuracy: Accuracy) {
         self.state.center = point;
-        self.state.center_value = evaluation.value;
+        self.state.center_value = value;
         self.state.center_id = self.state.next_id - 1;
         self.state.center_accuracy = accuracy.tolerance();
-        self.warm_start = Some(evaluation.warm_start);
+        self.oracle.keep_warm_start();
     }
 }

@@ -12,10 +12,9 @@ use crate::qp::kernels::difference_dot;
 use serde::{Deserialize, Serialize};
 use std::cell::Cell;
 
-/// A multiplier above this makes a cut active: stopping test, noise and certificate speak of it. Σ λ = 1.
+/// A multiplier above this makes a cut active: stopping test, noise, scales and certificate speak of it. Smaller ones are rounding of
+/// the subproblem: the cut is idle, and the first to leave the bundle. Σ λ = 1.
 pub(crate) const LEAST_ACTIVE_MULTIPLIER: f64 = 1e-9;
-/// A multiplier up to this is rounding of the subproblem: the cut is idle, and the first to leave the bundle.
-const LARGEST_IDLE_MULTIPLIER: f64 = 1e-10;
 
 /// One evaluation kept in the bundle.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,19 +35,14 @@ pub struct Cut {
     pub certified: bool,
     /// Multiplier in the last subproblem.
     pub multiplier: f64,
-    /// Subproblems in a row in which the multiplier was zero.
+    /// Subproblems in a row in which the cut was not active.
     pub idle: usize,
 }
 
 impl Cut {
-    /// Whether the cut carried a positive multiplier in the last subproblem.
+    /// Whether the last subproblem made use of the cut, beyond its rounding.
     pub fn is_active(&self) -> bool {
         self.multiplier > LEAST_ACTIVE_MULTIPLIER
-    }
-
-    /// Whether the last subproblem made no use of the cut, not even in its rounding.
-    pub(crate) fn is_idle(&self) -> bool {
-        self.multiplier <= LARGEST_IDLE_MULTIPLIER
     }
 
     /// How far the cut may lie above a convex Θ: the promised error of its value, nothing if it is certified.
@@ -167,7 +161,7 @@ impl Bundle {
     pub(crate) fn set_multipliers(&mut self, multipliers: &[f64]) {
         for (cut, &multiplier) in self.cuts.iter_mut().zip(multipliers) {
             cut.multiplier = multiplier;
-            cut.idle = if cut.is_idle() { cut.idle + 1 } else { 0 };
+            cut.idle = if cut.is_active() { 0 } else { cut.idle + 1 };
         }
     }
 

@@ -2,8 +2,8 @@
 
 use super::proposers::proposal::Proposal;
 use super::run::Run;
+use crate::Accuracy;
 use crate::report::{Certificate, IterationRecord, Origin, Report, StepKind, Termination};
-use crate::{Accuracy, NonsmoothObjective};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// A decrease of Θ beyond this many times its first value and first promise ends the run as unbounded below.
@@ -21,7 +21,7 @@ pub(super) struct Event {
     pub work: usize,
 }
 
-impl<O: NonsmoothObjective> Run<'_, '_, O> {
+impl Run<'_, '_> {
     pub(super) fn record(&mut self, proposal: &Proposal, accuracy: Accuracy, event: Event) {
         let Event { kind, value, failure, linearized, work } = event;
         let origin = if kind == StepKind::Refinement { Origin::Given } else { proposal.origin };

@@ -1,34 +1,76 @@
-//! The one place where the user's code is called: panics, wrong sizes and numbers that are not finite become errors.
+//! The one place where the user's code is called: panics, wrong sizes and numbers that are not finite become errors. Behind it nothing
+//! depends on the type of the objective, so that the engine is compiled once, not once per objective.
 
 use crate::linalg::first_non_finite;
 use crate::panics::evaluate_without_panic;
-use crate::{Answer, NonsmoothObjective, OracleError, Request};
+use crate::{Answer, Evaluation, NonsmoothObjective, OracleError, Request};
 
 /// Numbers beyond this cannot be squared.
 const LARGEST: f64 = 1e150;
 
 /// What an evaluation can end with.
-pub(crate) enum Outcome<W> {
-    Answer(Answer<W>),
+pub(super) enum Outcome {
+    Answer(Answer<()>),
     /// Θ = −∞.
     MinusInfinity,
     Failure(OracleError),
 }
 
+/// An objective that remembers the warm start of the center.
+pub(super) trait Oracle {
+    /// Evaluates the objective with the warm start that is kept.
+    fn answer(&mut self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError>;
+
+    /// Keeps the warm start of the last answer.
+    fn keep_warm_start(&mut self);
+}
+
+/// The objective of a user as an [`Oracle`].
+pub(super) struct WarmStarted<'r, O: NonsmoothObjective> {
+    objective: &'r O,
+    kept: Option<O::WarmStart>,
+    last: Option<O::WarmStart>,
+}
+
+impl<'r, O: NonsmoothObjective> WarmStarted<'r, O> {
+    pub(super) fn new(objective: &'r O) -> Self {
+        Self { objective, kept: None, last: None }
+    }
+}
+
+impl<O: NonsmoothObjective> Oracle for WarmStarted<'_, O> {
+    fn answer(&mut self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        self.last = None;
+        let &Request { point, accuracy, descent_target, linearization, .. } = request;
+        let warm_start = self.kept.as_ref();
+        let request = Request { point, warm_start, accuracy, descent_target, linearization };
+        let mut without = |evaluation: Evaluation<O::WarmStart>| {
+            let Evaluation { value, subgradient, error_bound, warm_start, linearization, work } = evaluation;
+            self.last = Some(warm_start);
+            Evaluation { value, subgradient, error_bound, warm_start: (), linearization, work }
+        };
+        Ok(match evaluate_without_panic(self.objective, &request)? {
+            Answer::Accurate(evaluation) => Answer::Accurate(without(evaluation)),
+            Answer::NoDescent(evaluation) => Answer::NoDescent(without(evaluation)),
+        })
+    }
+
+    fn keep_warm_start(&mut self) {
+        self.kept = self.last.take();
+    }
+}
+
 /// Evaluates the objective; never panics.
-pub(crate) fn evaluate<O: NonsmoothObjective>(
-    objective: &O,
-    request: &Request<'_, O::WarmStart>,
-) -> Outcome<O::WarmStart> {
-    match evaluate_without_panic(objective, request) {
-        Ok(answer) => check(answer, request),
+pub(super) fn evaluate(oracle: &mut dyn Oracle, request: &Request<'_, ()>) -> Outcome {
+    match oracle.answer(request) {
+        Ok(answer) => check(answer, request.point.len()),
         Err(error) => Outcome::Failure(error),
     }
 }
 
-fn check<W>(answer: Answer<W>, request: &Request<'_, W>) -> Outcome<W> {
+fn check(answer: Answer<()>, expected: usize) -> Outcome {
     let evaluation = answer.evaluation();
-    let (expected, found) = (request.point.len(), evaluation.subgradient.len());
+    let found = evaluation.subgradient.len();
     if expected != found {
         return Outcome::Failure(crate::InputError::Dimension { what: "subgradient", expected, found }.into());
     }

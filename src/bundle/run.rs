@@ -4,15 +4,16 @@ use super::builder::BundleTrust;
 use super::composite::{Composite, Proof};
 use super::config::AccuracyPolicy;
 use super::finish::Event;
-use super::oracle::{Outcome, evaluate};
+use super::oracle::{Oracle, Outcome, evaluate};
 use super::proposers::cuts::model::Model;
 use super::proposers::list::Proposers;
 use super::proposers::proposal::{Proposal, SubproblemError};
 use super::proposers::proposer::Position;
 use super::state::State;
+use crate::composite::OuterFunction;
 use crate::qp::{EpigraphQpSolver, QpCounts};
 use crate::report::{IterationRecord, Origin, StepKind, Termination};
-use crate::{Accuracy, Answer, NonsmoothObjective, OracleError, Polyhedron, Request, Vector};
+use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
 
@@ -40,12 +41,13 @@ const MAX_SUBPROBLEM_TRIALS: usize = 4;
 /// assert!(run.finish().value < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct Run<'r, 'o, O: NonsmoothObjective> {
+pub struct Run<'r, 'o> {
     pub(super) method: &'r mut BundleTrust<'o>,
-    pub(super) objective: &'r O,
+    pub(super) oracle: Box<dyn Oracle + 'r>,
+    /// The convex function of a composite objective.
+    pub(super) outer: Option<&'r dyn OuterFunction>,
     pub(super) set: Polyhedron,
     pub(super) state: State,
-    pub(super) warm_start: Option<O::WarmStart>,
     pub(super) solver: EpigraphQpSolver,
     pub(super) proposers: Proposers,
     /// The model of center and bundle, as long as they stay.
@@ -62,7 +64,7 @@ pub struct Run<'r, 'o, O: NonsmoothObjective> {
     pub(super) clock: Instant,
 }
 
-impl<O: NonsmoothObjective> Run<'_, '_, O> {
+impl Run<'_, '_> {
     /// One step: at most one evaluation (and one more of the center where its accuracy no longer suffices). `Break` when
     /// the run has ended; further calls repeat the reason.
     pub fn step(&mut self) -> ControlFlow<Termination> {
@@ -133,25 +135,18 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
     }
 
     /// `below`: the value up to which a Jacobian is wanted.
-    fn evaluate(
-        &mut self,
-        point: &Vector,
-        accuracy: Accuracy,
-        target: Option<f64>,
-        below: f64,
-    ) -> Outcome<O::WarmStart> {
+    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> Outcome {
         self.state.counts.evaluations += 1;
         let linearization = self.composite.is_some().then(|| Composite::request(below));
-        let warm_start = self.warm_start.as_ref();
-        let request = Request { point, warm_start, accuracy, descent_target: target, linearization };
-        match evaluate(self.objective, &request) {
+        let request = Request { point, warm_start: None, accuracy, descent_target: target, linearization };
+        match evaluate(self.oracle.as_mut(), &request) {
             Outcome::Answer(answer) => self.check_slope(answer),
             other => other,
         }
     }
 
     /// An answer that drowns all others in rounding is none.
-    fn check_slope(&self, answer: Answer<O::WarmStart>) -> Outcome<O::WarmStart> {
+    fn check_slope(&self, answer: Answer<()>) -> Outcome {
         let state = &self.state;
         let allowed =
             MAX_RELATIVE_SLOPE * state.bundle.dual_lengths().fold(state.first_weight * state.first_step, f64::max);
@@ -248,7 +243,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
                     self.rebase(&center, evaluation.value, known);
                 }
                 self.add_cut(center.clone(), &evaluation, false);
-                self.move_center(center, evaluation, accuracy);
+                self.move_center(center, evaluation.value, accuracy);
                 self.state.bundle.retain(|cut| cut.id != old);
             }
             Outcome::Failure(error) => event.failure = Some(error.to_string()),

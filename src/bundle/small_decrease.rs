@@ -8,7 +8,6 @@ use super::config::{AccuracyPolicy, Convexity};
 use super::cut::{Cut, LEAST_ACTIVE_MULTIPLIER};
 use super::proposers::proposal::Proposal;
 use super::run::Run;
-use crate::NonsmoothObjective;
 use crate::report::Termination;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -39,7 +38,7 @@ struct WithinReach {
     worthwhile: Option<f64>,
 }
 
-impl<O: NonsmoothObjective> Run<'_, '_, O> {
+impl Run<'_, '_> {
     /// A trial point worth an evaluation, or the reason to end.
     pub(super) fn next_trial(&mut self) -> ControlFlow<Termination, Proposal> {
         loop {

@@ -5,13 +5,13 @@ use super::composite::Composite;
 use super::config::{AccuracyPolicy, BundleTrustConfig};
 use super::cut::{Bundle, Cut};
 use super::norm::ScaledNorm;
-use super::oracle::{Outcome, evaluate};
+use super::oracle::{Oracle, Outcome, WarmStarted, evaluate};
 use super::proposers::list::Proposers;
 use super::proposers::proposal::FEASIBILITY;
 use super::run::Run;
 use super::state::State;
 use crate::checks::{check_finite, check_size};
-use crate::composite::Linearization;
+use crate::composite::{Linearization, OuterFunction};
 use crate::qp::{EpigraphQpSolver, QpError, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{Accuracy, Evaluation, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector};
@@ -44,21 +44,32 @@ impl<'o> BundleTrust<'o> {
         &'r mut self,
         objective: &'r O,
         x0: Vector,
-    ) -> Result<Run<'r, 'o, O>, OptimizeError> {
+    ) -> Result<Run<'r, 'o>, OptimizeError> {
         let clock = Instant::now();
-        let dimension = objective.dimension();
+        self.begin(Box::new(WarmStarted::new(objective)), objective.outer(), objective.dimension(), x0, clock)
+    }
+
+    fn begin<'r>(
+        &'r mut self,
+        mut oracle: Box<dyn Oracle + 'r>,
+        outer: Option<&'r dyn OuterFunction>,
+        dimension: usize,
+        x0: Vector,
+        clock: Instant,
+    ) -> Result<Run<'r, 'o>, OptimizeError> {
         let set = self.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
         let start = admissible_start(&set, dimension, x0)?;
-        let (state, warm_start, linearization) = first_evaluation(objective, &self.config, &set, start)?;
-        let structured = objective.outer().filter(|_| self.config.composite_model);
-        let composite = structured.map(|_| Composite::new(state.first_weight));
+        let structured = outer.is_some() && self.config.composite_model;
+        let (state, linearization) = first_evaluation(oracle.as_mut(), structured, &self.config, &set, start)?;
+        oracle.keep_warm_start();
+        let composite = structured.then(|| Composite::new(state.first_weight));
         let proposers = Proposers::new(&self.config, dimension, state.first_weight);
         let mut run = Run {
             method: self,
-            objective,
+            oracle,
+            outer,
             set,
             state,
-            warm_start: Some(warm_start),
             solver: EpigraphQpSolver::default(),
             proposers,
             model: None,
@@ -102,29 +113,30 @@ fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Ve
     if violation <= MAX_START_VIOLATION { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }
 
-/// The state after the first evaluation, and what else that returned.
-type FirstEvaluation<W> = (State, W, Option<Result<Linearization, String>>);
+/// The state after the first evaluation, and the linearization that came with it.
+type FirstEvaluation = (State, Option<Result<Linearization, String>>);
 
 /// Evaluates the start and sets up the state.
-fn first_evaluation<O: NonsmoothObjective>(
-    objective: &O,
+fn first_evaluation(
+    oracle: &mut dyn Oracle,
+    structured: bool,
     config: &BundleTrustConfig,
     set: &Polyhedron,
     start: Vector,
-) -> Result<FirstEvaluation<O::WarmStart>, OptimizeError> {
+) -> Result<FirstEvaluation, OptimizeError> {
     let norm = ScaledNorm::new(&config.scaling, set)?;
     let accuracy = match config.accuracy {
         AccuracyPolicy::OnDemand { coarsest, .. } => Accuracy::relative(coarsest)?,
         AccuracyPolicy::Tightest => Accuracy::TIGHTEST,
     };
-    let wanted = objective.outer().filter(|_| config.composite_model).map(|_| Composite::request(f64::INFINITY));
+    let wanted = structured.then(|| Composite::request(f64::INFINITY));
     let request = Request { linearization: wanted, accuracy, ..Request::tight(&start) };
-    let evaluation = match evaluate(objective, &request) {
+    let evaluation = match evaluate(oracle, &request) {
         Outcome::Answer(answer) => answer.into_evaluation(),
         Outcome::MinusInfinity => return Err(OptimizeError::Oracle(OracleError::NotFinite { what: "value" })),
         Outcome::Failure(error) => return Err(OptimizeError::Oracle(error)),
     };
-    let Evaluation { value, subgradient, error_bound, warm_start, linearization, work } = evaluation;
+    let Evaluation { value, subgradient, error_bound, linearization, work, .. } = evaluation;
     let slope = norm.dual_length(&subgradient);
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
@@ -164,7 +176,7 @@ fn first_evaluation<O: NonsmoothObjective>(
     };
     state.bundle.push(cut, &state.norm);
     state.history.push(first_record(&state, set, slope, work));
-    Ok((state, warm_start, linearization))
+    Ok((state, linearization))
 }
 
 /// A first step length that follows the units of variables and values: the size of the start, or where that is zero the distance

@@ -111,23 +111,11 @@ impl From<DirectSolver> for AnySolver {
 }
 
 impl AnySolver {
-    /// The solver of a kind, for states and adjoints; `preconditioner` is for total FETI.
+    /// The solver of a kind; `preconditioner` is for total FETI, `wanted` for the choice of `auto`.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn new(
-        problem: Arc<ContactProblem>,
-        kind: SolverKind,
-        preconditioner: PreconditionerKind,
-    ) -> Result<Self, ContactError> {
-        Self::for_use(problem, kind, preconditioner, Wanted::States)
-    }
-
-    /// As [`AnySolver::new`], for what is `wanted` of the solver: the choice of [`SolverKind::Auto`] depends on it.
-    ///
-    /// # Errors
-    /// [`ContactError::Factorization`] when a symbolic analysis fails.
-    pub fn for_use(
         problem: Arc<ContactProblem>,
         kind: SolverKind,
         preconditioner: PreconditionerKind,

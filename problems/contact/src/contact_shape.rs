@@ -51,22 +51,11 @@ impl ContactShape {
     /// # Errors
     /// [`SceneError`] for a bad field, a scene that needs more memory than there is, or a size whose symbolic analysis fails.
     pub fn new(scene: Scene, kind: SolverKind) -> Result<Self, SceneError> {
-        Self::with_preconditioner(scene, kind, PreconditionerKind::default())
+        Self::for_use(scene, kind, PreconditionerKind::default(), Wanted::States)
     }
 
-    /// As [`ContactShape::new`], with a choice of the preconditioner of total FETI.
-    ///
-    /// # Errors
-    /// As [`ContactShape::new`].
-    pub fn with_preconditioner(
-        scene: Scene,
-        kind: SolverKind,
-        preconditioner: PreconditionerKind,
-    ) -> Result<Self, SceneError> {
-        Self::for_use(scene, kind, preconditioner, Wanted::States)
-    }
-
-    /// As [`ContactShape::with_preconditioner`], for what the solver will be asked for: the choice of `auto` depends on it.
+    /// As [`ContactShape::new`], with a choice of the preconditioner of total FETI, and for what the solver will be asked for: the
+    /// choice of `auto` depends on it.
     ///
     /// # Errors
     /// As [`ContactShape::new`].
@@ -79,7 +68,7 @@ impl ContactShape {
         scene.validate()?;
         memory::check(&scene, kind, preconditioner)?;
         let problem = Arc::new(ContactProblem::new(scene)?);
-        let solver = AnySolver::for_use(problem, kind, preconditioner, wanted)
+        let solver = AnySolver::new(problem, kind, preconditioner, wanted)
             .map_err(|error| SceneError::out_of_range("mesh.bricks", error, "a size that can be factored"))?;
         Ok(Self { solver })
     }

@@ -109,6 +109,7 @@ impl Default for OptimizerSection {
 }
 
 /// What proposes trial points.
+// The one name of two switches: `composite_model` of the engine, and what the contact solver will be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MethodName {
@@ -120,6 +121,7 @@ pub enum MethodName {
 }
 
 /// How accurately the objective is asked for.
+// The tag of `AccuracyPolicy`, whose numbers a file leaves at their usual values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[allow(missing_docs, reason = "explained where the optimizer documents its accuracy")]

@@ -14,7 +14,7 @@ use crate::bundle::proposers::proposer::Trial;
 use crate::bundle::run::Run;
 use crate::composite::{InactiveConstraints, Linearization};
 use crate::report::Termination;
-use crate::{NonsmoothObjective, Polyhedron, Vector};
+use crate::{Polyhedron, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Evaluations of an excursion, its first included.
@@ -47,7 +47,7 @@ impl Excursion {
     }
 }
 
-impl<O: NonsmoothObjective> Run<'_, '_, O> {
+impl Run<'_, '_> {
     /// Ends the run with a proof, unless a last step or constraints next to the point to be closed come first.
     pub(super) fn leave(&mut self, proof: Proof) -> ControlFlow<Termination, Option<Proposal>> {
         let worth = (WORTH_A_STEP * self.small()).max(self.state.rounding());

@@ -2,13 +2,13 @@
 
 use super::kinks::Seen;
 use super::{Base, Composite, FACTOR};
+use crate::Vector;
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::Trial;
 use crate::bundle::run::Run;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::Origin;
-use crate::{NonsmoothObjective, Vector};
 
 /// A step with this share of the predicted decrease lets the weight fall.
 const GOOD_RATIO: f64 = 0.5;
@@ -57,7 +57,7 @@ impl Composite {
     }
 }
 
-impl<O: NonsmoothObjective> Run<'_, '_, O> {
+impl Run<'_, '_> {
     /// Learns from a trial point and what its evaluation says about the outputs; whether it brought a Jacobian.
     pub(in crate::bundle) fn learn_structure(
         &mut self,
@@ -73,7 +73,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
             return noted;
         }
         let own = trial.proposal.origin == Origin::CompositeModel;
-        if let (Some(outer), Some(base)) = (self.objective.outer(), &composite.base) {
+        if let (Some(outer), Some(base)) = (self.outer, &composite.base) {
             let seen = Seen { outer, base, point, change: trial.comparison.change, end: known.as_ref() };
             if !own {
                 if composite.kinks.remain(&seen) {
@@ -105,7 +105,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         point: &Vector,
         linearization: Option<Result<Linearization, String>>,
     ) -> Option<(Option<Linearization>, Noted)> {
-        let (composite, outer) = (self.composite.as_mut()?, self.objective.outer());
+        let (composite, outer) = (self.composite.as_mut()?, self.outer);
         Some(match linearization {
             None => (None, None),
             Some(Err(reason)) => (None, Some(Err(reason))),

@@ -24,7 +24,7 @@ use super::proposers::proposal::Proposal;
 use super::run::Run;
 use crate::composite::{Linearization, LinearizationRequest};
 use crate::report::Termination;
-use crate::{Accuracy, NonsmoothObjective, Vector};
+use crate::{Accuracy, Vector};
 use curvature::Memory;
 use excursion::Excursion;
 use kinks::Kinks;
@@ -107,7 +107,7 @@ impl Composite {
     }
 }
 
-impl<O: NonsmoothObjective> Run<'_, '_, O> {
+impl Run<'_, '_> {
     /// The trial point of the composite model, none where it has none; ends the run at a point that it proves stationary.
     pub(super) fn composite_trial(&mut self) -> ControlFlow<Termination, Option<Proposal>> {
         let Some(composite) = &mut self.composite else { return Continue(None) };

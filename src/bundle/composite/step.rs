@@ -7,7 +7,7 @@ use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::run::Run;
 use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
-use crate::{NonsmoothObjective, Polyhedron, Vector};
+use crate::{Polyhedron, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Longest step on from a rejected trial point, in lengths of the rejected step.
@@ -15,7 +15,7 @@ const CONTRACTION: f64 = 0.5;
 /// Subproblems solved for weights and curvature that belong together.
 const PASSES: usize = 2;
 
-impl<O: NonsmoothObjective> Run<'_, '_, O> {
+impl Run<'_, '_> {
     /// A step on from a rejected trial point, if it is so short that it leads below the center.
     ///
     /// A step along a curved kink of h leaves the kink, by second order in its length, and pays for it by first order (Maratos
@@ -68,7 +68,7 @@ impl<O: NonsmoothObjective> Run<'_, '_, O> {
         set: Option<&Polyhedron>,
         origin: Option<&Vector>,
     ) -> Result<CompositeStep, SubproblemError> {
-        let (Some(outer), Some(composite)) = (self.objective.outer(), &mut self.composite) else {
+        let (Some(outer), Some(composite)) = (self.outer, &mut self.composite) else {
             return Err(SubproblemError::Unusable);
         };
         let jacobian = &base.linearization.jacobian;

@@ -58,10 +58,4 @@ impl ContactFields {
             sensitivity: None,
         }
     }
-
-    /// Deformed position on the lower body, mm.
-    pub fn deformed_position(&self) -> Vec<[f64; 3]> {
-        let pairs = self.position.iter().zip(&self.displacement);
-        pairs.map(|(x, u)| std::array::from_fn(|axis| x[axis] + u[axis])).collect()
-    }
 }

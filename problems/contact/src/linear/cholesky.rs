@@ -64,11 +64,6 @@ impl SymbolicFactor {
         Ok(Self { pattern, symbolic, order })
     }
 
-    /// Number of stored values of a factor.
-    pub fn value_count(&self) -> usize {
-        self.symbolic.len_val()
-    }
-
     /// Factors the matrix with these lower values.
     ///
     /// # Errors

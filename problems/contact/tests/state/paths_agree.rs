@@ -1,6 +1,6 @@
 //! Independent paths give the same state: TFETI against direct condensation, different tearings, different numbers of threads.
 
-use contact::contact_shape::{ContactShape, ContactState, SolverKind};
+use contact::contact_shape::{ContactShape, ContactState, SolverKind, Wanted};
 use contact::equilibrium::ContactProblem;
 use contact::scene::{Scene, hertz, signorini};
 use contact::tfeti::{Precision, PreconditionerKind, TornSolver};
@@ -61,7 +61,7 @@ fn every_preconditioner_gives_the_same_state() {
     scene.mesh = [6; 3];
     let control = bent(&scene);
     let state = |kind| {
-        let shape = ContactShape::with_preconditioner(scene.clone(), SolverKind::Newton, kind).unwrap();
+        let shape = ContactShape::for_use(scene.clone(), SolverKind::Newton, kind, Wanted::States).unwrap();
         shape.solve(&control, None, Accuracy::TIGHTEST).unwrap()
     };
     let reference = state(PreconditionerKind::Dirichlet);

@@ -35,11 +35,11 @@ fn supports_kinks_units_and_hostile_oracles_are_as_expected() {
     assert_eq!(outcomes(&["supports", "kinks", "units", "optimizer"]), [35, 5, 0, 0]);
 }
 
-/// Every 23rd run; all of them are in the test `long`.
+/// Every 97th run; all of them are in the test `long`.
 #[test]
 fn the_optimizers_words_are_true_on_a_sample() {
-    let report = words(|number| number % 23 == 0).unwrap();
-    assert!(report.runs > 120, "{}", report.runs);
+    let report = words(|number| number % 97 == 0).unwrap();
+    assert!(report.runs > 30, "{}", report.runs);
     assert!(report.offenders.is_empty(), "{:#?}", report.offenders);
 }
 

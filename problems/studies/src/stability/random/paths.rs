@@ -2,7 +2,7 @@
 
 use crate::stability::random::cone;
 use contact::WorkEstimate;
-use contact::contact_shape::{AnySolver, SolverKind};
+use contact::contact_shape::{AnySolver, SolverKind, Wanted};
 use contact::direct::{CompliantContact, DirectSolver};
 use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
 use contact::error::ContactError;
@@ -87,7 +87,7 @@ impl Examined {
     }
 
     fn at(&self, kind: SolverKind, controls: &[f64]) -> Outcome {
-        let solver = AnySolver::new(Arc::clone(&self.problem), kind, PreconditionerKind::default());
+        let solver = AnySolver::new(Arc::clone(&self.problem), kind, PreconditionerKind::default(), Wanted::States);
         let solved = solver.and_then(|solver| {
             let state = solver.solve(controls, None, TOLERANCE)?;
             let friction = self.problem.boundary.has_friction();
