@@ -114,7 +114,10 @@ impl From<OracleError> for Failure {
         match error {
             OracleError::OutsideDomain { .. } | OracleError::Input(_) => Self::Input(text),
             OracleError::Failed(source)
-                if matches!(source.downcast_ref(), Some(ContactError::NoEquilibrium { .. })) =>
+                if matches!(
+                    source.downcast_ref(),
+                    Some(ContactError::NoEquilibrium { .. } | ContactError::FrictionTooWeak { .. })
+                ) =>
             {
                 Self::Input(text)
             }
