@@ -85,6 +85,14 @@ fn an_obstacle_out_of_reach_holds_nothing() {
     }
 }
 
+/// Friction too large for the bound: the refusal says what both solvers tried.
+#[test]
+fn a_refusal_without_proof_says_what_was_tried() {
+    let text = refusal(pushed(4, 3.0, 0.3, waves(0.0), [8.0, 2.0, 0.0])).to_string();
+    let words = ["no state found", "Total FETI", "products with F", "Direct condensation", "continuation"];
+    assert!(words.iter().all(|word| text.contains(word)) && !text.contains("no equilibrium"), "{text}");
+}
+
 /// Growing pushes: states, then refusals that say what was tried, then proofs.
 #[test]
 fn what_is_not_proved_is_not_claimed() {
