@@ -246,6 +246,7 @@ impl AutoSolver {
                 let reason = Some(format!("total FETI failed: {error}"));
                 Ok(ContactState { work, reason, ..state.map(AnyState::from) })
             }
+            Err(error) if error.is_about_the_problem() => Err(error),
             Err(error) => Err(unsolved(failed, error)),
         }
     }

@@ -303,7 +303,6 @@ fn oracle(error: ContactError) -> OracleError {
         ContactError::NotConverged { solver, residual, iterations, .. } => {
             OracleError::NotConverged { solver, residual, iterations }
         }
-        ContactError::Unsolved { direct, .. } => oracle(*direct),
         ContactError::NotFinite { what } => OracleError::NotFinite { what },
         other => OracleError::Failed(Box::new(other)),
     }

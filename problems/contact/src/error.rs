@@ -135,6 +135,19 @@ pub enum ContactError {
         /// Largest resultant that counts as zero.
         allowed: f64,
     },
+    /// Only friction could hold the bodies, and contact cannot build up the normal forces that friction would need.
+    #[error(
+        "no equilibrium: the load has the resultant {resultant:.6e} N along {direction}, which only friction could hold, and \
+         contact cannot build up the normal forces for more than {largest:.6e} N"
+    )]
+    FrictionTooWeak {
+        /// The motion that the load does work on, in words; its slip is 1 in the root mean square over the contact nodes.
+        direction: String,
+        /// Work of the load on it per length, N.
+        resultant: f64,
+        /// The largest resistance of friction to it that any contact forces can have, N: an upper bound, proved.
+        largest: f64,
+    },
     /// The contact nodes that are closed at some iteration hold the bodies no longer.
     #[error(
         "the closed contact nodes leave a rigid motion free (pivot ratio {pivot_ratio:.1e}); the resultant is {resultant:.3e}"
@@ -249,7 +262,7 @@ impl From<FactorizationError> for ContactError {
 impl ContactError {
     /// Whether every solver would say the same: the scene or the shape is at fault.
     pub fn is_about_the_problem(&self) -> bool {
-        matches!(self, Self::InvertedElement { .. } | Self::NoEquilibrium { .. })
+        matches!(self, Self::InvertedElement { .. } | Self::NoEquilibrium { .. } | Self::FrictionTooWeak { .. })
     }
 
     /// The kind of the error: the name of its variant.

@@ -5,7 +5,7 @@ use figures::{Map, MapPanel};
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
 };
-use problems::commands::{Failure, Folder, failed, finish, json, printed_with_files};
+use problems::commands::{Failure, Folder, arguments, failed, finish, json, printed_with_files};
 use problems::membrane::{MembraneObjective, MembraneState, PATCHES, admissible_loads, example};
 use std::io;
 use std::path::PathBuf;
@@ -37,7 +37,8 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    finish(run(&Arguments::parse()))
+    let arguments: Arguments = arguments();
+    finish(run(&arguments), arguments.out.as_deref())
 }
 
 fn run(arguments: &Arguments) -> Result<String, Failure> {

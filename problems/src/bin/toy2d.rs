@@ -3,7 +3,7 @@
 use clap::Parser;
 use figures::{self, Convergence, Step, Visit};
 use nonsmooth::IterationRecord;
-use problems::commands::{Failure, Folder, finish, printed_with_files};
+use problems::commands::{Failure, Folder, arguments, finish, printed_with_files};
 use problems::toy;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -37,7 +37,7 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
-    finish(run(&Arguments::parse()))
+    finish(run(&arguments()), None)
 }
 
 fn run(arguments: &Arguments) -> Result<String, Failure> {

@@ -11,7 +11,7 @@ use contact::tfeti::PreconditionerKind;
 use scene_file::{MeasureName, MethodName, SceneFile, SplineName, default_subdomains};
 use serde::de::value::Error as NameError;
 use serde::de::{DeserializeOwned, IntoDeserializer};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Largest traction of a scene, MPa.
 const LARGEST_TRACTION: f64 = 1e15;
@@ -136,6 +136,11 @@ pub struct Arguments {
 }
 
 impl Arguments {
+    /// The folder that holds what is printed too, if there is one.
+    pub fn kept(&self) -> Option<&Path> {
+        self.out.as_deref().or(self.resume.as_deref())
+    }
+
     /// What was left out because the scene does not need it or an option says so, in words.
     pub fn left_out(&self, shape: &ContactShape) -> Vec<&'static str> {
         let mut left_out = shape.left_out();

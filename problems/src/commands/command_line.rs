@@ -2,10 +2,11 @@
 
 use crate::commands::arguments::{Arguments, Command};
 use crate::commands::contact_objective::objective;
-use crate::commands::failure::{Failure, finish};
+use crate::commands::failure::Failure;
 use crate::commands::folder::json;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
+use crate::commands::output::{finish, leave};
 use crate::commands::{compare, evaluate, optimize, recheck, verify};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
 use contact::equilibrium::STAGE_TARGET;
@@ -33,19 +34,20 @@ struct AnyScene {
 pub fn run(binary: &'static str, scene: &str) -> ExitCode {
     let scene = SceneFile::parse(scene, binary);
     let command = Arguments::help_with_defaults(Arguments::command().name(binary), scene.as_ref().ok());
-    let arguments = Arguments::from_arg_matches(&command.get_matches()).unwrap_or_else(|error| error.exit());
-    finish(execute(|| Ok((scene?, None)), &arguments))
+    let arguments = command.try_get_matches().and_then(|found| Arguments::from_arg_matches(&found));
+    let arguments = arguments.unwrap_or_else(|error| leave(&error));
+    finish(execute(|| Ok((scene?, None)), &arguments), arguments.kept())
 }
 
 /// Runs the binary that takes any scene.
 pub fn run_any() -> ExitCode {
     let command = Arguments::help_with_defaults(AnyScene::command(), None);
-    let parsed = AnyScene::from_arg_matches(&command.get_matches());
-    let AnyScene { scene, arguments } = parsed.unwrap_or_else(|error| error.exit());
+    let parsed = command.try_get_matches().and_then(|found| AnyScene::from_arg_matches(&found));
+    let AnyScene { scene, arguments } = parsed.unwrap_or_else(|error| leave(&error));
     let missing = || Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into());
     if arguments.resume.is_some() && scene.is_some() {
         let words = "SCENE.toml and --resume together: a resumed run has its scene in its folder";
-        return finish(Err(Failure::Input(words.into())));
+        return finish(Err(Failure::Input(words.into())), None);
     }
     let open = || {
         let scene = scene.ok_or_else(missing)?;
@@ -53,7 +55,7 @@ pub fn run_any() -> ExitCode {
         let command = scene.to_str().is_some_and(|word| Command::from_str(word, true).is_ok());
         if command && !scene.exists() { Err(missing()) } else { Ok((SceneFile::read(&scene)?, Some(scene))) }
     };
-    finish(execute(open, &arguments))
+    finish(execute(open, &arguments), arguments.kept())
 }
 
 /// Computes what the arguments ask for, on the scene that `open` reads unless a run is resumed. The text belongs on stdout.

@@ -3,8 +3,6 @@
 use contact::error::{ContactError, SceneError};
 use nonsmooth::verify::VerifyError;
 use nonsmooth::{InputError, JournalError, OptimizeError, OracleError, Termination};
-use std::io::{self, Write};
-use std::process::ExitCode;
 use thiserror::Error;
 
 /// A failed command.
@@ -64,29 +62,6 @@ pub fn failed(termination: &Termination) -> Option<String> {
     failed.then(|| termination.to_string())
 }
 
-/// Prints the text of a command on stdout and the message of its failure on stderr; the exit status that belongs to them.
-pub fn finish(result: Result<String, Failure>) -> ExitCode {
-    let (text, mut status) = match &result {
-        Ok(text) => (text.as_str(), 0),
-        Err(Failure::Incomplete { text, status, .. }) => (text.as_str(), *status),
-        Err(failure) => ("", failure.status()),
-    };
-    let printed = io::stdout().write_all(text.as_bytes()).and_then(|()| io::stdout().flush());
-    if let Err(failure) = &result {
-        notice(&format!("error: {failure}"));
-    }
-    if let Err(error) = printed {
-        notice(&format!("error: stdout: {error}; the result was not printed"));
-        status = if status == 0 { 1 } else { status };
-    }
-    ExitCode::from(status)
-}
-
-/// A line on stderr. Where nobody listens there is nothing to be done.
-pub fn notice(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
-}
-
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Self {
         Self::Input(error.to_string())
@@ -114,7 +89,10 @@ impl From<OracleError> for Failure {
         match error {
             OracleError::OutsideDomain { .. } | OracleError::Input(_) => Self::Input(text),
             OracleError::Failed(source)
-                if matches!(source.downcast_ref(), Some(ContactError::NoEquilibrium { .. })) =>
+                if matches!(
+                    source.downcast_ref(),
+                    Some(ContactError::NoEquilibrium { .. } | ContactError::FrictionTooWeak { .. })
+                ) =>
             {
                 Self::Input(text)
             }

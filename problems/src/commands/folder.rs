@@ -1,7 +1,8 @@
 //! Output folders, and JSON as text.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::failure::{Failure, notice};
+use crate::commands::failure::Failure;
+use crate::commands::output::notice;
 use crate::commands::register::{self, REGISTER, Register, UNFINISHED};
 use contact::error::SceneError;
 use figures::Figure;

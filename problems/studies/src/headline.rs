@@ -5,7 +5,7 @@
 use crate::markdown::table;
 use crate::scaling::{Case, SceneName, peak_memory};
 use clap::Parser;
-use problems::commands::{Arguments, Failure, execute, finish};
+use problems::commands::{Arguments, Failure, arguments, execute, finish, print};
 use scene_file::SceneFile;
 use serde_json::Value;
 use std::process::ExitCode;
@@ -144,22 +144,28 @@ fn paper_size_table() -> Result<String, Failure> {
 
 /// Runs the binary: prints the tables as they come.
 pub fn main() -> ExitCode {
-    finish(print_tables(&Options::parse()).map(|()| String::new()))
+    finish(print_tables(&arguments()).map(|()| String::new()), None)
 }
 
 fn print_tables(options: &Options) -> Result<(), Failure> {
     let states = "bricks / subdomains | torn dofs | contact nodes | Θ | products with F (state + adjoint) | seconds | peak memory";
-    print!("States (Example 5.1, flat start, cold)\n\n{}", table(states, []));
+    say(&format!("States (Example 5.1, flat start, cold)\n\n{}", table(states, [])))?;
     let sizes = [(12, 2), (35, 5), (63, 9)];
     // From small to large, so that the peak of the process is that of the line.
     for (mesh, subdomains) in sizes.into_iter().take(if options.full { 3 } else { 2 }) {
-        print!("{}", state_line(Case { mesh, subdomains })?);
+        say(&state_line(Case { mesh, subdomains })?)?;
     }
     let optimizations = "scene | Θ start → found | reduction (paper's) | peak pressure, MPa | evaluations";
-    print!("\nOptimizations\n\n{}{}{}", table(optimizations, []), optimization_line(0)?, optimization_line(1)?);
-    println!("\nExample 5.3\n\n{}", friction_table()?.0);
+    let lines = [table(optimizations, []), optimization_line(0)?, optimization_line(1)?];
+    say(&format!("\nOptimizations\n\n{}", lines.concat()))?;
+    say(&format!("\nExample 5.3\n\n{}\n", friction_table()?.0))?;
     if options.full {
-        println!("Example 5.1 at the paper's size\n\n{}", paper_size_table()?);
+        say(&format!("Example 5.1 at the paper's size\n\n{}\n", paper_size_table()?))?;
     }
     Ok(())
+}
+
+/// Prints a part of the page.
+fn say(text: &str) -> Result<(), Failure> {
+    print(text).map_err(|error| Failure::Computation(format!("stdout: {error}; the result was not printed")))
 }

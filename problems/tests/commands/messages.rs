@@ -82,6 +82,49 @@ fn files_may_begin_with_a_byte_order_mark_and_must_not_be_endless() {
     }
 }
 
+/// A stdout that is full, closed by its reader, or closed from the beginning; with results that are in a folder too, the latter is no
+/// failure, for programs give others a /dev/null that looks the same.
+#[test]
+#[cfg(target_os = "linux")]
+fn what_cannot_be_printed_is_never_a_success() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/signorini.toml");
+    let short = ["evaluate", "--mesh", "3", "--json"];
+    let commands = [
+        ("contact3d", [&[scene], &short[..]].concat()),
+        ("hertz3d", short.to_vec()),
+        ("signorini3d", ["optimize", "--mesh", "3", "--max-evaluations", "2"].to_vec()),
+        ("signorini3d", ["--print-scene"].to_vec()),
+        ("signorini3d", ["--help"].to_vec()),
+        ("toy2d", ["--starts", "1"].to_vec()),
+        ("toy2d", ["--version"].to_vec()),
+        ("membrane2d", ["--cells", "8", "--max-evaluations", "5", "--json"].to_vec()),
+    ];
+    let output = |program: &str, redirection: &str, arguments: &[&str]| {
+        // A reader that is to be gone first gets the time for it.
+        let script = format!("{{ sleep 0.1; exec \"$0\" \"$@\"; }} {redirection}");
+        kit::run("bash", &[&["-c", &script, crate::binary(program).unwrap()], arguments].concat())
+    };
+    for (program, arguments) in &commands {
+        let redirections = [
+            ("> /dev/full", "No space left"),
+            ("| true; exit ${PIPESTATUS[0]}", "Broken pipe"),
+            (">&-", "it is closed"),
+        ];
+        for (redirection, reason) in redirections {
+            let output = output(program, redirection, arguments);
+            let said = kit::errors(&output);
+            assert_eq!(output.status.code(), Some(1), "{program} {arguments:?} {redirection}: {said}");
+            assert!(said.contains("stdout") && said.contains(reason) && !said.contains("panicked"), "{said}");
+        }
+        let nowhere = output(program, "> /dev/null", arguments);
+        assert!(nowhere.status.success() && nowhere.stderr.is_empty(), "{program}: {}", kit::errors(&nowhere));
+    }
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let kept = output("hertz3d", ">&-", &[&short[..], &["--out", text(&folder)]].concat());
+    assert!(kept.status.success() && kit::errors(&kept).contains("the result is in"), "{}", kit::errors(&kept));
+}
+
 #[test]
 fn help_has_the_defaults_and_results_name_their_files() {
     let printed = |program: &str, arguments: &[&str]| {

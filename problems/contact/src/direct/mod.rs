@@ -12,10 +12,14 @@ mod condensation;
 mod diagnosis;
 mod newton;
 mod recovery;
+#[cfg(feature = "interior-point")]
+mod resistance;
 mod solver;
 mod tangents;
 
 pub use compliant_body::CompliantBody;
 pub use compliant_contact::CompliantContact;
 pub use condensation::{CondensationPattern, CondensedBody};
+#[cfg(feature = "interior-point")]
+pub use resistance::Resistance;
 pub use solver::{DirectSolver, DirectState};

@@ -131,8 +131,13 @@ impl DirectSolver {
     ) -> Result<ContactState<DirectState>, ContactError> {
         let (mut contact, block, load, factorizations) = self.condense(configuration)?;
         Stage::Contact.enter();
-        let (solution, newton_steps) =
-            if load > 0.0 { Self::equilibrium(&mut contact, start, tolerance)? } else { (contact.at_rest(), 0) };
+        let (solution, newton_steps) = if load > 0.0 {
+            // Why there is no state is asked only where none was found.
+            let found = Self::equilibrium(&mut contact, start, tolerance);
+            found.map_err(|error| refusal(&contact).unwrap_or(error))?
+        } else {
+            (contact.at_rest(), 0)
+        };
         let state = DirectState { block, contact, solution, load };
         let forces = state.forces();
         forces.residuals.check(tolerance)?;
@@ -336,6 +341,18 @@ impl DirectState {
         }
         ContactForces::unpack(boundary, &forces, &jumps, status, residuals, Kink::of(boundary, &arguments))
     }
+}
+
+/// The proof that there is no equilibrium, where one is found.
+#[cfg(feature = "interior-point")]
+fn refusal(contact: &CompliantContact) -> Option<ContactError> {
+    contact.refusal()
+}
+
+/// Proofs need cone programs.
+#[cfg(not(feature = "interior-point"))]
+fn refusal(_contact: &CompliantContact) -> Option<ContactError> {
+    None
 }
 
 /// Mean normal stiffness of the contact nodes, bodies in series, N/mm.

@@ -4,11 +4,13 @@
 //! min ½ xᵀHx − xᵀb   s.t.   C x = e,   x ∈ Ω = free entries × half-lines × discs
 //! ```
 //! [`mpgp`]: gradient projection with conjugate gradients in the face, for Ω alone. [`smalse`]: an augmented Lagrangian loop
-//! around it for C x = e.
+//! around it for C x = e. With the feature `interior-point`, `ConeProgram` minimises over friction cones.
 //!
 //! References: \[Dostal2009\] (the algorithms), \[DostalKozubek2012\] (separable convex constraints), \[DostalKucera2010\]
 //! (with equalities), \[Kucera2007\] (reduced gradients).
 
+#[cfg(feature = "interior-point")]
+mod cone;
 mod error;
 mod face;
 mod lanczos;
@@ -18,6 +20,8 @@ mod program;
 mod separable_set;
 pub mod smalse;
 
+#[cfg(feature = "interior-point")]
+pub use cone::{Cone, ConeProgram};
 pub use error::QpError;
 pub use face::Face;
 pub use lanczos::largest_eigenvalue;

@@ -5,6 +5,7 @@
 mod closed_forms;
 mod dual_qp;
 mod fields;
+mod friction_too_weak;
 mod paths_agree;
 mod scene_structure;
 mod successive_approximations;

@@ -1,6 +1,6 @@
 //! Ctrl-C and requests to terminate.
 
-use crate::commands::failure::notice;
+use crate::commands::output::notice;
 use std::sync::Once;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

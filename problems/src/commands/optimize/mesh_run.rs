@@ -1,9 +1,10 @@
 //! One optimization on one mesh, kept in a journal if asked for.
 
 use crate::commands::contact_objective::ContactObjective;
-use crate::commands::failure::{Failure, notice};
+use crate::commands::failure::Failure;
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
 use crate::commands::optimize::stages::MeshStage;
+use crate::commands::output::notice;
 use nonsmooth::{
     AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, Observer, Report,
     VariableScaling, Vector,

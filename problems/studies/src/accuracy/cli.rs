@@ -6,7 +6,7 @@ use crate::accuracy::{Extent, Part, algebra, discretisation, manufactured_errors
 use crate::accuracy::{pictures, subgradient, tables};
 use crate::scaling::SceneName;
 use clap::Parser;
-use problems::commands::{Failure, Folder, finish, json};
+use problems::commands::{Failure, Folder, arguments, finish, json, notice};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -71,7 +71,8 @@ impl Arguments {
 
 /// Runs the binary.
 pub fn run() -> ExitCode {
-    finish(execute(&Arguments::parse()))
+    let arguments: Arguments = arguments();
+    finish(execute(&arguments), arguments.out.as_deref())
 }
 
 /// Measures, writes the folder, and returns what belongs on stdout.
@@ -93,7 +94,7 @@ fn measure(arguments: &Arguments) -> Result<Report, Failure> {
     let (clock, extent) = (Instant::now(), arguments.extent());
     let machine_threads = std::thread::available_parallelism().map_or(1, usize::from);
     let mut report = Report { machine_threads, ..Report::default() };
-    let progress = |what: &str| eprintln!("{:>7.1} s  {what}", clock.elapsed().as_secs_f64());
+    let progress = |what: &str| notice(&format!("{:>7.1} s  {what}", clock.elapsed().as_secs_f64()));
     if arguments.wants(Part::Discretisation) {
         for &bricks in extent.meshes.iter().filter(|bricks| **bricks <= LARGEST_SMOOTH) {
             report.smooth.push(manufactured_errors(bricks)?);

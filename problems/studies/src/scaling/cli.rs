@@ -4,7 +4,7 @@ use crate::scaling::cases::{Case, Extent, SceneName, Variant};
 use crate::scaling::rows::Report;
 use crate::scaling::{measure, table};
 use clap::Parser;
-use problems::commands::{Failure, finish, json};
+use problems::commands::{Failure, arguments, finish, json, notice};
 use std::process::ExitCode;
 
 /// Work, time and memory of the contact solvers over growing meshes.
@@ -55,7 +55,7 @@ impl Arguments {
 
 /// Runs the binary.
 pub fn run() -> ExitCode {
-    finish(execute(&Arguments::parse()))
+    finish(execute(&arguments()), None)
 }
 
 /// Measures what the arguments ask for; cases that fail are listed in the report.
@@ -64,7 +64,7 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
     for (case, variant) in arguments.plan() {
         match measure::row(arguments.scene, case, variant) {
             Ok(row) => {
-                eprintln!("{}", table::progress(&row));
+                notice(&table::progress(&row));
                 rows.push(row);
             }
             Err(Failure::Input(reason)) => return Err(Failure::Input(reason)),

@@ -3,7 +3,7 @@
 use crate::stability::record::{Outcome, Record, Report};
 use crate::stability::{case, optimizer_words, random, table};
 use clap::Parser;
-use problems::commands::{Failure, Folder, finish, json};
+use problems::commands::{Failure, Folder, arguments, finish, json, notice};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -36,7 +36,7 @@ pub struct Arguments {
 
 /// Runs the binary.
 pub fn run() -> ExitCode {
-    finish(execute(&Arguments::parse()))
+    finish(execute(&arguments()), None)
 }
 
 /// Runs the cases that the arguments select; the text belongs on stdout, also when cases are broken.
@@ -74,7 +74,7 @@ fn select(arguments: &Arguments) -> Result<Vec<Record>, Failure> {
     for case in case::all() {
         if (wanted(case.group) || wanted(&case.name)) && (case.quick || !arguments.quick) {
             let record = case.run();
-            eprintln!("{}", table::progress(&record));
+            notice(&table::progress(&record));
             records.push(record);
         }
     }

@@ -5,28 +5,13 @@
 //! ```
 //! Without friction one convex program gives the state. With friction its fixed points are the equilibria.
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use contact::direct::CompliantContact;
+use contact::qp::{Cone, ConeProgram};
 
 /// Most programs that are solved with friction.
 const MAX_PROGRAMS: usize = 12;
 /// Relative change of s that ends the fixed point.
 const SETTLED: f64 = 1e-9;
-
-/// Columns of a sparse matrix in the order of the entries.
-fn sparse(rows: usize, columns: Vec<Vec<(usize, f64)>>) -> CscMatrix<f64> {
-    let mut starts = vec![0];
-    let (mut indices, mut values) = (Vec::new(), Vec::new());
-    for column in &columns {
-        for &(row, value) in column.iter().filter(|(_, value)| *value != 0.0) {
-            indices.push(row);
-            values.push(value);
-        }
-        starts.push(indices.len());
-    }
-    CscMatrix::new(rows, columns.len(), starts, indices, values)
-}
 
 /// Forces and amplitudes of an equilibrium, as nearly as cone programs give them; none where one of them is not solved.
 pub fn equilibrium(contact: &CompliantContact) -> Option<Vec<f64>> {
@@ -54,34 +39,19 @@ pub fn equilibrium(contact: &CompliantContact) -> Option<Vec<f64>> {
 /// One cone program for given norms of the slip.
 fn program(contact: &CompliantContact, slips: &[f64]) -> Option<Vec<f64>> {
     let boundary = &contact.problem.boundary;
-    let (count, motions) = (contact.row_count(), contact.resultant.len());
-    let quadratic =
-        sparse(count, (0..count).map(|j| (0..=j).map(|i| (i, contact.compliance[(i, j)])).collect()).collect());
     let mut linear: Vec<f64> = contact.constant().iter().map(|d| -d).collect();
-    let mut columns: Vec<Vec<(usize, f64)>> =
-        (0..count).map(|row| (0..motions).map(|k| (k, contact.motions[(row, k)])).collect()).collect();
-    let mut right = contact.resultant.clone();
-    let mut cones = vec![SupportedConeT::ZeroConeT(motions)];
+    let points = boundary.points.iter();
+    let cones = points.map(|point| Cone { first: point.start, size: point.row_count(), slope: boundary.friction });
     for (point, slip) in boundary.points.iter().zip(slips) {
         linear[point.start] += boundary.friction * slip;
-        let rows = point.row_count();
-        let factor = if rows == 1 { 1.0 } else { boundary.friction };
-        columns[point.start].push((right.len(), -factor));
-        for offset in 1..rows {
-            columns[point.start + offset].push((right.len() + offset, -1.0));
-        }
-        right.resize(right.len() + rows, 0.0);
-        cones.push(if rows == 1 {
-            SupportedConeT::NonnegativeConeT(1)
-        } else {
-            SupportedConeT::SecondOrderConeT(rows)
-        });
     }
-    let constraints = sparse(right.len(), columns);
-    let settings = DefaultSettingsBuilder::default().verbose(false).max_iter(100).build().ok()?;
-    let mut solver = DefaultSolver::new(&quadratic, &linear, &constraints, &right, &cones, settings).ok()?;
-    solver.solve();
-    let solution = &solver.solution;
-    let solved = matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
-    solved.then(|| solution.x.iter().copied().chain(solution.z[..motions].iter().map(|z| -z)).collect())
+    let program = ConeProgram {
+        hessian: &contact.compliance,
+        linear,
+        equalities: &contact.motions,
+        right_side: contact.resultant.clone(),
+        cones: cones.collect(),
+    };
+    let (forces, amplitudes) = program.minimise()?;
+    Some(forces.into_iter().chain(amplitudes).collect())
 }

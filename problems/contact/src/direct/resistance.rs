@@ -1,0 +1,211 @@
+//! The largest force that friction can build up: a proof that bodies which only friction could hold have no equilibrium.
+//!
+//! ```text
+//! λ in the friction cones,   Rᵀ λ = e,   λ_Nᵀ w_N = 0   ⇒   q(λ) := λ_Nᵀ (C λ)_N − d_Nᵀ λ_N = 0
+//! T ≥ 0 entry by entry       ⇒   λᵀ M λ ≤ d_Nᵀ λ_N,   λᵀ M λ := λ_Nᵀ (C λ)_N + Σ T_ij (λ_T,i·λ_T,j − 𝓕² λ_N,i λ_N,j)
+//! 2 M v − d_N − R y in the dual cones   ⇒   eᵀ y ≤ vᵀ M v
+//! ```
+//! The implications hold at every equilibrium, provided that no free motion moves contact nodes along their normals and, for the last
+//! one, that M is positive definite: 2vᵀMλ − vᵀMv ≤ λᵀMλ ≤ d_Nᵀλ_N. A motion y with eᵀ y > vᵀ M v is therefore a proof that
+//! there is no equilibrium, whatever the solvers tried: the load drives y by more than contact can build up. y and v are
+//! multipliers and minimiser of λᵀMλ − d_Nᵀλ_N over the cones with Rᵀλ = e; what they prove is computed again from C, R, d and e.
+
+use crate::direct::compliant_contact::CompliantContact;
+use crate::error::ContactError;
+use crate::linear::dense::{DenseCholesky, multiply};
+use crate::linear::vector::{add_scaled, dot};
+use crate::qp::{Cone, ConeProgram};
+use faer::Mat;
+
+/// Normal part of an orthonormal motion that is rounding.
+const TANGENTIAL: f64 = 1e-12;
+/// Share of the largest row sum of M by which M must be positive definite: what condensation of badly conditioned bodies may lose.
+const DEFINITE: f64 = 1e-8;
+/// Shares 𝓕²T/C_NN⁺ that are tried until M is positive definite.
+const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
+/// Largest share of the resultant that friction may build up in a proof.
+const MAX_SHARE: f64 = 0.999;
+/// Rounding of the products that a proof consists of, relative to their terms.
+const ROUNDING: f64 = 1e-11;
+/// Most rows of a program: beyond, it would cost far more than the solvers that failed.
+const MAX_ROWS: usize = 900;
+/// Programs for one bound, each for the share of the load that the last one allows.
+const MAX_PROGRAMS: usize = 2;
+/// Relative decrease of the share that ends them.
+const SETTLED: f64 = 0.01;
+
+/// A motion that the load drives, and what friction can hold against it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resistance {
+    /// Amplitudes y of the rigid motions, with slip of length 1 in the root mean square.
+    pub motion: Vec<f64>,
+    /// eᵀy, N.
+    pub resultant: f64,
+    /// The largest eᵀy that contact forces can balance, N: an upper bound.
+    pub largest: f64,
+}
+
+/// What the bound is made of.
+struct Bound<'a> {
+    contact: &'a CompliantContact,
+    /// 2 M.
+    hessian: Mat<f64>,
+    /// Its Cholesky factor, less a shift.
+    factor: DenseCholesky,
+    /// Largest row sum of |2 M|.
+    norm: f64,
+    /// d over the normal rows, 0 over the tangential ones.
+    constant: Vec<f64>,
+}
+
+impl CompliantContact {
+    /// The motion by which the load exceeds most what friction can build up, with the largest resistance to it. None without
+    /// friction or free motions, where free motions open the contact, for large problems, and where the bound is not found.
+    ///
+    /// There is an equilibrium only if `resultant ≤ largest`.
+    pub fn resistance(&self) -> Option<Resistance> {
+        let bound = Bound::new(self)?;
+        let mut best: Option<Resistance> = None;
+        let mut share = 1.0;
+        for _program in 0..MAX_PROGRAMS {
+            let Some(found) = bound.at(share) else { break };
+            let new = found.largest / found.resultant;
+            let settled = new >= (1.0 - SETTLED) * share;
+            if best.as_ref().is_none_or(|best| new < best.largest / best.resultant) {
+                best = Some(found);
+            }
+            if settled || new <= 0.0 {
+                break;
+            }
+            share = new;
+        }
+        best
+    }
+
+    /// The refusal that the bound proves, if it does.
+    pub(super) fn refusal(&self) -> Option<ContactError> {
+        let found = self.resistance().filter(|found| found.largest <= MAX_SHARE * found.resultant)?;
+        let Resistance { resultant, largest, .. } = found;
+        Some(ContactError::FrictionTooWeak { direction: self.in_words(&found.motion), resultant, largest })
+    }
+
+    /// The slip of every node in a motion.
+    fn slips(&self, motion: &[f64]) -> Vec<[f64; 2]> {
+        let jumps = multiply(&self.motions, motion);
+        let mut slips = vec![[0.0; 2]; self.problem.boundary.points.len()];
+        for (slip, point) in slips.iter_mut().zip(&self.problem.boundary.points) {
+            for (offset, &tangent) in point.tangents.iter().enumerate() {
+                slip[tangent] = jumps[point.start + 1 + offset];
+            }
+        }
+        slips
+    }
+
+    /// The parts of a motion that make up most of its slip.
+    fn in_words(&self, motion: &[f64]) -> String {
+        let slips = self.slips(motion);
+        let count = slips.len() as f64;
+        let mean = [0, 1].map(|axis| slips.iter().map(|slip| slip[axis]).sum::<f64>() / count);
+        let turning = slips.iter().map(|slip| (slip[0] - mean[0]).powi(2) + (slip[1] - mean[1]).powi(2)).sum::<f64>();
+        let sliding = format!("sliding along ({:.2}, {:.2}, 0)", mean[0], mean[1]);
+        match (mean[0].hypot(mean[1]) > 0.3, (turning / count).sqrt() > 0.3) {
+            (true, true) => format!("{sliding} with turning about x3"),
+            (true, false) => sliding,
+            _ => "turning about x3".into(),
+        }
+    }
+}
+
+impl<'a> Bound<'a> {
+    fn new(contact: &'a CompliantContact) -> Option<Self> {
+        let (boundary, motions) = (&contact.problem.boundary, contact.resultant.len());
+        let points = &boundary.points;
+        let tangential = |k: usize| points.iter().all(|point| contact.motions[(point.start, k)].abs() <= TANGENTIAL);
+        if !boundary.has_friction() || motions == 0 || boundary.row_count > MAX_ROWS || !(0..motions).all(tangential) {
+            return None;
+        }
+        let mut constant = vec![0.0; boundary.row_count];
+        points.iter().for_each(|point| constant[point.start] = contact.constant()[point.start]);
+        SHARES.into_iter().find_map(|share| {
+            let hessian = hessian(contact, share);
+            let sums = (0..hessian.ncols()).map(|j| hessian.col_as_slice(j).iter().map(|entry| entry.abs()).sum());
+            let norm = sums.fold(0.0, f64::max);
+            let mut shifted = hessian.clone();
+            (0..shifted.nrows()).for_each(|i| shifted[(i, i)] -= DEFINITE * norm);
+            let factor = DenseCholesky::new(shifted).ok()?;
+            Some(Self { contact, hessian, factor, norm, constant: constant.clone() })
+        })
+    }
+
+    /// What is proved by the multipliers for a share of the load; none where they do not come close enough.
+    fn at(&self, share: f64) -> Option<Resistance> {
+        let boundary = &self.contact.problem.boundary;
+        let cones = boundary.points.iter();
+        let cones = cones.map(|point| Cone { first: point.start, size: point.row_count(), slope: boundary.friction });
+        let program = ConeProgram {
+            hessian: &self.hessian,
+            linear: self.constant.iter().map(|d| -d).collect(),
+            equalities: &self.contact.motions,
+            right_side: self.contact.resultant.iter().map(|e| share * e).collect(),
+            cones: cones.collect(),
+        };
+        let (forces, motion) = program.minimise()?;
+        self.proof(&motion, forces)
+    }
+
+    /// The bound that a motion y and forces v prove, in double precision.
+    fn proof(&self, motion: &[f64], mut v: Vec<f64>) -> Option<Resistance> {
+        let (contact, boundary) = (self.contact, &self.contact.problem.boundary);
+        let driven = multiply(&contact.motions, motion);
+        // How far 2 M v − d − R y is outside the dual cones.
+        let missing = |v: &[f64]| {
+            let product = multiply(&self.hessian, v);
+            let rest = |row: usize| product[row] - self.constant[row] - driven[row];
+            let outside = |point: &crate::equilibrium::ContactPoint| {
+                let tangential = point.rows().skip(1).map(rest).fold(0.0, f64::hypot);
+                boundary.friction * tangential - rest(point.start)
+            };
+            boundary.points.iter().map(outside).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let terms = self.norm * largest(&v) + largest(&self.constant) + largest(&driven);
+        // 2 M h = 1 over the normal rows, but for the shift: what is missing is made up along h.
+        let mut h = vec![0.0; v.len()];
+        boundary.points.iter().for_each(|point| h[point.start] = 1.0);
+        self.factor.solve_lower_in_place(&mut h);
+        self.factor.solve_upper_in_place(&mut h);
+        let length = 2.0 * (missing(&v).max(0.0) + ROUNDING * terms);
+        add_scaled(&mut v, length, &h);
+        let squares = contact.slips(motion).iter().map(|slip| slip[0].powi(2) + slip[1].powi(2)).sum::<f64>();
+        let slip = (squares / boundary.points.len() as f64).sqrt();
+        let work = dot(&contact.resultant, motion);
+        let proved = missing(&v) <= -ROUNDING * terms && work > 0.0 && slip > 0.0;
+        proved.then(|| Resistance {
+            motion: motion.iter().map(|y| y / slip).collect(),
+            resultant: work * contact.load / slip,
+            largest: 0.5 * dot(&v, &multiply(&self.hessian, &v)) * contact.load / slip,
+        })
+    }
+}
+
+/// 2 M with T = share·C_NN⁺/𝓕², C_NN⁺ the positive entries of C_NN.
+fn hessian(contact: &CompliantContact, share: f64) -> Mat<f64> {
+    let (boundary, compliance) = (&contact.problem.boundary, &contact.compliance);
+    let mut hessian = Mat::<f64>::zeros(boundary.row_count, boundary.row_count);
+    for first in &boundary.points {
+        for second in &boundary.points {
+            let (i, j) = (first.start, second.start);
+            let normal = 0.5 * (compliance[(i, j)] + compliance[(j, i)]);
+            let weight = share * normal.max(0.0);
+            hessian[(i, j)] = 2.0 * (normal - weight);
+            for (a, &axis) in first.tangents.iter().enumerate() {
+                hessian[(i + 1 + a, j)] = compliance[(j, i + 1 + a)];
+                hessian[(j, i + 1 + a)] = compliance[(j, i + 1 + a)];
+                if let Some(b) = second.tangents.iter().position(|&other| other == axis) {
+                    hessian[(i + 1 + a, j + 1 + b)] = 2.0 * weight / boundary.friction.powi(2);
+                }
+            }
+        }
+    }
+    hessian
+}

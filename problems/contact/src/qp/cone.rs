@@ -1,0 +1,83 @@
+//! Convex quadratic programs over friction cones, by an interior-point method.
+//!
+//! ```text
+//! min ½ xᵀHx + qᵀx   s.t.   Rᵀ x = e,   |x_T| ≤ slope·x_N in every cone;          H x + q − R y ∈ the dual of the cones
+//! ```
+
+use clarabel::algebra::CscMatrix;
+use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
+use faer::Mat;
+
+/// Iterations of the interior-point method.
+const MAX_ITERATIONS: u32 = 100;
+
+/// A cone over some entries of x in a row: |the others| ≤ slope · the first; the half-line of the first where it is alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cone {
+    /// First entry.
+    pub first: usize,
+    /// Number of entries.
+    pub size: usize,
+    /// Slope, > 0.
+    pub slope: f64,
+}
+
+/// The data of a program.
+#[derive(Debug, Clone)]
+pub struct ConeProgram<'a> {
+    /// H, symmetric and positive semidefinite.
+    pub hessian: &'a Mat<f64>,
+    /// q.
+    pub linear: Vec<f64>,
+    /// R, one column per equality.
+    pub equalities: &'a Mat<f64>,
+    /// e.
+    pub right_side: Vec<f64>,
+    /// The cones, which cover all entries.
+    pub cones: Vec<Cone>,
+}
+
+/// Columns of a sparse matrix in the order of the entries.
+fn sparse(rows: usize, columns: Vec<Vec<(usize, f64)>>) -> CscMatrix<f64> {
+    let mut starts = vec![0];
+    let (mut indices, mut values) = (Vec::new(), Vec::new());
+    for column in &columns {
+        for &(row, value) in column.iter().filter(|(_, value)| *value != 0.0) {
+            indices.push(row);
+            values.push(value);
+        }
+        starts.push(indices.len());
+    }
+    CscMatrix::new(rows, columns.len(), starts, indices, values)
+}
+
+impl ConeProgram<'_> {
+    /// The minimiser x and the multipliers y, as nearly as the method gives them; none where it gives none.
+    pub fn minimise(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (count, motions) = (self.linear.len(), self.right_side.len());
+        let upper = (0..count).map(|j| (0..=j).map(|i| (i, self.hessian[(i, j)])).collect()).collect();
+        let mut columns: Vec<Vec<(usize, f64)>> =
+            (0..count).map(|row| (0..motions).map(|k| (k, self.equalities[(row, k)])).collect()).collect();
+        let mut right = self.right_side.clone();
+        let mut cones = vec![SupportedConeT::ZeroConeT(motions)];
+        for cone in &self.cones {
+            let factor = if cone.size == 1 { 1.0 } else { cone.slope };
+            columns[cone.first].push((right.len(), -factor));
+            for offset in 1..cone.size {
+                columns[cone.first + offset].push((right.len() + offset, -1.0));
+            }
+            right.resize(right.len() + cone.size, 0.0);
+            cones.push(match cone.size {
+                1 => SupportedConeT::NonnegativeConeT(1),
+                size => SupportedConeT::SecondOrderConeT(size),
+            });
+        }
+        let (quadratic, constraints) = (sparse(count, upper), sparse(right.len(), columns));
+        let settings = DefaultSettingsBuilder::default().verbose(false).max_iter(MAX_ITERATIONS).build().ok()?;
+        let mut solver = DefaultSolver::new(&quadratic, &self.linear, &constraints, &right, &cones, settings).ok()?;
+        solver.solve();
+        let solution = &solver.solution;
+        let solved = matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
+        solved.then(|| (solution.x.clone(), solution.z[..motions].iter().map(|z| -z).collect()))
+    }
+}
