@@ -4,7 +4,8 @@
 //! reach_i = max(|x̂_i|, |x̂_i − x⁰_i|)        size_i = max(|x̂_i|, ε reach_i)
 //! variation = min( highest value seen − Θ(x̂),  max( median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂,
 //!                                                    Σ_k size_k Σ_i |w_i| |G_ik| of a composite Θ ) )
-//! scale     = |Θ(x̂)| clamped to [ε min(highest − Θ(x̂), max(Σ_j λ_j Σ_i |g_ji| reach_i, Σ_k reach_k Σ_i |w_i| |G_ik|)), variation]
+//! scale     = |Θ(x̂)| clamped to [ε least, variation]
+//! least     = min( highest − Θ(x̂),  max( Σ_j λ_j Σ_i |g_ji| reach_i,  h(c ± |G| reach) − h(c) of a composite Θ ) )
 //! bound     = ẽ + Σ_i |z̃_i| reach_i ≥ Θ(x̂) − Θ(y)        if Θ is convex and |y_i − x̂_i| ≤ reach_i
 //! ```
 //! The variation does not change if Θ is shifted; the sums Σ |g_i| size_i and the bound do not depend on the units of the
@@ -38,6 +39,15 @@ pub(crate) struct Lengths {
     reach: Vector,
     /// ‖size‖².
     squared: f64,
+}
+
+/// What the outputs c of a composite Θ = h(c) tell about its scale at a center.
+#[derive(Debug, Clone)]
+pub(crate) struct OutputScales {
+    /// Σ_i |w_i| |G_ik| for every variable k: the terms that cancel in Gᵀw.
+    pub slopes: Vector,
+    /// max h(c ± |G| reach) − h(c), 0 where h gives no such number.
+    pub within_reach: f64,
 }
 
 impl State {
@@ -104,13 +114,12 @@ impl State {
         terms.get(terms.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// Σ_k Σ_i |w_i| |G_ik| size_k, and the same with reach_k: how far the terms of Gᵀw let Θ vary, also where they cancel, as at a
-    /// smooth minimum.
+    /// How far Θ varies by its outputs, also where its subgradients vanish, as at a smooth minimum.
     fn output_variation(&self) -> Spread {
-        let Some(slopes) = &self.output_slopes else { return Spread { size: 0.0, reach: 0.0 } };
-        let lengths = self.lengths();
-        let sum = |lengths: &Vector| dot_terms(slopes.as_slice(), lengths.as_slice());
-        Spread { size: sum(&lengths.size), reach: sum(&lengths.reach) }
+        let Some(OutputScales { slopes, within_reach }) = &self.output_scales else {
+            return Spread { size: 0.0, reach: 0.0 };
+        };
+        Spread { size: dot_terms(slopes.as_slice(), self.lengths().size.as_slice()), reach: *within_reach }
     }
 
     /// Σ λ_j Σ |g_ji| reach_i: the terms that cancel in the aggregate subgradient.

@@ -171,7 +171,7 @@ fn first_evaluation(
         failures: 0,
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],
-        output_slopes: None,
+        output_scales: None,
         lengths: RefCell::default(),
     };
     state.bundle.push(cut, &state.norm);

@@ -2,7 +2,7 @@
 
 use super::cut::Bundle;
 use super::norm::ScaledNorm;
-use super::scales::Lengths;
+use super::scales::{Lengths, OutputScales};
 use crate::report::{Counts, IterationRecord};
 use crate::{BundleTrustConfig, Vector};
 use std::cell::RefCell;
@@ -38,8 +38,8 @@ pub(crate) struct State {
     pub failures: usize,
     pub counts: Counts,
     pub history: Vec<IterationRecord>,
-    /// Σ_i |w_i| |G_ik| for every variable k, the terms that cancel in Gᵀw at the center; none where no outputs are known there.
-    pub output_slopes: Option<Vector>,
+    /// What the outputs behind Θ tell about its scale, if they are known at the center.
+    pub output_scales: Option<OutputScales>,
     /// The lengths that belong to a center.
     pub lengths: RefCell<Option<(u64, Rc<Lengths>)>>,
 }

@@ -66,8 +66,8 @@ fn sums() -> Vec<Case> {
             start: [-1.2, 1.0],
             solution: [1.0, 1.0],
             optimum: 0.0,
-            evaluations: 24,
-            jacobians: 24,
+            evaluations: 23,
+            jacobians: 23,
         },
         Case {
             name: "sum of squares",

@@ -6,6 +6,7 @@ use crate::Vector;
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::Trial;
 use crate::bundle::run::Run;
+use crate::bundle::scales::OutputScales;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::Origin;
@@ -135,8 +136,10 @@ impl Run<'_, '_> {
 
     /// Moves the model to a new center, to be built there if the Jacobian is known.
     pub(in crate::bundle) fn rebase(&mut self, point: &Vector, value: f64, linearization: Option<Linearization>) {
-        let outer = self.objective.outer();
-        self.state.output_slopes = outer.zip(linearization.as_ref()).and_then(|(outer, known)| terms(outer, known));
+        let outer = self.outer;
+        let reach = point.zip_map(&self.state.start, |x, start| x.abs().max((x - start).abs()));
+        let known = outer.zip(linearization.as_ref());
+        self.state.output_scales = known.and_then(|(outer, known)| output_scales(outer, known, &reach));
         if let Some(composite) = &mut self.composite {
             composite.rejected = None;
             composite.base = linearization.map(|linearization| Base { point: point.clone(), value, linearization });
@@ -144,8 +147,13 @@ impl Run<'_, '_> {
     }
 }
 
-/// |G|ᵀ|w| for w ∈ ∂h(c); none where h gives no such w.
-fn terms(outer: &dyn OuterFunction, Linearization { outputs, jacobian, .. }: &Linearization) -> Option<Vector> {
-    let weights = without_panic(|| outer.subgradient(outputs)).ok()?;
-    (weights.len() == outputs.len()).then(|| jacobian.abs().tr_mul(&weights.abs()))
+/// What outputs, their Jacobian and h tell about the scale of Θ; none where h gives no subgradient.
+fn output_scales(outer: &dyn OuterFunction, known: &Linearization, reach: &Vector) -> Option<OutputScales> {
+    let Linearization { outputs, jacobian, .. } = known;
+    let weights = without_panic(|| outer.subgradient(outputs)).ok().filter(|w| w.len() == outputs.len())?;
+    let sizes = jacobian.abs();
+    let change = &sizes * reach;
+    let rise = |sign: f64| outer.value(&(outputs + &change * sign)) - outer.value(outputs);
+    let within_reach = without_panic(|| rise(1.0).max(rise(-1.0))).ok().filter(|rise| rise.is_finite());
+    Some(OutputScales { slopes: sizes.tr_mul(&weights.abs()), within_reach: within_reach.unwrap_or(0.0).max(0.0) })
 }
