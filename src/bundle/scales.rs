@@ -22,8 +22,9 @@ use std::rc::Rc;
 
 /// ε: sizes below this share of what a variable has passed through are not told from zero.
 const LEAST_SHARE: f64 = 1e-8;
-/// The same for the length of all variables together.
-const LEAST_LENGTH_SHARE: f64 = 1e-2;
+/// The same for the length of all variables together: a radius relative to more of what a far start has travelled would let cuts
+/// from both sides of a curved kink cancel.
+const LEAST_LENGTH_SHARE: f64 = 1e-4;
 /// The same for values, as a share of their variation.
 const LEAST_VALUE_SHARE: f64 = 1e-6;
 /// Values beyond this many times their variation carry a shift.

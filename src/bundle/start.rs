@@ -140,16 +140,8 @@ fn first_evaluation(
     let slope = norm.dual_length(&subgradient);
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
-    let cut = Cut {
-        id: 1,
-        point: start.clone(),
-        value,
-        subgradient,
-        error_bound,
-        certified: false,
-        multiplier: 0.0,
-        idle: 0,
-    };
+    let point = start.clone();
+    let cut = Cut { id: 1, point, value, subgradient, error_bound, certified: false, multiplier: 0.0, idle: 0 };
     let mut state = State {
         norm,
         start: start.clone(),

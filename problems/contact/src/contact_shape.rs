@@ -66,7 +66,8 @@ impl ContactShape {
         wanted: Wanted,
     ) -> Result<Self, SceneError> {
         scene.validate()?;
-        memory::check(&scene, kind, preconditioner)?;
+        let columns = if wanted == Wanted::Jacobians { scene.control_points.iter().product() } else { 0 };
+        memory::check(&scene, kind, preconditioner, columns)?;
         let problem = Arc::new(ContactProblem::new(scene)?);
         let solver = AnySolver::new(problem, kind, preconditioner, wanted)
             .map_err(|error| SceneError::out_of_range("mesh.bricks", error, "a size that can be factored"))?;

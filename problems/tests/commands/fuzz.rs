@@ -159,7 +159,7 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
     let file = SceneFile::parse(text, "input.toml")?;
     assert_eq!(SceneFile::parse(&file.print()?, "printed").as_ref().ok(), Some(&file), "the printed file differs");
     let case = Case::new(&file, folder)?;
-    memory::check(&case.scene, case.solver, case.preconditioner)?;
+    memory::check(&case.scene, case.solver, case.preconditioner, 0)?;
     let nodes = (case.scene.mesh[0] + 1) * (case.scene.mesh[1] + 1);
     if nodes <= SMALL && case.scene.control_points.iter().product::<usize>() <= SMALL {
         let start =
