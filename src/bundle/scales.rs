@@ -24,7 +24,7 @@ use std::rc::Rc;
 const LEAST_SHARE: f64 = 1e-8;
 /// The same for the length of all variables together: a radius relative to more of what a far start has travelled would let cuts
 /// from both sides of a curved kink cancel.
-const LEAST_LENGTH_SHARE: f64 = 1e-4;
+const LEAST_LENGTH_SHARE: f64 = 1e-3;
 /// The same for values, as a share of their variation.
 const LEAST_VALUE_SHARE: f64 = 1e-6;
 /// Values beyond this many times their variation carry a shift.
