@@ -25,7 +25,7 @@ impl Epigraph {
     /// h*(w) = sup ⟨w, c⟩ − h(c); ∞ where w is no subgradient anywhere.
     pub fn conjugate(&self, weights: &Vector) -> f64 {
         match *self {
-            Self::EuclideanNorm if weights.norm() <= UNIT => 0.0,
+            Self::EuclideanNorm if weights.norm() <= unit(weights.len()) => 0.0,
             Self::SumOfPowers { exponent: 1.0 } if weights.amax() <= 1.0 => 0.0,
             Self::EuclideanNorm | Self::SumOfPowers { exponent: 1.0 } => f64::INFINITY,
             Self::SumOfPowers { exponent: p } => {
@@ -35,6 +35,7 @@ impl Epigraph {
     }
 
     /// The nearest w at which h* is finite.
+    #[cfg(any(test, feature = "interior-point"))]
     pub(crate) fn within_domain(&self, weights: Vector) -> Vector {
         match self {
             Self::EuclideanNorm => {
@@ -47,8 +48,10 @@ impl Epigraph {
     }
 }
 
-/// One, and the rounding of a vector divided by its length.
-const UNIT: f64 = 1.0 + 4.0 * f64::EPSILON;
+/// One, and the rounding of the length of a vector of that many entries that was divided by its length.
+fn unit(entries: usize) -> f64 {
+    1.0 + (4.0 + entries as f64) * f64::EPSILON
+}
 
 #[cfg(test)]
 mod tests {

@@ -82,8 +82,10 @@ impl OuterFunction for SumOfPowers {
         (p >= 2.0).then(|| weighted_gram(jacobian, &outputs.map(|output| p * (p - 1.0) * output.abs().powf(p - 2.0))))
     }
 
+    /// None below p = 1, where h is not convex.
     fn epigraph(&self) -> Option<Epigraph> {
-        Some(Epigraph::SumOfPowers { exponent: self.exponent })
+        let convex = self.exponent >= 1.0 && self.exponent.is_finite();
+        convex.then_some(Epigraph::SumOfPowers { exponent: self.exponent })
     }
 }
 

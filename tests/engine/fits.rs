@@ -65,7 +65,6 @@ fn linear_fits_end_confirmed_with_a_proof_that_holds() {
 }
 
 /// The same functions as closures are solved by cuts: a second path to the same values.
-#[cfg(feature = "interior-point")]
 #[test]
 fn cones_and_cuts_lead_to_the_same_fit() {
     for (name, outer) in functions() {
@@ -94,4 +93,17 @@ fn exact_fits_are_confirmed() {
         let size = outer.value(&(&rows * &solution));
         assert!(report.value <= 1e-6 * size, "{name}: {:e} of {size:e}", report.value);
     }
+}
+
+/// The weights of a norm have length one up to the rounding of all entries; a sum of roots is not convex.
+#[test]
+fn many_equal_residuals_and_exponents_below_one() {
+    let many = |x: &Vector| {
+        (Vector::from_fn(3000, |i, _| x[i % 3] - 1.0), Matrix::from_fn(3000, 3, |i, j| f64::from(u8::from(i % 3 == j))))
+    };
+    let theta = CompositeFunction::new(3, EuclideanNorm, many);
+    let report = BundleTrust::new(BundleTrustConfig::default()).unwrap().minimize(&theta, Vector::zeros(3)).unwrap();
+    assert!(report.termination.is_confirmed() && report.counts.evaluations <= 5, "{report}");
+    let roots = fit(&SumOfPowers { exponent: 0.5 }, (40, 0.0), &Polyhedron::unbounded(VARIABLES));
+    assert!(matches!(roots.termination, nonsmooth::Termination::SubproblemFailed { .. }), "{roots}");
 }

@@ -10,6 +10,7 @@ mod composite;
 mod composite_faults;
 mod evaluation_counts;
 mod feasibility;
+#[cfg(feature = "interior-point")]
 mod fits;
 mod generic_use;
 mod inexact_oracle;

@@ -8,7 +8,7 @@
 //! multipliers μ of the sides of U and the residual ρ = Gᵀw + u W (d − o) + B d + Aᵀμ:
 //!
 //! ```text
-//! h(c + G d) − ⟨w, c + G d⟩ + h*(w) + Σ |μ_i| slack_i + ‖ρ‖*‖d‖
+//! h(c + G d) − ⟨w, c + G d⟩ + h*(w) + Σ |μ_i| slack_i + ‖ρ‖* max(‖d‖, ‖ρ‖*/2u)
 //! ```
 
 use super::model::CompositeModel;

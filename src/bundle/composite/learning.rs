@@ -18,6 +18,8 @@ const GOOD_RATIO: f64 = 0.5;
 const STRAIGHT_RATIO: f64 = 1.5;
 /// Such steps in a row from which on the share of that curvature falls: single ones come from constraints that become active.
 const STRAIGHT_STEPS: usize = 3;
+/// The least share, from which three rejected steps lead back to the whole.
+const LEAST_BEND: f64 = 1.0 / 64.0;
 /// By which that share falls, and rises after a rejected step.
 const BEND_FACTOR: f64 = 4.0;
 /// Length of the step after a rejected one, as a share of its length.
@@ -41,9 +43,10 @@ impl Composite {
             if ratio.is_some_and(|ratio| ratio >= GOOD_RATIO) {
                 self.weight /= FACTOR;
             }
-            self.straight = if ratio.is_some_and(|ratio| ratio >= STRAIGHT_RATIO) { self.straight + 1 } else { 0 };
+            let straight = self.bent && ratio.is_some_and(|ratio| ratio >= STRAIGHT_RATIO);
+            self.straight = if straight { self.straight + 1 } else { 0 };
             if self.straight >= STRAIGHT_STEPS {
-                self.bend /= BEND_FACTOR;
+                self.bend = (self.bend / BEND_FACTOR).max(LEAST_BEND);
             }
         } else {
             self.failures += 1;

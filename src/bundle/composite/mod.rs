@@ -63,6 +63,8 @@ pub(crate) struct Composite {
     bends: bool,
     /// The share of that curvature that steps have confirmed, at most 1.
     bend: f64,
+    /// Whether the last subproblem took it into account.
+    bent: bool,
     /// Serious steps in a row that have met less of it than predicted.
     straight: usize,
     memory: Memory,
@@ -92,6 +94,7 @@ impl Composite {
             correcting: false,
             bends: false,
             bend: 1.0,
+            bent: false,
             straight: 0,
             memory: Memory::default(),
             kinks: Kinks::default(),

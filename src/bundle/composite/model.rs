@@ -18,6 +18,8 @@ use crate::bundle::proposers::subproblem::{self, Cuts};
 #[cfg(feature = "interior-point")]
 use crate::composite::Epigraph;
 use crate::composite::{Linearization, OuterFunction};
+#[cfg(feature = "interior-point")]
+use crate::panics::without_panic;
 use crate::qp::{EpigraphQpSolver, Metric, QpSolution, project};
 use crate::{Matrix, Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
@@ -137,10 +139,15 @@ impl CompositeModel<'_> {
         solver: &mut EpigraphQpSolver,
         epigraph: Epigraph,
     ) -> Result<CompositeStep, SubproblemError> {
-        let Some(ConeAnswer { step, weights, sides }) = cones::solve(self, epigraph) else {
+        // A failure of that method, be it a panic, says nothing about h.
+        let answer = without_panic(|| cones::solve(self, epigraph)).ok().flatten();
+        let Some((ConeAnswer { weights, sides, .. }, point)) = answer
+            .and_then(|answer| project(self.set, &(self.base + &answer.step)).ok().map(|point| (answer, point)))
+            .filter(|(answer, _)| epigraph.conjugate(&answer.weights).is_finite())
+        else {
             return self.solve_by_cuts(solver, vec![]);
         };
-        let step = project(self.set, &(self.base + step))? - self.base;
+        let step = point - self.base;
         let outputs = self.outputs(&step);
         let value = weights.dot(&outputs) - epigraph.conjugate(&weights);
         let cut = OuterCut { value, subgradient: weights, outputs, multiplier: 1.0 };
@@ -261,7 +268,7 @@ impl CompositeModel<'_> {
             self.error(&next)?;
             let change = next.value - self.value + pull.dot(&solution.step);
             let (promised, gap) = (-solution.epigraph, change - solution.epigraph);
-            if gap <= MET * promised + ROUNDING * self.value.abs() || cuts.len() >= MAX_CUTS {
+            if gap <= MET * promised.abs() + ROUNDING * self.value.abs() || cuts.len() >= MAX_CUTS {
                 for (cut, multiplier) in cuts.iter_mut().zip(&solution.cut_multipliers) {
                     cut.multiplier = *multiplier;
                 }
@@ -277,7 +284,8 @@ impl CompositeModel<'_> {
         let outputs = &self.linearization.outputs;
         let error = cut.error(outputs, self.value);
         let terms = cut.subgradient.abs().dot(&(outputs.abs() + cut.outputs.abs()));
-        if error < -MAX_EXCESS * (self.value.abs() + cut.value.abs() + terms) {
+        let lies_below = error >= -MAX_EXCESS * (self.value.abs() + cut.value.abs() + terms);
+        if !lies_below {
             return Err(SubproblemError::NotConvex { excess: -error });
         }
         Ok(error.max(0.0))

@@ -83,6 +83,7 @@ impl Run<'_, '_> {
             curvature: None,
             origin,
         };
+        composite.bent = false;
         if !composite.bends || outer.curvature(&base.linearization.outputs, jacobian).is_some() {
             return model.solve(&mut self.solver);
         }
@@ -94,6 +95,7 @@ impl Run<'_, '_> {
             let Some(weights) = &composite.weights else { break };
             let curvature = composite.memory.curvature((&base.point, jacobian), weights, model.norm);
             let curvature = curvature.map(|curvature| curvature * composite.bend);
+            composite.bent = curvature.is_some();
             let model = CompositeModel { curvature: curvature.as_ref(), ..model };
             let found = model.solve(&mut self.solver)?;
             composite.weights = Some(found.weights());
