@@ -203,12 +203,13 @@ impl AutoSolver {
         let Some(reason) = reason else { return self.torn_then_direct(controls, start, tolerance) };
         match self.direct()?.solve(controls, start, tolerance) {
             Ok(state) => Ok(ContactState { reason: Some(reason), ..state.map(AnyState::from) }),
-            Err(error) if error.is_about_the_problem() => Err(error),
+            Err(error) if error.is_about_the_problem() && !proves_friction_too_weak(&error) => Err(error),
             Err(error) => match self.torn()?.attempt(controls, None, tolerance, self.max_products) {
                 Ok(state) => {
                     let reason = Some(format!("direct condensation failed: {error}"));
                     Ok(ContactState { reason, ..state.map(AnyState::from) })
                 }
+                Err(_) if proves_friction_too_weak(&error) => Err(error),
                 Err(failed) => Err(unsolved(failed, error)),
             },
         }
@@ -227,8 +228,10 @@ impl AutoSolver {
         start: Option<&ContactWarmStart>,
         tolerance: f64,
     ) -> Result<ContactState<AnyState>, ContactError> {
+        let mut found = false;
         let failed = match self.torn()?.attempt(controls, start, tolerance, self.max_products) {
             Ok(state) => {
+                found = true;
                 let comfortable = state.forces.residuals.within(tolerance.max(COMFORTABLE_SHARE * MAX_RESIDUAL));
                 match (comfortable, self.max_products) {
                     (Err(error), Some(_)) => Failed { error: Box::new(error), work: state.work() },
@@ -246,10 +249,15 @@ impl AutoSolver {
                 let reason = Some(format!("total FETI failed: {error}"));
                 Ok(ContactState { work, reason, ..state.map(AnyState::from) })
             }
-            Err(error) if error.is_about_the_problem() => Err(error),
+            // Nothing proves that there is no state where one was found, be it to few digits.
+            Err(error) if error.is_about_the_problem() && !(found && proves_friction_too_weak(&error)) => Err(error),
             Err(error) => Err(unsolved(failed, error)),
         }
     }
+}
+
+fn proves_friction_too_weak(error: &ContactError) -> bool {
+    matches!(error, ContactError::FrictionTooWeak { .. })
 }
 
 /// Why total FETI would be slow for a scene, if it would.

@@ -27,6 +27,10 @@ const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
 const MAX_SHARE: f64 = 0.999;
 /// Rounding of the products that a proof consists of, relative to their terms.
 const ROUNDING: f64 = 1e-11;
+/// Least work on a motion, in units of the load: below it the resultant may be what condensation left of loads in equilibrium.
+const LEAST_WORK: f64 = 1e-6;
+/// Largest difference of C_ij and C_ji, relative to the largest entry: more says that condensation has lost half of the digits.
+const LARGEST_SKEW: f64 = 1e-6;
 /// Most rows of a program: beyond, it would cost far more than the solvers that failed.
 const MAX_ROWS: usize = 900;
 /// Programs for one bound, each for the share of the load that the last one allows.
@@ -121,6 +125,9 @@ impl<'a> Bound<'a> {
         let (boundary, motions) = (&contact.problem.boundary, contact.resultant.len());
         let points = &boundary.points;
         let tangential = |k: usize| points.iter().all(|point| contact.motions[(point.start, k)].abs() <= TANGENTIAL);
+        if !is_accurate(&contact.compliance) {
+            return None;
+        }
         if !boundary.has_friction() || motions == 0 || boundary.row_count > MAX_ROWS || !(0..motions).all(tangential) {
             return None;
         }
@@ -163,29 +170,38 @@ impl<'a> Bound<'a> {
             let rest = |row: usize| product[row] - self.constant[row] - driven[row];
             let outside = |point: &crate::equilibrium::ContactPoint| {
                 let tangential = point.rows().skip(1).map(rest).fold(0.0, f64::hypot);
-                boundary.friction * tangential - rest(point.start)
+                let outside = boundary.friction * tangential - rest(point.start);
+                if outside.is_nan() { f64::INFINITY } else { outside }
             };
             boundary.points.iter().map(outside).fold(f64::NEG_INFINITY, f64::max)
         };
         let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        let terms = self.norm * largest(&v) + largest(&self.constant) + largest(&driven);
+        let sizes = |v: &[f64]| self.norm * largest(v) + largest(&self.constant) + largest(&driven);
         // 2 M h = 1 over the normal rows, but for the shift: what is missing is made up along h.
         let mut h = vec![0.0; v.len()];
         boundary.points.iter().for_each(|point| h[point.start] = 1.0);
         self.factor.solve_lower_in_place(&mut h);
         self.factor.solve_upper_in_place(&mut h);
-        let length = 2.0 * (missing(&v).max(0.0) + ROUNDING * terms);
+        let length = 2.0 * (missing(&v).max(0.0) + ROUNDING * sizes(&v));
         add_scaled(&mut v, length, &h);
         let squares = contact.slips(motion).iter().map(|slip| slip[0].powi(2) + slip[1].powi(2)).sum::<f64>();
         let slip = (squares / boundary.points.len() as f64).sqrt();
         let work = dot(&contact.resultant, motion);
-        let proved = missing(&v) <= -ROUNDING * terms && work > 0.0 && slip > 0.0;
+        let pushed = work > LEAST_WORK * largest(motion);
+        let proved = missing(&v) <= -ROUNDING * sizes(&v) && pushed && slip > 0.0;
         proved.then(|| Resistance {
             motion: motion.iter().map(|y| y / slip).collect(),
             resultant: work * contact.load / slip,
             largest: 0.5 * dot(&v, &multiply(&self.hessian, &v)) * contact.load / slip,
         })
     }
+}
+
+/// Whether a compliance is symmetric, which its factorisation does not enforce, far beyond the margin of the proof.
+fn is_accurate(compliance: &Mat<f64>) -> bool {
+    let pairs = || (0..compliance.nrows()).flat_map(|i| (0..=i).map(move |j| (i, j)));
+    let largest = pairs().map(|(i, j)| compliance[(i, j)].abs()).fold(0.0, f64::max);
+    pairs().all(|(i, j)| (compliance[(i, j)] - compliance[(j, i)]).abs() <= LARGEST_SKEW * largest)
 }
 
 /// 2 M with T = share·C_NN⁺/𝓕², C_NN⁺ the positive entries of C_NN.

@@ -134,7 +134,11 @@ impl DirectSolver {
         let (solution, newton_steps) = if load > 0.0 {
             // Why there is no state is asked only where none was found.
             let found = Self::equilibrium(&mut contact, start, tolerance);
-            found.map_err(|error| refusal(&contact).unwrap_or(error))?
+            found.map_err(|error| match error {
+                // Where rounding hides the state, it hides a proof as well.
+                ContactError::BeyondPrecision { .. } => error,
+                error => refusal(&contact).unwrap_or(error),
+            })?
         } else {
             (contact.at_rest(), 0)
         };

@@ -73,6 +73,24 @@ fn what_contact_cannot_build_up_is_refused_with_the_motion() {
     }
 }
 
+/// A slender column, sheared by loads in equilibrium and out of reach of the obstacle: what condensation leaves of the resultant is
+/// rounding, of which no friction is needed.
+#[test]
+fn loads_in_equilibrium_need_no_friction() {
+    for ratio in [0.3, 0.499, 0.4999999] {
+        let mut scene = pushed(2, 0.3, ratio, CounterSurface::Plane { height: 101.0 }, [0.0, 0.0, 0.01]);
+        (scene.size, scene.mesh) = ([1.0; 2], [2, 2, 24]);
+        scene.lower.loads.push(Load { face: Face::X1Min, traction: [0.0, 0.0, -0.01] });
+        let shape = ContactShape::new(scene, SolverKind::Auto).unwrap();
+        if let Err(OracleError::Failed(error)) = shape.solve(&Vector::from_element(36, 100.0), None, Accuracy::TIGHTEST)
+        {
+            let error: ContactError = *error.downcast().unwrap();
+            assert!(!matches!(error, ContactError::FrictionTooWeak { .. }), "{ratio}: {error}");
+            println!("{ratio}: {error}");
+        }
+    }
+}
+
 /// No contact at all: nothing can be built up, and the bound says nearly that.
 #[test]
 fn an_obstacle_out_of_reach_holds_nothing() {
