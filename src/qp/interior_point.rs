@@ -43,20 +43,40 @@ pub(super) fn solve(qp: &EpigraphQp<'_>) -> Result<InteriorAnswer, QpError> {
 }
 
 /// One side of one member as a scaled inequality  normalᵀ d̂ − c v̂ ≤ bound.
-struct ScaledSide {
+pub(crate) struct ScaledSide {
     member: Member,
     side: Side,
     /// What the original side was divided by.
     divisor: f64,
-    normal: Vec<(usize, f64)>,
-    bound: f64,
+    pub(crate) normal: Vec<(usize, f64)>,
+    pub(crate) bound: f64,
+}
+
+impl ScaledSide {
+    fn is_equality(&self) -> bool {
+        self.side == Side::Both
+    }
+
+    /// The multiplier of the member, > 0 at an upper side and < 0 at a lower one, for one of this inequality in units of `unit`.
+    fn multiplier(&self, multiplier: f64, unit: f64) -> f64 {
+        let sign = if self.side == Side::Lower { -1.0 } else { 1.0 };
+        sign * multiplier * unit / self.divisor
+    }
+
+    /// Adds that multiplier to those of the rows and of the bounds.
+    pub(crate) fn add_multiplier(&self, multiplier: f64, unit: f64, (rows, bounds): &mut (Vector, Vector)) {
+        match self.member {
+            Member::Row(i) => rows[i] += self.multiplier(multiplier, unit),
+            Member::Bound(k) => bounds[k] += self.multiplier(multiplier, unit),
+            Member::Cut(_) => {}
+        }
+    }
 }
 
 fn solve_scaled(qp: &EpigraphQp<'_>, weights: &Vector, length: f64) -> Result<(InteriorAnswer, f64), QpError> {
     let n = qp.dimension();
     let mut sides = scaled_sides(qp, weights, length);
-    sides.sort_by_key(|side| side.side != Side::Both);
-    let equalities = sides.iter().filter(|side| side.side == Side::Both).count();
+    let equalities = equalities_first(&mut sides);
     let mut linear = vec![0.0; n + 1];
     linear[n] = 1.0;
     let bounds: Vec<f64> = sides.iter().map(|side| side.bound).collect();
@@ -95,34 +115,50 @@ pub(crate) fn settings() -> DefaultSettings<f64> {
 fn active_sides(sides: &[ScaledSide], multipliers: &[f64], slacks: &[f64], length: f64) -> Vec<Active> {
     let mut actives: Vec<Active> = Vec::new();
     for ((side, &multiplier), &slack) in sides.iter().zip(multipliers).zip(slacks) {
-        if side.side != Side::Both && multiplier <= slack {
+        if !side.is_equality() && multiplier <= slack {
             continue;
         }
-        let sign = if side.side == Side::Lower { -1.0 } else { 1.0 };
-        let multiplier = sign * multiplier * length * length / side.divisor;
+        let multiplier = side.multiplier(multiplier, length * length);
         actives.push(Active { member: side.member, side: side.side, multiplier });
     }
     actives
 }
 
+/// Sorts equalities to the front; their number.
+pub(crate) fn equalities_first(sides: &mut [ScaledSide]) -> usize {
+    sides.sort_by_key(|side| !side.is_equality());
+    sides.iter().filter(|side| side.is_equality()).count()
+}
+
 fn scaled_sides(qp: &EpigraphQp<'_>, weights: &Vector, length: f64) -> Vec<ScaledSide> {
     let n = qp.dimension();
+    let scaled = |entry: f64, k: usize| entry * weights[k] * length;
     let mut sides = Vec::new();
     for (j, (slope, &offset)) in qp.slopes.iter().zip(qp.offsets).enumerate() {
-        let mut normal: Vec<(usize, f64)> = (0..n).map(|k| (k, slope[k] * weights[k] * length)).collect();
+        let mut normal: Vec<(usize, f64)> = (0..n).map(|k| (k, scaled(slope[k], k))).collect();
         normal.push((n, -length * length));
         push_sides(&mut sides, Member::Cut(j), &normal, (f64::NEG_INFINITY, offset));
     }
-    for i in 0..qp.rows.nrows() {
-        let row = qp.rows.row(i);
-        let normal: Vec<(usize, f64)> =
-            (0..n).filter(|&k| row[k] != 0.0).map(|k| (k, row[k] * weights[k] * length)).collect();
-        push_sides(&mut sides, Member::Row(i), &normal, (qp.row_lower[i], qp.row_upper[i]));
-    }
-    for k in 0..n {
-        push_sides(&mut sides, Member::Bound(k), &[(k, weights[k] * length)], (qp.lower[k], qp.upper[k]));
-    }
+    push_set(&mut sides, qp.rows, (qp.row_lower, qp.row_upper), (qp.lower, qp.upper), scaled);
     sides
+}
+
+/// The finite sides of rows and bounds of d; `scaled`: the entry of a normal at d̂_k for one at d_k.
+pub(crate) fn push_set(
+    sides: &mut Vec<ScaledSide>,
+    rows: &Matrix,
+    of_rows: (&Vector, &Vector),
+    bounds: (&Vector, &Vector),
+    scaled: impl Fn(f64, usize) -> f64,
+) {
+    for (i, row) in rows.row_iter().enumerate() {
+        let entries = row.iter().enumerate().filter(|(_, entry)| **entry != 0.0);
+        let normal: Vec<(usize, f64)> = entries.map(|(k, entry)| (k, scaled(*entry, k))).collect();
+        push_sides(sides, Member::Row(i), &normal, (of_rows.0[i], of_rows.1[i]));
+    }
+    for k in 0..rows.ncols() {
+        push_sides(sides, Member::Bound(k), &[(k, scaled(1.0, k))], (bounds.0[k], bounds.1[k]));
+    }
 }
 
 /// The finite sides of an interval, divided by the norm of the normal.

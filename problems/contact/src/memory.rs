@@ -3,7 +3,7 @@
 use crate::error::SceneError;
 use crate::scene::Scene;
 use crate::solver_kind::SolverKind;
-use crate::tfeti::PreconditionerKind;
+use crate::tfeti::{MAX_COLUMNS, PreconditionerKind};
 use crate::work_estimate::factor_values;
 
 /// Bytes of one number.
@@ -12,9 +12,7 @@ const NUMBER: f64 = 8.0;
 const DUAL_VECTORS: f64 = 140.0;
 /// Bytes of one number in single precision.
 const SINGLE: f64 = 4.0;
-/// Columns of the Jacobian that advance in lockstep on total FETI.
-const LOCKSTEP: f64 = 40.0;
-/// Dual vectors and torn vectors that each of them keeps, in single precision: directions, their images, subdomain solutions.
+/// Dual vectors and torn vectors that each column of a Jacobian keeps while it advances, in single precision: directions, their images, subdomain solutions.
 const TANGENT_VECTORS: (f64, f64) = (36.0, 8.0);
 /// Size of the factor of the interior matrix, which the Dirichlet preconditioner needs, over that of a subdomain's factor.
 const INTERIOR_SHARE: f64 = 0.45;
@@ -47,7 +45,7 @@ pub(crate) fn estimate(scene: &Scene, kind: SolverKind, preconditioner: Precondi
     let rows = (pieces * dofs - bodies * 3.0 * nodes(mesh)).max(0.0) + contact;
     let coarse = 6.0 * pieces;
     let (dual, torn) = TANGENT_VECTORS;
-    let tangents = SINGLE * LOCKSTEP.min(columns as f64) * (dual * rows + torn * pieces * dofs);
+    let tangents = SINGLE * columns.min(MAX_COLUMNS) as f64 * (dual * rows + torn * pieces * dofs);
     NUMBER * (pieces * per_piece + DUAL_VECTORS * rows + 3.0 * coarse * coarse) + tangents
 }
 

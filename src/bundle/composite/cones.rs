@@ -14,7 +14,7 @@
 use super::model::CompositeModel;
 use crate::bundle::proposers::subproblem::Room;
 use crate::composite::Epigraph;
-use crate::qp::interior_point::{compressed, settings};
+use crate::qp::interior_point::{ScaledSide, compressed, equalities_first, push_set, settings};
 use crate::{Matrix, Vector};
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, PowerConeT, SecondOrderConeT, SupportedConeT, ZeroConeT,
@@ -44,8 +44,6 @@ struct Constraints {
     columns: Vec<Vec<(usize, f64)>>,
     sides: Vec<f64>,
     cones: Vec<SupportedConeT<f64>>,
-    /// Rows and, after them, bounds behind the first sides, with what each was multiplied by.
-    origins: Vec<(usize, f64)>,
 }
 
 impl Constraints {
@@ -63,14 +61,15 @@ impl Constraints {
 pub(super) fn solve(model: &CompositeModel<'_>, epigraph: Epigraph) -> Option<ConeAnswer> {
     let (outputs, jacobian) = (&model.linearization.outputs, &model.linearization.jacobian);
     let (m, n) = jacobian.shape();
-    let mut metric = model.curvature.cloned().unwrap_or_else(|| Matrix::zeros(n, n));
-    model.norm.add_to(&mut metric, model.weight);
+    let metric = model.with_metric(Matrix::zeros(n, n));
     let units = Units::new(outputs, jacobian, (&metric, epigraph));
     let count = if epigraph == Epigraph::EuclideanNorm { 1 } else { m };
-    let mut constraints =
-        Constraints { columns: vec![vec![]; n + count], sides: vec![], cones: vec![], origins: vec![] };
-    constraints.admit(model, &units);
-    let first = constraints.sides.len();
+    let mut constraints = Constraints { columns: vec![vec![]; n + count], sides: vec![], cones: vec![] };
+    let (room, rows) = (Room::around(model.set, model.base), model.set.rows());
+    let mut of_set = vec![];
+    let (of_rows, bounds) = ((&room.rows.0, &room.rows.1), (&room.bounds.0, &room.bounds.1));
+    push_set(&mut of_set, rows, of_rows, bounds, |entry, k| entry * units.steps[k]);
+    constraints.admit(&mut of_set);
     let scaled = Matrix::from_fn(m, n, |i, k| jacobian[(i, k)] * units.steps[k] / units.outputs);
     constraints.epigraph(&(outputs / units.outputs), &scaled, epigraph);
     let entry = |i: usize, j: usize| metric[(i, j)] * units.steps[i] * units.steps[j] / units.value;
@@ -85,7 +84,7 @@ pub(super) fn solve(model: &CompositeModel<'_>, epigraph: Epigraph) -> Option<Co
         DefaultSolver::new(&quadratic, &linear, &matrix, &constraints.sides, &constraints.cones, scaled_settings())
             .ok()?;
     solver.solve();
-    let (x, z) = (&solver.solution.x, &solver.solution.z[first..]);
+    let (x, z) = (&solver.solution.x, &solver.solution.z[of_set.len()..]);
     let step = Vector::from_column_slice(&x[..n]).component_mul(&units.steps);
     let weights = Vector::from_fn(m, |i, _| match epigraph {
         Epigraph::EuclideanNorm => -z[1 + i],
@@ -93,13 +92,12 @@ pub(super) fn solve(model: &CompositeModel<'_>, epigraph: Epigraph) -> Option<Co
         Epigraph::SumOfPowers { .. } => -z[3 * i + 2],
     });
     let weights = epigraph.within_domain(weights * (units.value / units.outputs));
-    let rows = model.set.rows().nrows();
-    let mut multipliers = Vector::zeros(rows + n);
-    for (&(origin, factor), &z) in constraints.origins.iter().zip(&solver.solution.z) {
-        multipliers[origin] += z * factor * units.value;
+    let mut sides = (Vector::zeros(rows.nrows()), Vector::zeros(n));
+    for (side, &z) in of_set.iter().zip(&solver.solution.z) {
+        side.add_multiplier(z, units.value, &mut sides);
     }
-    let sides = (multipliers.rows(0, rows).into_owned(), multipliers.rows(rows, n).into_owned());
-    let finite = step.iter().chain(weights.iter()).chain(multipliers.iter()).all(|entry| entry.is_finite());
+    let finite =
+        step.iter().chain(weights.iter()).chain(sides.0.iter()).chain(sides.1.iter()).all(|entry| entry.is_finite());
     finite.then_some(ConeAnswer { step, weights, sides })
 }
 
@@ -121,34 +119,13 @@ impl Units {
 }
 
 impl Constraints {
-    /// x + d ∈ U, every side divided by the length of its row; equalities first.
-    fn admit(&mut self, model: &CompositeModel<'_>, units: &Units) {
-        let room = Room::around(model.set, model.base);
-        let (rows, n) = (model.set.rows(), model.base.len());
-        let row = |i: usize| (0..n).map(|k| (k, rows[(i, k)] * units.steps[k])).collect::<Vec<_>>();
-        let of_rows = (0..rows.nrows()).map(|i| (row(i), room.rows.0[i], room.rows.1[i]));
-        let of_bounds = (0..n).map(|k| (vec![(k, units.steps[k])], room.bounds.0[k], room.bounds.1[k]));
-        let sides: Vec<_> = of_rows.chain(of_bounds).collect();
-        let scaled = |row: &[(usize, f64)], sign: f64| {
-            let size = row.iter().map(|(_, a)| a * a).sum::<f64>().sqrt();
-            let factor = if size > 0.0 { sign / size } else { sign };
-            (factor, row.iter().map(|&(k, a)| (k, factor * a)).collect::<Vec<_>>())
-        };
-        let mut add = |origin: usize, side: f64, sign: f64| {
-            let (factor, row) = scaled(&sides[origin].0, sign);
-            self.push(factor * side, row);
-            self.origins.push((origin, factor));
-        };
-        let (equal, unequal): (Vec<usize>, Vec<usize>) = (0..sides.len()).partition(|&i| sides[i].1 == sides[i].2);
-        equal.iter().for_each(|&i| add(i, sides[i].2, 1.0));
-        for (&i, sign) in unequal.iter().flat_map(|i| [(i, 1.0), (i, -1.0)]) {
-            let side = if sign > 0.0 { sides[i].2 } else { sides[i].1 };
-            if side.is_finite() {
-                add(i, side, sign);
-            }
+    /// x + d ∈ U.
+    fn admit(&mut self, sides: &mut [ScaledSide]) {
+        let equalities = equalities_first(sides);
+        for side in sides.iter() {
+            self.push(side.bound, side.normal.iter().copied());
         }
-        let equalities = equal.len();
-        self.cones.extend([ZeroConeT(equalities), NonnegativeConeT(self.sides.len() - equalities)]);
+        self.cones.extend([ZeroConeT(equalities), NonnegativeConeT(sides.len() - equalities)]);
     }
 
     /// (t, ĉ + Ĝ d̂) in the cones of h.

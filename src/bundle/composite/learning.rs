@@ -139,9 +139,8 @@ impl Run<'_, '_> {
 
     /// Moves the model to a new center, to be built there if the Jacobian is known.
     pub(in crate::bundle) fn rebase(&mut self, point: &Vector, value: f64, linearization: Option<Linearization>) {
-        let outer = self.outer;
-        let reach = point.zip_map(&self.state.start, |x, start| x.abs().max((x - start).abs()));
-        let known = outer.zip(linearization.as_ref());
+        let known = self.outer.zip(linearization.as_ref());
+        let reach = self.state.reach();
         self.state.output_scales = known.and_then(|(outer, known)| output_scales(outer, known, &reach));
         if let Some(composite) = &mut self.composite {
             composite.rejected = None;

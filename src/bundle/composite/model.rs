@@ -147,17 +147,18 @@ impl CompositeModel<'_> {
         else {
             return self.solve_by_cuts(solver, vec![]);
         };
-        let step = point - self.base;
+        let step = &point - self.base;
         let outputs = self.outputs(&step);
         let value = weights.dot(&outputs) - epigraph.conjugate(&weights);
         let cut = OuterCut { value, subgradient: weights, outputs, multiplier: 1.0 };
         self.error(&cut)?;
         let slope = self.linearization.jacobian.tr_mul(&cut.subgradient) + self.pull(&step);
-        let residual = slope + self.set.rows().tr_mul(&sides.0) + &sides.1;
-        let slack = slack_error((&sides.0, &sides.1), &(self.base + &step), self.set);
-        let left =
-            self.outer.value(&cut.outputs) - value + slack + self.norm.dual_length(&residual) * self.norm.length(&step);
-        if left <= -MET_BY_CONES * self.merit(&step) + LEFT_BY_CONES * self.value.abs() {
+        let residual = self.norm.dual_length(&(slope + self.set.rows().tr_mul(&sides.0) + &sides.1));
+        // ⟨ρ, d' − d⟩ + u‖d' − d‖²/2 is at least −‖ρ‖*²/2u.
+        let farthest = self.norm.length(&step).max(0.5 * residual / self.weight);
+        let slack = slack_error((&sides.0, &sides.1), &point, self.set);
+        let left = self.outer.value(&cut.outputs) - value + slack + residual * farthest;
+        if left <= MET_BY_CONES * self.merit(&step).abs() + LEFT_BY_CONES * self.value.abs() {
             return Ok(self.solved(step, vec![cut], sides));
         }
         let there = OuterCut::at(self.outer, cut.outputs.clone())?;
@@ -166,10 +167,19 @@ impl CompositeModel<'_> {
 
     /// B + u W.
     fn metric(&self) -> WeightedMetric {
-        let Some(curvature) = self.curvature else { return self.norm.weighted(self.weight) };
-        let mut metric = curvature.clone();
-        self.norm.add_to(&mut metric, self.weight);
-        WeightedMetric::Dense(metric)
+        match self.curvature {
+            Some(_) => WeightedMetric::Dense(self.with_metric(Matrix::zeros(self.base.len(), self.base.len()))),
+            None => self.norm.weighted(self.weight),
+        }
+    }
+
+    /// A matrix, and B + u W added to it.
+    pub(super) fn with_metric(&self, mut matrix: Matrix) -> Matrix {
+        self.norm.add_to(&mut matrix, self.weight);
+        if let Some(curvature) = self.curvature {
+            matrix += curvature;
+        }
+        matrix
     }
 
     /// c + G d.
@@ -209,11 +219,7 @@ impl CompositeModel<'_> {
             let at = OuterCut::at(self.outer, self.outputs(&step))?;
             self.error(&at)?;
             let Some(curvature) = self.outer.curvature(&at.outputs, jacobian) else { break };
-            let mut metric = curvature.clone();
-            self.norm.add_to(&mut metric, self.weight);
-            if let Some(bend) = self.curvature {
-                metric += bend;
-            }
+            let metric = self.with_metric(curvature.clone());
             let slope = jacobian.tr_mul(&at.subgradient) + self.pull(&step);
             let (slopes, point) = ([slope], self.base + &step);
             let cuts = Cuts { slopes: &slopes, offsets: &[0.0], ids: &[0], gram: None };

@@ -125,10 +125,8 @@ impl<'a> Bound<'a> {
         let (boundary, motions) = (&contact.problem.boundary, contact.resultant.len());
         let points = &boundary.points;
         let tangential = |k: usize| points.iter().all(|point| contact.motions[(point.start, k)].abs() <= TANGENTIAL);
-        if !is_accurate(&contact.compliance) {
-            return None;
-        }
-        if !boundary.has_friction() || motions == 0 || boundary.row_count > MAX_ROWS || !(0..motions).all(tangential) {
+        let slides = boundary.has_friction() && motions > 0 && (0..motions).all(tangential);
+        if !slides || boundary.row_count > MAX_ROWS || !is_accurate(&contact.compliance) {
             return None;
         }
         let mut constant = vec![0.0; boundary.row_count];

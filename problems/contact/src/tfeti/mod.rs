@@ -22,6 +22,7 @@ mod solver;
 mod torn;
 
 pub use contact_solver::{DualMethod, TotalFeti};
+pub(crate) use derivative::MAX_COLUMNS;
 pub use dual::{DualOperator, Iterate, Precision, Preconditioner, TornContact, TornSolution};
 pub use newton::{NewtonSettings, Recycling};
 pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};

@@ -16,4 +16,5 @@ mod shape_loads;
 mod tangents;
 
 pub use shape_derivative::height_sensitivities;
+pub(crate) use tangents::MAX_COLUMNS;
 pub use tangents::MovedSurface;

@@ -37,7 +37,7 @@ pub struct MovedSurface<'a> {
 }
 
 /// Columns that advance in lockstep: the sums of a tile of the subdomain solves then fill the registers.
-const MAX_COLUMNS: usize = 5 * LANES;
+pub(crate) const MAX_COLUMNS: usize = 5 * LANES;
 /// Relative residual below which rounding of the subdomain solves in double precision decides.
 const TIGHTEST_GOAL: f64 = 1e-11;
 /// Smallest relative residual for which single precision needs no check by a product in double precision.
