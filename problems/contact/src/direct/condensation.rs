@@ -72,7 +72,7 @@ impl CondensationPattern {
         let shift = self.impose(&mut values, &mut full_load);
         let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();
-        let lower = factor.trailing_block(size)?;
+        let lower = factor.trailing_block(size);
         let mut schur = Mat::<f64>::zeros(size, size);
         matmul(
             schur.as_mut(),

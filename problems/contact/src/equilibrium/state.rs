@@ -65,9 +65,9 @@ pub struct StageSeconds {
     pub equilibrium: f64,
     /// Assembly and factorisation of subdomains (interiors included) or bodies.
     pub factorization: f64,
-    /// Coarse space: G and the part of its matrix that all active sets share.
+    /// Coarse space: G, the part of its matrix that all active sets share, and its factors, solves and projections.
     pub coarse_space: f64,
-    /// Iteration for the contact forces, whatever its method: coarse factors, Krylov spaces, products with F.
+    /// Iteration for the contact forces, whatever its method, without the coarse space: Krylov spaces, products with F.
     pub newton: f64,
     /// Displacements and certificates.
     pub recovery: f64,

@@ -2,7 +2,7 @@
 
 use crate::linear::FactorizationError;
 use crate::linear::dense::column;
-use crate::linear::entry::Row;
+use crate::linear::entry::{Entry, Row};
 use crate::linear::real::Real;
 use crate::linear::supernodal;
 use crate::linear::symmetric::LowerPattern;
@@ -12,7 +12,8 @@ use faer::perm::Perm;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
+    factorize_symbolic_cholesky,
+    supernodal::{SupernodalLltRef, SymbolicSupernodalCholesky},
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::traits::ComplexField;
@@ -162,11 +163,8 @@ impl NumericFactor {
 
     /// Solves A X = B in place for a block of columns by rows, in the precision of the block.
     pub(crate) fn solve_rows_in_place<E: Real, const N: usize>(&self, b: &mut [Row<E, N>]) {
-        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.symbolic.raw() else {
-            unreachable!("invariant: factors are forced to be supernodal");
-        };
         let mut ordered: Vec<Row<E, N>> = self.symbolic.order.iter().map(|&old| b[old]).collect();
-        supernodal::solve(symbolic, E::factor_values(self), &mut ordered);
+        supernodal::solve(self.supernodes(), E::factor_values(self), &mut ordered);
         for (&old, row) in self.symbolic.order.iter().zip(ordered) {
             b[old] = row;
         }
@@ -174,13 +172,8 @@ impl NumericFactor {
 
     /// L₂₂ of the trailing `size` indices of the elimination order: L₂₂L₂₂ᵀ is their Schur complement. Row and column p
     /// belong to index `order[n − size + p]`.
-    ///
-    /// # Errors
-    /// [`FactorizationError`] when the factor is not stored by supernodes.
-    pub(crate) fn trailing_block(&self, size: usize) -> Result<Mat<f64>, FactorizationError> {
-        let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.symbolic.raw() else {
-            return Err(failure("Schur complement", "the factor is not supernodal".into()));
-        };
+    pub(crate) fn trailing_block(&self, size: usize) -> Mat<f64> {
+        let symbolic = self.supernodes();
         let first = self.symbolic.pattern.dimension() - size;
         let factor = SupernodalLltRef::<usize, f64>::new(symbolic, &self.values);
         let mut block = Mat::<f64>::zeros(size, size);
@@ -200,12 +193,31 @@ impl NumericFactor {
                 }
             }
         }
-        Ok(block)
+        block
     }
 
     /// The elimination order, `order[new] = old`.
     pub fn order(&self) -> &[usize] {
         &self.symbolic.order
+    }
+
+    /// Eliminates the first `count` indices of the elimination order from a right side in this order: x ← L₁₁⁻¹ b₁ there, and
+    /// b₂ − L₂₁ x₁ in the others. With all indices it solves L x = b.
+    pub(crate) fn eliminate<V: Entry>(&self, count: usize, b: &mut [V]) {
+        supernodal::eliminate(self.supernodes(), &self.values, count, b);
+    }
+
+    /// Solves L₁₁ᵀ x₁ = y₁ − L₂₁ᵀ x₂ for the first `count` indices of the elimination order, in place; x₂ is given. With all indices
+    /// it solves Lᵀ x = y.
+    pub(crate) fn substitute<V: Entry>(&self, count: usize, y: &mut [V]) {
+        supernodal::substitute(self.supernodes(), &self.values, count, y);
+    }
+
+    fn supernodes(&self) -> &SymbolicSupernodalCholesky<usize> {
+        match self.symbolic.symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(symbolic) => symbolic,
+            SymbolicCholeskyRaw::Simplicial(_) => unreachable!("invariant: factors are forced to be supernodal"),
+        }
     }
 }
 
@@ -243,7 +255,7 @@ mod tests {
             assert!((x - node * (8.0 - node) / 2.0).abs() < 1e-13);
         }
         // Schur complement of the middle node: 2 − 2·(3/4) = 1/2.
-        let block = factor.trailing_block(1).expect("supernodal");
+        let block = factor.trailing_block(1);
         assert!((block[(0, 0)] * block[(0, 0)] - 0.5).abs() < 1e-14);
     }
 

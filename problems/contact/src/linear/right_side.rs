@@ -9,6 +9,15 @@ use rayon::prelude::*;
 
 /// Entries of right sides.
 pub trait RightSide: Entry {
+    /// The same entry in double precision.
+    type Double: RightSide;
+
+    /// In double precision.
+    fn double(&self) -> Self::Double;
+
+    /// Rounded from double precision.
+    fn rounded(double: Self::Double) -> Self;
+
     /// Solves A x = b in place by a Cholesky factor.
     fn solve(factor: &NumericFactor, b: &mut [Self]);
 
@@ -17,6 +26,16 @@ pub trait RightSide: Entry {
 }
 
 impl RightSide for f64 {
+    type Double = f64;
+
+    fn double(&self) -> f64 {
+        *self
+    }
+
+    fn rounded(double: f64) -> f64 {
+        double
+    }
+
     fn solve(factor: &NumericFactor, b: &mut [Self]) {
         factor.solve_in_place(b);
     }
@@ -30,6 +49,16 @@ impl RightSide for f64 {
 const DENSE_COLUMNS: usize = 20;
 
 impl<E: Real, const N: usize> RightSide for Row<E, N> {
+    type Double = Row<f64, N>;
+
+    fn double(&self) -> Row<f64, N> {
+        self.to()
+    }
+
+    fn rounded(double: Row<f64, N>) -> Self {
+        double.to()
+    }
+
     fn solve(factor: &NumericFactor, b: &mut [Self]) {
         factor.solve_rows_in_place(b);
     }

@@ -1,4 +1,5 @@
-//! Both sweeps of L Lᵀ X = B for a block of columns, supernode by supernode.
+//! Triangular solves supernode by supernode: both sweeps of L Lᵀ X = B for a block of columns, and single sweeps that may end
+//! before the last columns of L.
 //!
 //! ```text
 //! forward, supernodes ascending:     X_s ← L_ss⁻¹ X_s,                X_p ← X_p − L_ps X_s        (p: rows below the supernode)
@@ -21,6 +22,34 @@ pub fn solve<E: Real, const N: usize>(symbolic: &SymbolicSupernodalCholesky<usiz
         2 | 3 => sweeps::<E, N, 2>(symbolic, values, x),
         _ => sweeps::<E, N, 4>(symbolic, values, x),
     }
+}
+
+/// Forward sweep over the first `count` columns of L, for an x in elimination order.
+pub fn eliminate<V: Entry>(symbolic: &SymbolicSupernodalCholesky<usize>, values: &[f64], count: usize, x: &mut [V]) {
+    let mut below = Vec::new();
+    vectorized(
+        #[inline(always)]
+        || {
+            for index in 0..symbolic.n_supernodes() {
+                let panel = Panel::new(symbolic, values, index);
+                panel.eliminate(count, x, &mut below);
+            }
+        },
+    );
+}
+
+/// Backward sweep over the first `count` columns of L, for an x in elimination order whose other entries are solved.
+pub fn substitute<V: Entry>(symbolic: &SymbolicSupernodalCholesky<usize>, values: &[f64], count: usize, x: &mut [V]) {
+    let mut below = Vec::new();
+    vectorized(
+        #[inline(always)]
+        || {
+            for index in (0..symbolic.n_supernodes()).rev() {
+                let panel = Panel::new(symbolic, values, index);
+                panel.substitute(count, x, &mut below);
+            }
+        },
+    );
 }
 
 /// Both sweeps with tiles of so many rows.
@@ -175,6 +204,48 @@ impl<'a, E: Real> Panel<'a, E> {
     }
 }
 
+impl Panel<'_, f64> {
+    /// The columns of the panel that are among the first `count` columns of L.
+    #[inline(always)]
+    fn columns(&self, count: usize) -> impl DoubleEndedIterator<Item = (usize, &[f64])> {
+        let columns = count.saturating_sub(self.begin).min(self.width);
+        self.values.chunks_exact(self.height).take(columns).enumerate()
+    }
+
+    #[inline(always)]
+    fn eliminate<V: Entry>(&self, count: usize, x: &mut [V], below: &mut Vec<V>) {
+        below.clear();
+        below.resize(self.pattern.len(), V::ZERO);
+        let own = &mut x[self.begin..self.begin + self.width];
+        for (index, column) in self.columns(count) {
+            let (solved, rest) = own[index..].split_at_mut(1);
+            solved[0].scale(1.0 / column[index]);
+            let (near, far) = column[index + 1..].split_at(rest.len());
+            rest.iter_mut().zip(near).for_each(|(x, entry)| x.accumulate(-entry, &solved[0]));
+            below.iter_mut().zip(far).for_each(|(sum, entry)| sum.accumulate(*entry, &solved[0]));
+        }
+        for (&row, sum) in self.pattern.iter().zip(below) {
+            x[row].add_scaled(-1.0, sum);
+        }
+    }
+
+    #[inline(always)]
+    fn substitute<V: Entry>(&self, count: usize, x: &mut [V], below: &mut Vec<V>) {
+        below.clear();
+        below.extend(self.pattern.iter().map(|&row| x[row]));
+        let own = &mut x[self.begin..self.begin + self.width];
+        for (index, column) in self.columns(count).rev() {
+            let (before, solved) = own.split_at_mut(index + 1);
+            let mut sum = V::ZERO;
+            for (entry, x) in column[index + 1..].iter().zip(solved.iter().chain(&*below)) {
+                sum.accumulate(*entry, x);
+            }
+            before[index].add_scaled(-1.0, &sum);
+            before[index].scale(1.0 / column[index]);
+        }
+    }
+}
+
 /// Σ_i columns[t][i] x_i, for the columns of a tile.
 #[inline(always)]
 fn column_products<E: Real, const N: usize, const TILE: usize>(
@@ -231,6 +302,36 @@ mod tests {
             factor.solve_in_place(&mut expected);
             for (row, expected) in block.iter().zip(&expected) {
                 assert!((row.get(column) - expected).abs() < rounding, "{} {expected}", row.get(column));
+            }
+        }
+    }
+
+    #[test]
+    fn single_sweeps_solve_together_and_leave_the_schur_complement_between_them() {
+        let factor = factored();
+        let order = factor.order().to_vec();
+        let mut expected: Vec<f64> = (0..SIZE).map(|row| (row as f64).cos()).collect();
+        let right: Vec<f64> = order.iter().map(|&old| expected[old]).collect();
+        factor.solve_in_place(&mut expected);
+        let condensed = factor.trailing_block(SIZE - 25);
+        for count in [0, 1, 25, SIZE] {
+            let mut x = right.clone();
+            factor.eliminate(count, &mut x);
+            if count == 25 {
+                // S x₂ is what elimination leaves of the right side.
+                let below: Vec<f64> = order[25..].iter().map(|&old| expected[old]).collect();
+                for (row, left) in x[25..].iter().enumerate() {
+                    let product = |k: usize| -> f64 { (0..below.len()).map(|l| condensed[(l, k)] * below[l]).sum() };
+                    let image: f64 = (0..=row).map(|k| condensed[(row, k)] * product(k)).sum();
+                    assert!((left - image).abs() < 1e-13, "{left} {image}");
+                }
+            }
+            for (new, &old) in order.iter().enumerate().skip(count) {
+                x[new] = expected[old];
+            }
+            factor.substitute(count, &mut x);
+            for (x, &old) in x.iter().zip(&order) {
+                assert!((x - expected[old]).abs() < 1e-14, "{count}: {x} {}", expected[old]);
             }
         }
     }

@@ -157,7 +157,7 @@ impl TornSolver {
         seconds.factorization = clock.lap();
         Stage::CoarseSpace.enter();
         let grounded = self.model.grounded_amplitudes(&system, &configuration);
-        let space = CoarseSpace::new(&self.model, &system, &grounded);
+        let space = CoarseSpace::new(&self.model, &system, grounded)?;
         let stiffness = STIFFNESS_SHARE * self.model.contact_stiffness(&system);
         let load = configuration.load(stiffness);
         seconds.coarse_space = clock.lap();
@@ -172,7 +172,8 @@ impl TornSolver {
         };
         let solved = if load > 0.0 { method(&contact) } else { Ok((contact.at_rest(), T::default())) };
         let (solution, returned) = solved.map_err(|error| Failed { error: Box::new(error), work: work(0) })?;
-        seconds.newton = clock.lap();
+        seconds.coarse_space += contact.space.seconds();
+        seconds.newton = clock.lap() - contact.space.seconds();
         Stage::Recovery.enter();
         let (operator, iterate) = (&contact.operator, &solution.iterate);
         let loaded = operator.loaded_displacement();

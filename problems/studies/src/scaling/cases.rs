@@ -160,7 +160,7 @@ impl Variant {
         let method = match self {
             Self::AugmentedLagrangian => DualMethod::SuccessiveApproximations,
             Self::Gmres => DualMethod::Newton(Recycling::Off),
-            _ => DualMethod::Newton(Recycling::Auto),
+            _ => DualMethod::Newton(Recycling::On),
         };
         TotalFeti::new(problem, preconditioner, method).map(AnySolver::from)
     }

@@ -7,10 +7,10 @@
 //! adjoint system has its transpose.
 
 use crate::error::ContactError;
-use crate::linear::dense::DenseLu;
 use crate::linear::right_side::RightSide;
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::active_rows::ActiveRows;
+use crate::tfeti::dual::coarse_matrix::CoarseFactor;
 use crate::tfeti::dual::coarse_space::CoarseSpace;
 
 /// The rows of an active set that holds all rigid motions, with its factored coarse matrix G_T Gqᵀ.
@@ -19,7 +19,7 @@ pub struct ActiveSet<'a> {
     /// Its rows: unknowns y, trial map T, test map Q.
     pub rows: ActiveRows<'a>,
     space: &'a CoarseSpace,
-    coarse: DenseLu,
+    coarse: CoarseFactor<'a>,
 }
 
 /// Pivot ratio of a coarse matrix that counts as singular.
@@ -31,16 +31,18 @@ impl<'a> ActiveSet<'a> {
     /// # Errors
     /// [`ContactError::Unheld`] when the rows leave a rigid motion free.
     pub fn new(space: &'a CoarseSpace, rows: ActiveRows<'a>) -> Result<Self, ContactError> {
-        let mut matrix = space.fixed_part().clone();
-        rows.contact_columns(|trial, test| {
-            let (trial, test) = (space.combine(trial), space.combine(test));
-            for &(j, right) in &test {
-                for &(i, left) in &trial {
-                    matrix[(i, j)] += left * right;
-                }
-            }
+        let coarse = space.timed(|| {
+            space.condensed().with_contact(|add| {
+                rows.contact_columns(|trial, test| {
+                    let (trial, test) = (space.combine(trial), space.combine(test));
+                    for &(column, right) in &test {
+                        for &(row, left) in &trial {
+                            add(row, column, left * right);
+                        }
+                    }
+                });
+            })
         });
-        let coarse = DenseLu::new(&matrix);
         let pivot_ratio = coarse.pivot_ratio();
         if pivot_ratio < SINGULAR {
             return Err(ContactError::Unheld { pivot_ratio, resultant: norm(space.resultants()) });
@@ -50,10 +52,12 @@ impl<'a> ActiveSet<'a> {
 
     /// a = −(G_T Gqᵀ)⁻¹ G_T r: r + Gqᵀ a = P r is the reduced residual r without its rigid part.
     pub fn amplitudes<V: RightSide>(&self, residual: &[V]) -> Vec<V> {
-        let mut amplitudes = self.space.resultant(&self.rows.trial(residual));
-        V::solve_dense(&self.coarse, &mut amplitudes);
-        amplitudes.iter_mut().for_each(|entry| entry.scale(-1.0));
-        amplitudes
+        self.space.timed(|| {
+            let mut amplitudes = self.space.resultant(&self.rows.trial(residual));
+            self.coarse.solve_in_place(&mut amplitudes);
+            amplitudes.iter_mut().for_each(|entry| entry.scale(-1.0));
+            amplitudes
+        })
     }
 
     /// v ← P v.
@@ -64,33 +68,40 @@ impl<'a> ActiveSet<'a> {
 
     /// v += Gqᵀ a.
     pub fn add_rigid<V: RightSide>(&self, amplitudes: &[V], v: &mut [V]) {
-        for (v, jump) in v.iter_mut().zip(self.rows.test_transposed(&self.space.jumps(amplitudes))) {
-            v.add_scaled(1.0, &jump);
-        }
+        self.space.timed(|| {
+            for (v, jump) in v.iter_mut().zip(self.rows.test_transposed(&self.space.jumps(amplitudes))) {
+                v.add_scaled(1.0, &jump);
+            }
+        });
     }
 
     /// y += Gqᵀ (G_T Gqᵀ)⁻¹ (target − G T y): T y has the given resultants then; the change is the smallest if T = Q.
     pub fn enforce<V: RightSide>(&self, y: &mut [V], target: &[V]) {
-        let mut defect = self.space.resultant(&self.rows.trial(y));
-        for (defect, target) in defect.iter_mut().zip(target) {
-            defect.scale(-1.0);
-            defect.add_scaled(1.0, target);
-        }
-        V::solve_dense(&self.coarse, &mut defect);
+        let defect = self.space.timed(|| {
+            let mut defect = self.space.resultant(&self.rows.trial(y));
+            for (defect, target) in defect.iter_mut().zip(target) {
+                defect.scale(-1.0);
+                defect.add_scaled(1.0, target);
+            }
+            self.coarse.solve_in_place(&mut defect);
+            defect
+        });
         self.add_rigid(&defect, y);
     }
 
     /// Amplitudes b of the adjoint: −(Gq G_Tᵀ)⁻¹ Gq r.
     pub fn adjoint_amplitudes(&self, residual: &[f64]) -> Vec<f64> {
-        let mut amplitudes = self.space.resultant(&self.rows.test(residual));
-        self.coarse.solve_transpose_in_place(&mut amplitudes);
-        amplitudes.iter_mut().for_each(|entry| *entry = -*entry);
-        amplitudes
+        self.space.timed(|| {
+            let mut amplitudes = self.space.resultant(&self.rows.test(residual));
+            self.coarse.solve_transpose_in_place(&mut amplitudes);
+            amplitudes.iter_mut().for_each(|entry| *entry = -*entry);
+            amplitudes
+        })
     }
 
     /// v ← Pᵀ v.
     pub fn project_adjoint(&self, v: &mut [f64]) {
         let amplitudes = self.adjoint_amplitudes(v);
-        add_scaled(v, 1.0, &self.rows.trial_transposed(&self.space.jumps(&amplitudes)));
+        self.space.timed(|| add_scaled(v, 1.0, &self.rows.trial_transposed(&self.space.jumps(&amplitudes))));
     }
 }

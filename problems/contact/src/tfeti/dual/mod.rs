@@ -4,11 +4,12 @@
 //! TornSystem ─┬─ operator: F λ ────────────────┐
 //!             ├─ coarse space: G, e, Gᵀ a ─────┼─▶ TornContact: residual of (λ, a), derivatives, active sets
 //!             └─ preconditioner: B_D S B_Dᵀ ───┘
-//! derivatives ─ active rows: T, Q ─ active set: (T, Q) with its projector P
+//! derivatives ─ active rows: T, Q ─ active set: (T, Q) with its projector P; its coarse matrix: constant part and contact
 //! ```
 
 mod active_rows;
 mod active_set;
+mod coarse_matrix;
 mod coarse_space;
 mod contact;
 mod iterate;

@@ -1,6 +1,5 @@
 //! Settings of Newton's method on the dual problem.
 
-use crate::tfeti::dual::CoarseSpace;
 use crate::work_estimate::MAX_PRODUCTS;
 
 /// When to stop, and whether directions are recycled.
@@ -45,26 +44,9 @@ impl NewtonSettings {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Recycling {
-    /// On unless the coarse problem is so large that its repeated factorisation outweighs the products saved.
-    #[default]
-    Auto,
     /// Every product serves all later iterates: fewest products with F, more dense algebra.
+    #[default]
     On,
     /// Newton steps with a GMRES of their own.
     Off,
-}
-
-/// Coarse unknowns up to which recycling is used. Up to 7³ subdomains its coarse factorisations were measured to be affordable;
-/// beyond, their cubic cost is expected to outweigh the products saved (not measured).
-const MAX_RECYCLED_COARSE_UNKNOWNS: usize = 2100;
-
-impl Recycling {
-    /// Whether directions are recycled over a coarse space.
-    pub fn pays(self, space: &CoarseSpace) -> bool {
-        match self {
-            Self::Auto => space.resultants().len() <= MAX_RECYCLED_COARSE_UNKNOWNS,
-            Self::On => true,
-            Self::Off => false,
-        }
-    }
 }

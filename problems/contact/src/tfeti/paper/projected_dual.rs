@@ -1,11 +1,11 @@
 //! The orthonormalised projected dual operator, as the QP solver sees it.
 //!
 //! ```text
-//! C = L⁻¹G,  LLᵀ = GGᵀ,   Q = CᵀC,   P = I − Q        H = P F P,   preconditioner of H + ρQ:  P M P + Q/ρ
+//! C = L⁻¹G,  LLᵀ = GGᵀ in the elimination order,   Q = CᵀC,   P = I − Q        H = P F P,   preconditioner of H + ρQ:  P M P + Q/ρ
 //! ```
 
 use crate::error::ContactError;
-use crate::linear::dense::DenseCholesky;
+use crate::linear::cholesky::NumericFactor;
 use crate::linear::vector::add_scaled;
 use crate::qp::{LinearEqualities, SymmetricOperator};
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Preconditioner};
@@ -15,7 +15,7 @@ use crate::tfeti::torn::RowVector;
 #[derive(Debug)]
 pub struct OrthonormalCoarse<'a> {
     space: &'a CoarseSpace,
-    factor: DenseCholesky,
+    factor: NumericFactor,
     right_side: Vec<f64>,
 }
 
@@ -25,25 +25,32 @@ impl<'a> OrthonormalCoarse<'a> {
     /// # Errors
     /// [`ContactError::Factorization`] when the rows leave a rigid motion free.
     pub fn new(space: &'a CoarseSpace) -> Result<Self, ContactError> {
-        let factor = DenseCholesky::new(space.gram()).map_err(|error| ContactError::Factorization {
-            what: "coarse matrix of all rows".into(),
-            reason: format!("{}: the rows leave a rigid motion free", error.reason),
-        })?;
+        let factor = space.timed(|| space.gram_factor())?;
         let mut coarse = Self { space, factor, right_side: Vec::new() };
-        coarse.right_side = coarse.lower_solve(space.resultants().to_vec());
+        coarse.right_side = coarse.lower_solve(space.resultants());
         Ok(coarse)
     }
 
-    fn lower_solve(&self, mut v: Vec<f64>) -> Vec<f64> {
-        self.factor.solve_lower_in_place(&mut v);
-        v
+    /// L⁻¹ v, in the elimination order of the factor.
+    fn lower_solve(&self, v: &[f64]) -> Vec<f64> {
+        self.space.timed(|| {
+            let mut ordered: Vec<f64> = self.factor.order().iter().map(|&old| v[old]).collect();
+            self.factor.eliminate(v.len(), &mut ordered);
+            ordered
+        })
     }
 
     /// Cᵀ y.
     fn jumps(&self, y: &[f64]) -> RowVector {
-        let mut amplitudes = y.to_vec();
-        self.factor.solve_upper_in_place(&mut amplitudes);
-        self.space.jumps(&amplitudes)
+        self.space.timed(|| {
+            let mut ordered = y.to_vec();
+            self.factor.substitute(y.len(), &mut ordered);
+            let mut amplitudes = vec![0.0; y.len()];
+            for (&old, entry) in self.factor.order().iter().zip(ordered) {
+                amplitudes[old] = entry;
+            }
+            self.space.jumps(&amplitudes)
+        })
     }
 
     /// Q v.
@@ -65,7 +72,7 @@ fn difference(v: &[f64], mut removed: RowVector) -> RowVector {
 
 impl LinearEqualities for OrthonormalCoarse<'_> {
     fn apply(&self, x: &[f64]) -> Vec<f64> {
-        self.lower_solve(self.space.resultant(x))
+        self.lower_solve(&self.space.resultant(x))
     }
 
     fn apply_transposed(&self, y: &[f64]) -> Vec<f64> {

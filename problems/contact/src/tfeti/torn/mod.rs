@@ -1,10 +1,11 @@
 //! Torn bodies: what is fixed for a run, and what is factored for one shape.
 //!
 //! ```text
-//! scene ─ tearing ─ rows B, B_D (constraints) ─ TornModel ── shape ──▶ TornSystem: K⁺, R, K_II⁻¹ per subdomain
+//! scene ─ tearing ─ rows B, B_D (constraints), coarse pattern ─ TornModel ── shape ──▶ TornSystem: K⁺, R, K_II⁻¹ per subdomain
 //! torn displacement ─ recovery ──▶ whole bodies
 //! ```
 
+mod coarse_pattern;
 mod communication;
 mod constraints;
 mod factors;
@@ -14,6 +15,7 @@ mod recovery;
 mod rigid_modes;
 mod vectors;
 
+pub use coarse_pattern::CoarsePattern;
 pub use communication::{Communication, InProcess};
 pub use constraints::Constraints;
 pub use factors::{SubdomainFactors, SubdomainRigid};

@@ -12,6 +12,7 @@ use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::entry::Entry;
 use crate::linear::vector::dot;
 use crate::scene::BodyScene;
+use crate::tfeti::torn::coarse_pattern::CoarsePattern;
 use crate::tfeti::torn::communication::Communication;
 use crate::tfeti::torn::constraints::{BodyRows, Constraints};
 use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors, SubdomainRigid};
@@ -44,6 +45,8 @@ pub struct TornModel {
     pub constraints: Constraints,
     /// Pattern shared by all subdomains.
     pub pattern: LocalPattern,
+    /// Pattern of the coarse matrices.
+    pub coarse: Arc<CoarsePattern>,
     symbolic: Arc<SymbolicFactor>,
     fixed: OnceLock<Vec<TornPart>>,
     /// The process this model lives in.
@@ -91,6 +94,8 @@ impl TornModel {
             .map(|(scene, offsets)| BodyRows { grid: &problem.grid, tearing: &tearing, scene, offsets })
             .collect();
         let constraints = Constraints::new(&problem.scene, &rows, &problem.boundary, dof_count);
+        let counts = problem.scene.subdomains;
+        let coarse = Arc::new(CoarsePattern::new(&constraints.rows, constraints.equality_count, counts, size)?);
         let cells = tearing.subdomains[0].cells;
         let fixing = fixing_nodes(cells);
         let pattern = LocalPattern::new(cells, &fixing);
@@ -112,6 +117,7 @@ impl TornModel {
             subdomains,
             constraints,
             pattern,
+            coarse,
             symbolic,
             fixed: OnceLock::new(),
             communication,

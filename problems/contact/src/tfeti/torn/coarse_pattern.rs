@@ -1,0 +1,89 @@
+//! Which rigid amplitudes meet in the coarse matrix G Gᵀ, and the order of their elimination.
+//!
+//! ```text
+//! amplitudes of subdomains without contact rows, in nested dissection order │ amplitudes of subdomains with contact rows
+//! ```
+//! The rows of B_E couple a subdomain with its neighbours alone, and do so alike for all active sets. What an active set adds lies
+//! in the trailing block, whose amplitudes all count as coupled.
+
+use crate::equilibrium::modes::MOTIONS;
+use crate::error::ContactError;
+use crate::linear::cholesky::SymbolicFactor;
+use crate::linear::csr::Csr;
+use crate::linear::ordering::nested_dissection;
+use crate::linear::symmetric::LowerPattern;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+/// Pattern and elimination order of the coarse matrices of a scene.
+#[derive(Debug)]
+pub struct CoarsePattern {
+    /// Lower triangle of the coarse matrix.
+    pub lower: Arc<LowerPattern>,
+    /// Its symbolic factor.
+    pub symbolic: Arc<SymbolicFactor>,
+    /// Amplitudes in elimination order.
+    order: Vec<usize>,
+    /// Number of amplitudes of subdomains without contact rows.
+    interior_count: usize,
+}
+
+impl CoarsePattern {
+    /// The pattern of the rows of B, of which the first `equality_count` belong to B_E. The bodies are torn into `counts`
+    /// subdomains per axis each, of `size` dofs.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when the symbolic analysis fails.
+    pub fn new(rows: &Csr, equality_count: usize, counts: [usize; 3], size: usize) -> Result<Self, ContactError> {
+        let subdomains = rows.column_count() / size;
+        let mut neighbours = vec![BTreeSet::new(); subdomains];
+        let mut touched = Vec::new();
+        for row in 0..equality_count {
+            touched.clear();
+            touched.extend(rows.row(row).map(|(dof, _)| dof / size));
+            touched.sort_unstable();
+            touched.dedup();
+            for (index, &own) in touched.iter().enumerate() {
+                neighbours[own].extend(&touched[index + 1..]);
+            }
+        }
+        let contact: BTreeSet<usize> =
+            (equality_count..rows.row_count()).flat_map(|row| rows.row(row).map(|(dof, _)| dof / size)).collect();
+        for &own in &contact {
+            neighbours[own].extend(contact.range(own + 1..));
+        }
+        let per_body = counts.iter().product::<usize>();
+        let dissected = nested_dissection(counts);
+        let interior = (0..subdomains / per_body)
+            .flat_map(|body| dissected.iter().map(move |&place| body * per_body + place))
+            .filter(|subdomain| !contact.contains(subdomain));
+        let amplitudes = |subdomain: usize| MOTIONS * subdomain..MOTIONS * (subdomain + 1);
+        let order: Vec<usize> = interior.chain(contact.iter().copied()).flat_map(amplitudes).collect();
+        let columns = (0..subdomains).flat_map(|own| {
+            let coupled: Vec<usize> = neighbours[own].iter().copied().flat_map(amplitudes).collect();
+            amplitudes(own).map(move |column| (column..MOTIONS * (own + 1)).chain(coupled.iter().copied()).collect())
+        });
+        let lower = Arc::new(LowerPattern::from_columns(columns.collect()));
+        let symbolic = Arc::new(SymbolicFactor::new(Arc::clone(&lower), order.clone())?);
+        let interior_count = order.len() - MOTIONS * contact.len();
+        Ok(Self { lower, symbolic, order, interior_count })
+    }
+
+    /// Number of amplitudes of subdomains without contact rows: they come first in the elimination order.
+    pub fn interior_count(&self) -> usize {
+        self.interior_count
+    }
+
+    /// Amplitudes of the subdomains with contact rows, ascending: the last ones of the elimination order.
+    pub fn contact_amplitudes(&self) -> &[usize] {
+        &self.order[self.interior_count..]
+    }
+
+    /// The place of an amplitude among those of the subdomains with contact rows.
+    ///
+    /// # Panics
+    /// If its subdomain has no contact rows.
+    pub fn contact_place(&self, amplitude: usize) -> usize {
+        self.contact_amplitudes().binary_search(&amplitude).expect("invariant: contact rows touch this subdomain")
+    }
+}
