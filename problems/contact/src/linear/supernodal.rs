@@ -24,6 +24,9 @@ pub fn solve<E: Real, const N: usize>(symbolic: &SymbolicSupernodalCholesky<usiz
     }
 }
 
+/// Partial sums of a product of a column: two registers of eight.
+const PARTIAL_SUMS: usize = 16;
+
 /// Forward sweep over the first `count` columns of L, for an x in elimination order.
 pub fn eliminate<V: Entry>(symbolic: &SymbolicSupernodalCholesky<usize>, values: &[f64], count: usize, x: &mut [V]) {
     let mut below = Vec::new();
@@ -236,14 +239,30 @@ impl Panel<'_, f64> {
         let own = &mut x[self.begin..self.begin + self.width];
         for (index, column) in self.columns(count).rev() {
             let (before, solved) = own.split_at_mut(index + 1);
-            let mut sum = V::ZERO;
-            for (entry, x) in column[index + 1..].iter().zip(solved.iter().chain(&*below)) {
-                sum.accumulate(*entry, x);
-            }
-            before[index].add_scaled(-1.0, &sum);
+            let (near, far) = column[index + 1..].split_at(solved.len());
+            before[index].add_scaled(-1.0, &product(near, solved));
+            before[index].add_scaled(-1.0, &product(far, below));
             before[index].scale(1.0 / column[index]);
         }
     }
+}
+
+/// Σ_i column[i] x_i, by partial sums that do not wait for each other.
+#[inline(always)]
+fn product<V: Entry>(column: &[f64], x: &[V]) -> V {
+    let mut sums = [V::ZERO; PARTIAL_SUMS];
+    let (columns, entries) = (column.chunks_exact(PARTIAL_SUMS), x.chunks_exact(PARTIAL_SUMS));
+    for (entry, x) in columns.remainder().iter().zip(entries.remainder()) {
+        sums[0].accumulate(*entry, x);
+    }
+    for (column, x) in columns.zip(entries) {
+        for (sum, (entry, x)) in sums.iter_mut().zip(column.iter().zip(x)) {
+            sum.accumulate(*entry, x);
+        }
+    }
+    let mut all = V::ZERO;
+    sums.iter().for_each(|sum| all.add_scaled(1.0, sum));
+    all
 }
 
 /// Σ_i columns[t][i] x_i, for the columns of a tile.
