@@ -12,13 +12,13 @@ pub trait OuterFunction {
     fn subgradient(&self, outputs: &Vector) -> Vector;
 
     /// Gᵀ∇²h(c) G, n × n, for G of shape m × n, if h is smooth: the subproblem is then solved by Newton's method. None (the default):
-    /// h may have kinks, and the subproblem is solved by cuts of h. The answer is some matrix for all outputs, or none for all.
+    /// h may have kinks, and the subproblem is solved by cuts of h. The answer must not be a matrix for some outputs and none for others.
     fn curvature(&self, _outputs: &Vector, _jacobian: &Matrix) -> Option<Matrix> {
         None
     }
 
-    /// The cones that the epigraph of h is built from, if there are any: where h has no curvature, the subproblem is then solved by an interior-point
-    /// method (feature `interior-point`; by cuts without it), and errors of subgradients are taken from the conjugate h*.
+    /// The cones that the epigraph of h is built from, if there are any: where h has no curvature, the subproblem is then solved by an
+    /// interior-point method (feature `interior-point`; by cuts without it), and errors of subgradients are taken from the conjugate h*.
     fn epigraph(&self) -> Option<Epigraph> {
         None
     }

@@ -1,7 +1,7 @@
 //! The composite model as a proposer: trial points from h exact and c linear, as long as that pays.
 //!
 //! ```text
-//! predicted = h(c) − h(c + G d),   ratio = (Θ(x) − Θ(x + d))/predicted:   u falls if it is at least 0.5, rises if it is no serious step's
+//! predicted = h(c) − h(c + G d),   ratio = (Θ(x) − Θ(x + d))/predicted:   u falls if it is at least 0.5, rises after a rejected step
 //! predicted small at small u:      stationary, proved by w ∈ ∂h and G at x alone                       radius 0
 //! ```
 //! One linearization is pessimistic where a constraint becomes active inside c, so that ratios above 1 are common. A rejected
