@@ -28,14 +28,14 @@ pub struct Cut {
     pub value: f64,
     /// One subgradient of Θ at y.
     pub subgradient: Vector,
-    /// Bound of the error of `value` that the oracle promised, in units of Θ.
+    /// Bound or estimate of the error of `value` that the oracle promised, in units of Θ.
     pub error_bound: f64,
     /// Whether the oracle certified the cut to lie below Θ (an answer [`NoDescent`](crate::Answer::NoDescent)): the
     /// cut holds, but its value bounds Θ(y) from below only.
     pub certified: bool,
-    /// Multiplier λ ≥ 0 in the last subproblem of the plain cuts; Σ λ = 1.
+    /// Multiplier λ ≥ 0 in the last subproblem; Σ λ = 1 over all cuts.
     pub multiplier: f64,
-    /// Subproblems of the plain cuts in a row in which the cut was not active.
+    /// Subproblems in a row in which the cut was not active.
     pub idle: usize,
 }
 

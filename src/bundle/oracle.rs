@@ -5,7 +5,7 @@ use crate::linalg::first_non_finite;
 use crate::panics::evaluate_without_panic;
 use crate::{Answer, Evaluation, NonsmoothObjective, OracleError, Request};
 
-/// Numbers beyond this are refused, because sums of their squares would overflow.
+/// Numbers beyond this are refused, because sums of their squares could overflow.
 const LARGEST: f64 = 1e150;
 
 /// What an evaluation can end with.

@@ -283,7 +283,7 @@ impl Run<'_, '_> {
         &self.state.center
     }
 
-    /// Θ at the center, in the accuracy last asked for there.
+    /// Θ at the center, as it was last evaluated there.
     pub fn value(&self) -> f64 {
         self.state.center_value
     }

@@ -152,7 +152,7 @@ impl Run<'_, '_> {
         proposal
     }
 
-    /// Ends the run if the cuts of a convex Θ bound what Θ can still fall by little. Otherwise the trial point comes from the largest
+    /// Ends the run if the cuts give a small bound of what a convex Θ can still fall. Otherwise the trial point comes from the largest
     /// weight at which the predicted decrease is not small, or from the last one tried.
     fn bound_decrease(&mut self, proposal: Proposal) -> ControlFlow<Termination, Proposal> {
         let noise = self.noise();

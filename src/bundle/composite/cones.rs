@@ -4,7 +4,7 @@
 //! min over (d, t)   Σ t + u‖d‖²/2 + dᵀBd/2 − u⟨W o, d⟩,   (t, c + G d) in the cones of h,   x + d ∈ U
 //! scaled:           d = D d̂,  c = σ ĉ,  t = σ^p t̂,   σ = max|c_i|,  D_kk = min(σ/max_i|G_ik|, (σ^p/(B + u W)_kk)^(1/2))
 //! ```
-//! The multipliers of c + G d are the weights w of the outputs. By weak duality, the answer misses the optimum by at most the following
+//! The multipliers of c + G d are the weights w of the outputs. By weak duality, the answer lies above the optimum by at most the following
 //! sum, with the multipliers μ of the sides of U and the residual ρ = Gᵀw + u W (d − o) + B d + Aᵀμ:
 //!
 //! ```text
