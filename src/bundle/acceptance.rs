@@ -1,4 +1,4 @@
-//! What an answer of the oracle does to the run: serious or null, weight, bundle, center, noise.
+//! Turns an answer of the oracle into a serious or a null step, and updates weight, bundle, center and noise.
 
 use super::config::Convexity;
 use super::cut::Cut;
@@ -11,9 +11,9 @@ use crate::{Accuracy, Answer, Evaluation, Vector};
 
 /// Only steps shorter than this share of the length scale tell noise from slope.
 const NOISE_STEP: f64 = 1e-4;
-/// A change of Θ beyond this many times the steepest slope along the step is noise.
+/// A change of Θ is noise if it exceeds this many times ‖d‖ times the largest ‖g‖*, promised errors and rounding aside.
 const STEEPNESS_MARGIN: f64 = 4.0;
-/// Times the promised errors and rounding that a change must exceed to be noise.
+/// Promised errors and rounding explain a change of Θ, or a cut above a convex Θ, up to this many times their sum; more is noise.
 pub(super) const NOISE_MARGIN: f64 = 8.0;
 /// Cuts in the bundle beyond the number of variables, unless `bundle_size` is set.
 const EXTRA_CUTS: usize = 15;
@@ -21,7 +21,7 @@ const EXTRA_CUTS: usize = 15;
 const MAX_CUTS: usize = 500;
 
 impl Run<'_, '_> {
-    /// Serious or null: updates weight, bundle and center.
+    /// Decides between serious and null step, and updates weight, bundle and center.
     pub(super) fn accept_or_reject(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<()>) {
         let accurate = matches!(answer, Answer::Accurate(_));
         let mut evaluation = answer.into_evaluation();
@@ -91,7 +91,7 @@ impl Run<'_, '_> {
         self.forget_model();
     }
 
-    /// Makes the newest cut the center; it is that of the last evaluation.
+    /// Moves the center to the point of the newest cut, which must be that of the last evaluation.
     pub(super) fn move_center(&mut self, point: Vector, value: f64, accuracy: Accuracy) {
         self.state.center = point;
         self.state.center_value = value;

@@ -42,7 +42,7 @@ impl<'o> BundleTrust<'o> {
     /// The method with validated settings, without constraints and observers.
     ///
     /// # Errors
-    /// [`InputError::OutOfRange`] naming the first setting that is not admissible.
+    /// As [`BundleTrustConfig::validate`].
     pub fn new(config: BundleTrustConfig) -> Result<Self, InputError> {
         config.validate()?;
         Ok(Self { config, constraints: None, observers: vec![], stop: None })
@@ -55,14 +55,14 @@ impl<'o> BundleTrust<'o> {
         self
     }
 
-    /// Adds an observer.
+    /// Adds an observer, which sees every evaluation and may end the run.
     #[must_use]
     pub fn observer(mut self, observer: impl Observer + 'o) -> Self {
         self.observers.push(Box::new(observer));
         self
     }
 
-    /// Adds a stopping rule; one of the rules added has to hold.
+    /// Adds a stopping rule; the run ends as soon as one of the added rules holds.
     #[must_use]
     pub fn stop_when(mut self, rule: StopRule) -> Self {
         self.stop = Some(match self.stop.take() {

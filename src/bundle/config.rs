@@ -15,18 +15,18 @@ pub enum Convexity {
     /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex.
     #[default]
     Unknown,
-    /// Θ is convex. The cuts bound Θ(x̂) − min Θ, the bound decides the end, and no restart is made; linearization errors below
-    /// zero are noise of the oracle and end in a noise limit.
+    /// Θ is convex. The cuts bound how far Θ can still fall within reach of the variables, this bound decides the end, and no
+    /// restart is made. Linearization errors below zero by more than promised errors and rounding are noise of the oracle.
     Convex,
 }
 
-/// In which units the distance of two points is measured, ‖d‖² = Σ (dᵢ/Dᵢ)² or |M⁻¹ d|².
+/// The units in which distances are measured: ‖d‖² = Σ (dᵢ/Dᵢ)² or |M⁻¹ d|².
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum VariableScaling {
-    /// Dᵢ proportional to the width of the box, at most 1000 times the median width, if every variable has a finite one,
-    /// otherwise Dᵢ = 1.
+    /// If the box is finite in every variable, Dᵢ is its width, counted up to 1000 times the median width, divided by the
+    /// geometric mean of the widths; fixed variables have Dᵢ = 1. Otherwise all Dᵢ = 1.
     #[default]
     FromBox,
     /// Dᵢ = 1.
@@ -47,8 +47,8 @@ pub enum AccuracyPolicy {
     /// Always as accurate as the oracle can.
     #[default]
     Tightest,
-    /// τ = clip(factor · |predicted decrease| / |Θ|, tightest, coarsest); the center is evaluated again when its promised
-    /// error exceeds what the predicted decrease allows.
+    /// τ = clip(factor · predicted decrease / |Θ(x̂)|, tightest, coarsest). The center is evaluated again when its promised error
+    /// exceeds factor · predicted decrease.
     OnDemand {
         /// Tightest accuracy ever asked, 0 ≤ tightest ≤ coarsest.
         tightest: f64,
@@ -60,7 +60,7 @@ pub enum AccuracyPolicy {
 }
 
 impl AccuracyPolicy {
-    /// Accuracy on demand with the usual numbers: between 1e-12 and 1e-2, a tenth of the predicted decrease.
+    /// Accuracy on demand with the numbers measured in docs/bundle.md: between 1e-12 and 1e-2, a tenth of the predicted decrease.
     pub const ON_DEMAND: Self = Self::OnDemand { tightest: 1e-12, coarsest: 1e-2, factor: 0.1 };
 }
 
@@ -75,20 +75,20 @@ impl AccuracyPolicy {
 #[serde(default, deny_unknown_fields)]
 pub struct BundleTrustConfig {
     /// Predicted decrease, relative to the size of Θ, that counts as small. Default 1e-7; in (0, 1). Larger stops
-    /// earlier; the value reached is usually ten times better than this.
+    /// earlier; the relative error of the value reached is usually ten times smaller than the tolerance.
     pub tolerance: f64,
     /// The size of Θ that `tolerance` refers to, in units of Θ. Default none: |Θ| at the center, at most what values and
     /// linearizations vary near it. Positive. Larger stops earlier.
     pub objective_scale: Option<f64>,
     /// Largest number of evaluations, failed ones included. Default 2000; ≥ 1.
     pub max_evaluations: usize,
-    /// Largest number of steps. Default 100 000; ≥ 1.
+    /// Largest number of steps, each with at most one evaluation. Default 100 000; ≥ 1.
     pub max_iterations: usize,
     /// Largest time in seconds. Default none. Positive.
     pub max_seconds: Option<f64>,
-    /// Length of the first step in scaled variables. Default none: the length of the start vector, but at least
-    /// 1e-6 of the distance |Θ|/|ξ| at which a linear Θ would vanish, and that distance where the start is zero. Positive. A typical change of the variables is the best value; too
-    /// small or too large costs some evaluations.
+    /// Length of the first step in scaled variables. Default none: the length of the start vector, but at least 1e-6 of the
+    /// distance |Θ|/‖g‖* at which a linear Θ would vanish; this distance where the start is zero, and 1 where both vanish.
+    /// Positive. A typical change of the variables is the best value; too small or too large costs some evaluations.
     pub first_step: Option<f64>,
     /// What is known about convexity. Default unknown.
     pub convexity: Convexity,
@@ -101,7 +101,8 @@ pub struct BundleTrustConfig {
     pub bundle_size: Option<usize>,
     /// Share m_S of the predicted decrease that makes a step serious. Default 0.02; in (0, 0.5).
     pub serious_fraction: f64,
-    /// Share m_R of the predicted decrease that lets the weight fall at once. Default 0.5; in [m_S, 1).
+    /// Share m_R of the predicted decrease from which on a serious step lowers the weight; that of the plain cuts only if their
+    /// step before was serious too. Default 0.5; in [m_S, 1).
     pub good_fraction: f64,
     /// Largest factor by which the weight u = 1/t falls after one serious step. Default 8; > 1.
     pub weight_decrease: f64,
@@ -112,12 +113,13 @@ pub struct BundleTrustConfig {
     pub weight_range: f64,
     /// Quantile of the curvatures that pairs of cuts prove, used to make the model convex. Default 0.8; in [0, 1].
     pub curvature_quantile: f64,
-    /// Steps without evaluation in which a small predicted decrease is tried again with a tenth of the weight. Default
-    /// 12; ≥ 0.
+    /// Largest number of times that the weight is lowered tenfold, without an evaluation, where the predicted decrease is small.
+    /// Default 12; ≥ 0.
     pub attenuation_steps: usize,
-    /// Restarts with a local bundle before a small predicted decrease far from the cuts is believed. Default 5; ≥ 0.
+    /// Restarts with a local bundle, without progress between them, before the run ends although the small predicted decrease
+    /// rests on cuts far from the center; at most one while no pair of cuts has proved Θ nonconvex. Default 5; ≥ 0.
     pub max_restarts: usize,
-    /// Part of the radius of the active cuts that a restart keeps. Default 0.1; in (0, 1).
+    /// Share of the radius of the active cuts within which a restart keeps cuts. Default 0.1; in (0, 1).
     pub restart_radius: f64,
     /// Failed evaluations in a row after which the run ends once its steps are short beside the variables. Default 10; ≥ 1.
     pub max_failures: usize,
@@ -163,7 +165,8 @@ impl BundleTrustConfig {
     /// Checks every field against its range.
     ///
     /// # Errors
-    /// [`InputError::OutOfRange`] naming the first field that is not admissible.
+    /// [`InputError::OutOfRange`] naming the first field that is not admissible; [`InputError::Dimension`] or
+    /// [`InputError::NotFinite`] for a matrix of [`VariableScaling::Linear`] that is not square or not finite.
     pub fn validate(&self) -> Result<(), InputError> {
         let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
         check_setting("tolerance", self.tolerance, "0 < x < 1", self.tolerance > 0.0 && self.tolerance < 1.0)?;

@@ -12,8 +12,8 @@ use crate::qp::kernels::difference_dot;
 use serde::{Deserialize, Serialize};
 use std::cell::Cell;
 
-/// A multiplier above this makes a cut active: stopping test, noise, scales and certificate speak of it. Smaller ones are rounding of
-/// the subproblem: the cut is idle, and the first to leave the bundle. Σ λ = 1.
+/// A cut is active if its multiplier exceeds this, where Σ λ = 1: stopping test, noise, scales and certificate count active cuts only.
+/// A smaller multiplier is rounding of the subproblem: the cut is idle, and the longest idle cut leaves the bundle first.
 pub(crate) const LEAST_ACTIVE_MULTIPLIER: f64 = 1e-9;
 
 /// One evaluation kept in the bundle.
@@ -28,29 +28,29 @@ pub struct Cut {
     pub value: f64,
     /// One subgradient of Θ at y.
     pub subgradient: Vector,
-    /// Error that the oracle promised for `value`.
+    /// Bound or estimate of the error of `value` that the oracle promised, in units of Θ.
     pub error_bound: f64,
-    /// Whether the oracle certified the cut to lie below Θ (an answer [`NoDescent`](crate::Answer::NoDescent)): it holds, but its
-    /// value tells nothing about Θ(y) from above.
+    /// Whether the oracle certified the cut to lie below Θ (an answer [`NoDescent`](crate::Answer::NoDescent)): the
+    /// cut holds, but its value bounds Θ(y) from below only.
     pub certified: bool,
-    /// Multiplier in the last subproblem.
+    /// Multiplier λ ≥ 0 in the last subproblem; Σ λ = 1 over all cuts.
     pub multiplier: f64,
     /// Subproblems in a row in which the cut was not active.
     pub idle: usize,
 }
 
 impl Cut {
-    /// Whether the last subproblem made use of the cut, beyond its rounding.
+    /// Whether the multiplier is more than rounding of the subproblem: above 1e-9.
     pub fn is_active(&self) -> bool {
         self.multiplier > LEAST_ACTIVE_MULTIPLIER
     }
 
-    /// How far the cut may lie above a convex Θ: the promised error of its value, nothing if it is certified.
+    /// How far the cut may lie above a convex Θ: the promised error of its value, 0 if it is certified.
     pub fn excess(&self) -> f64 {
         if self.certified { 0.0 } else { self.error_bound }
     }
 
-    /// e = value − Θ(y) − ⟨g, x − y⟩, the linearization error at a point x with the value given.
+    /// e = value − Θ(y) − ⟨g, x − y⟩: the linearization error at a point x where Θ has the value given.
     pub fn linearization_error(&self, x: &Vector, value: f64) -> f64 {
         value - self.value - difference_dot(self.subgradient.as_slice(), x.as_slice(), self.point.as_slice())
     }
@@ -62,10 +62,11 @@ struct ConcavePair {
     ids: (u64, u64),
     error: f64,
     squared_distance: f64,
+    /// What promised errors and rounding of the two values explain of the error.
     allowance: f64,
 }
 
-/// ‖g‖* and ‖y‖ of a cut, and how far its linearization varies at the center they were formed for.
+/// ‖g‖* and ‖y‖ of a cut, and how far its linearization varies, with the center for which this spread was formed.
 #[derive(Debug, Clone)]
 struct Sizes {
     dual_length: f64,
@@ -73,7 +74,7 @@ struct Sizes {
     spread: Cell<Option<(u64, Spread)>>,
 }
 
-/// Σ |g_k| length_k of a cut, for the size of the variables near the center and for their reach.
+/// Σ |g_k| size_k and Σ |g_k| reach_k of a cut, with the lengths of `scales.rs`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spread {
     pub size: f64,
@@ -130,7 +131,7 @@ impl Bundle {
         }
     }
 
-    /// Removes the cut that has been idle longest, or the one of smallest multiplier; never the protected one.
+    /// Removes cuts until one more fits into `size`: the one idle longest, or else that of smallest multiplier; never the protected one.
     pub(crate) fn make_room(&mut self, size: usize, protected: u64) {
         while self.cuts.len() >= size.max(2) {
             let candidates = || self.cuts.iter().enumerate().filter(|(_, cut)| cut.id != protected);
@@ -195,7 +196,8 @@ impl Bundle {
         self.cuts.iter().position(|cut| cut.id == id)
     }
 
-    /// Curvatures −E_ij/‖y_i − y_j‖² proven by pairs farther apart than `resolution`, ascending.
+    /// Curvatures −E_ij/‖y_i − y_j‖², ascending, proven by pairs that are farther apart than `resolution` and whose error exceeds its
+    /// allowance by more than `value_resolution`.
     pub(crate) fn proven_curvatures(&self, resolution: f64, value_resolution: f64) -> Vec<f64> {
         let mut curvatures: Vec<f64> = self
             .concave

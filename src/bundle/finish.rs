@@ -6,7 +6,7 @@ use crate::Accuracy;
 use crate::report::{Certificate, IterationRecord, Origin, Report, StepKind, Termination};
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// A decrease of Θ beyond this many times its first value and first promise ends the run as unbounded below.
+/// A decrease of Θ beyond this many times |Θ(x⁰)| + u₀·(first step)² ends the run as unbounded below.
 const UNBOUNDED_DECREASE: f64 = 1e12;
 
 /// What became of an evaluation.
@@ -15,7 +15,7 @@ pub(super) struct Event {
     pub kind: StepKind,
     pub value: Option<f64>,
     pub failure: Option<String>,
-    /// Whether a Jacobian that was asked for was returned; the reason if it could not be had.
+    /// Whether a Jacobian was returned, or the reason why it could not be had; none if neither was reported.
     pub linearized: Option<Result<(), String>>,
     /// Work that the evaluation took.
     pub work: usize,
@@ -51,7 +51,7 @@ impl Run<'_, '_> {
         self.state.history.push(record);
     }
 
-    /// Observers, stopping rules, divergence.
+    /// Calls the observers, and tests the stopping rules and divergence.
     pub(super) fn after_evaluation(&mut self) -> ControlFlow<Termination> {
         let Some(record) = self.state.history.last().cloned() else { return Continue(()) };
         let mut stop = false;
@@ -72,7 +72,7 @@ impl Run<'_, '_> {
         Continue(())
     }
 
-    /// Ends the run; the reason is `Unfinished` if it had not ended by itself.
+    /// Ends the run and returns its report; the termination is [`Termination::Unfinished`] if the run had not ended by itself.
     pub fn finish(mut self) -> Report {
         if self.proposal.is_none() && self.proof.is_none() {
             let _solved = self.try_subproblem();

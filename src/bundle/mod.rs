@@ -1,10 +1,11 @@
-//! The bundle-trust method: minimises a nonsmooth, possibly nonconvex Θ over a polyhedron, few evaluations being the aim.
+//! The bundle-trust method: it minimises a nonsmooth, possibly nonconvex Θ over a polyhedron with few evaluations.
 //!
 //! ```text
 //! 1  cuts → convexified cutting-plane model m of Θ at the center x̂                      proposers/cuts/model.rs
 //! 2  min m(d) + u‖d‖²/2 over x̂ + d ∈ U → trial point y, predicted decrease, certificate         proposers/cuts
 //! 3  decrease small? lower u; else stop if the active cuts are near, else restart locally       small_decrease.rs
 //!    a rival proposes instead: the curved model, an exploration        proposers/curved, proposers/exploration
+//!    Θ = h∘c: the composite model proposes before all others, and may prove x̂ stationary                 composite
 //! 4  evaluate Θ and one subgradient at y → new cut; failure: shorten the step                          oracle.rs
 //! 5  enough decrease: y becomes the center (serious step), else its cut improves the model     acceptance.rs
 //! 6  next weight u = 1/t from the observed curvature, within a finite floor and ceiling  proposers/cuts/weight.rs

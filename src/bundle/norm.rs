@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 /// Widths beyond this many times the median width count as no wider.
 const MAX_WIDTH_RATIO: f64 = 1e3;
 
-/// The norm of a run: that of the scaled variables, with a diagonal or a dense W.
+/// The norm of a run, ‖d‖² = dᵀWd, and its dual for subgradients, ‖g‖*² = gᵀW⁻¹g, with a diagonal or a dense W. Vectors have one entry
+/// per variable.
 ///
 /// All lengths of a run are in this norm: radii, steps, the aggregate subgradient (in the dual norm), curvatures and the
 /// distances of the stopping tests.
@@ -69,7 +70,7 @@ impl ScaledNorm {
         }
     }
 
-    /// Widths relative to their geometric mean; fixed variables do not count.
+    /// D = widths relative to their geometric mean; fixed variables do not count, and have D = 1.
     fn from_box(set: &Polyhedron) -> Self {
         let widths = set.upper() - set.lower();
         if widths.iter().any(|width| !width.is_finite()) {
@@ -77,7 +78,7 @@ impl ScaledNorm {
         }
         let mut positive: Vec<f64> = widths.iter().copied().filter(|width| *width > 0.0).collect();
         positive.sort_by(f64::total_cmp);
-        // A side that is wide beyond all others is an open one, and tells no unit.
+        // A side that is far wider than the others stands for an open one, and tells no unit.
         let widest = positive.get(positive.len().saturating_sub(1) / 2).map_or(f64::INFINITY, |w| w * MAX_WIDTH_RATIO);
         let mean =
             (positive.iter().map(|width| width.min(widest).ln()).sum::<f64>() / positive.len().max(1) as f64).exp();
@@ -85,7 +86,7 @@ impl ScaledNorm {
         Self(Scale::Weights(widths.map(weight)))
     }
 
-    /// The matrix W, symmetric and positive definite.
+    /// The matrix W, n × n, symmetric and positive definite.
     pub fn matrix(&self) -> Matrix {
         match &self.0 {
             Scale::Weights(weights) => Matrix::from_diagonal(weights),

@@ -1,11 +1,11 @@
-//! The one place where the user's code is called: panics, wrong sizes and numbers that are not finite become errors. Behind it nothing
-//! depends on the type of the objective, so that the engine is compiled once, not once per objective.
+//! The one place where the user's objective is called: panics, wrong sizes and numbers that are not finite become errors. Nothing else
+//! in the engine depends on the type of the objective, so that the engine is compiled once, not once per objective.
 
 use crate::linalg::first_non_finite;
 use crate::panics::evaluate_without_panic;
 use crate::{Answer, Evaluation, NonsmoothObjective, OracleError, Request};
 
-/// Numbers beyond this cannot be squared.
+/// Numbers beyond this are refused, because sums of their squares could overflow.
 const LARGEST: f64 = 1e150;
 
 /// What an evaluation can end with.

@@ -3,7 +3,7 @@
 //! ```text
 //! products   ⟨g_a, W⁻¹ g_b⟩        Gram matrix of the subgradients
 //! distances  ‖y_a − y_b‖²
-//! slopes     ⟨g_a, y_b − y_a⟩      what a linearization changes on the way to another cut's point
+//! slopes     ⟨g_a, y_b − y_a⟩      change of cut a's linearization from its point to that of cut b
 //! ```
 //! Rows and columns belong to slots, which a cut keeps as long as it stays: removing one moves no numbers.
 
@@ -67,7 +67,7 @@ impl Pairs {
         self.slots.push(slot);
     }
 
-    /// Lets the cut at a position go.
+    /// Forgets the cut at a position.
     pub(crate) fn remove(&mut self, position: usize) {
         self.free.push(self.slots.remove(position));
     }

@@ -1,4 +1,4 @@
-//! A run in the making: one evaluation per step.
+//! A run, driven step by step with at most one evaluation per step.
 
 use super::builder::BundleTrust;
 use super::composite::{Composite, Proof};
@@ -21,7 +21,7 @@ use std::time::Instant;
 const REFINEMENT_SHARE: f64 = 0.03;
 /// A trial point that differs from the center by less than this share of every variable cannot be told from it.
 const SHORTEST_MOVE: f64 = 4.0 * f64::EPSILON;
-/// Failures end the run only where the oracle fails within this relative distance of the center.
+/// Failures end the run only where the oracle fails next to the center: within this share of the length scale or of the first step.
 const CLOSE: f64 = 1e-6;
 /// A subgradient this many times longer than all before cannot be held beside them in double precision.
 const MAX_RELATIVE_SLOPE: f64 = 1e15;
@@ -59,14 +59,14 @@ pub struct Run<'r, 'o> {
     pub(super) termination: Option<Termination>,
     /// The composite model, if the objective has its structure.
     pub(super) composite: Option<Composite>,
-    /// Its proof that the center is stationary, once it has ended the run.
+    /// The proof of the composite model that the center is stationary, once this proof has ended the run.
     pub(super) proof: Option<Proof>,
     pub(super) clock: Instant,
 }
 
 impl Run<'_, '_> {
-    /// One step: at most one evaluation (and one more of the center where its accuracy no longer suffices). `Break` when
-    /// the run has ended; further calls repeat the reason.
+    /// One step with at most one evaluation: of a trial point, or of the center once more where its accuracy no longer suffices.
+    /// `Break` when the run has ended; further calls repeat the reason.
     pub fn step(&mut self) -> ControlFlow<Termination> {
         if let Some(termination) = &self.termination {
             return Break(termination.clone());
@@ -97,7 +97,7 @@ impl Run<'_, '_> {
         self.check_length(&proposal)?;
         let accuracy = self.wanted_accuracy(proposal.predicted_decrease);
         let target = self.state.center_value - self.method.config.serious_fraction * proposal.predicted_decrease;
-        // What a rejected trial point of the composite model tells is used by its correction.
+        // The correction of a rejected step of the composite model needs the Jacobian at the rejected point.
         let below = if proposal.origin == Origin::CompositeModel { f64::INFINITY } else { target };
         match self.evaluate(&proposal.trial, accuracy, Some(target), below) {
             Outcome::MinusInfinity => return Break(Termination::UnboundedBelow),
@@ -134,7 +134,7 @@ impl Run<'_, '_> {
         })
     }
 
-    /// `below`: the value up to which a Jacobian is wanted.
+    /// Evaluates Θ, with a descent target if there is one; `below` is the value of Θ up to which a Jacobian is wanted.
     fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> Outcome {
         self.state.counts.evaluations += 1;
         let linearization = self.composite.is_some().then(|| Composite::request(below));
@@ -145,7 +145,7 @@ impl Run<'_, '_> {
         }
     }
 
-    /// An answer that drowns all others in rounding is none.
+    /// Turns an answer into a failure if its subgradient is so long that all others would drown in its rounding.
     fn check_slope(&self, answer: Answer<()>) -> Outcome {
         let state = &self.state;
         let allowed =
@@ -158,7 +158,7 @@ impl Run<'_, '_> {
         }
     }
 
-    /// Solves the subproblem; where it fails, shorter steps are tried before the run ends.
+    /// Solves the subproblem; where this fails, larger weights are tried before the run ends.
     pub(super) fn solve_subproblem(&mut self) -> ControlFlow<Termination, Proposal> {
         let mut last = SubproblemError::Unusable;
         for _ in 0..MAX_SUBPROBLEM_TRIALS {
@@ -180,7 +180,7 @@ impl Run<'_, '_> {
         Ok(proposal)
     }
 
-    /// The proposal worth an evaluation, be it that of the plain cuts or of a rival.
+    /// The proposal worth an evaluation: that of the plain cuts or of a rival.
     fn choose_trial(&mut self, plain: Proposal) -> Proposal {
         self.ask(|proposers, position| proposers.choose(position, plain))
     }
@@ -198,7 +198,7 @@ impl Run<'_, '_> {
         answer
     }
 
-    /// Drops model and answer, because center or bundle change.
+    /// Drops the model and the answer of its subproblem, because the center or the bundle has changed.
     pub(super) fn forget_model(&mut self) {
         self.former_model = self.model.take().or(self.former_model.take());
         self.proposal = None;
@@ -254,8 +254,8 @@ impl Run<'_, '_> {
         self.after_evaluation()
     }
 
-    /// A failed evaluation: no cut, and the model that proposed the point is shortened. Rivals that fail fall silent for a while,
-    /// so that after repeated failures the plain cuts decide whether the run has come close to the center.
+    /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Rivals that fail pause, so
+    /// that after repeated failures the steps of the plain cuts tell whether the oracle fails next to the center.
     fn shorten(&mut self, proposal: &Proposal, accuracy: Accuracy, error: &OracleError) -> ControlFlow<Termination> {
         let state = &mut self.state;
         state.counts.failed += 1;
@@ -278,17 +278,17 @@ impl Run<'_, '_> {
         self.clock.elapsed().as_secs_f64()
     }
 
-    /// The stability center, the best admissible point so far.
+    /// The stability center: the trial point of the last serious step, or the start.
     pub fn center(&self) -> &Vector {
         &self.state.center
     }
 
-    /// Θ at the center.
+    /// Θ at the center, as it was last evaluated there.
     pub fn value(&self) -> f64 {
         self.state.center_value
     }
 
-    /// One record per evaluation so far.
+    /// One record per evaluation so far; one that ended the run with Θ = −∞ has none.
     pub fn history(&self) -> &[IterationRecord] {
         &self.state.history
     }

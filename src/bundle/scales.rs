@@ -1,16 +1,17 @@
 //! The sizes that "small" refers to, from the data seen: values, subgradients, distances travelled.
 //!
 //! ```text
-//! reach_i = max(|x̂_i|, |x̂_i − x⁰_i|)        size_i = max(|x̂_i|, ε reach_i)
-//! variation = min( highest value seen − Θ(x̂),  max( median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂,
-//!                                                    Σ_k size_k Σ_i |w_i| |G_ik| of a composite Θ ) )
-//! scale     = |Θ(x̂)| clamped to [ε least, variation]
+//! reach_i = max(|x̂_i|, |x̂_i − x⁰_i|)        size_i = max(|x̂_i|, 1e-8 reach_i)
+//! variation = min( highest − Θ(x̂),  max( median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂,
+//!                                        Σ_k size_k Σ_i |w_i| |G_ik| of a composite Θ ) )
+//!             then times 10 variation/|Θ(x̂)|, clamped to [0.02, 1]
+//! scale     = |Θ(x̂)| clamped to [1e-6 least, variation]
 //! least     = min( highest − Θ(x̂),  max( Σ_j λ_j Σ_i |g_ji| reach_i,  h(c ± |G| reach) − h(c) of a composite Θ ) )
 //! bound     = ẽ + Σ_i |z̃_i| reach_i ≥ Θ(x̂) − Θ(y)        if Θ is convex and |y_i − x̂_i| ≤ reach_i
 //! ```
-//! The variation does not change if Θ is shifted; the sums Σ |g_i| size_i and the bound do not depend on the units of the
-//! variables; cuts farther away than the variables are large tell nothing about the values near x̂. A run that has not gone
-//! anywhere has seen no variation: nothing is small yet.
+//! Here `highest` is the highest value at the start and in the bundle. Decreases and sums do not change if Θ is shifted, and the sums
+//! and the bound do not depend on the units of the variables. Cuts farther away than the variables are large tell nothing about the
+//! values near x̂. A run that has not gone anywhere has seen no variation: nothing is small yet.
 
 use super::config::BundleTrustConfig;
 use super::cut::Spread;
@@ -20,12 +21,12 @@ use crate::qp::kernels::dot_terms;
 use crate::{Polyhedron, Vector};
 use std::rc::Rc;
 
-/// ε: sizes below this share of what a variable has passed through are not told from zero.
+/// Sizes of a variable below this share of its reach are not told from zero.
 const LEAST_SHARE: f64 = 1e-8;
-/// The same for the length of all variables together: a radius relative to more of what a far start has travelled would let cuts
-/// from both sides of a curved kink cancel.
+/// The least length of all variables together, as a share of the length scale. After a far start, a larger share would let cuts from
+/// both sides of a curved kink count as near to the center and cancel.
 const LEAST_LENGTH_SHARE: f64 = 1e-3;
-/// The same for values, as a share of their variation.
+/// The least scale of Θ, as a share of what the active cuts vary within reach.
 const LEAST_VALUE_SHARE: f64 = 1e-6;
 /// Values beyond this many times their variation carry a shift.
 const MAX_VALUE_SHARE: f64 = 10.0;
@@ -47,12 +48,12 @@ pub(crate) struct Lengths {
 pub(crate) struct OutputScales {
     /// Σ_i |w_i| |G_ik| for every variable k: the terms that cancel in Gᵀw.
     pub slopes: Vector,
-    /// max h(c ± |G| reach) − h(c), 0 where h gives no such number.
+    /// The larger of h(c ± |G| reach), minus h(c); 0 where h gives no such number.
     pub within_reach: f64,
 }
 
 impl State {
-    /// How far each variable has been from zero or from its start.
+    /// How far each variable lies from zero or from its start, whichever is more.
     pub(crate) fn reach(&self) -> Vector {
         self.center.zip_map(&self.start, |x, start| x.abs().max((x - start).abs()))
     }

@@ -24,10 +24,11 @@ const MAX_CONVEX_DECREASES: f64 = 10.0;
 const MAX_BOUND_DECREASES: f64 = 2.0 * MAX_CONVEX_DECREASES;
 /// The bound of a convex Θ that ends a run with noise, in units of the noise of two values.
 const MAX_NOISY_DECREASES: f64 = 4.0;
-/// Times the bound that the linearizations of active cuts must vary within reach.
+/// A bound counts only if the linearizations of the active cuts vary within reach by this many times the limit.
 const LEAST_SEEN_VARIATION: f64 = 10.0;
 /// Noise below this share of the wanted decrease does not matter.
 const NEGLIGIBLE_NOISE: f64 = 1e-3;
+
 /// What the cuts say about the decrease within reach.
 struct WithinReach {
     /// The least bound.
@@ -65,12 +66,12 @@ impl Run<'_, '_> {
         }
     }
 
-    /// Predicted decrease that counts as small: the tolerance, or the noise of the oracle where that hides more.
+    /// Predicted decrease that counts as small: the noise of the oracle where it is not negligible, otherwise the tolerance.
     pub(super) fn small(&self) -> f64 {
         self.noise().unwrap_or_else(|| self.tolerance())
     }
 
-    /// The tolerance in units of Θ, and what rounding hides.
+    /// The tolerance in units of Θ, plus what rounding hides.
     pub(super) fn tolerance(&self) -> f64 {
         self.wanted_decrease() + self.state.rounding()
     }
@@ -79,13 +80,14 @@ impl Run<'_, '_> {
         self.method.config.tolerance * self.state.natural_scale(&self.method.config)
     }
 
-    /// Noise of the oracle, where it is not negligible beside the wanted decrease.
+    /// Noise of the oracle; none where it is negligible beside the wanted decrease.
     fn noise(&self) -> Option<f64> {
         let noise = self.noise_level();
         (noise > NEGLIGIBLE_NOISE * self.wanted_decrease()).then_some(noise)
     }
 
-    /// The word for a point that the model calls stationary up to what remains, if there is one.
+    /// Why the run may end at a point where the model leaves a decrease of at most `remaining`, which is `confirmed` up to `allowed` wanted
+    /// decreases; none if neither noise nor rounding explains more than that.
     fn word(&self, (remaining, allowed): (f64, f64), confirmed: Termination) -> Option<Termination> {
         let (wanted, rounding) = (self.wanted_decrease(), self.state.rounding());
         if let Some(noise) = self.noise() {
@@ -98,7 +100,8 @@ impl Run<'_, '_> {
         }
     }
 
-    /// The word for a point at which a model that is exact there leaves no more than `remaining` within reach, if that is little.
+    /// Why the run may end at a point where a model that is exact at this point leaves at most `remaining` within reach; none if this is
+    /// too much.
     pub(super) fn word_at_point(&self, remaining: f64) -> Option<Termination> {
         let convex = self.method.config.convexity == Convexity::Convex;
         let allowed = if convex { MAX_BOUND_DECREASES } else { MAX_REMAINING_DECREASES };
@@ -106,7 +109,7 @@ impl Run<'_, '_> {
         self.word((remaining, allowed), confirmed)
     }
 
-    /// Noise seen in the values, or promised by the oracle and not to be improved by asking for more.
+    /// Noise seen in the values, or promised by the oracle and not to be reduced by asking for more accuracy.
     pub(super) fn noise_level(&self) -> f64 {
         let center = self.state.center_error_bound();
         let promised = match self.method.config.accuracy {
@@ -149,8 +152,8 @@ impl Run<'_, '_> {
         proposal
     }
 
-    /// Convex Θ: the cuts bound what Θ can still fall. Ends the run if that is little; otherwise the trial point comes from the
-    /// largest weight at which the decrease is not small.
+    /// Ends the run if the cuts give a small bound of what a convex Θ can still fall. Otherwise the trial point comes from the largest
+    /// weight at which the predicted decrease is not small, or from the last one tried.
     fn bound_decrease(&mut self, proposal: Proposal) -> ControlFlow<Termination, Proposal> {
         let noise = self.noise();
         let limit = noise.map_or_else(|| MAX_CONVEX_DECREASES * self.small(), |noise| MAX_NOISY_DECREASES * noise);
@@ -169,7 +172,8 @@ impl Run<'_, '_> {
         Break(self.word((found.bound, MAX_BOUND_DECREASES), confirmed).unwrap_or(uncertain))
     }
 
-    /// Looks, without evaluations, for the weight at which the cuts bound the decrease within reach best; leaves the last weight tried.
+    /// Looks, without evaluations, for the weight at which the cuts give the least bound of the decrease within reach. The run keeps the
+    /// last weight tried.
     fn look_within_reach(&mut self, mut proposal: Proposal, limit: f64) -> WithinReach {
         let small = self.small();
         let worthwhile = |proposal: &Proposal| (proposal.predicted_decrease > small).then_some(proposal.weight);
@@ -194,8 +198,8 @@ impl Run<'_, '_> {
         found
     }
 
-    /// The bound of the decrease within reach; ∞ where the linearizations do not vary by much more than the limit over that reach: a
-    /// reach that is a rounding of zero proves nothing.
+    /// The bound of the decrease within reach; ∞ where the linearizations do not vary within reach by much more than the limit, because
+    /// a reach that is a rounding of zero proves nothing.
     fn meaningful_bound(&self, proposal: &Proposal, limit: f64) -> f64 {
         let bound = self.state.decrease_bound(proposal, &self.set);
         let seen = self.state.active_variation();
@@ -203,7 +207,7 @@ impl Run<'_, '_> {
         if meaningful { bound } else { f64::INFINITY }
     }
 
-    /// Ends the run if nothing is left to try.
+    /// Ends the run if the point is confirmed, if noise or rounding hides what remains, or if no restart is left.
     fn stopping_test(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
         let radius = self.relative_radius(proposal);
         let near = radius <= CONFIRMING_RADIUS;
@@ -226,12 +230,12 @@ impl Run<'_, '_> {
         Continue(())
     }
 
-    /// The radius of the active cuts relative to the size of the variables.
+    /// The radius of the active cuts relative to the length of the variables near the center.
     fn relative_radius(&self, proposal: &Proposal) -> f64 {
         self.active_radius(proposal) / self.state.local_length().max(f64::MIN_POSITIVE)
     }
 
-    /// Largest distance of a cut with a positive multiplier.
+    /// Largest distance of an active cut from the center.
     pub(super) fn active_radius(&self, proposal: &Proposal) -> f64 {
         let cuts = self.state.bundle.cuts().iter().zip(&proposal.cut_multipliers);
         let active = cuts.filter(|(_, multiplier)| **multiplier > LEAST_ACTIVE_MULTIPLIER);
@@ -239,7 +243,7 @@ impl Run<'_, '_> {
         distances.fold(0.0, f64::max).sqrt()
     }
 
-    /// Forgets the cuts far away and takes a short step next; false if there was nothing to forget.
+    /// Forgets the cuts far from the center and raises the weight for a short next step; false if there was nothing to forget.
     fn restart(&mut self, proposal: &Proposal) -> bool {
         self.state.restarts += 1;
         self.state.counts.restarts += 1;

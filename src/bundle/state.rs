@@ -23,16 +23,18 @@ pub(crate) struct State {
     pub weight: f64,
     pub first_weight: f64,
     pub first_step: f64,
-    /// Serious steps in a row with an unchanged weight (> 0), or null steps (< 0), since the weight last changed.
+    /// Serious steps in a row (> 0), or minus the null steps in a row (< 0), of the plain cuts, counted from the one that last changed
+    /// the weight.
     pub streak: i64,
     /// ε_v, an estimate of how far the model varies; none means unlimited.
     pub variation: Option<f64>,
+    /// Restarts since the last serious step that fell by more than the tolerance.
     pub restarts: usize,
-    /// Accuracy with which the center was asked for.
+    /// Relative accuracy with which the center was last asked for.
     pub center_accuracy: f64,
     /// Whether a pair of cuts ever proved Θ nonconvex.
     pub nonconvex: bool,
-    /// Level of noise seen or promised, in units of Θ.
+    /// Level of noise seen in values and cuts, in units of Θ.
     pub noise: f64,
     /// Failed evaluations in a row.
     pub failures: usize,
@@ -40,12 +42,13 @@ pub(crate) struct State {
     pub history: Vec<IterationRecord>,
     /// What the outputs behind Θ tell about its scale, if they are known at the center.
     pub output_scales: Option<OutputScales>,
-    /// The lengths that belong to a center.
+    /// The lengths that belong to a center, with its identity.
     pub lengths: RefCell<Option<(u64, Rc<Lengths>)>>,
 }
 
 impl State {
-    /// The size of Θ that relative tolerances refer to.
+    /// The size of Θ beside which linearization errors count as rounding: |Θ(x̂)|, but at least 1e-5 of the decrease so far. The stopping
+    /// tests refer to `natural_scale` instead.
     pub(crate) fn value_scale(&self, config: &BundleTrustConfig) -> f64 {
         let automatic = || self.center_value.abs().max(1e-5 * (self.start_value - self.center_value).abs());
         config.objective_scale.unwrap_or_else(automatic)
@@ -59,7 +62,7 @@ impl State {
         8.0 * f64::EPSILON * sizes.fold(self.center_value.abs(), f64::max)
     }
 
-    /// The length that relative distances refer to.
+    /// The length that relative step lengths refer to: the largest of ‖x̂‖, ‖x̂ − x⁰‖ and ‖x⁰‖.
     pub(crate) fn length_scale(&self) -> f64 {
         let travelled = self.norm.squared_distance(&self.center, &self.start).sqrt();
         self.norm.length(&self.center).max(travelled).max(self.norm.length(&self.start))

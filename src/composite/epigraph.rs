@@ -22,7 +22,7 @@ pub enum Epigraph {
 }
 
 impl Epigraph {
-    /// h*(w) = sup ⟨w, c⟩ − h(c) over c, in units of h, for w with one entry per output; ∞ where w is no subgradient anywhere.
+    /// h*(w) = sup ⟨w, c⟩ − h(c) over c, in units of h, for w with one entry per output; ∞ where w is no subgradient of h anywhere.
     pub fn conjugate(&self, weights: &Vector) -> f64 {
         match *self {
             Self::EuclideanNorm if weights.norm() <= unit(weights.len()) => 0.0,
@@ -48,7 +48,7 @@ impl Epigraph {
     }
 }
 
-/// One, and the rounding of the length of a vector of that many entries that was divided by its length.
+/// One plus the rounding that the length of a vector with so many entries can have after division by this length.
 fn unit(entries: usize) -> f64 {
     1.0 + (4.0 + entries as f64) * f64::EPSILON
 }

@@ -3,12 +3,12 @@
 use crate::checks::{check_finite, check_size};
 use crate::{Accuracy, InputError, Matrix, Vector};
 
-/// What an engine asks of a composite objective beside value and subgradient.
+/// What the engine asks of a composite objective besides value and subgradient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinearizationRequest {
     /// Relative accuracy of the Jacobian.
     pub accuracy: Accuracy,
-    /// The Jacobian is wanted only where Θ is at most this.
+    /// The Jacobian is wanted only where Θ is at most this, in units of Θ; ∞ means everywhere.
     pub below: f64,
 }
 
@@ -29,9 +29,9 @@ pub struct Linearization {
 /// engine uses them once it has found a stationary point, to look at the neighbouring piece.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InactiveConstraints {
-    /// Slacks s > 0, k entries.
+    /// Slacks s > 0, k entries, each in a unit of its own.
     pub slacks: Vector,
-    /// Their derivative, k × n.
+    /// Derivative S of the slacks with respect to the variables, k × n.
     pub jacobian: Matrix,
 }
 
@@ -52,7 +52,8 @@ impl Linearization {
         check_finite("Jacobian of the slacks", inactive.jacobian.as_slice())
     }
 
-    /// Changes G by a matrix of rank one so that Gᵀw is a subgradient known to be more accurate.
+    /// Changes G by a matrix of rank one so that Gᵀw, for weights w of m entries, equals a subgradient of n entries that is known to
+    /// be more accurate. G stays where w = 0.
     pub fn correct(&mut self, weights: &Vector, subgradient: &Vector) {
         let size = weights.norm_squared();
         if size > 0.0 && size.is_finite() {

@@ -5,20 +5,20 @@ use crate::{Matrix, Vector};
 
 /// A convex function h: Rᵐ → R with one subgradient, and its curvature where it has one.
 pub trait OuterFunction {
-    /// h(c).
+    /// h(c), in units of Θ.
     fn value(&self, outputs: &Vector) -> f64;
 
     /// One w ∈ ∂h(c), m entries.
     fn subgradient(&self, outputs: &Vector) -> Vector;
 
-    /// Gᵀ∇²h(c) G for G of shape m × n, if h is smooth: the subproblem is then solved by Newton's method. None (the default):
-    /// h may have kinks, and the subproblem is solved by cuts of h.
+    /// Gᵀ∇²h(c) G, n × n, for G of shape m × n, if h is smooth: the subproblem is then solved by Newton's method. None (the default):
+    /// h may have kinks, and the subproblem is solved by cuts of h. The answer must not be a matrix for some outputs and none for others.
     fn curvature(&self, _outputs: &Vector, _jacobian: &Matrix) -> Option<Matrix> {
         None
     }
 
-    /// The cones behind h, if it is built from some: where h has no curvature, the subproblem is then solved by an interior-point
-    /// method (feature `interior-point`; by cuts without it), and errors of subgradients are taken from the conjugate h*.
+    /// The cones that the epigraph of h is built from, if there are any: where h has no curvature, the subproblem is then solved by an
+    /// interior-point method (feature `interior-point`; by cuts without it), and errors of subgradients are taken from the conjugate h*.
     fn epigraph(&self) -> Option<Epigraph> {
         None
     }
@@ -108,7 +108,7 @@ impl OuterFunction for EuclideanNorm {
     }
 }
 
-/// A closure `c ↦ (h(c), one subgradient)` as an outer function, with cuts in place of a curvature.
+/// A closure `c ↦ (h(c), one subgradient)` as an outer function without a curvature: its subproblems are solved by cuts of h.
 ///
 /// ```
 /// use nonsmooth::{Vector, composite::{FnOuter, OuterFunction}};
@@ -141,7 +141,8 @@ impl<F: Fn(&Vector) -> (f64, Vector)> OuterFunction for FnOuter<F> {
     }
 }
 
-/// Gᵀ diag(weights) G, n × n, for G of shape m × n: the curvature of a sum of functions of single outputs.
+/// Gᵀ diag(weights) G, n × n, for G of shape m × n and m weights: the curvature of a sum of functions of single outputs, whose second
+/// derivatives are the weights.
 pub fn weighted_gram(jacobian: &Matrix, weights: &Vector) -> Matrix {
     let mut scaled = jacobian.clone();
     for (mut row, weight) in scaled.row_iter_mut().zip(weights.iter()) {

@@ -26,7 +26,7 @@ pub(super) enum Outcome {
     Stalled,
 }
 
-/// Relative violation above which a contradiction is called infeasible; below it is rounding of the data.
+/// Relative violation above which a contradiction means an empty set; a smaller one is rounding of the data.
 const CONTRADICTION: f64 = 1e-9;
 
 enum Entry {
@@ -77,7 +77,7 @@ impl WorkingSet<'_> {
         }
     }
 
-    /// Starts from the single cut of largest dual value −½ |ã|² − e.
+    /// Starts from the single cut of largest dual value −½ |ã|² − e, where |ã| takes the diagonal of a dense metric alone.
     fn hold_best_cut(&mut self) {
         let value = |j: usize| -0.5 * self.norms[j] * self.norms[j] - self.qp.offsets[j];
         let best = (0..self.qp.slopes.len()).max_by(|&i, &j| value(i).total_cmp(&value(j)));

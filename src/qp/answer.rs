@@ -6,7 +6,7 @@ use super::problem::{EpigraphQp, QpMethod, QpSolution};
 use super::working_set::{Active, Member};
 use crate::Vector;
 
-/// Residual an answer must have to be returned at once; a worse one is tried again by other means.
+/// Largest residual with which an answer is returned at once; a worse one is tried again by other means.
 pub(super) const WANTED: f64 = 1e-12;
 
 /// Completes a step and its multipliers to an answer with certificate; the step is moved into the box unless the certificate

@@ -115,7 +115,7 @@ impl Stationarity {
         Self { residual, size, weights }
     }
 
-    /// Size of a multiplier's contribution relative to all terms, at most about 1.
+    /// Size of a multiplier's contribution relative to all terms, at most 1.
     fn share(&self, multiplier: f64, scaled_norm: f64) -> f64 {
         ratio(multiplier.abs() * scaled_norm, self.size).min(1.0)
     }

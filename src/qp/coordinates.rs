@@ -58,7 +58,7 @@ impl Coordinates {
         Self::Axes { lengths: diagonal.iter().map(|entry| entry.sqrt()).collect(), diagonal }
     }
 
-    /// L⁻¹ g, with room for one more entry.
+    /// L⁻¹ g, with room for the extra entry of a column of the factors.
     pub(super) fn normal(&self, gradient: &[f64]) -> Vec<f64> {
         let mut normal = Vec::with_capacity(gradient.len() + 1);
         match self {
@@ -83,7 +83,7 @@ impl Coordinates {
         }
     }
 
-    /// √H_ii if coordinate i is variable i up to scale.
+    /// √H_ii if coordinate i is variable i up to scale; none for a dense metric.
     pub(super) fn axis_length(&self, index: usize) -> Option<f64> {
         match self {
             Self::Axes { lengths, .. } => Some(lengths[index]),

@@ -7,7 +7,7 @@
 //! With m cuts of which k are held, a pivot costs O(k² + m k) and no pass over the n variables; the working set and its factor
 //! R, RᵀR = G + s 𝟏𝟏ᵀ on the cuts held, stay from one problem to the next. Each round forms d and the values of all cuts in the
 //! variables themselves, and repeats the pivots from there, so that the answer has the accuracy of the data and not that of G.
-//! What it cannot finish goes to the method that works with orthogonal factors.
+//! What this method cannot finish goes to the method that works with orthogonal factors.
 //! Reference: \[Kiwiel1986\].
 
 use super::certificate::LENGTH_SHARE;
@@ -23,7 +23,7 @@ pub(crate) struct Gram<'a> {
     pub rows: &'a [Vec<f64>],
     /// The slot of each cut.
     pub slots: &'a [usize],
-    /// u.
+    /// The weight u.
     pub weight: f64,
     /// Whether cuts with identities known from the call before have the inner products they had then.
     pub lasting: bool,
@@ -39,11 +39,11 @@ pub(super) struct GramMemory {
     lasting: bool,
 }
 
-/// A squared distance from the span of the cuts held, relative to the squared length, that is rounding.
+/// A squared distance from the span of the cuts held up to this share of the squared length is rounding.
 const DEPENDENT: f64 = 1e-13;
-/// Rate of an exchanged multiplier that is rounding.
+/// A rate of an exchanged multiplier up to this is rounding.
 const LEAST_RATE: f64 = 1e-11;
-/// Excess of a cut, relative to its terms, that is rounding.
+/// An excess of a cut up to this share of its terms is rounding.
 const ROUNDING: f64 = 1e-14;
 /// Largest number of rounds; each forms the values of all cuts anew.
 const ROUNDS: usize = 4;
@@ -68,7 +68,7 @@ struct Dual<'a> {
 }
 
 impl GramMemory {
-    /// The answer if it comes out with a relative KKT residual of at most `wanted`, and no row or bound is violated there.
+    /// The answer, if its relative KKT residual is at most `wanted` and it violates no row or bound at all.
     pub(super) fn solve(&mut self, qp: &EpigraphQp<'_>, gram: Gram<'_>, wanted: f64) -> Option<QpSolution> {
         let mut factor = std::mem::take(&mut self.factor);
         let mut dual = Dual::new(qp, gram, &mut factor, self.shift);
@@ -297,7 +297,7 @@ impl<'a> Dual<'a> {
         }
     }
 
-    /// Pivots until every cut is satisfied; none if that does not come to an end.
+    /// Pivots until every cut is satisfied; none if the pivots do not come to an end.
     fn pivot(&mut self) -> Option<()> {
         let limit = self.pivots + 100 + 5 * self.qp.slopes.len();
         loop {
@@ -358,7 +358,7 @@ impl<'a> Dual<'a> {
         worst.map(|(_, j)| j)
     }
 
-    /// Takes in a cut, exchanging cuts held against it as long as it depends on them; none if nothing can be exchanged.
+    /// Takes in a cut j. As long as it depends on the cuts held, one of them leaves in exchange; none if nothing can be exchanged.
     fn enter(&mut self, j: usize) -> Option<()> {
         let mut multiplier = 0.0;
         loop {

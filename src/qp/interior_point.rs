@@ -46,7 +46,7 @@ pub(super) fn solve(qp: &EpigraphQp<'_>) -> Result<InteriorAnswer, QpError> {
 pub(crate) struct ScaledSide {
     member: Member,
     side: Side,
-    /// What the original side was divided by.
+    /// The norm that the original side was divided by.
     divisor: f64,
     pub(crate) normal: Vec<(usize, f64)>,
     pub(crate) bound: f64,
@@ -63,7 +63,7 @@ impl ScaledSide {
         sign * multiplier * unit / self.divisor
     }
 
-    /// Adds that multiplier to those of the rows and of the bounds.
+    /// Adds the multiplier of the member to those of the rows and of the bounds; that of a cut is left out.
     pub(crate) fn add_multiplier(&self, multiplier: f64, unit: f64, (rows, bounds): &mut (Vector, Vector)) {
         match self.member {
             Member::Row(i) => rows[i] += self.multiplier(multiplier, unit),

@@ -3,10 +3,10 @@
 use super::kernels::dot;
 use super::working_set::{Member, Side, WorkingSet};
 
-/// Excess relative to its terms below which a side counts as satisfied.
+/// A side counts as satisfied if its excess is below this share of its size.
 const SATISFIED: f64 = 2e-14;
 
-/// Excess relative to its terms that cannot be told from rounding.
+/// An excess below this share of the terms of a side cannot be told from rounding.
 const ROUNDING: f64 = 2e-15;
 
 /// A violated side.

@@ -14,7 +14,8 @@ use super::solver::EpigraphQpSolver;
 /// The point of the polyhedron nearest to x (`dimension()` entries); x itself if it is admissible.
 ///
 /// # Errors
-/// [`QpError::Infeasible`] for an empty set, [`QpError::Input`] for an x of wrong size or with entries that are not finite.
+/// [`QpError::Infeasible`] for an empty set, [`QpError::Input`] for an x of wrong size or with entries that are not finite,
+/// [`QpError::NotSolved`] if rounding keeps the quadratic program from being solved.
 ///
 /// ```
 /// use nonsmooth::{Polyhedron, Vector, qp::project};
@@ -47,7 +48,7 @@ pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
     Ok(nearest)
 }
 
-/// Steps taken after the first, at most.
+/// Largest number of steps taken after the first.
 const REFINEMENTS: usize = 2;
 
 /// The shortest d with x + d in the set.

@@ -30,13 +30,13 @@ struct Residuals {
     sides: Vec<f64>,
     /// σ.
     deficit: f64,
-    /// Largest of ρ and σ relative to its terms.
+    /// The largest entry of ρ and σ, each relative to its terms.
     size: f64,
 }
 
 /// Relative residual at which refinement stops.
 const REFINED: f64 = 4e-16;
-/// Passes spent on refinement after the last drop.
+/// Largest number of passes spent on refinement after the last member has left.
 const REFINEMENT_PASSES: usize = 5;
 /// Residual of a stationarity equation, relative to its terms, that is rounding.
 const ROUNDING: f64 = 2e-15;

@@ -9,7 +9,7 @@ use super::interior_point;
 use super::problem::{EpigraphQp, QpCounts, QpError, QpMethod, QpSolution};
 use super::working_set::{Active, Member, Side, WorkingSet};
 
-/// Residual an answer must have to be returned at all.
+/// Largest residual with which an answer is returned at all.
 const REQUIRED: f64 = 1e-10;
 
 /// Solver of a sequence of related QPs; remembers the active set of the last answer.
@@ -71,7 +71,7 @@ impl EpigraphQpSolver {
         self.counts
     }
 
-    /// Forgets the last active set: the next call starts cold.
+    /// Forgets the last active set: the next call of [`solve`](Self::solve) starts cold.
     pub fn forget(&mut self) {
         self.memory.clear();
     }
@@ -133,7 +133,7 @@ impl EpigraphQpSolver {
         Err(QpError::NotSolved { kkt_residual: best.solution.kkt_residual })
     }
 
-    /// Without the interior-point method the best answer so far has to do.
+    /// Returns the best answer so far, as there is no other method without the feature `interior-point`.
     #[cfg(not(feature = "interior-point"))]
     fn fall_back(
         &mut self,
@@ -144,7 +144,7 @@ impl EpigraphQpSolver {
         best.ok_or(QpError::NotSolved { kkt_residual: f64::INFINITY })
     }
 
-    /// Interior-point method, then the active-set method from what it found active.
+    /// Runs the interior-point method, and then the active-set method from the members that the former has found active.
     #[cfg(feature = "interior-point")]
     fn fall_back(
         &mut self,

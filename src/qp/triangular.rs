@@ -23,7 +23,8 @@ impl Triangular {
         self.columns.push(column);
     }
 
-    /// Removes a column; the later ones move up. Every rotation that restores the triangle is shown with the first of its two rows.
+    /// Removes a column; the later ones move up. Every rotation that restores the triangle is passed on, with the
+    /// first of its two rows.
     pub(super) fn remove(&mut self, position: usize, mut rotated: impl FnMut(usize, Rotation)) {
         self.columns.remove(position);
         for k in position..self.columns.len() {

@@ -40,7 +40,7 @@ pub(super) struct Active {
     pub(super) multiplier: f64,
 }
 
-/// Place of an active member.
+/// Where an active member is kept.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Place {
     /// Column of the factors.
@@ -62,9 +62,9 @@ pub(super) struct WorkingSet<'a> {
     pub(super) general: Vec<Active>,
     pub(super) fixed: Vec<Option<Active>>,
     held: Vec<bool>,
-    /// d of the current multipliers, with fixed coordinates at their bounds.
+    /// The current d, with fixed coordinates at their bounds.
     pub(super) step: Vector,
-    /// v of the current working set.
+    /// The current v.
     pub(super) epigraph: f64,
     pub(super) pivots: usize,
     /// Norm of the steepest cut: the length of the unconstrained step.
@@ -170,12 +170,12 @@ impl<'a> WorkingSet<'a> {
         terms + epigraph + side.abs()
     }
 
-    /// Size of a side: its terms, and a share of its normal where they vanish.
+    /// Size of a side: its terms, plus a share of its normal for the case that they vanish.
     pub(super) fn size(&self, member: Member, side: f64) -> f64 {
         self.terms(member, side) + LENGTH_SHARE * self.reach * self.norm(member)
     }
 
-    /// Size of a side, not less than the rounding of the data allows to tell: see the certificate.
+    /// Size of a side that counts the rounding of all sides too, as in the certificate.
     pub(super) fn data_size(&self, member: Member, side: f64) -> f64 {
         let largest_side = if matches!(member, Member::Cut(_)) { 0.0 } else { self.largest_side };
         self.size(member, side) + SIDE_SHARE * largest_side * self.norm(member)
@@ -219,7 +219,7 @@ impl<'a> WorkingSet<'a> {
         column
     }
 
-    /// The fixed coordinate a bound becomes, if the metric is diagonal.
+    /// The coordinate that an active bound fixes, if the metric is diagonal.
     pub(super) fn coordinate(&self, member: Member) -> Option<usize> {
         match member {
             Member::Bound(k) => self.coordinates.axis_length(k).map(|_| k),

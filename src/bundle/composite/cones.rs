@@ -4,8 +4,8 @@
 //! min over (d, t)   Σ t + u‖d‖²/2 + dᵀBd/2 − u⟨W o, d⟩,   (t, c + G d) in the cones of h,   x + d ∈ U
 //! scaled:           d = D d̂,  c = σ ĉ,  t = σ^p t̂,   σ = max|c_i|,  D_kk = min(σ/max_i|G_ik|, (σ^p/(B + u W)_kk)^(1/2))
 //! ```
-//! The multipliers of c + G d are the weights w of the outputs. How good the answer is, the sum that weak duality leaves tells, with the
-//! multipliers μ of the sides of U and the residual ρ = Gᵀw + u W (d − o) + B d + Aᵀμ:
+//! The multipliers of c + G d are the weights w of the outputs. By weak duality, the answer lies above the optimum by at most the following
+//! sum, with the multipliers μ of the sides of U and the residual ρ = Gᵀw + u W (d − o) + B d + Aᵀμ:
 //!
 //! ```text
 //! h(c + G d) − ⟨w, c + G d⟩ + h*(w) + Σ |μ_i| slack_i + ‖ρ‖* max(‖d‖, ‖ρ‖*/2u)
@@ -20,10 +20,10 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, PowerConeT, SecondOrderConeT, SupportedConeT, ZeroConeT,
 };
 
-/// What the method has found, as good as it has got it.
+/// The last iterate of the method, of any quality: the caller judges it by weak duality.
 pub(super) struct ConeAnswer {
     pub step: Vector,
-    /// w.
+    /// The weights w of the outputs.
     pub weights: Vector,
     /// Multipliers of the rows and of the bounds, > 0 at an upper side and < 0 at a lower one.
     pub sides: (Vector, Vector),
@@ -57,7 +57,7 @@ impl Constraints {
     }
 }
 
-/// Solves the subproblem; none where the method fails.
+/// Solves the subproblem; none where the method cannot start or its numbers are not finite.
 pub(super) fn solve(model: &CompositeModel<'_>, epigraph: Epigraph) -> Option<ConeAnswer> {
     let (outputs, jacobian) = (&model.linearization.outputs, &model.linearization.jacobian);
     let (m, n) = jacobian.shape();

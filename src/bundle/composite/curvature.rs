@@ -4,17 +4,17 @@
 //! L(x) = ⟨w, c(x)⟩,   w the weights of the outputs at the subproblem's solution
 //! s_j = x_j − x,   y_j = (G_j − G)ᵀ w,   B = argmin Σ |B s_j − y_j|²/|s_j|⁴ over symmetric B,   its positive part
 //! ```
-//! Where outputs bend, a model that is linear in them ends in short steps, unless kinks of h determine the point. The curvature
+//! Where outputs bend, a model that linearizes them ends in short steps, unless kinks of h determine the point. The curvature
 //! that matters is that of L, which changes with w: as every Jacobian is kept whole, B follows the present w at once.
 
 use crate::bundle::norm::ScaledNorm;
 use crate::{Matrix, Vector};
 
-/// Jacobians kept, for a number of variables.
+/// Number of Jacobians kept, for a number of variables: enough to determine B where there are few.
 const fn most(dimension: usize) -> usize {
     if dimension < 20 { dimension + 5 } else { 25 }
 }
-/// Squared lengths of directions below this share of the largest count as not seen.
+/// Directions in which the eigenvalue of Σ s_j s_jᵀ/|s_j|⁴ is below this share of the largest one count as not seen.
 const UNSEEN: f64 = 1e-8;
 
 /// Jacobians of the outputs at earlier points, the latest last.
@@ -30,7 +30,7 @@ impl Memory {
         self.0.push((point.clone(), jacobian.clone()));
     }
 
-    /// B at a point with its Jacobian, for weights; none where nothing is known.
+    /// B at a point with its Jacobian, for weights of the outputs; none where no Jacobian at another point is known.
     pub(super) fn curvature(
         &self,
         (point, jacobian): (&Vector, &Matrix),

@@ -1,12 +1,12 @@
 //! Steps away from a point that is proved stationary, whose proof stands if they find nothing lower.
 //!
 //! ```text
-//! predicted > small/10:      the model's own last step: it costs one evaluation, and the model is at its best there
+//! predicted > small/10:      the model's own last step, which costs one evaluation: near a stationary point the model is at its best
 //! s_i + S_i d ≤ −s_i/2 for the inactive constraints next to the point      one composite step with these rows, then go on
 //! ```
 //! The linearization at a stationary point sees one piece of c alone. Where a constraint inside c (an open contact node) is all
-//! but active, the neighbouring piece may lead lower. The excursion may rise above the center; it ends when the center is
-//! undercut, when its model promises no such thing any more, or after a few evaluations.
+//! but active, the neighbouring piece may lead lower. The excursion may rise above the center. It ends when a trial point is
+//! serious, when the model promises no value below the center any more, or after a few evaluations.
 
 use super::{Base, Composite, Proof};
 use crate::bundle::proposers::proposal::Proposal;
@@ -19,25 +19,26 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Evaluations of an excursion, its first included.
 const MAX_EVALUATIONS: usize = 4;
-/// How far beyond its activation a constraint is taken, in its slacks.
+/// How far beyond its activation a constraint is taken, relative to its slack.
 const BEYOND: f64 = 0.5;
-/// Distances up to which constraints count as next to the point, in lengths of the first step.
+/// Distances up to which constraints count as next to the point, in lengths of the first step; tried in turn.
 const NEAR: [f64; 3] = [0.3, 0.1, 0.03];
 /// One linearization is pessimistic where constraints become active: decreases up to this many times the predicted one are common.
 const PESSIMISM: f64 = 2.5;
 
-/// Share of a small decrease that is worth the model's own last step.
+/// A last step of the model is worth its evaluation if it promises this share of a small decrease.
 const WORTH_A_STEP: f64 = 0.1;
 
 /// A run away from a stationary center.
 #[derive(Debug)]
 pub(crate) struct Excursion {
     proof: Box<Proof>,
-    /// Whether it is the model's own last step, before the closing step.
+    /// Whether the pending step is the model's own last step, before the closing step.
     last_step: bool,
-    /// Where its model is built; none before its first evaluation.
+    /// Where the model of the excursion is built; none before the first evaluation.
     base: Option<Base>,
     weight: f64,
+    /// Evaluations left.
     left: usize,
 }
 
@@ -48,7 +49,7 @@ impl Excursion {
 }
 
 impl Run<'_, '_> {
-    /// Ends the run with a proof, unless a last step or constraints next to the point to be closed come first.
+    /// Ends the run with a proof, unless a last step is worth its evaluation or constraints next to the point are to be closed first.
     pub(super) fn leave(&mut self, proof: Proof) -> ControlFlow<Termination, Option<Proposal>> {
         let worth = (WORTH_A_STEP * self.small()).max(self.state.rounding());
         if proof.proposal.predicted_decrease <= worth {
@@ -65,7 +66,7 @@ impl Run<'_, '_> {
         }
     }
 
-    /// The first step behind constraints next to the point, or the end of the run with the proof where there are none.
+    /// The first step beyond the constraints next to the point, or the end of the run with the proof where there are none.
     fn close(&mut self, proof: Proof) -> ControlFlow<Termination, Option<Proposal>> {
         let inactive = proof.base.linearization.inactive.clone();
         for near in inactive.iter().flat_map(|_| NEAR) {
@@ -89,7 +90,7 @@ impl Run<'_, '_> {
         Break(word)
     }
 
-    /// The word of the stationary center, if a limit ends the run on an excursion from it.
+    /// The termination of the stationary center, if a limit ends the run on an excursion from this center.
     pub(in crate::bundle) fn end_excursion(&mut self) -> Option<Termination> {
         let excursion = self.composite.as_mut()?.excursion.take()?;
         let word = excursion.proof.word.clone();
@@ -97,7 +98,8 @@ impl Run<'_, '_> {
         Some(word)
     }
 
-    /// The admissible points at which the constraints within a distance are active by the linearization; none without any.
+    /// The admissible points at which, by the linearization, the constraints within a distance are violated by [`BEYOND`] of their slacks;
+    /// none if no constraint is so near.
     fn closing_set(&self, base: &Base, inactive: &InactiveConstraints, near: f64) -> Option<Polyhedron> {
         let reach = near * self.state.first_step;
         let distance =

@@ -3,29 +3,29 @@
 //! ```text
 //! G, G' the Jacobians at x and x + d:    share = Σ ω_i |c'_i − c_i − (½(G + G')d)_i| / Σ ω_i |c'_i − c_i − (G d)_i|,   ω = |w| + |w'|
 //! ```
-//! The trapezoidal rule removes bends of c up to the third order in d, and none of a kink. A step that does not pay and leaves a
-//! share has met kinks. There the model would go on in steps so short that they stay within a piece, each of them serious and
-//! none of them worth its evaluation, so that the model falls silent at once. The evaluations that the cuts then ask for
-//! tell, at no cost, when the outputs follow their linearization again.
+//! Where c is smooth, the trapezoidal rule leaves a departure of third order in d only; it does not remove that of a kink. A step that
+//! does not pay and leaves a share has met kinks. From here the model would go on in steps so short that they stay within a piece, each
+//! of them serious and none of them worth its evaluation, so that the model falls silent at once. The evaluations that the cuts
+//! then ask for tell, at no cost, when the outputs follow their linearization again.
 
 use super::Base;
 use crate::Vector;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 
-/// Share from which on a departure counts as that of kinks.
+/// Beyond this share, a departure counts as that of kinks.
 const LEAST_SHARE: f64 = 0.2;
-/// A step pays if it brings this share of the largest decrease promised since a step has paid.
+/// A step pays if it brings this share of the largest decrease promised since a step last paid.
 const PAYING: f64 = 0.5;
-/// Steps in a row that have paid, from which on one that does not is forgiven.
+/// After so many steps in a row that have paid, one that does not is forgiven.
 const FORGIVING: usize = 3;
 /// Relative error of a predicted change up to which the outputs follow their linearization.
 const PREDICTED: f64 = 0.1;
 
-/// What steps have told about kinks.
+/// What the steps of the model have told about kinks.
 #[derive(Debug, Default)]
 pub(super) struct Kinks {
-    /// The largest decrease promised by steps that have met kinks, since a step has paid.
+    /// The largest decrease promised by steps that have met kinks, since a step last paid.
     promised: f64,
     /// Steps in a row that have paid.
     paid: usize,
@@ -45,7 +45,7 @@ pub(super) struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// The share; 0 where the Jacobian at the point is not known.
+    /// The share of the departure that the trapezoidal rule leaves; 0 where the Jacobian at the point is not known.
     fn share(&self) -> f64 {
         let (start, Some(end)) = (&self.base.linearization, self.end) else { return 0.0 };
         if start.jacobian.shape() != end.jacobian.shape() {
@@ -64,7 +64,7 @@ impl Seen<'_> {
         if linear > 0.0 { trapezoidal / linear } else { 0.0 }
     }
 
-    /// Whether the model predicts the change.
+    /// Whether the model predicts the change of Θ well.
     fn is_predicted(&self) -> bool {
         let Base { point, value, linearization } = self.base;
         let outputs = &linearization.outputs + &linearization.jacobian * (self.point - point);
@@ -74,7 +74,7 @@ impl Seen<'_> {
 }
 
 impl Kinks {
-    /// Learns from a step of the model itself, which promised a decrease; whether the model should fall silent because of kinks.
+    /// Learns from a step of the model itself that promised a decrease. Returns whether the model should fall silent because of kinks.
     pub(super) fn met(&mut self, seen: &Seen<'_>, promised: f64, serious: bool) -> bool {
         let promised = promised.max(self.promised);
         if serious && -seen.change >= PAYING * promised {

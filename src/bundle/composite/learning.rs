@@ -11,29 +11,29 @@ use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::Origin;
 
-/// A step with this share of the predicted decrease lets the weight fall.
+/// A step that brings this share of the predicted decrease lets the weight fall.
 const GOOD_RATIO: f64 = 0.5;
-/// A step of the model with the curvature of the outputs that falls by this many times the predicted decrease has met less of
-/// that curvature: twice as much is what a straight line gives.
+/// A step of the model with the curvature of the outputs that brings this many times the predicted decrease has met less curvature than
+/// predicted: without any curvature along the step it would bring twice the predicted decrease.
 const STRAIGHT_RATIO: f64 = 1.5;
-/// Such steps in a row from which on the share of that curvature falls: single ones come from constraints that become active.
+/// So many such steps in a row lower the share of the curvature that counts: single ones come from constraints that become active.
 const STRAIGHT_STEPS: usize = 3;
-/// The least share, from which three rejected steps lead back to the whole.
+/// The least share of the curvature that counts; three rejected steps lead from here back to the whole.
 const LEAST_BEND: f64 = 1.0 / 64.0;
-/// By which that share falls, and rises after a rejected step.
+/// Factor by which this share falls, and rises after a rejected step.
 const BEND_FACTOR: f64 = 4.0;
-/// Length of the step after a rejected one, as a share of its length.
+/// Largest length of the step after a rejected one, in lengths of the rejected step.
 const SHORTER: f64 = 0.3;
 /// Longest pause after failures, evaluations.
 const MAX_PAUSE: usize = 64;
-/// Failures in a row before a pause.
+/// Rejected or failed steps in a row before a pause.
 const PATIENCE: usize = 3;
 
-/// Whether an evaluation brought a Jacobian, or why not; none where it was not asked for.
+/// Whether an evaluation brought a Jacobian, or why not; none where the oracle said nothing about a Jacobian.
 pub(in crate::bundle) type Noted = Option<Result<(), String>>;
 
 impl Composite {
-    /// Learns what came of a step of its own: the ratio of the decrease to the one predicted, none if the oracle failed.
+    /// Learns what came of a step of the model: `ratio` is the decrease over the predicted one, none if the oracle failed.
     fn learn(&mut self, proposal: &Proposal, ratio: Option<f64>, accepted: bool) {
         self.weight = proposal.weight;
         if accepted {
@@ -62,7 +62,7 @@ impl Composite {
 }
 
 impl Run<'_, '_> {
-    /// Learns from a trial point and what its evaluation says about the outputs; whether it brought a Jacobian.
+    /// Learns from a trial point and from what its evaluation says about the outputs. Returns whether the evaluation brought a Jacobian.
     pub(in crate::bundle) fn learn_structure(
         &mut self,
         trial: &Trial<'_>,
@@ -103,7 +103,8 @@ impl Run<'_, '_> {
         noted
     }
 
-    /// Counts and remembers a Jacobian; the linearization, and whether there is one or why not. None without a composite model.
+    /// Counts and remembers a Jacobian. Returns the linearization, if there is one, and what to note about it; none without a composite
+    /// model.
     pub(in crate::bundle) fn note(
         &mut self,
         point: &Vector,
@@ -115,7 +116,7 @@ impl Run<'_, '_> {
             Some(Err(reason)) => (None, Some(Err(reason))),
             Some(Ok(linearization)) => {
                 self.state.counts.jacobians += 1;
-                // An outer function with a curvature of its own needs none of the outputs.
+                // Where h has a curvature of its own, the model uses no curvature of the outputs.
                 let Linearization { outputs, jacobian, .. } = &linearization;
                 let bends = |outer: &dyn OuterFunction| outer.curvature(outputs, jacobian).is_none();
                 if outer.is_some_and(|outer| without_panic(|| bends(outer)).unwrap_or_default()) {
@@ -137,7 +138,7 @@ impl Run<'_, '_> {
         }
     }
 
-    /// Moves the model to a new center, to be built there if the Jacobian is known.
+    /// Moves the model to a new center. Without a Jacobian there, the model is silent until the center moves again.
     pub(in crate::bundle) fn rebase(&mut self, point: &Vector, value: f64, linearization: Option<Linearization>) {
         let known = self.outer.zip(linearization.as_ref());
         let reach = self.state.reach();
@@ -149,7 +150,7 @@ impl Run<'_, '_> {
     }
 }
 
-/// What outputs, their Jacobian and h tell about the scale of Θ; none where h gives no subgradient.
+/// What outputs, their Jacobian and h tell about the scale of Θ; none where h gives no subgradient of the right size.
 fn output_scales(outer: &dyn OuterFunction, known: &Linearization, reach: &Vector) -> Option<OutputScales> {
     let Linearization { outputs, jacobian, .. } = known;
     let weights = without_panic(|| outer.subgradient(outputs)).ok().filter(|w| w.len() == outputs.len())?;

@@ -1,12 +1,12 @@
 //! The composite model as a proposer: trial points from h exact and c linear, as long as that pays.
 //!
 //! ```text
-//! predicted = h(c) − h(c + G d),   ratio = (Θ(x) − Θ(x + d))/predicted:    u falls where it is large, rises where it is small
+//! predicted = h(c) − h(c + G d),   ratio = (Θ(x) − Θ(x + d))/predicted:   u falls if it is at least 0.5, rises after a rejected step
 //! predicted small at small u:      stationary, proved by w ∈ ∂h and G at x alone                       radius 0
 //! ```
 //! One linearization is pessimistic where a constraint becomes active inside c, so that ratios above 1 are common. A rejected
-//! step is corrected from the model at its end; where that fails too, the subproblem takes the curvature of the outputs, as
-//! earlier Jacobians show it. After repeated failures, and as soon as a step fails on kinks of c, the model pauses, and cuts,
+//! step is corrected from the model at its end. Where the correction fails too, the subproblem takes the curvature of the outputs
+//! that earlier Jacobians show. After repeated failures, and as soon as a step fails on kinks of c, the model pauses, and cuts,
 //! curved model and exploration go on.
 
 #[cfg(feature = "interior-point")]
@@ -34,15 +34,15 @@ pub(crate) use model::CompositeStep;
 pub use model::OuterCut;
 pub(crate) use proof::Proof;
 
-/// The first weight, in first weights of the cuts.
+/// The first weight, relative to the first weight of the cuts.
 const FIRST_WEIGHT: f64 = 1e-2;
-/// By which the weight falls, and by which it rises.
+/// Factor by which the weight falls or rises.
 const FACTOR: f64 = 10.0;
-/// Weights tried until a step is short enough.
+/// Weights tried, upwards and downwards, for one trial point.
 const MAX_WEIGHTS: usize = 20;
-/// Growth of a small predicted decrease, as the weight falls, from which on the weight matters.
+/// A small predicted decrease that grows by less than this factor as the weight falls does not depend on the weight any more.
 const LEAST_GAIN: f64 = 1.1;
-/// Accuracy asked of a Jacobian.
+/// Relative accuracy asked of a Jacobian.
 const JACOBIAN_ACCURACY: f64 = 1e-4;
 
 /// The composite model of a run.
@@ -59,13 +59,13 @@ pub(crate) struct Composite {
     rejected: Option<Base>,
     /// Whether the pending trial point is a correction.
     correcting: bool,
-    /// Whether the model takes the curvature of the outputs into account: since a step has failed without it.
+    /// Whether the model takes the curvature of the outputs into account: once a step and its correction have failed without it.
     bends: bool,
-    /// The share of that curvature that steps have confirmed, at most 1.
+    /// The share of the curvature of the outputs that steps have confirmed, at most 1.
     bend: f64,
-    /// Whether the last subproblem took it into account.
+    /// Whether the last subproblem took the curvature of the outputs into account.
     bent: bool,
-    /// Serious steps in a row that have met less of it than predicted.
+    /// Serious steps in a row that have met less curvature of the outputs than predicted.
     straight: usize,
     memory: Memory,
     kinks: Kinks,
@@ -103,7 +103,7 @@ impl Composite {
         }
     }
 
-    /// What to ask of an evaluation; `below`: the value up to which a Jacobian is wanted.
+    /// What to ask of an evaluation; `below` is the value of Θ up to which a Jacobian is wanted.
     pub(crate) fn request(below: f64) -> LinearizationRequest {
         let accuracy = Accuracy::relative(JACOBIAN_ACCURACY).unwrap_or(Accuracy::TIGHTEST);
         LinearizationRequest { accuracy, below }
@@ -111,7 +111,7 @@ impl Composite {
 }
 
 impl Run<'_, '_> {
-    /// The trial point of the composite model, none where it has none; ends the run at a point that it proves stationary.
+    /// The trial point of the composite model, or none where the model is silent. Ends the run at a point that the model proves stationary.
     pub(super) fn composite_trial(&mut self) -> ControlFlow<Termination, Option<Proposal>> {
         let Some(composite) = &mut self.composite else { return Continue(None) };
         if let Some(excursion) = composite.excursion.take() {
@@ -147,12 +147,12 @@ impl Run<'_, '_> {
             }
             weight /= FACTOR;
             if std::mem::take(&mut raised) {
-                // What a step short enough promises is little: only a longer one, with the curvature seen since, can tell.
+                // Steps within the limit of length promise little. Only a longer one can tell whether the point is stationary.
                 if let Some(composite) = &mut self.composite {
                     composite.longest = f64::INFINITY;
                 }
             } else if last.is_some_and(|last| proposal.predicted_decrease < LEAST_GAIN * last.predicted_decrease) {
-                // The weight matters no more: the model's own last step, little as it promises, leads to a point that it can prove.
+                // A lower weight changes nothing: the step promises little, but the model may prove the point at its end stationary.
                 let seen = proposal.predicted_decrease > self.state.rounding() && longest == f64::INFINITY;
                 return Continue(Some(proposal).filter(|_| seen));
             }

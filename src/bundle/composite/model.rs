@@ -24,38 +24,39 @@ use crate::qp::{EpigraphQpSolver, Metric, QpSolution, project};
 use crate::{Matrix, Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 
-/// Newton steps of one subproblem.
+/// Largest number of Newton steps of one subproblem.
 const MAX_NEWTON: usize = 100;
-/// Cuts of one subproblem.
+/// Largest number of cuts of h in one subproblem; with so many, the last step counts as the solution.
 const MAX_CUTS: usize = 1000;
-/// Promised decrease of a step, relative to the decrease so far, at which a subproblem counts as solved.
+/// A subproblem counts as solved once a Newton step promises at most this share of the decrease so far.
 const SOLVED: f64 = 1e-9;
-/// The same for the gap between h and its cuts.
+/// The cuts of h meet h where the gap is at most this share of the promised decrease.
 const MET: f64 = 1e-6;
-/// What the interior-point method may leave of the promised decrease: a trial point needs no more, and a proof has its own test.
+/// Share of the promised decrease that the interior-point method may miss: a trial point needs no more accuracy, and a proof has a test
+/// of its own.
 #[cfg(feature = "interior-point")]
 const MET_BY_CONES: f64 = 0.1;
-/// The same in units of the size of h: beyond it double precision does not take that method where G is ill-conditioned.
+/// Share of |h| that the method may miss besides: double precision does not take the method further where G is ill-conditioned.
 #[cfg(feature = "interior-point")]
 const LEFT_BY_CONES: f64 = 1e-10;
-/// Rounding of h in units of its size.
+/// Rounding of h as a share of |h|.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// A cut above h by more than this share of the sizes of its terms is no rounding: h is not convex.
 const MAX_EXCESS: f64 = 1e-9;
-/// Halvings of a Newton step.
+/// Largest number of halvings of a Newton step.
 const MAX_HALVINGS: usize = 40;
-/// Decrease asked of a step of length one, as a share of what it promises.
+/// Share of the promised decrease that a Newton step, shortened or not, must bring (Armijo's test).
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
 /// A subgradient of the outer function at some outputs, with its multiplier in an aggregate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct OuterCut {
-    /// Where h was evaluated, c_j.
+    /// Outputs c_j, m entries.
     pub outputs: Vector,
     /// h(c_j), or ⟨w_j, c_j⟩ − h*(w_j) ≤ h(c_j).
     pub value: f64,
-    /// w_j ∈ ∂h(c_j), or any w_j whose conjugate is known.
+    /// w_j ∈ ∂h(c_j), m entries; where h is built from cones, any w_j with a finite conjugate h*(w_j).
     pub subgradient: Vector,
     /// λ_j ≥ 0; Σ λ_j = 1.
     pub multiplier: f64,
@@ -72,7 +73,7 @@ impl OuterCut {
         }
     }
 
-    /// h(c) − h(c_j) − ⟨w_j, c − c_j⟩ ≥ 0 for a value h(c).
+    /// The linearization error h(c) − h(c_j) − ⟨w_j, c − c_j⟩ ≥ 0 at outputs c where h has the value given.
     pub fn error(&self, outputs: &Vector, value: f64) -> f64 {
         value - self.value - self.subgradient.dot(&(outputs - &self.outputs))
     }
@@ -87,7 +88,7 @@ pub(crate) struct CompositeModel<'a> {
     pub base: &'a Vector,
     pub norm: &'a ScaledNorm,
     pub set: &'a Polyhedron,
-    /// u.
+    /// The weight u.
     pub weight: f64,
     /// B, the curvature of the outputs; none: 0.
     pub curvature: Option<&'a Matrix>,
@@ -101,7 +102,7 @@ pub(crate) struct CompositeStep {
     pub step: Vector,
     /// h(c) − h(c + G d) − dᵀBd/2.
     pub decrease: f64,
-    /// Cuts with a multiplier.
+    /// Cuts of h with a positive multiplier.
     pub cuts: Vec<OuterCut>,
     pub row_multipliers: Vector,
     pub bound_multipliers: Vector,
@@ -132,14 +133,15 @@ impl CompositeModel<'_> {
         }
     }
 
-    /// The answer of the interior-point method, where weak duality says that it is good enough; cuts else, its own first.
+    /// The answer of the interior-point method where weak duality calls it good enough; otherwise the answer by cuts, beginning with
+    /// those that the interior-point method has found.
     #[cfg(feature = "interior-point")]
     fn solve_by_cones(
         &self,
         solver: &mut EpigraphQpSolver,
         epigraph: Epigraph,
     ) -> Result<CompositeStep, SubproblemError> {
-        // A failure of that method, be it a panic, says nothing about h.
+        // A failure of the interior-point method, even a panic, says nothing about h.
         let answer = without_panic(|| cones::solve(self, epigraph)).ok().flatten();
         let Some((ConeAnswer { weights, sides, .. }, point)) = answer
             .and_then(|answer| project(self.set, &(self.base + &answer.step)).ok().map(|point| (answer, point)))
@@ -154,7 +156,7 @@ impl CompositeModel<'_> {
         self.error(&cut)?;
         let slope = self.linearization.jacobian.tr_mul(&cut.subgradient) + self.pull(&step);
         let residual = self.norm.dual_length(&(slope + self.set.rows().tr_mul(&sides.0) + &sides.1));
-        // ⟨ρ, d' − d⟩ + u‖d' − d‖²/2 is at least −‖ρ‖*²/2u.
+        // The optimum d' lies lower by at most what the residual ρ allows: ⟨ρ, d' − d⟩ + u‖d' − d‖²/2 ≥ −‖ρ‖*²/2u.
         let farthest = self.norm.length(&step).max(0.5 * residual / self.weight);
         let slack = slack_error((&sides.0, &sides.1), &point, self.set);
         let left = self.outer.value(&cut.outputs) - value + slack + residual * farthest;
@@ -212,7 +214,7 @@ impl CompositeModel<'_> {
 
     fn solve_by_newton(&self, solver: &mut EpigraphQpSolver) -> Result<CompositeStep, SubproblemError> {
         let jacobian = &self.linearization.jacobian;
-        // A base outside the set, of which a step is to lead into it, has no feasible step of length 0.
+        // Where the base lies outside the set, as before a closing step, the step of length 0 is not feasible.
         let mut step = project(self.set, self.base)? - self.base;
         let mut merit = self.merit(&step);
         for _ in 0..MAX_NEWTON {
@@ -237,7 +239,7 @@ impl CompositeModel<'_> {
         Err(SubproblemError::Unusable)
     }
 
-    /// The longest of the halved steps that lowers the merit enough, with the merit there; none where rounding hides any decrease.
+    /// `from` plus `step`, which is halved until the merit falls enough, with the merit there; none where rounding hides any decrease.
     fn search(&self, from: &Vector, step: &Vector, merit: f64, promised: f64) -> Option<(Vector, f64)> {
         let mut length = 1.0;
         for _ in 0..MAX_HALVINGS {
@@ -251,7 +253,7 @@ impl CompositeModel<'_> {
         None
     }
 
-    /// `known`: cuts to begin with, beside that at the base.
+    /// Solves the subproblem with cuts in place of h; `known` are cuts to begin with, besides that at the base.
     fn solve_by_cuts(
         &self,
         solver: &mut EpigraphQpSolver,
@@ -285,7 +287,7 @@ impl CompositeModel<'_> {
         }
     }
 
-    /// The linearization error of a cut of h at the base; an error if the cut lies above h there.
+    /// The linearization error of a cut of h at the base. Fails if the cut lies above h at the base by more than rounding.
     fn error(&self, cut: &OuterCut) -> Result<f64, SubproblemError> {
         let outputs = &self.linearization.outputs;
         let error = cut.error(outputs, self.value);
@@ -297,7 +299,7 @@ impl CompositeModel<'_> {
         Ok(error.max(0.0))
     }
 
-    /// `sides`: multipliers of the rows and of the bounds.
+    /// The solution at a step; `sides` are the multipliers of the rows and of the bounds.
     fn solved(&self, step: Vector, cuts: Vec<OuterCut>, sides: (Vector, Vector)) -> CompositeStep {
         let decrease = self.value - self.outer.value(&self.outputs(&step)) - 0.5 * self.bend(&step);
         CompositeStep { decrease, step, cuts, row_multipliers: sides.0, bound_multipliers: sides.1 }

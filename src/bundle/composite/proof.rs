@@ -9,6 +9,7 @@ use crate::report::{Certificate, CompositeProof, Termination};
 /// What proves that a point is stationary.
 #[derive(Debug, Clone)]
 pub(crate) struct Proof {
+    /// The termination that the proof justifies.
     pub word: Termination,
     pub base: Base,
     pub step: CompositeStep,
@@ -17,8 +18,8 @@ pub(crate) struct Proof {
 }
 
 impl Proof {
-    /// The certificate with the cuts of the outer function, seen in the variables, in place of the bundle; its numbers are computed
-    /// from them, as whoever checks it will do.
+    /// The certificate with the cuts of the outer function, seen in the variables, in place of the bundle. Its aggregate norm and error
+    /// are computed from these cuts, as a later check computes them.
     pub(crate) fn certificate(&self, of_proposal: Certificate, set: &Polyhedron) -> Certificate {
         let Base { point, value, linearization } = &self.base;
         let cut = |(index, cut): (usize, &super::OuterCut)| Cut {

@@ -10,16 +10,16 @@ use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// Longest step on from a rejected trial point, in lengths of the rejected step.
+/// Longest correction from a rejected trial point, in lengths of the rejected step.
 const CONTRACTION: f64 = 0.5;
-/// Subproblems solved for weights and curvature that belong together.
+/// Subproblems solved in turn so that the weights of the outputs and the curvature formed with them fit together.
 const PASSES: usize = 2;
 
 impl Run<'_, '_> {
-    /// A step on from a rejected trial point, if it is so short that it leads below the center.
+    /// A step on from a rejected trial point, if it is short beside the rejected step and promises a value below the center's.
     ///
-    /// A step along a curved kink of h leaves the kink, by second order in its length, and pays for it by first order (Maratos
-    /// effect): the model at its end leads back.
+    /// A step along a curved kink of h leaves the kink by second order in its length, and loses by first order in this distance
+    /// (Maratos effect): the model at the end of the step leads back to the kink.
     pub(super) fn correction(&mut self, base: &Base, rejected: &Base) -> ControlFlow<Termination, Option<Proposal>> {
         let Some(composite) = &mut self.composite else { return Continue(None) };
         let weight = composite.weight / FACTOR;
@@ -40,8 +40,8 @@ impl Run<'_, '_> {
     }
 
     /// The step of the model at a base with a weight, and the trial point that it leads to; none where the subproblem cannot be
-    /// solved. `set`: the admissible set, if it is not that of the run; `origin`: from the base to the point that lengths are
-    /// measured from, if it is not the base.
+    /// solved. `set`: the admissible set, if it is not that of the run; `origin`: the vector from the base to the point that
+    /// lengths are measured from, if this point is not the base.
     pub(super) fn composite_step(
         &mut self,
         base: &Base,
@@ -60,7 +60,7 @@ impl Run<'_, '_> {
         }
     }
 
-    /// Solves the subproblem, with the curvature of the outputs for the weights of its own solution.
+    /// Solves the subproblem. Once steps have failed without it, the curvature of the outputs is added, for the weights of the solution.
     fn solve_composite(
         &mut self,
         base: &Base,
@@ -138,7 +138,7 @@ impl Run<'_, '_> {
         proposal.admissible(&self.set, state)
     }
 
-    /// The word for a base that the model proves stationary.
+    /// The termination at a center that the model proves stationary; none if it does not.
     pub(super) fn composite_word(&self, proposal: &Proposal) -> Option<Termination> {
         if proposal.predicted_decrease > self.small() {
             return None;

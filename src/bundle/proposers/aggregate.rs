@@ -1,5 +1,5 @@
-//! The aggregate subgradient of a subproblem and its error, from the multipliers themselves, so that no error of the subproblem
-//! hides in them.
+//! The aggregate subgradient of a subproblem and its error, summed from the multipliers themselves rather than taken from the step, so
+//! that both hold however inaccurately the subproblem was solved.
 //!
 //! ```text
 //! z̃ = Σ λ_i g_i + Aᵀμ + ν,     slack part of ẽ = Σ slack·|multiplier| at the center
@@ -7,7 +7,7 @@
 
 use crate::{Polyhedron, Vector};
 
-/// |z̃| entry by entry, with what rounding of the sum can hide.
+/// |z̃| entry by entry, plus what rounding of the sum can hide.
 pub(crate) fn aggregate_sizes<'g>(
     subgradients: impl Iterator<Item = (f64, &'g Vector)>,
     (rows, bounds): (&Vector, &Vector),

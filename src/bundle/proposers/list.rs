@@ -15,7 +15,7 @@ pub(crate) struct Proposers {
 }
 
 impl Proposers {
-    /// Those that the settings ask for; `weight` is the first weight of the run.
+    /// The proposers that the settings ask for; `weight` is the first weight of the run.
     pub(crate) fn new(config: &BundleTrustConfig, dimension: usize, weight: f64) -> Self {
         let mut rivals: Vec<Box<dyn Proposer>> = vec![];
         if let Some(settings) = config.curved_model.filter(|settings| dimension <= settings.max_dimension) {
@@ -48,7 +48,7 @@ impl Proposers {
         chosen
     }
 
-    /// Tells all of them that the oracle failed at a trial point.
+    /// Tells all proposers that the oracle failed at a trial point.
     pub(crate) fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
         for rival in &mut self.rivals {
             rival.shorten(state, config, proposal);
@@ -56,7 +56,7 @@ impl Proposers {
         self.cuts.shorten(state, config, proposal);
     }
 
-    /// Tells all of them what came of a trial point.
+    /// Tells all proposers what came of a trial point.
     pub(crate) fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
         for rival in &mut self.rivals {
             rival.learn(state, config, trial);

@@ -1,6 +1,6 @@
-//! Who proposes trial points: the plain cuts, and rivals that may replace what they propose.
+//! Who proposes trial points: the plain cuts, and rivals that may replace the proposal of the cuts.
 //!
-//! Adding one takes a folder with a type that implements [`Proposer`](proposer::Proposer), an optional setting in
+//! A new proposer takes a folder with a type that implements [`Proposer`](proposer::Proposer), an optional setting in
 //! `BundleTrustConfig`, a name in `Origin`, and a line in `list.rs`.
 
 pub(crate) mod aggregate;

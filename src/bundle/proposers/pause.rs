@@ -8,14 +8,14 @@ pub(crate) struct Pause {
 }
 
 impl Pause {
-    /// Whether the pause is over; lets one more evaluation of it pass.
+    /// Whether the pause is over. Counts one evaluation of the pause.
     pub(crate) fn pass(&mut self) -> bool {
         let over = self.left == 0;
         self.left = self.left.saturating_sub(1);
         over
     }
 
-    /// Does not count the evaluation that has passed.
+    /// Lengthens the pause by one evaluation.
     pub(crate) fn prolong(&mut self) {
         self.left += 1;
     }
@@ -24,7 +24,7 @@ impl Pause {
         self.failures = 0;
     }
 
-    /// Begins a pause of at most `longest` evaluations.
+    /// Begins a pause, twice as long as the last one since a success, but of at most `longest` evaluations.
     pub(crate) fn fail(&mut self, longest: usize) {
         self.left = (1 << self.failures.min(16)).min(longest);
         self.failures += 1;

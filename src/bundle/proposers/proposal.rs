@@ -9,29 +9,30 @@ use crate::{Polyhedron, Vector};
 #[derive(Debug, Clone)]
 pub(crate) struct Proposal {
     pub trial: Vector,
-    /// d = trial − x̂, shortened if the subproblem's solution left the set.
+    /// d = trial − x̂, shortened if the solution of the subproblem left the set.
     pub step: Vector,
     /// ‖d‖ in the run's norm.
     pub step_length: f64,
     /// −v ≥ 0: the decrease that the proposer's model predicts.
     pub predicted_decrease: f64,
-    /// The change that the plain cuts predict at the trial point.
+    /// The change that the plain cuts predict at the trial point; not formed, and 0, for points of the composite model.
     pub cut_change: f64,
-    /// |Σ λ_i g_i + Aᵀμ + ν| of the subgradients as they are, entry by entry, and what rounding of the sum can hide.
+    /// |Σ λ_i g_i + Aᵀμ + ν| of the subgradients as they are, entry by entry, plus what rounding of the sum can hide.
     pub aggregate_sizes: Vector,
     /// Σ slack·|multiplier| of the active rows and bounds, the other part of ẽ.
     pub slack_error: f64,
-    /// ‖z̃‖*.
+    /// ‖z̃‖* of the aggregate subgradient.
     pub aggregate_norm: f64,
-    /// ẽ.
+    /// The aggregate error ẽ.
     pub aggregate_error: f64,
     /// The part Σ λ_i a_i of ẽ.
     pub cut_error: f64,
     pub cut_multipliers: Vec<f64>,
     pub row_multipliers: Vector,
     pub bound_multipliers: Vector,
+    /// The curvature c added to make the model convex.
     pub convexification: f64,
-    /// u of this subproblem.
+    /// The weight u of this subproblem.
     pub weight: f64,
     /// Relative violation of the set at the trial point.
     pub violation: f64,
@@ -39,7 +40,7 @@ pub(crate) struct Proposal {
     pub origin: Origin,
 }
 
-/// Trial points violate the set by at most this much, relative to each side.
+/// Trial points violate the set by at most this much, relative to each side, or by as much as the center does.
 pub(crate) const FEASIBILITY: f64 = 1e-12;
 /// A relative violation below this is rounding that a projection removes; a larger one shortens the step.
 const LARGEST_PROJECTED_VIOLATION: f64 = 1e-6;
@@ -97,7 +98,8 @@ impl Proposal {
         }
     }
 
-    /// Clips to the box; where a row is still violated, projects or moves back towards the center, which is admissible.
+    /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the center, which is
+    /// admissible: a little where the violation is small, by a factor of 0.7 at a time otherwise.
     pub(crate) fn admissible(mut self, set: &Polyhedron, state: &State) -> Result<Self, SubproblemError> {
         let violation = |x: &Vector| set.violation_near(x, &state.center);
         let allowed = FEASIBILITY.max(violation(&state.center));

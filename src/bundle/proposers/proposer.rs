@@ -9,7 +9,7 @@ use crate::{Polyhedron, Vector};
 
 /// One way to propose trial points.
 pub(crate) trait Proposer {
-    /// A trial point that should replace the last of those already `proposed`; none to leave it at that. The first entry of
+    /// A trial point that should replace the last of those already `proposed`; none if that one should stay. The first entry of
     /// `proposed` comes from the plain cuts; the list is empty when they are asked themselves.
     ///
     /// # Errors
@@ -20,10 +20,11 @@ pub(crate) trait Proposer {
         proposed: &[Proposal],
     ) -> Result<Option<Proposal>, SubproblemError>;
 
-    /// Takes note that the oracle failed at a trial point, its own or another's: its own next one is shorter, or waits.
+    /// Takes note that the oracle failed at a trial point of any proposer. Where the point was its own, a proposer takes a shorter step
+    /// next, or pauses.
     fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal);
 
-    /// Takes note of a trial point that was evaluated, its own or another's; the center has not moved yet.
+    /// Takes note of an evaluated trial point of any proposer; the center has not moved yet.
     fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>);
 }
 
@@ -43,7 +44,7 @@ pub(crate) struct Position<'a> {
 pub(crate) struct Trial<'a> {
     pub proposal: &'a Proposal,
     pub comparison: Comparison,
-    /// Whether the value is one of Θ; otherwise it is a lower bound that rules out a serious step.
+    /// Whether the value is that of Θ; otherwise it is a lower bound of Θ that rules out a serious step.
     pub accurate: bool,
     pub serious: bool,
 }
@@ -68,8 +69,8 @@ impl Comparison {
         }
     }
 
-    /// Test SS(i): enough of the predicted decrease came true. Rounding in the difference of the values is not held
-    /// against the step only where the values do fall.
+    /// Test SS(i) of \[SchrammZowe1992\]: Θ has fallen by enough of the predicted decrease. The values themselves must fall, because a
+    /// predicted decrease can be so small that no change at all would be enough.
     pub(crate) fn is_serious(&self, config: &BundleTrustConfig) -> bool {
         self.change < 0.0 && self.change <= config.serious_fraction * self.model_change
     }

@@ -8,7 +8,7 @@ use super::proposal::FEASIBILITY;
 use crate::qp::{EpigraphQp, EpigraphQpSolver, Gram, Metric, QpError, QpSolution};
 use crate::{Polyhedron, Vector};
 
-/// Relative violation of a row that a center may have.
+/// A center may violate a row by this much relative to its terms; d = 0 is admissible nevertheless.
 const LARGEST_VIOLATION: f64 = 1e-8;
 
 /// Slopes h_i, offsets a_i and identities of cuts.
@@ -17,7 +17,7 @@ pub(crate) struct Cuts<'a> {
     pub slopes: &'a [Vector],
     pub offsets: &'a [f64],
     pub ids: &'a [u64],
-    /// Inner products of the slopes, where the metric is the run's own times a weight.
+    /// Inner products of the slopes, only where the metric is that of the run times a weight.
     pub gram: Option<Gram<'a>>,
 }
 
@@ -70,8 +70,8 @@ impl Room {
     }
 }
 
-/// Sides of the rows as seen from the center; what is rounding of the center counts as zero, so that d = 0 is admissible. Rows
-/// that the center violates by more than that are rows that a step is to reach.
+/// Sides of the rows as seen from the center. A violation that is rounding of the center counts as zero, so that d = 0 is admissible;
+/// a row that the center violates by more is one that the step is to reach.
 fn slack(side: &Vector, at_center: &Vector, terms: &Vector, outward: fn(f64, f64) -> f64) -> Vector {
     Vector::from_fn(side.len(), |i, _| {
         let slack = side[i] - at_center[i];

@@ -9,17 +9,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CurvedModelConfig {
-    /// Number of variables above which the run does without the curved model, because its dense matrix becomes too dear.
+    /// Number of variables above which the run does without the curved model, because the dense matrix of the model becomes too dear.
     /// Default 200.
     pub max_dimension: usize,
-    /// Smaller over larger linearization error of a pair with the center from which both points lie on one smooth piece.
-    /// Default 0.2; in \[0, 1\]. Smaller sees curvature across kinks.
+    /// Ratio of the smaller to the larger linearization error of a pair with the center from which on both points count as lying on one
+    /// smooth piece. Default 0.2; in \[0, 1\]. Smaller sees curvature across kinks.
     pub same_piece_at_center: f64,
     /// The same for pairs of other cuts, whose curvature bends the model from afar. Default 0.97; in \[0, 1\].
     pub same_piece: f64,
-    /// Least cosine between r and s of a rank-one update. Default 1e-3; in (0, 1).
+    /// Least cosine between s, the difference of two points, and r = z − B s, where z is that of their subgradients, for a rank-one
+    /// update of the curvature B. Default 1e-3; in (0, 1).
     pub least_cosine: f64,
-    /// A cut enters the model if it lies above the center's quadratic by this share of the sizes involved. Default 0.2; ≥ 0.
+    /// A cut enters the model if, at its own point, it lies above the quadratic of the center by this share of the sizes involved.
+    /// Default 0.2; ≥ 0.
     pub contradiction: f64,
     /// Solves of the subproblem for one trial point, each with the multipliers of the one before. Default 3; ≥ 1.
     pub multiplier_rounds: usize,
@@ -30,9 +32,9 @@ pub struct CurvedModelConfig {
     pub newest_share: f64,
     /// Largest absolute value of one log ratio. Default 2; > 0.
     pub max_log_ratio: f64,
-    /// Prediction errors below this share of the changes compared count as equally good. Default 1e-3; > 0.
+    /// Prediction errors below this share of the changes that are compared count as equally good. Default 1e-3; > 0.
     pub error_floor: f64,
-    /// Null steps in a row after which the curved model pauses. Default 3; ≥ 1.
+    /// Null steps of the curved model in a row after which it pauses. Default 3; ≥ 1.
     pub max_null_steps: usize,
     /// Longest pause in evaluations; pauses double from one with every failure. Default 64; ≥ 1.
     pub max_pause: usize,

@@ -1,5 +1,5 @@
-//! The curved model proposes while its record of predictions is clearly better than that of the plain cuts, so that kinks turn
-//! it off; failures double the pause before it is used again.
+//! The curved model proposes while its record of predictions is clearly better than that of the plain cuts, so that kinks switch the
+//! model off. Failures double the pause before the model proposes again.
 
 pub(crate) mod config;
 mod model;
@@ -21,10 +21,11 @@ use model::CurvedModel;
 #[derive(Debug)]
 pub(crate) struct Curved {
     settings: CurvedModelConfig,
-    /// Weight added to the matrix B.
+    /// Weight of ‖d‖²/2 beside the matrix B.
     weight: f64,
     /// Running mean of the log ratio of the prediction errors.
     score: f64,
+    /// Null steps of the model in a row.
     nulls: usize,
     pause: Pause,
     /// The model at the center, which predicts every trial point, whoever proposes it.
@@ -60,7 +61,7 @@ impl Curved {
         best.map(|(_, step)| step).ok_or(SubproblemError::Unusable)
     }
 
-    /// Judges both predictions by what happened.
+    /// Judges both predictions by the actual change.
     fn compare(&mut self, change: f64, plain: f64, curved: f64) {
         let floor = self.settings.error_floor * (change.abs() + plain.abs());
         // Models that agree say nothing about each other.
@@ -71,7 +72,7 @@ impl Curved {
         }
     }
 
-    /// The weight comes down to what the observed change asks for.
+    /// Lowers the weight to what the observed change asks for, if the step was good.
     fn after_serious(&mut self, state: &State, config: &BundleTrustConfig, trial: &Trial<'_>) {
         self.nulls = 0;
         self.pause.succeed();
@@ -82,7 +83,7 @@ impl Curved {
         }
     }
 
-    /// The weight goes up at once, as the next matrix B knows the new point already.
+    /// Raises the weight after the first null step already: the next matrix B knows the new point.
     fn after_null(&mut self, state: &State, config: &BundleTrustConfig, trial: &Trial<'_>) {
         self.nulls += 1;
         if self.nulls >= self.settings.max_null_steps {
@@ -96,7 +97,7 @@ impl Curved {
     }
 }
 
-/// Factor by which the weight beside B rises at least after a null step, unless `weight_increase` is smaller.
+/// Least factor by which the weight beside B rises after a null step, unless `weight_increase` is smaller.
 const LEAST_INCREASE: f64 = 2.0;
 
 /// The weight beside B that the observed change asks for.

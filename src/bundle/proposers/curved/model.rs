@@ -1,12 +1,13 @@
 //! A second model with curvature, rebuilt from the bundle at every step.
 //!
 //! ```text
-//! q(d) = max_i { ⟨h_i + B_i p_i, d⟩ − (a_i − ½ p_iᵀB_i p_i)₊ + ½ dᵀB_i d }      over the center and the cuts that contradict it
+//! q(d) = max_i { ⟨h_i + B_i p_i, d⟩ − (a_i − ½ p_iᵀB_i p_i)₊ + ½ dᵀB_i d },   p_i = x̂ − y_i
+//! over the cut of the center, the cuts that contradict its quadratic, and all certified cuts
 //! min over d   max_i { slope_i·d − offset_i } + ½ dᵀ(Σ λ_i B_i + w W) d       λ: multipliers of the solve before, a few times
 //! ```
 //! Every piece has its own curvature B_i (pieces.rs); with the multipliers the subproblem has the Hessian of the Lagrangian of
 //! the epigraph problem, as in sequential quadratic programming for minimax.
-//! References: \[LuksanVlcek1998\] (cuts transported by their own curvature), symmetric rank one from below.
+//! The curvatures come from symmetric rank-one updates. Reference: \[LuksanVlcek1998\] (cuts transported by their own curvature).
 
 use super::config::CurvedModelConfig;
 use super::pieces::Curvature;
@@ -71,7 +72,7 @@ impl CurvedModel {
         values.map(|((h, a), b)| h.dot(d) - a + 0.5 * b.along(d)).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Multipliers of the plain subproblem; what its other cuts carry goes to the center, which stands for them here.
+    /// Multipliers of the plain subproblem. What the cuts outside this model carry there goes to the cut of the center.
     pub(super) fn first_multipliers(&self, state: &State) -> Vec<f64> {
         let of = |id: &u64| state.bundle.cut(*id).map_or(0.0, |cut| cut.multiplier);
         let mut multipliers: Vec<f64> = self.ids.iter().map(of).collect();

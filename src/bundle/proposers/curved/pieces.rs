@@ -6,7 +6,7 @@
 //!       other piece:  cut B down to sᵀBs ≤ 2 min(E_ij, E_ji), so that the piece stays below Θ at y_j
 //! ```
 //! B_i starts from zero and stays positive semidefinite; on a quadratic it is the multisecant matrix. A pair lies on one
-//! piece if its two linearization errors agree: both are ½ sᵀBs on a quadratic, and a kink in between drives them apart.
+//! piece if its two linearization errors agree: on a quadratic both are ½ sᵀBs, and a kink between the points drives them apart.
 
 use crate::bundle::cut::Cut;
 use crate::bundle::state::State;
@@ -75,7 +75,7 @@ impl Curvature {
         }
     }
 
-    /// Lowers sᵀB s to the limit.
+    /// Lowers sᵀB s to the limit, if it is larger.
     fn cut_down(&mut self, s: &Vector, limit: f64) {
         let bent = self.apply(s);
         let along = s.dot(&bent);

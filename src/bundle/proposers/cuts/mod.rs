@@ -1,4 +1,4 @@
-//! The plain cuts: the proposer that every run has, and on which stopping test and certificate rest.
+//! The plain cuts: every run has this proposer, and stopping test and certificate rest on it.
 //!
 //! ```text
 //! min over (d, v)  v + u‖d‖²/2,   ⟨h_i, d⟩ − a_i ≤ v,   x̂ + d ∈ U
@@ -34,7 +34,7 @@ impl Proposer for PlainCuts {
         let cuts = Cuts { gram, ..model.cuts() };
         let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
         let proposal = interpret(solution, (state, at.set), model);
-        // Every solution has −v ≥ u‖d‖²; one that promises less is not a solution.
+        // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution.
         let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
         if !(proposal.predicted_decrease >= least && proposal.step_length.is_finite()) {
             return Err(SubproblemError::Unusable);
@@ -49,7 +49,7 @@ impl Proposer for PlainCuts {
         }
     }
 
-    /// Sets the next weight, after trial points of its own only.
+    /// Sets the next weight, after trial points of the plain cuts only.
     fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
         if trial.proposal.origin != Origin::Cuts {
             return;

@@ -4,7 +4,8 @@
 //! m(d) = max_i { ⟨h_i, d⟩ − a_i },   h_i = g_i − 2c W p_i,   a_i = max(e_i + c‖p_i‖², |e_i|),   p_i = x̂ − y_i
 //! c = max( quantile of −E_ij/‖y_i − y_j‖² over concave pairs,  −e_i/‖p_i‖² )
 //! ```
-//! c = 0 as long as no pair of cuts proves Θ nonconvex: then this is the plain model of a convex function.
+//! c = 0 as long as no pair of cuts proves Θ nonconvex: m is then the plain cutting-plane model. The errors that the oracle promised are
+//! added to a_i.
 //! References: \[SchrammZowe1992\] (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
 
 use crate::Vector;
@@ -23,21 +24,21 @@ pub(crate) struct Model {
     ids: Vec<u64>,
     /// The curvature c added to make the model convex.
     pub convexification: f64,
-    /// θ_i ≤ 1: share of the cut itself in what the subproblem sees; the rest is the center's cut.
+    /// θ_i ≤ 1: share of cut i in the mixture that the subproblem takes in its place; the rest is the center's cut.
     shares: Vec<f64>,
     /// Position of the center's cut.
     center: Option<usize>,
-    /// Inner products of tilted slopes, where they are used.
+    /// Inner products of the tilted slopes, by slots, if c > 0 and the subproblem is solved with them.
     tilted: Option<Vec<Vec<f64>>>,
 }
 
-/// A cut this much steeper than the median drowns the others in rounding and is mixed with the center's cut.
+/// A cut this much steeper than the median and the center's cut drowns the others in rounding, and is mixed with the center's cut.
 const MAX_RELATIVE_SLOPE: f64 = 1e7;
 /// Pairs of cuts closer than this share of the length scale prove nothing about curvature.
 const LEAST_PAIR_DISTANCE: f64 = 1e-6;
 /// Linearization errors below this share of the size of Θ prove nothing about curvature.
 const LEAST_PAIR_ERROR: f64 = 1e-9;
-/// The same for the errors at the center, as a share of the one of pairs.
+/// The same limit for errors at the center, as a share of that of pairs.
 const CENTER_SHARE: f64 = 0.1;
 /// Number of variables from which subproblems are solved with the inner products of the slopes: with fewer, orthogonal factors of the
 /// slopes cost little.
@@ -67,7 +68,7 @@ impl Model {
             // A value that may be too high by its promised error must not put the cut above Θ.
             let promised = if cut.id == state.center_id { 0.0 } else { cut.excess() + state.center_error_bound() };
             let offset = match config.convexity {
-                // A cut above a convex Θ by what its value leaves open is put back to it; more than that is noise.
+                // A cut above a convex Θ by no more than its value leaves open is lowered. One that is far above shows noise.
                 Convexity::Convex => {
                     let excess = -(error + promised);
                     if excess > NOISE_MARGIN * (promised + rounding) {
@@ -104,8 +105,8 @@ impl Model {
         slopes.filter(|(_, share)| *share == 1.0).map(|(slope, _)| slope).collect()
     }
 
-    /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut: still below the model, and with the same
-    /// intersection with the center's cut.
+    /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut. The mixture lies below the model, and meets the center's cut
+    /// where the cut itself does.
     fn soften(&mut self, state: &State) {
         self.shares = vec![1.0; self.slopes.len()];
         let Some(center) = self.center else { return };
@@ -126,7 +127,8 @@ impl Model {
         }
     }
 
-    /// The inner products of the slopes for a weight, formed from those of the bundle; none where a cut was mixed.
+    /// The inner products of the slopes with the weight of the run, formed from those of the bundle; none where a cut was mixed, or tilted
+    /// without a table of its own.
     pub(crate) fn products<'s>(&'s self, state: &'s State) -> Option<Gram<'s>> {
         let rows = match &self.tilted {
             Some(tilted) => tilted,

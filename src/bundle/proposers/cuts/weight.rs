@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! u_int = 2u(1 − (Θ(y) − Θ(x̂))/v)                 minimiser of the parabola through both values and the slope v
-//! serious:  u ← max(u_int, u/8)   if the weight is not fresh and Θ(y) − Θ(x̂) ≤ m_R v;   u/2 after three in a row
-//! null:     u ← min(u_int, 10u)   if the new error exceeds max(ε_v, 2|v|) after three in a row
-//!           u ← 2u                if ẽ > 10 u‖d‖² after three in a row, of many variables, and Θ looks convex
+//! serious:  u ← max(u_int, u/8)   if the step before was serious too and Θ(y) − Θ(x̂) ≤ m_R v;   u/2 after three before this one
+//! null:     u ← min(u_int, 10u)   if the new error exceeds max(ε_v, 2|v|), after four before this one
+//!           u ← 2u                if ẽ > 10 u‖d‖², after three before this one, for many variables, and if Θ looks convex
+//!           u ← u_int in [2u, 10u]   at once, if Θ bends down along the step
 //! ```
-//! v = −predicted decrease. Reference: \[Kiwiel1990\] (proximity control); SS/NS tests: \[SchrammZowe1992\].
+//! v = −predicted decrease; steps count since the weight last changed, the one that changed it included.
+//! Reference: \[Kiwiel1990\] (proximity control); SS/NS tests: \[SchrammZowe1992\].
 
 use crate::BundleTrustConfig;
 use crate::bundle::proposers::proposal::Proposal;
@@ -18,12 +20,13 @@ const CONCAVITY: f64 = 1e-10;
 
 /// Aggregate errors beyond this many times u‖d‖² raise the weight.
 const MAX_ERROR_RATIO: f64 = 10.0;
-/// The factor by which they do.
+/// Factor by which such errors raise the weight.
 const ERROR_INCREASE: f64 = 2.0;
-/// Variables from which on they do: of few variables the cuts around the center are complete before that matters.
+/// Number of variables from which on such errors raise the weight: for few variables the cuts around the center are complete before
+/// such errors matter.
 const MANY_VARIABLES: usize = 100;
 
-/// Weight after a serious step; call before the center moves.
+/// Sets the weight after a serious step, before the center moves.
 pub(super) fn after_serious(state: &mut State, config: &BundleTrustConfig, comparison: &Comparison) {
     let u = state.weight;
     let mut changed = false;
@@ -37,7 +40,7 @@ pub(super) fn after_serious(state: &mut State, config: &BundleTrustConfig, compa
     state.variation = state.variation.map(|variation| variation.max(-2.0 * comparison.model_change));
 }
 
-/// Weight after a null step.
+/// Sets the weight after a null step.
 pub(super) fn after_null(state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
     let comparison = &trial.comparison;
     let u = state.weight;
@@ -64,8 +67,8 @@ fn may_rest_on_errors(state: &State) -> bool {
     !state.nonconvex && state.streak < -2 && state.center.len() >= MANY_VARIABLES
 }
 
-/// Whether the predicted decrease v = u‖d‖² + ẽ is nearly all error: the cuts were taken too far away to hold around the center,
-/// where a larger weight looks. Cuts that were made convex carry errors of another kind.
+/// Whether the predicted decrease −v = u‖d‖² + ẽ is nearly all error: the cuts were then taken too far away to describe Θ around the
+/// center, where a larger weight looks. Cuts that were made convex carry errors of another kind.
 fn rests_on_errors(proposal: &Proposal) -> bool {
     proposal.aggregate_error > MAX_ERROR_RATIO * proposal.aggregate_norm * proposal.step_length
 }
@@ -74,7 +77,7 @@ fn interpolated_weight(comparison: &Comparison, weight: f64) -> f64 {
     2.0 * weight * (1.0 - comparison.change / comparison.model_change)
 }
 
-/// The new cut's linearization error at the old center.
+/// The linearization error of the new cut at the center before the step.
 fn error(comparison: &Comparison) -> f64 {
     comparison.slope - comparison.change
 }

@@ -8,20 +8,21 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ExplorationConfig {
-    /// Number of variables above which the run does without exploration, because its dense matrix becomes too dear. Default
+    /// Number of variables above which the run does without exploration, because the dense matrix S becomes too dear. Default
     /// 200.
     pub max_dimension: usize,
     /// A run has stalled when the predicted decrease times the evaluations is below this share of the decrease so far. Default
     /// 0.01; > 0. Larger explores earlier.
     pub stall_share: f64,
-    /// An exploration must promise this many times more than the trial point it replaces. Default 10; ≥ 1.
+    /// An exploration must promise this many times the decrease of the trial point that it replaces. Default 10; ≥ 1.
     pub min_gain: f64,
-    /// Factor by which the weight of an exploration lies below that of the run, and between the weights of two. Default 100;
-    /// > 1.
+    /// Least factor by which the weight of an exploration lies below that of the run, and factor between the weights tried. Default
+    /// 100; > 1.
     pub weight_factor: f64,
     /// Weights tried at one center. Default 2; ≥ 1.
     pub weights: usize,
-    /// Least cosine of z and s in S. Default 1e-2; in (0, 1).
+    /// Least cosine of s and z, the differences of two points and of their subgradients, with which a pair enters the matrix
+    /// S = Σ z zᵀ/⟨z, s⟩ of curvature seen. Default 1e-2; in (0, 1). A smaller cosine counts as this one.
     pub least_cosine: f64,
     /// Longest pause in evaluations; pauses double from one with every failure. Default 64; ≥ 1.
     pub max_pause: usize,

@@ -2,11 +2,11 @@
 //!
 //! ```text
 //! min over d   max_i { slope_i·d − offset_i } + ½ dᵀ(S + w W) d
-//! S = Σ z zᵀ/⟨z, s⟩                                      more than the curvature seen, none where no subgradient changed
+//! S = Σ z zᵀ/⟨z, s⟩                           at least the curvature seen; none in directions in which no subgradient changed
 //! ```
 //! s and z are the differences of points and subgradients between the other cuts and the center. When the promised decrease
 //! has become tiny beside what the run has gained, one such trial looks along long flat valleys. Failures double the pause
-//! before the next.
+//! before the next exploration.
 
 pub(crate) mod config;
 
