@@ -3,7 +3,7 @@
 
 use crate::linalg::first_non_finite;
 use crate::panics::evaluate_without_panic;
-use crate::{Answer, Evaluation, NonsmoothObjective, OracleError, Request};
+use crate::{Answer, Evaluation, InputError, NonsmoothObjective, OracleError, Request};
 
 /// Numbers beyond this are refused, because sums of their squares could overflow.
 const LARGEST: f64 = 1e150;
@@ -68,11 +68,15 @@ pub(super) fn evaluate(oracle: &mut dyn Oracle, request: &Request<'_, ()>) -> Ou
     }
 }
 
+fn negative(error_bound: f64) -> InputError {
+    InputError::OutOfRange { setting: "error bound", value: error_bound.to_string(), allowed: "≥ 0" }
+}
+
 fn check(answer: Answer<()>, expected: usize) -> Outcome {
     let evaluation = answer.evaluation();
     let found = evaluation.subgradient.len();
     if expected != found {
-        return Outcome::Failure(crate::InputError::Dimension { what: "subgradient", expected, found }.into());
+        return Outcome::Failure(InputError::Dimension { what: "subgradient", expected, found }.into());
     }
     if evaluation.value == f64::NEG_INFINITY {
         return Outcome::MinusInfinity;
@@ -85,7 +89,8 @@ fn check(answer: Answer<()>, expected: usize) -> Outcome {
     let finite = |what, finite: bool| if finite { None } else { Some(OracleError::NotFinite { what }) };
     let failure = finite("value", evaluation.value.is_finite())
         .or_else(|| finite("subgradient", first_non_finite(evaluation.subgradient.as_slice()).is_none()))
-        .or_else(|| finite("error bound", evaluation.error_bound.is_finite()));
+        .or_else(|| finite("error bound", evaluation.error_bound.is_finite()))
+        .or_else(|| (evaluation.error_bound < 0.0).then(|| negative(evaluation.error_bound).into()));
     let small = |what, size: f64| (size > LARGEST).then_some(OracleError::TooLarge { what, size, allowed: LARGEST });
     let failure = failure
         .or_else(|| small("value", evaluation.value.abs()))

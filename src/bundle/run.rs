@@ -94,7 +94,9 @@ impl Run<'_, '_> {
         if self.center_is_too_coarse(&proposal) {
             return self.refine_center(&proposal);
         }
-        self.check_length(&proposal)?;
+        if let Break(word) = self.check_length(&proposal) {
+            return Break(self.end_excursion().unwrap_or(word));
+        }
         let accuracy = self.wanted_accuracy(proposal.predicted_decrease);
         let target = self.state.center_value - self.method.config.serious_fraction * proposal.predicted_decrease;
         // The correction of a rejected step of the composite model needs the Jacobian at the rejected point.
@@ -240,6 +242,9 @@ impl Run<'_, '_> {
                 (event.value, event.work) = (Some(evaluation.value), evaluation.work);
                 if let Some((known, noted)) = self.note(&center, evaluation.linearization.take()) {
                     event.linearized = noted;
+                    // The proof that an excursion carries is one of the old value and Jacobian.
+                    self.end_excursion();
+                    self.proof = None;
                     self.rebase(&center, evaluation.value, known);
                 }
                 self.add_cut(center.clone(), &evaluation, false);

@@ -134,6 +134,9 @@ fn cut_residual(qp: &EpigraphQp<'_>, solution: &QpSolution, floor: &SizeFloor) -
     for ((slope, &offset), &pi) in qp.slopes.iter().zip(qp.offsets).zip(&solution.cut_multipliers) {
         let (value, terms) = value_and_terms(slope.iter(), &solution.step);
         let gap = value - offset - solution.epigraph;
+        if gap.is_nan() {
+            return f64::INFINITY;
+        }
         let size = terms + offset.abs() + solution.epigraph.abs() + floor.cut_share * floor.norm(slope.iter());
         raise(&mut worst, ratio(gap.max(0.0), size));
         raise(&mut worst, pi.abs().min(1.0) * ratio((-gap).max(0.0), size));

@@ -1,7 +1,7 @@
 //! Jacobians and outer functions that fail: typed errors, notes, and the run that goes on with cuts.
 
 use crate::common::{cb3, v};
-use nonsmooth::composite::{FnOuter, Linearization, Maximum, OuterFunction, weighted_gram};
+use nonsmooth::composite::{FnOuter, InactiveConstraints, Linearization, Maximum, OuterFunction, weighted_gram};
 use nonsmooth::{
     Answer, BundleTrust, BundleTrustConfig, CompositeFunction, Evaluation, FnObjective, InputError, Matrix,
     NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Report, Request, StepKind, Termination, Vector,
@@ -192,6 +192,68 @@ fn an_outer_function_that_panics_or_misses_entries_is_named() {
     assert_eq!(reason(panicking), "the outer function panicked: no table below 2.5");
     let short = FnOuter::new(move |c: &Vector| if c[0] < 2.5 { (c.norm_squared(), v(&[1.0])) } else { bowl(c) });
     assert_eq!(reason(short), "the subgradient of the outer function has 1 entries, expected 2");
+}
+
+#[test]
+fn steps_along_which_the_outer_function_overflows_are_shortened() {
+    let cosine = FnOuter::new(|c: &Vector| (2.0 * c[0].cosh(), v(&[2.0 * c[0].sinh()])));
+    let theta = CompositeFunction::new(1, cosine, |x: &Vector| (x.clone(), Matrix::identity(1, 1)));
+    // The first linearization leads from 10 to −10⁴.
+    let report = method().minimize(&theta, v(&[10.0])).unwrap();
+    let ended = matches!(report.termination, Termination::Stationary { .. } | Termination::NoiseLimit { .. });
+    assert!(ended && (report.value - 2.0).abs() < 1e-9, "{report}");
+}
+
+#[test]
+fn the_number_of_outputs_may_change_from_point_to_point() {
+    let calls = Cell::new(0);
+    let theta = CompositeFunction::new(2, Maximum, |x: &Vector| {
+        calls.set(calls.get() + 1);
+        let (circle, a, b) = (x[0].powi(2) + (x[1] - 1.0).powi(2), x[0], x[1]);
+        let mut outputs = vec![circle + b - 1.0, -circle + b + 1.0];
+        let mut rows = vec![2.0 * a, 2.0 * b - 1.0, -2.0 * a, 3.0 - 2.0 * b];
+        if calls.get() % 2 == 0 {
+            outputs.push(-100.0);
+            rows.extend([0.0, 0.0]);
+        }
+        (v(&outputs), Matrix::from_row_slice(outputs.len(), 2, &rows))
+    });
+    let report = method().minimize(&theta, v(&[-1.5, 2.0])).unwrap();
+    let ended = matches!(report.termination, Termination::Stationary { .. } | Termination::NoiseLimit { .. });
+    assert!(ended && report.value.abs() < 1e-6 && report.counts.failed == 0, "{report}");
+}
+
+/// c(x) = x with the constraint x ≤ 0.05 inside, next to the minimum 0 of c².
+struct Threshold;
+
+impl NonsmoothObjective for Threshold {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        1
+    }
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        Some(&Smooth(|c| if c > 0.06 { panic!("no table above 0.06") } else { [c * c, 2.0 * c, 2.0] }))
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let x = request.point[0];
+        let mut evaluation = Evaluation::exact(x * x, v(&[2.0 * x]), ());
+        let inactive = InactiveConstraints { slacks: v(&[0.05 - x]), jacobian: Matrix::from_element(1, 1, -1.0) };
+        evaluation.linearization = request.linearization.map(|_| {
+            let (outputs, jacobian) = (v(&[x]), Matrix::identity(1, 1));
+            Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: (x < 0.05).then_some(inactive) })
+        });
+        Ok(Answer::Accurate(evaluation))
+    }
+}
+
+#[test]
+fn a_proof_outlives_an_outer_function_that_fails_beyond_it() {
+    let report = method().minimize(&Threshold, v(&[-1.0])).unwrap();
+    assert!(matches!(report.termination, Termination::Stationary { .. }) && report.value < 1e-12, "{report}");
+    assert!(report.certificate.is_some_and(|certificate| certificate.composite.is_some()));
 }
 
 #[test]

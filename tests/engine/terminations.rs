@@ -168,3 +168,42 @@ fn wrong_subgradient_never_ends_as_confirmed() {
     let report = minimize(&theta, None, &[1.0, 2.0]);
     assert!(!report.termination.is_confirmed(), "{report}");
 }
+
+/// |x| with an error bound that is none.
+struct Overconfident;
+
+impl NonsmoothObjective for Overconfident {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        1
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let x = request.point[0];
+        let mut evaluation = Evaluation::exact(x.abs(), v(&[x.signum()]), ());
+        evaluation.error_bound = -1.0;
+        Ok(Answer::Accurate(evaluation))
+    }
+}
+
+#[test]
+fn a_negative_error_bound_is_a_typed_error() {
+    let error = method(BundleTrustConfig::default()).minimize(&Overconfident, v(&[1.0])).unwrap_err();
+    assert_eq!(error.to_string(), "the first evaluation failed: error bound = -1 is not allowed; allowed: ≥ 0");
+}
+
+/// On these functions Θ bends down along a null step, after which the weight at least doubles.
+#[test]
+fn the_weight_may_rise_slowly() {
+    for name in ["OET6", "Rosenbrock", "WF"] {
+        let problem = testset::find(name).unwrap();
+        let theta = FnObjective::new(problem.start.len(), |x: &Vector| {
+            let (value, subgradient) = problem.evaluate(x.as_slice());
+            (value, v(&subgradient))
+        });
+        let config = BundleTrustConfig { weight_increase: 1.5, ..Default::default() };
+        let report = method(config).minimize(&theta, v(&problem.start)).unwrap();
+        assert!(report.termination.is_stationary() && report.value < report.start_value, "{name}: {report}");
+    }
+}

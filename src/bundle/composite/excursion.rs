@@ -74,7 +74,8 @@ impl Run<'_, '_> {
                 continue;
             };
             let first_weight = Composite::new(self.state.first_weight).weight;
-            if let Some((proposal, _)) = self.composite_step(&proof.base, first_weight, Some(&set), None)? {
+            // A fault of h beyond the constraints takes nothing from the proof.
+            if let Continue(Some((proposal, _))) = self.composite_step(&proof.base, first_weight, Some(&set), None) {
                 let (proof, left) = (Box::new(proof), MAX_EVALUATIONS - 1);
                 self.depart(Excursion { proof, last_step: false, base: None, weight: first_weight, left });
                 let predicted_decrease = self.small();
@@ -125,7 +126,9 @@ impl Run<'_, '_> {
         }
         let base = excursion.base.take().filter(|_| excursion.left > 0);
         let Some(base) = base else { return self.prove(*excursion.proof) };
-        let found = self.composite_step(&base, excursion.weight, None, None)?;
+        let Continue(found) = self.composite_step(&base, excursion.weight, None, None) else {
+            return self.prove(*excursion.proof);
+        };
         let least = |proposal: &Proposal| base.value - PESSIMISM * proposal.predicted_decrease;
         let center = self.state.center_value;
         let Some((proposal, _)) = found.filter(|(proposal, _)| least(proposal) < center - self.small()) else {

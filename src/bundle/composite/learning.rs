@@ -157,6 +157,8 @@ fn output_scales(outer: &dyn OuterFunction, known: &Linearization, reach: &Vecto
     let sizes = jacobian.abs();
     let change = &sizes * reach;
     let rise = |sign: f64| outer.value(&(outputs + &change * sign)) - outer.value(outputs);
-    let within_reach = without_panic(|| rise(1.0).max(rise(-1.0))).ok().filter(|rise| rise.is_finite());
-    Some(OutputScales { slopes: sizes.tr_mul(&weights.abs()), within_reach: within_reach.unwrap_or(0.0).max(0.0) })
+    // h need not be defined, or finite, on both sides.
+    let known_rise = |sign: f64| without_panic(|| rise(sign)).ok().filter(|rise| rise.is_finite());
+    let within_reach = [1.0, -1.0].into_iter().filter_map(known_rise).fold(0.0, f64::max);
+    Some(OutputScales { slopes: sizes.tr_mul(&weights.abs()), within_reach })
 }

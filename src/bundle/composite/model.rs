@@ -66,11 +66,13 @@ impl OuterCut {
     fn at(outer: &dyn OuterFunction, outputs: Vector) -> Result<Self, SubproblemError> {
         let (value, subgradient) = (outer.value(&outputs), outer.subgradient(&outputs));
         let (expected, found) = (outputs.len(), subgradient.len());
-        if expected == found {
-            Ok(Self { value, subgradient, outputs, multiplier: 0.0 })
-        } else {
-            Err(SubproblemError::OuterSize { expected, found })
+        if expected != found {
+            return Err(SubproblemError::OuterSize { expected, found });
         }
+        if !(value.is_finite() && subgradient.iter().all(|entry| entry.is_finite())) {
+            return Err(SubproblemError::OuterNotFinite);
+        }
+        Ok(Self { value, subgradient, outputs, multiplier: 0.0 })
     }
 
     /// The linearization error h(c) − h(c_j) − ⟨w_j, c − c_j⟩ ≥ 0 at outputs c where h has the value given.

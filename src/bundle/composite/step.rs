@@ -5,6 +5,7 @@ use super::{Base, FACTOR};
 use crate::bundle::proposers::aggregate::{aggregate_sizes, slack_error};
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::run::Run;
+use crate::composite::Linearization;
 use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
@@ -40,7 +41,7 @@ impl Run<'_, '_> {
     }
 
     /// The step of the model at a base with a weight, and the trial point that it leads to; none where the subproblem cannot be
-    /// solved. `set`: the admissible set, if it is not that of the run; `origin`: the vector from the base to the point that
+    /// solved, or where h overflows along the step. `set`: the admissible set, if it is not that of the run; `origin`: the vector from the base to the point that
     /// lengths are measured from, if this point is not the base.
     pub(super) fn composite_step(
         &mut self,
@@ -71,11 +72,13 @@ impl Run<'_, '_> {
         let (Some(outer), Some(composite)) = (self.outer, &mut self.composite) else {
             return Err(SubproblemError::Unusable);
         };
-        let jacobian = &base.linearization.jacobian;
+        let Linearization { outputs, jacobian, .. } = &base.linearization;
+        // The number of outputs may change from point to point.
+        composite.weights.take_if(|weights| weights.len() != outputs.len());
         let model = CompositeModel {
             outer,
             linearization: &base.linearization,
-            value: outer.value(&base.linearization.outputs),
+            value: outer.value(outputs),
             base: &base.point,
             norm: &self.state.norm,
             set: set.unwrap_or(&self.set),
@@ -84,7 +87,7 @@ impl Run<'_, '_> {
             origin,
         };
         composite.bent = false;
-        if !composite.bends || outer.curvature(&base.linearization.outputs, jacobian).is_some() {
+        if !composite.bends || outer.curvature(outputs, jacobian).is_some() {
             return model.solve(&mut self.solver);
         }
         if composite.weights.is_none() {

@@ -60,6 +60,8 @@ pub(crate) enum SubproblemError {
     NegativeCurvature { eigenvalue: f64 },
     #[error("the subgradient of the outer function has {found} entries, expected {expected}")]
     OuterSize { expected: usize, found: usize },
+    #[error("the outer function is not finite at the outputs that a step leads to")]
+    OuterNotFinite,
     #[error("the outer function panicked: {message}")]
     OuterPanicked { message: String },
     #[error("its solution is not finite or contradicts itself")]

@@ -49,7 +49,7 @@ pub(super) fn after_null(state: &mut State, config: &BundleTrustConfig, trial: &
     state.variation = Some(variation);
     let interpolated = interpolated_weight(comparison, u);
     if is_concave_ray(state, config, comparison) {
-        let factor = (interpolated / u).clamp(2.0, config.weight_increase);
+        let factor = (interpolated / u).clamp(2.0, config.weight_increase.max(2.0));
         state.set_weight(u * factor, config);
         state.streak = -1;
     } else if error(comparison) > variation.max(-2.0 * comparison.model_change) && state.streak < -3 {
@@ -73,8 +73,11 @@ fn rests_on_errors(proposal: &Proposal) -> bool {
     proposal.aggregate_error > MAX_ERROR_RATIO * proposal.aggregate_norm * proposal.step_length
 }
 
+/// The weight at which the parabola through both values with the predicted slope has its minimum at the trial point; the weight itself
+/// where neither Θ nor the model has changed.
 fn interpolated_weight(comparison: &Comparison, weight: f64) -> f64 {
-    2.0 * weight * (1.0 - comparison.change / comparison.model_change)
+    let ratio = comparison.change / comparison.model_change;
+    if ratio.is_nan() { weight } else { 2.0 * weight * (1.0 - ratio) }
 }
 
 /// The linearization error of the new cut at the center before the step.
