@@ -34,11 +34,13 @@ pub(in crate::bundle) type Noted = Option<Result<(), String>>;
 
 impl Composite {
     /// Learns what came of a step of the model: `ratio` is the decrease over the predicted one, none if the oracle failed.
-    fn learn(&mut self, proposal: &Proposal, ratio: Option<f64>, accepted: bool) {
+    fn learn(&mut self, proposal: &Proposal, ratio: Option<f64>, accepted: bool, met: bool) {
         self.weight = proposal.weight;
         if accepted {
             self.failures = 0;
-            self.pause.succeed();
+            if !met {
+                self.pause.succeed();
+            }
             self.longest = f64::INFINITY;
             if ratio.is_some_and(|ratio| ratio >= GOOD_RATIO) {
                 self.weight /= FACTOR;
@@ -77,6 +79,7 @@ impl Run<'_, '_> {
             return noted;
         }
         let own = trial.proposal.origin == Origin::CompositeModel;
+        let mut met = false;
         if let (Some(outer), Some(base)) = (self.outer, &composite.base) {
             let seen = Seen { outer, base, point, change: trial.comparison.change, end: known.as_ref() };
             if !own {
@@ -84,13 +87,14 @@ impl Run<'_, '_> {
                     composite.pause.prolong();
                 }
             } else if composite.kinks.met(&seen, trial.proposal.predicted_decrease, trial.serious) {
+                met = true;
                 composite.pause.fail(MAX_PAUSE);
             }
         }
         let correcting = std::mem::take(&mut composite.correcting);
         if own && (trial.serious || !correcting) {
             let ratio = trial.comparison.change / trial.comparison.model_change;
-            composite.learn(trial.proposal, Some(ratio), trial.serious);
+            composite.learn(trial.proposal, Some(ratio), trial.serious, met);
         }
         if trial.serious {
             self.rebase(point, value, known);
@@ -134,7 +138,7 @@ impl Run<'_, '_> {
             excursion.give_up();
         } else if proposal.origin == Origin::CompositeModel {
             composite.correcting = false;
-            composite.learn(proposal, None, false);
+            composite.learn(proposal, None, false, false);
         }
     }
 

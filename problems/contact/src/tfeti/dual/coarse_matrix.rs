@@ -3,7 +3,8 @@
 //! ```text
 //! G_T Gqᵀ = [ K_II  K_IC ]     C: amplitudes of subdomains with contact rows,  U: what the contact rows of the active set add
 //!           [ K_CI  K_CC + U ]
-//! S = K_CC − K_CI K_II⁻¹ K_IC once per shape;    b_C ← b_C − K_CI K_II⁻¹ b_I,   (S + U) a_C = b_C,   K_II a_I = b_I − K_IC a_C
+//! S = K_CC − K_CI K_II⁻¹ K_IC once per shape;    method.md (4.9)
+//! b_C ← b_C − K_CI K_II⁻¹ b_I,   (S + U) a_C = b_C,   K_II a_I = b_I − K_IC a_C
 //! ```
 //! K = G_E G_Eᵀ is symmetric and sparse, and singular where contact alone holds a body. K + I_C is positive definite. Its factor
 //! serves both ends: its leading columns eliminate I, and its trailing block L₂₂ gives S = L₂₂L₂₂ᵀ − I_C. The weight of I_C is one,

@@ -176,3 +176,97 @@ fn gram(pattern: &CoarsePattern, [rows, transposed]: [&Csr; 2], count: usize) ->
     let columns: Vec<Vec<f64>> = (0..rows.column_count() / MOTIONS).into_par_iter().map(columns_of).collect();
     columns.concat()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::equilibrium::{Configuration, ContactProblem};
+    use crate::linear::dense::DenseLu;
+    use crate::scene::{Scene, hertz, signorini};
+    use crate::tfeti::TornSolver;
+    use crate::tfeti::torn::PreconditionerKind;
+    use faer::Mat;
+
+    /// The coarse space of a flat scene, with a motion of all subdomains grounded if asked for.
+    fn coarse_space(scene: Scene, subdomains: [usize; 3], ground: bool) -> CoarseSpace {
+        let scene = Scene { mesh: [6; 3], subdomains, ..scene };
+        let problem = Arc::new(ContactProblem::new(scene).expect("a preset"));
+        let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::None).expect("a torn scene");
+        let surface = problem.scene.spline_surface().expect("a preset");
+        let controls = vec![95.0; surface.control_count()];
+        let configuration = Configuration::new(&problem, &controls).expect("held bodies");
+        let system = solver.model().factorize(&configuration.blocks).expect("factors");
+        let amplitudes = MOTIONS * system.parts.len();
+        let motion: Vec<f64> = (0..amplitudes).map(|index| 0.3 * (index as f64).sin()).collect();
+        CoarseSpace::new(solver.model(), &system, if ground { vec![motion] } else { vec![] }).expect("a coarse space")
+    }
+
+    /// The rows of G as columns of a dense matrix, times one number per row of B.
+    fn dense(space: &CoarseSpace, count: usize) -> Mat<f64> {
+        let mut columns = Mat::<f64>::zeros(space.rows.column_count(), count);
+        for row in 0..count {
+            space.rows.row(row).for_each(|(index, value)| columns[(index, row)] = value);
+        }
+        columns
+    }
+
+    #[test]
+    fn condensed_coarse_matrices_solve_as_dense_ones() {
+        let cases = [
+            (signorini(), [1, 1, 1], false),
+            (signorini(), [2, 3, 2], false),
+            (signorini(), [3, 3, 3], true),
+            (hertz(), [2, 2, 3], false),
+        ];
+        for (scene, subdomains, ground) in cases {
+            let space = coarse_space(scene.expect("a preset"), subdomains, ground);
+            let (count, first) = (space.rows.column_count(), space.equality_count);
+            // Every other contact row, with another row added on one side, as friction does.
+            let chosen: Vec<usize> = (first..space.row_count() - 1).step_by(2).collect();
+            let glued = dense(&space, first);
+            let mut matrix = &glued * glued.transpose();
+            let all = dense(&space, space.row_count());
+            for &row in &chosen {
+                matrix += (all.col(row) + 0.3 * all.col(row + 1)) * all.col(row).transpose();
+            }
+            let held = space.pattern.contact_amplitudes();
+            for motion in &space.grounded {
+                held.iter().for_each(|&i| held.iter().for_each(|&j| matrix[(i, j)] += motion[i] * motion[j]));
+            }
+            let factor = space.condensed().with_contact(|add| {
+                for &row in &chosen {
+                    let (trial, test) = (space.combine(&[(row, 1.0), (row + 1, 0.3)]), space.combine(&[(row, 1.0)]));
+                    for &(column, right) in &test {
+                        trial.iter().for_each(|&(row, left)| add(row, column, left * right));
+                    }
+                }
+            });
+            let lu = DenseLu::new(&matrix);
+            assert!(factor.pivot_ratio() > 1e-6 && lu.pivot_ratio() > 1e-6, "{subdomains:?}");
+            let right: Vec<f64> = (0..count).map(|index| (1.7 * index as f64).cos()).collect();
+            let close = |found: &[f64], expected: &[f64]| {
+                let scale = expected.iter().fold(0.0, |scale: f64, entry| scale.max(entry.abs()));
+                found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-11 * scale)
+            };
+            let (mut found, mut expected) = (right.clone(), right.clone());
+            factor.solve_in_place(&mut found);
+            lu.solve_in_place(&mut expected);
+            assert!(close(&found, &expected), "{subdomains:?}");
+            let (mut found, mut expected) = (right.clone(), right);
+            factor.solve_transpose_in_place(&mut found);
+            lu.solve_transpose_in_place(&mut expected);
+            assert!(close(&found, &expected), "{subdomains:?}, transposed");
+        }
+    }
+
+    #[test]
+    fn subdomains_without_contact_are_eliminated_sparsely() {
+        let space = coarse_space(signorini().expect("a preset"), [3, 3, 3], false);
+        assert_eq!((space.pattern.interior_count(), space.pattern.contact_amplitudes().len()), (6 * 18, 6 * 9));
+        let space = coarse_space(hertz().expect("a preset"), [3, 3, 6], false);
+        assert_eq!((space.pattern.interior_count(), space.pattern.contact_amplitudes().len()), (6 * 90, 6 * 18));
+        // 27 neighbours at most, of which the lower triangle and the dense block of the contact subdomains are stored.
+        let (entries, dense) = (space.pattern.lower.entry_count(), 6 * 108 * (6 * 108 + 1) / 2);
+        assert!(3 * entries < dense, "{entries} of {dense}");
+    }
+}
