@@ -13,7 +13,8 @@ use crate::tfeti::derivative::{MovedSurface, height_sensitivities};
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::NewtonSettings;
 use crate::tfeti::torn::{
-    Communication, InProcess, PreconditionerKind, TornModel, TornSystem, TornVector, whole_bodies,
+    Communication, InProcess, PreconditionerKind, SubdomainFactors, TornModel, TornSubdomain, TornSystem, TornVector,
+    whole_bodies,
 };
 use std::sync::Arc;
 use std::time::Instant;
@@ -308,18 +309,20 @@ impl TornSolver {
         Ok(whole_bodies(&self.model, &state.blocks, &state.displacement))
     }
 
-    /// Strain energy ½ uᵀK u of the subdomains of this process, N·mm.
+    /// Strain energy ½ uᵀK u, N·mm.
     pub fn strain_energy(&self, state: &TornState) -> f64 {
         let pattern = &self.model.pattern.pattern;
-        let mut image = vec![0.0; pattern.dimension()];
-        let mut energy = 0.0;
-        for (subdomain, part) in self.model.subdomains.iter().zip(&state.system.parts) {
-            let Some(factors) = &part.factors else { continue };
+        let energy = |factors: &SubdomainFactors, subdomain: &TornSubdomain| {
             let u = &state.displacement.0[subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count()];
+            let mut image = vec![0.0; pattern.dimension()];
             pattern.multiply(&factors.stiffness, u, &mut image);
-            energy += 0.5 * dot(u, &image);
-        }
-        energy
+            0.5 * dot(u, &image)
+        };
+        let piece = |index: usize| {
+            let factors = state.system.parts[index].factors.iter();
+            factors.map(|factors| energy(factors, &self.model.subdomains[index])).collect()
+        };
+        self.model.share_pieces(piece).concat().into_iter().sum()
     }
 }
 

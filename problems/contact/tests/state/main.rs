@@ -8,6 +8,6 @@ mod fields;
 mod friction_too_weak;
 mod paths_agree;
 mod scene_structure;
+mod several_processes;
 mod successive_approximations;
-mod two_processes;
 mod vtk_files;

@@ -16,7 +16,7 @@ use crate::tfeti::torn::RowVector;
 impl TornContact<'_> {
     /// Terms of the error of J, one per row of B_E and one per contact node; `direction` is j.
     pub fn weighted_residuals(&self, iterate: &Iterate, adjoint: &TornAdjoint, direction: &RowVector) -> Vec<f64> {
-        let image = self.operator.gather(&adjoint.displacement);
+        let image = self.operator.gather(adjoint.displacement.clone());
         let residual = self.law_residual(iterate);
         let (glued, eta) = adjoint.multipliers.split();
         let mut terms: Vec<f64> = glued.iter().zip(iterate.jumps.iter()).map(|(eta, jump)| eta * jump).collect();

@@ -21,18 +21,21 @@ pub fn height_sensitivities(
     let scene = &model.problem.scene.lower;
     let subdomains = model.subdomains.par_iter().zip(&system.parts);
     let sums: Vec<Vec<(usize, f64)>> = subdomains
-        .filter(|(subdomain, part)| subdomain.body == 0 && part.factors.is_some())
-        .map(|(subdomain, _)| {
+        .map(|(subdomain, part)| {
+            if subdomain.body != 0 || part.factors.is_none() {
+                return vec![];
+            }
             let dofs = subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count();
             let (u, p) = (&displacement.0[dofs.clone()], &adjoint.displacement.0[dofs]);
             column_sensitivities(lower, &subdomain.place, &scene.material, &scene.loads, u, p)
         })
         .collect();
+    let pieces =
+        model.share_pieces(|index| sums[index].iter().flat_map(|&(column, value)| [column as f64, value]).collect());
     let mut heights = vec![0.0; model.problem.grid.column_count()];
-    for (column, value) in sums.into_iter().flatten() {
-        heights[column] += value;
+    for pair in pieces.concat().chunks_exact(2) {
+        heights[pair[0] as usize] += pair[1];
     }
-    model.communication.sum(&mut heights);
     // The gap F² − F_α falls as the surface rises.
     let nodes = model.problem.boundary.points.iter().zip(&model.constraints.normalisation);
     for (height, (point, nu)) in heights.iter_mut().zip(nodes) {

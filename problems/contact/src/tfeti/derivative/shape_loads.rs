@@ -58,9 +58,9 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
         );
         if !model.is_whole() {
             for column in 0..changes.len() {
-                let mut values: Vec<f64> = resultants.iter().map(|resultant| resultant.get(column)).collect();
-                model.communication.sum(&mut values);
-                for (resultant, value) in resultants.iter_mut().zip(values) {
+                let of = |index: usize| resultants[6 * index..6 * (index + 1)].iter().map(|value| value.get(column));
+                let pieces = model.share_pieces(|index| of(index).collect());
+                for (resultant, value) in resultants.iter_mut().zip(pieces.concat()) {
                     resultant.set(column, value);
                 }
             }

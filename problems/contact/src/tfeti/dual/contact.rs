@@ -52,7 +52,7 @@ impl<'a> TornContact<'a> {
         precision: Precision,
     ) -> Self {
         let (boundary, constraints) = (&operator.model.problem.boundary, &operator.model.constraints);
-        let mut constant = operator.gather(&operator.loaded_displacement());
+        let mut constant = operator.gather(operator.loaded_displacement());
         let nodes = boundary.points.iter().zip(&constraints.normalisation);
         for ((point, nu), gap) in nodes.zip(gaps) {
             constant.contact_mut()[point.start] -= gap / nu;

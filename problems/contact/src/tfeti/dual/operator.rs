@@ -75,7 +75,7 @@ impl<'a> DualOperator<'a> {
         self.applications.fetch_add(1, Ordering::Relaxed);
         let mut torn = self.model.zeros();
         self.solve_subdomains(multipliers, &mut torn.0, solve);
-        self.gather(&torn)
+        self.gather(torn)
     }
 
     /// F Λ for a block of columns in its own precision, of which `count` are counted. `torn`: room for a torn block.
@@ -122,16 +122,15 @@ impl<'a> DualOperator<'a> {
         });
     }
 
-    /// B u of a torn displacement, summed over all processes.
-    pub fn gather(&self, torn: &TornVector) -> RowVector {
-        self.gather_columns(&torn.0)
+    /// B u of the torn displacements of all processes.
+    pub fn gather(&self, mut torn: TornVector) -> RowVector {
+        self.gather_columns(&mut torn.0)
     }
 
-    fn gather_columns<V: Entry>(&self, torn: &[V]) -> RowVector<V> {
+    fn gather_columns<V: Entry>(&self, torn: &mut [V]) -> RowVector<V> {
         let constraints = &self.model.constraints;
-        let mut rows = constraints.multiply(&constraints.rows, torn);
-        self.model.exchange(&mut rows);
-        rows
+        self.model.share_interface(torn);
+        constraints.multiply(&constraints.rows, torn)
     }
 
     /// Calls `work(first dof, factors, part)` with the parts of a torn vector that belong to this process and clears the others.

@@ -49,9 +49,8 @@ impl<'a> Preconditioner<'a> {
             }
             None => values.fill(V::ZERO),
         });
-        let mut result = constraints.multiply(&constraints.weighted, torn);
-        model.exchange(&mut result);
-        result
+        model.share_interface(torn);
+        constraints.multiply(&constraints.weighted, torn)
     }
 
     /// S or K_BB times the boundary part. Entries of the interior come out meaningless; nothing reads them, since B_D has no

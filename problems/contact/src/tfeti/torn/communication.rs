@@ -2,28 +2,29 @@
 //!
 //! Every process works on a range of subdomains: it assembles, factors and solves only those. Dual vectors (multipliers, rows
 //! of B u) and the coarse problem are replicated, so that dot products, Newton's decisions and coarse solves are local and the
-//! same everywhere; what has to travel are contributions to rows, a few sums, and sensitivities.
+//! same everywhere. What travels are pieces that belong to one subdomain each:
 //!
 //! ```text
-//! exchange:  rows of B (own torn displacements)   →  sums over all processes       (neighbours only, in a distributed run)
-//! sum:       short vectors (stiffness, heights)   →  sums over all processes     (and nodal displacements, if asked for)
+//! product with F, preconditioner:   values at the dofs with rows          once per product
+//! contact stiffness, resultants, sensitivities, displacements:            once per shape
 //! ```
-//! A sum must come out the same on every process; implementations add in the order of ranks.
+//! Every process then adds the pieces itself, in the order of the subdomains, as a single process does: results are the same to
+//! the last bit for any number of processes.
 
 use std::fmt::Debug;
 use std::ops::Range;
 
-/// One process of a run.
+/// One process of a run. All processes call the same functions in the same order.
 pub trait Communication: Debug + Send + Sync {
     /// The subdomains of this process, out of `count`.
     fn owned(&self, count: usize) -> Range<usize>;
 
-    /// Replaces contributions to the rows of B by their sums over all processes. Only processes whose subdomains share a row
-    /// have to talk to each other about it.
-    fn exchange(&self, rows: &mut [f64]);
+    /// Completes pieces of which `pieces[i]` belongs to subdomain i: those of other processes' subdomains are replaced by what these
+    /// processes have set, in length too.
+    fn share(&self, pieces: &mut [Vec<f64>]);
 
-    /// Replaces a short vector by its sum over all processes.
-    fn sum(&self, values: &mut [f64]);
+    /// The failure of the first process that reports one, known to all; none if no process has failed.
+    fn agree(&self, failure: Option<String>) -> Option<String>;
 }
 
 /// All subdomains in this process: nothing has to travel.
@@ -35,7 +36,9 @@ impl Communication for InProcess {
         0..count
     }
 
-    fn exchange(&self, _rows: &mut [f64]) {}
+    fn share(&self, _pieces: &mut [Vec<f64>]) {}
 
-    fn sum(&self, _values: &mut [f64]) {}
+    fn agree(&self, failure: Option<String>) -> Option<String> {
+        failure
+    }
 }

@@ -19,7 +19,7 @@ pub use coarse_pattern::CoarsePattern;
 pub use communication::{Communication, InProcess};
 pub use constraints::Constraints;
 pub use factors::{SubdomainFactors, SubdomainRigid};
-pub use model::{TornModel, TornSystem};
+pub use model::{TornModel, TornSubdomain, TornSystem};
 pub use preconditioner_kind::PreconditionerKind;
 pub use recovery::whole_bodies;
 pub use vectors::{RowVector, TornVector};

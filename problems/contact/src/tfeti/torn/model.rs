@@ -125,32 +125,35 @@ impl TornModel {
         })
     }
 
-    /// Factors the subdomains of the given blocks (lower, then upper). The upper body keeps its shape: it is factored at the
+    /// Factors the subdomains of the given blocks (lower, then upper); its count of factorisations is that of all processes. The upper body keeps its shape: it is factored at the
     /// first call and shared afterwards.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] from a subdomain.
     pub fn factorize(&self, blocks: &[Block]) -> Result<TornSystem, ContactError> {
-        let count = |parts: &[TornPart]| {
-            parts.iter().flat_map(|part| &part.factors).map(|factors| factors.factorizations()).sum::<usize>()
-        };
         let mut parts = self.factorize_body(0, &self.problem.scene.lower, &blocks[0])?;
-        let mut factorizations = count(&parts);
+        let mut factored = parts.len();
         if let (Some(upper), Some(block)) = (&self.problem.scene.upper, blocks.get(1)) {
             if self.fixed.get().is_none() {
                 let upper = self.factorize_body(1, &upper.body, block)?;
-                factorizations += count(&upper);
+                factored += upper.len();
                 // Another thread may have been first; its factors are the same.
                 let _ = self.fixed.set(upper);
             }
             parts.extend(self.fixed.get().into_iter().flatten().cloned());
         }
+        let count = |index: usize| {
+            let factors = parts[index].factors.iter().filter(|_| index < factored);
+            factors.map(|factors| factors.factorizations() as f64).collect()
+        };
+        let factorizations = self.share_pieces(count).concat().into_iter().sum::<f64>() as usize;
         Ok(TornSystem { parts, factorizations })
     }
 
     fn factorize_body(&self, body: usize, scene: &BodyScene, block: &Block) -> Result<Vec<TornPart>, ContactError> {
         let owned = self.communication.owned(self.subdomains.len());
-        self.subdomains
+        let parts: Result<Vec<TornPart>, ContactError> = self
+            .subdomains
             .par_iter()
             .enumerate()
             .filter(|(_, subdomain)| subdomain.body == body)
@@ -174,7 +177,15 @@ impl TornModel {
                 )?;
                 Ok(TornPart { rigid, factors: Some(Arc::new(factors)) })
             })
-            .collect()
+            .collect();
+        // A process that goes on alone would wait for the others forever.
+        let failure = self.communication.agree(parts.as_ref().err().map(ToString::to_string));
+        match failure {
+            Some(reason) if parts.is_ok() => {
+                Err(ContactError::Factorization { what: "subdomain of another process".into(), reason })
+            }
+            _ => parts,
+        }
     }
 
     /// The class of a subdomain by its interior dofs: those without rows; none if the preconditioner needs none.
@@ -187,18 +198,46 @@ impl TornModel {
         self.communication.owned(self.subdomains.len()) == (0..self.subdomains.len())
     }
 
-    /// Replaces contributions to the rows of B by their sums over all processes, column by column.
-    pub fn exchange<V: Entry>(&self, rows: &mut [V]) {
+    /// Completes a torn vector, or a block of columns, at the dofs with rows: those of other processes' subdomains are filled in.
+    pub fn share_interface<V: Entry>(&self, torn: &mut [V]) {
         if self.is_whole() {
             return;
         }
-        for column in 0..V::WIDTH {
-            let mut values: Vec<f64> = rows.iter().map(|row| row.get(column)).collect();
-            self.communication.exchange(&mut values);
-            for (row, value) in rows.iter_mut().zip(values) {
-                row.set(column, value);
+        let transposed = &self.constraints.transposed;
+        self.share_dofs(torn, |dof| transposed.row(dof).next().is_some());
+    }
+
+    /// Completes a torn vector at all dofs.
+    pub fn share_torn(&self, torn: &mut TornVector) {
+        if !self.is_whole() {
+            self.share_dofs(&mut torn.0, |_| true);
+        }
+    }
+
+    fn share_dofs<V: Entry>(&self, torn: &mut [V], shared: impl Fn(usize) -> bool) {
+        let size = self.pattern.pattern.dimension();
+        let owned = self.communication.owned(self.subdomains.len());
+        let dofs = |subdomain: usize| (size * subdomain..size * (subdomain + 1)).filter(|&dof| shared(dof));
+        let values = |dof: usize| (0..V::WIDTH).map(move |column| (dof, column));
+        let piece = |subdomain| dofs(subdomain).flat_map(values).map(|(dof, column)| torn[dof].get(column)).collect();
+        let mut pieces: Vec<Vec<f64>> = (0..self.subdomains.len())
+            .map(|subdomain| if owned.contains(&subdomain) { piece(subdomain) } else { vec![] })
+            .collect();
+        self.communication.share(&mut pieces);
+        for (subdomain, piece) in pieces.iter().enumerate().filter(|(subdomain, _)| !owned.contains(subdomain)) {
+            for ((dof, column), value) in dofs(subdomain).flat_map(values).zip(piece) {
+                torn[dof].set(column, *value);
             }
         }
+    }
+
+    /// What `own` gives for the subdomains, by the processes that work on them, in the order of the subdomains.
+    pub fn share_pieces(&self, own: impl Fn(usize) -> Vec<f64>) -> Vec<Vec<f64>> {
+        let owned = self.communication.owned(self.subdomains.len());
+        let piece = |subdomain| if owned.contains(&subdomain) { own(subdomain) } else { vec![] };
+        let mut pieces: Vec<Vec<f64>> = (0..self.subdomains.len()).map(piece).collect();
+        self.communication.share(&mut pieces);
+        pieces
     }
 
     /// The zero vector over torn dofs.
@@ -234,16 +273,21 @@ impl TornModel {
         let size = self.pattern.pattern.dimension();
         let starts = self.pattern.pattern.starts();
         let points = &self.problem.boundary.points;
-        let mut diagonals = vec![0.0; 2 * points.len()];
-        for (point, diagonal) in points.iter().zip(diagonals.chunks_exact_mut(2)) {
-            for (dof, _) in self.constraints.rows.row(self.constraints.equality_count + point.start) {
-                let subdomain = dof / size;
-                if let Some(factors) = &system.parts[subdomain].factors {
-                    diagonal[self.subdomains[subdomain].body] += factors.stiffness[starts[dof % size]];
-                }
+        let row_entries =
+            |start: usize| self.constraints.rows.row(self.constraints.equality_count + start).map(|(dof, _)| dof);
+        let mut torn = self.zeros();
+        for dof in points.iter().flat_map(|point| row_entries(point.start)) {
+            if let Some(factors) = &system.parts[dof / size].factors {
+                torn.0[dof] = factors.stiffness[starts[dof % size]];
             }
         }
-        self.communication.sum(&mut diagonals);
+        self.share_interface(&mut torn.0);
+        let mut diagonals = vec![0.0; 2 * points.len()];
+        for (point, diagonal) in points.iter().zip(diagonals.chunks_exact_mut(2)) {
+            for dof in row_entries(point.start) {
+                diagonal[self.subdomains[dof / size].body] += torn.0[dof];
+            }
+        }
         let series = |diagonal: &[f64]| match self.problem.scene.upper {
             Some(_) => 1.0 / (1.0 / diagonal[0] + 1.0 / diagonal[1]),
             None => diagonal[0],

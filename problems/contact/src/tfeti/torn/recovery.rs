@@ -9,15 +9,16 @@ use crate::tfeti::torn::vectors::TornVector;
 /// All bodies of a shape, lower first, from the displacements over the torn dofs of this process (zero elsewhere); the copies
 /// of a node are averaged.
 pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> Vec<SolvedBody> {
-    blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, torn)).collect()
+    let mut torn = torn.clone();
+    model.share_torn(&mut torn);
+    blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, &torn)).collect()
 }
 
 fn whole_body(model: &TornModel, body: usize, block: &Block, TornVector(torn): &TornVector) -> SolvedBody {
     let grid = &block.grid;
-    let owned = model.communication.owned(model.subdomains.len());
     let pieces = || model.subdomains.iter().enumerate().filter(|(_, piece)| piece.body == body);
     let copies = || {
-        pieces().filter(|(index, _)| owned.contains(index)).flat_map(|(_, piece)| {
+        pieces().flat_map(|(_, piece)| {
             (0..piece.place.node_count()).map(move |local| {
                 let first = piece.first_dof + 3 * local;
                 (grid.node(piece.place.block_position(local)), [torn[first], torn[first + 1], torn[first + 2]])
@@ -31,14 +32,12 @@ fn whole_body(model: &TornModel, body: usize, block: &Block, TornVector(torn): &
             *sum += value;
         }
     }
-    model.communication.sum(&mut sums);
     let displacement: Vec<[f64; 3]> =
         sums.chunks_exact(4).map(|sum| std::array::from_fn(|component| sum[component] / sum[3])).collect();
     let mut spread = vec![0.0; grid.node_count()];
     for (node, copy) in copies() {
         spread[node] += copy.iter().zip(displacement[node]).map(|(copy, mean)| (copy - mean).powi(2)).sum::<f64>();
     }
-    model.communication.sum(&mut spread);
     let mut subdomains = vec![0; grid.brick_count()];
     for (index, piece) in pieces() {
         for brick in lattice::points(piece.place.first_cell, piece.place.cells) {
