@@ -68,7 +68,7 @@ fn parts(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
     let model = torn.model();
     let system = model.factorize(&blocks)?;
     let operator = DualOperator::new(model, &system);
-    let rows = operator.gather(&operator.loaded_displacement());
+    let rows = operator.gather(operator.loaded_displacement());
     let product = median(|| operator.apply(&rows));
     print(size, "product with F", product, product);
     print(size, "factorisation of all subdomains", median(|| model.factorize(&blocks)), product);
