@@ -6,6 +6,7 @@ mod closed_forms;
 mod dual_qp;
 mod fields;
 mod friction_too_weak;
+mod nearly_incompressible;
 mod paths_agree;
 mod scene_structure;
 mod successive_approximations;

@@ -26,6 +26,8 @@ const IMAGE_REPLACEMENT: f64 = 1e-4;
 
 /// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
 const MAX_STALLED_PRODUCTS: usize = 10;
+/// The same for nearly incompressible bodies: pressures that the preconditioner does not know take products of their own.
+const MAX_STALLED_NEARLY_INCOMPRESSIBLE: usize = 20;
 
 impl TornContact<'_> {
     /// Brings the residual of an iterate down to the tolerance, or as far as it falls; appends to the history.
@@ -39,6 +41,7 @@ impl TornContact<'_> {
     ) -> Result<f64, ContactError> {
         let mut residual = directions.combine(self, iterate, start);
         let mut replaced = residual;
+        let patience = self.patience();
         while residual > settings.tolerance
             && directions.len() < 2 * settings.max_krylov
             && self.products_left(settings) > 0
@@ -57,18 +60,26 @@ impl TornContact<'_> {
                 }
                 history.push(residual);
                 Stage::Contact.reached(history.len() - 1, residual);
-                let done = residual <= settings.tolerance
-                    || stagnates(history, MAX_STALLED_PRODUCTS)
-                    || self.products_left(settings) == 0;
+                let done =
+                    residual <= settings.tolerance || stagnates(history, patience) || self.products_left(settings) == 0;
                 if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
                     break;
                 }
             }
-            if stagnates(history, MAX_STALLED_PRODUCTS) {
+            if stagnates(history, patience) {
                 break;
             }
         }
         Ok(residual)
+    }
+
+    /// Products in which the residual must at least halve.
+    fn patience(&self) -> usize {
+        let mut materials = self.operator.model.problem.bodies().map(|body| body.material);
+        match materials.any(|material| material.compressible_neighbour().is_some()) {
+            true => MAX_STALLED_NEARLY_INCOMPRESSIBLE,
+            false => MAX_STALLED_PRODUCTS,
+        }
     }
 
     /// Replaces the image of the multipliers by a product in double precision; returns the residual.

@@ -3,6 +3,11 @@
 //! ```text
 //! K⁺ = (K + ρ N Nᵀ)⁻¹,  N = orthonormal basis of R restricted to three fixing nodes:   K K⁺ K = K
 //! ```
+//! A nearly incompressible subdomain has a second stiffness matrix, of a compressible material of the same shear modulus. The
+//! preconditioner takes a jump of displacements half and half, and such halves change the volume of a subdomain although no
+//! motion of the body has to: with K itself, they would count λ/μ times too much. The factor c is a stiffness against contact
+//! forces, which the volume does not resist either.
+//!
 //! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 
 use crate::body::elasticity::Material;
@@ -76,11 +81,13 @@ impl SubdomainRigid {
 pub struct SubdomainFactors {
     /// Values of the stiffness matrix K over [`LocalPattern::pattern`].
     pub stiffness: Vec<f64>,
+    /// The same of the compressible neighbour of a nearly incompressible material.
+    compressible: Option<Vec<f64>>,
     /// Factor of K + ρNNᵀ.
     pub inverse: NumericFactor,
     /// K⁺ times the load; empty for an unloaded subdomain.
     pub loaded_displacement: Vec<f64>,
-    /// Factor of the interior matrix, if the preconditioner needs it.
+    /// Factor of the interior matrix of [`SubdomainFactors::boundary_stiffness`], if the preconditioner needs it.
     pub interior: Option<NumericFactor>,
     /// |K⁺K x − x|/|x| modulo rigid motions for a probe x: the digits that the condition of K takes.
     pub forward_error: f64,
@@ -106,12 +113,15 @@ impl SubdomainFactors {
         load: &[f64],
         interior: Option<&InteriorClass>,
     ) -> Result<Self, ContactError> {
-        let stiffness = pattern.assemble(material, brick);
+        let stiffness = pattern.assemble(material, &brick);
+        let compressible = material.compressible_neighbour().map(|neighbour| pattern.assemble(&neighbour, &brick));
         let regularised = regularise(pattern, &stiffness, modes);
         let inverse = symbolic.factorize(&regularised)?;
         let forward_error = check_generalised_inverse(pattern, &stiffness, &inverse, modes)?;
         let interior = match interior.and_then(|class| class.symbolic.as_ref().map(|symbolic| (class, symbolic))) {
-            Some((class, symbolic)) => Some(symbolic.factorize(&class.submatrix.gather(&stiffness))?),
+            Some((class, symbolic)) => {
+                Some(symbolic.factorize(&class.submatrix.gather(compressible.as_ref().unwrap_or(&stiffness)))?)
+            }
             None => None,
         };
         let mut loaded_displacement = Vec::new();
@@ -119,7 +129,13 @@ impl SubdomainFactors {
             loaded_displacement = load.to_vec();
             inverse.solve_in_place(&mut loaded_displacement);
         }
-        Ok(Self { stiffness, inverse, loaded_displacement, interior, forward_error })
+        Ok(Self { stiffness, compressible, inverse, loaded_displacement, interior, forward_error })
+    }
+
+    /// The stiffness that a body offers to displacements of its boundary: K, or that of the compressible neighbour. The
+    /// preconditioner and the factor c are made of it.
+    pub fn boundary_stiffness(&self) -> &[f64] {
+        self.compressible.as_ref().unwrap_or(&self.stiffness)
     }
 
     /// Number of numeric factorisations this subdomain took.

@@ -233,7 +233,7 @@ impl TornModel {
             for (dof, _) in self.constraints.rows.row(self.constraints.equality_count + point.start) {
                 let subdomain = dof / size;
                 if let Some(factors) = &system.parts[subdomain].factors {
-                    diagonal[self.subdomains[subdomain].body] += factors.stiffness[starts[dof % size]];
+                    diagonal[self.subdomains[subdomain].body] += factors.boundary_stiffness()[starts[dof % size]];
                 }
             }
         }
