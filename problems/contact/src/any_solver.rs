@@ -29,8 +29,6 @@ const MIN_PRODUCTS: usize = 100;
 const COMFORTABLE_SHARE: f64 = 0.01;
 /// Poisson's ratio of standard bricks from which total FETI takes hundreds of products and more.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.499;
-/// Longest over shortest edge of a brick from which total FETI takes hundreds of products and more.
-const EXTREME_BRICK: f64 = 30.0;
 
 /// Cost of a state by direct condensation, in products with F of as many operations, up to which it takes less time with all its
 /// derivatives than one by total FETI: dense operations are the faster ones (docs/scaling.md).
@@ -263,19 +261,12 @@ fn proves_friction_too_weak(error: &ContactError) -> bool {
 
 /// Why total FETI would be slow for a scene, if it would.
 fn slow_for_total_feti(problem: &ContactProblem) -> Option<String> {
-    let scene = &problem.scene;
     let locking = problem.bodies().map(|body| body.material).filter(|m| m.formulation() == Formulation::Standard);
     let ratio = locking.map(|material| material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
     if ratio >= NEARLY_INCOMPRESSIBLE {
         return Some(format!("Poisson's ratio {ratio} is nearly incompressible"));
     }
-    let edges = [
-        scene.size[0] / scene.mesh[0] as f64,
-        scene.size[1] / scene.mesh[1] as f64,
-        scene.start_height / scene.mesh[2] as f64,
-    ];
-    let aspect = edges.iter().fold(0.0, |a: f64, b| a.max(*b)) / edges.iter().copied().fold(f64::INFINITY, f64::min);
-    (aspect >= EXTREME_BRICK).then(|| format!("bricks have edges 1 : {aspect:.0}"))
+    problem.extreme_aspect().map(|aspect| format!("bricks have edges 1 : {aspect:.0}"))
 }
 
 fn unsolved(torn: Failed, direct: ContactError) -> ContactError {

@@ -26,8 +26,9 @@ const IMAGE_REPLACEMENT: f64 = 1e-4;
 
 /// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
 const MAX_STALLED_PRODUCTS: usize = 10;
-/// The same for nearly incompressible bodies: pressures that the preconditioner does not know take products of their own.
-const MAX_STALLED_NEARLY_INCOMPRESSIBLE: usize = 20;
+/// The same for nearly incompressible bodies and for flat or tall bricks: pressures, or bending, that the preconditioner does not know take
+/// products of their own.
+const MAX_STALLED_SLOW: usize = 20;
 
 impl TornContact<'_> {
     /// Brings the residual of an iterate down to the tolerance, or as far as it falls; appends to the history.
@@ -52,7 +53,7 @@ impl TornContact<'_> {
             loop {
                 self.extend(iterate, &active, directions);
                 residual = directions.combine(self, iterate, residual);
-                if self.precision == Precision::Mixed
+                if self.descent_precision() == Precision::Mixed
                     && residual <= settings.tolerance.max(IMAGE_REPLACEMENT * replaced)
                 {
                     residual = self.replace_image(iterate);
@@ -73,11 +74,18 @@ impl TornContact<'_> {
         Ok(residual)
     }
 
+    /// Precision of the products with directions: factors of flat or tall bricks lose all digits of single precision.
+    fn descent_precision(&self) -> Precision {
+        if self.operator.model.problem.flat_or_tall().is_some() { Precision::Double } else { self.precision }
+    }
+
     /// Products in which the residual must at least halve.
     fn patience(&self) -> usize {
-        let mut materials = self.operator.model.problem.bodies().map(|body| body.material);
-        match materials.any(|material| material.compressible_neighbour().is_some()) {
-            true => MAX_STALLED_NEARLY_INCOMPRESSIBLE,
+        let problem = &self.operator.model.problem;
+        let slow = problem.flat_or_tall().is_some()
+            || problem.bodies().any(|body| body.material.compressible_neighbour().is_some());
+        match slow {
+            true => MAX_STALLED_SLOW,
             false => MAX_STALLED_PRODUCTS,
         }
     }
@@ -104,7 +112,7 @@ impl TornContact<'_> {
         let defect: Vec<f64> = self.space.resultant(&direction).iter().map(|value| -value).collect();
         active.enforce(&mut step, &defect);
         add_scaled(&mut direction, 1.0, &rows.trial(&step));
-        let image = self.operator.apply_direction(&direction, self.precision);
+        let image = self.operator.apply_direction(&direction, self.descent_precision());
         let amplitudes = balancing_amplitudes(active, &rows.unknowns_of(&direction), &image);
         directions.push(self, Direction { amplitudes, forces: Some((direction, image)) });
     }

@@ -161,7 +161,7 @@ impl TornModel {
                     &self.pattern,
                     &self.symbolic,
                     &scene.material,
-                    &rigid.modes,
+                    Arc::clone(&rigid),
                     |local| block.brick(lattice::add(local, place.first_cell)),
                     &load,
                     subdomain.interior.as_deref(),
