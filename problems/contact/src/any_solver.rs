@@ -2,9 +2,9 @@
 //!
 //! `auto` takes total FETI first, for at most as many products with F as a state by direct condensation costs, and direct
 //! condensation where total FETI finds no state, or none that is clearly accurate. It begins with direct condensation where total
-//! FETI is known to be slow (nearly incompressible standard bricks, bricks of extreme shape, a shape similar to one that needed it) and
-//! where Jacobians are wanted that cost less there. Sizes and counted work alone decide, so that a resumed run repeats the choice.
-//! Where bodies are too large to be condensed, total FETI is alone.
+//! FETI is known to be slow (nearly incompressible standard bricks, bricks of extreme shape, a shape similar to one that needed
+//! it) and where Jacobians are wanted that cost less there. Sizes and counted work alone decide, so that a resumed run repeats
+//! the choice. Where bodies are too large to be condensed, total FETI is alone.
 
 use crate::body::elasticity::Formulation;
 use crate::direct::{DirectSolver, DirectState};

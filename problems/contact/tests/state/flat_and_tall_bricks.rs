@@ -26,6 +26,6 @@ fn plates_one_to_a_hundred_and_rods_are_solved() {
         let relative = norm(&difference) / norm(&direct);
         println!("height {height}: {products} products, {relative:e}");
         assert!(relative < 1e-6, "height {height}: {relative:e}");
-        assert!(products < 4000, "height {height}: {products}");
+        assert!(products < 1500, "height {height}: {products}");
     }
 }

@@ -26,8 +26,8 @@ const IMAGE_REPLACEMENT: f64 = 1e-4;
 
 /// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
 const MAX_STALLED_PRODUCTS: usize = 10;
-/// The same for nearly incompressible bodies and for flat or tall bricks: pressures, or bending, that the preconditioner does not know take
-/// products of their own.
+/// The same for nearly incompressible bodies and for flat or tall bricks: pressures, or bending, that the preconditioner does
+/// not know take products of their own.
 const MAX_STALLED_SLOW: usize = 20;
 
 impl TornContact<'_> {
@@ -53,7 +53,7 @@ impl TornContact<'_> {
             loop {
                 self.extend(iterate, &active, directions);
                 residual = directions.combine(self, iterate, residual);
-                if self.descent_precision() == Precision::Mixed
+                if self.precision == Precision::Mixed
                     && residual <= settings.tolerance.max(IMAGE_REPLACEMENT * replaced)
                 {
                     residual = self.replace_image(iterate);
@@ -84,10 +84,7 @@ impl TornContact<'_> {
         let problem = &self.operator.model.problem;
         let slow = problem.flat_or_tall().is_some()
             || problem.bodies().any(|body| body.material.compressible_neighbour().is_some());
-        match slow {
-            true => MAX_STALLED_SLOW,
-            false => MAX_STALLED_PRODUCTS,
-        }
+        if slow { MAX_STALLED_SLOW } else { MAX_STALLED_PRODUCTS }
     }
 
     /// Replaces the image of the multipliers by a product in double precision; returns the residual.

@@ -9,8 +9,8 @@
 //! forces, which the volume does not resist either.
 //!
 //! Where the factor loses many digits, forces are balanced before and displacements after K⁺: (I − RRᵀ) K⁺ (I − RRᵀ) is another
-//! generalised inverse, whose displacements are no larger than the deformation. Forces out of balance would bend a thin plate over
-//! its three fixing nodes by many times of what the forces together do, and all digits would be lost in the difference.
+//! generalised inverse, whose displacements are no larger than the deformation. Forces out of balance would bend a thin plate
+//! over its three fixing nodes by many times of what the forces together do, and the difference would lose all digits.
 //!
 //! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 
