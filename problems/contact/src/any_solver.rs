@@ -2,10 +2,11 @@
 //!
 //! `auto` takes total FETI first, for at most as many products with F as a state by direct condensation costs, and direct
 //! condensation where total FETI finds no state, or none that is clearly accurate. It begins with direct condensation where total
-//! FETI is known to be slow (nearly incompressible bodies, bricks of extreme shape, a shape similar to one that needed it) and
-//! where Jacobians are wanted that cost less there. Sizes and counted work alone decide, so that a resumed run repeats the choice.
-//! Where bodies are too large to be condensed, total FETI is alone.
+//! FETI is known to be slow (nearly incompressible standard bricks, bricks of extreme shape, a shape similar to one that needed
+//! it) and where Jacobians are wanted that cost less there. Sizes and counted work alone decide, so that a resumed run repeats
+//! the choice. Where bodies are too large to be condensed, total FETI is alone.
 
+use crate::body::elasticity::Formulation;
 use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{
     Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, MAX_RESIDUAL,
@@ -26,10 +27,8 @@ const MIN_PRODUCTS: usize = 100;
 /// Share of [`MAX_RESIDUAL`] above which a state of total FETI is found anew by direct condensation: the two solvers measure
 /// forces and lengths in different units, and a defect of the gluing grows along a slender body.
 const COMFORTABLE_SHARE: f64 = 0.01;
-/// Poisson's ratio from which total FETI takes hundreds of products and more.
+/// Poisson's ratio of standard bricks from which total FETI takes hundreds of products and more.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.499;
-/// Longest over shortest edge of a brick from which total FETI takes hundreds of products and more.
-const EXTREME_BRICK: f64 = 30.0;
 
 /// Cost of a state by direct condensation, in products with F of as many operations, up to which it takes less time with all its
 /// derivatives than one by total FETI: dense operations are the faster ones (docs/scaling.md).
@@ -262,18 +261,12 @@ fn proves_friction_too_weak(error: &ContactError) -> bool {
 
 /// Why total FETI would be slow for a scene, if it would.
 fn slow_for_total_feti(problem: &ContactProblem) -> Option<String> {
-    let scene = &problem.scene;
-    let ratio = problem.bodies().map(|body| body.material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
+    let locking = problem.bodies().map(|body| body.material).filter(|m| m.formulation() == Formulation::Standard);
+    let ratio = locking.map(|material| material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
     if ratio >= NEARLY_INCOMPRESSIBLE {
         return Some(format!("Poisson's ratio {ratio} is nearly incompressible"));
     }
-    let edges = [
-        scene.size[0] / scene.mesh[0] as f64,
-        scene.size[1] / scene.mesh[1] as f64,
-        scene.start_height / scene.mesh[2] as f64,
-    ];
-    let aspect = edges.iter().fold(0.0, |a: f64, b| a.max(*b)) / edges.iter().copied().fold(f64::INFINITY, f64::min);
-    (aspect >= EXTREME_BRICK).then(|| format!("bricks have edges 1 : {aspect:.0}"))
+    problem.extreme_aspect().map(|aspect| format!("bricks have edges 1 : {aspect:.0}"))
 }
 
 fn unsolved(torn: Failed, direct: ContactError) -> ContactError {

@@ -1,7 +1,7 @@
 //! Memory that a scene needs, estimated before any work, against what the machine has.
 
 use crate::error::SceneError;
-use crate::scene::Scene;
+use crate::scene::{BodyScene, Scene};
 use crate::solver_kind::SolverKind;
 use crate::tfeti::{MAX_COLUMNS, PreconditionerKind};
 use crate::work_estimate::factor_values;
@@ -41,7 +41,10 @@ pub(crate) fn estimate(scene: &Scene, kind: SolverKind, preconditioner: Precondi
     let cells: [f64; 3] = std::array::from_fn(|axis| mesh[axis] / scene.subdomains[axis] as f64);
     let dofs = 3.0 * nodes(cells);
     let interior = if preconditioner == PreconditionerKind::Dirichlet { INTERIOR_SHARE } else { 0.0 };
-    let per_piece = factor_values(dofs) * (1.0 + SINGLE_PRECISION_SHARE + interior) + (STIFFNESS_PER_DOF + 6.0) * dofs;
+    let near = |body: &BodyScene| body.material.compressible_neighbour().is_some();
+    let matrices = if near(&scene.lower) || scene.upper.iter().any(|upper| near(&upper.body)) { 2.0 } else { 1.0 };
+    let per_piece =
+        factor_values(dofs) * (1.0 + SINGLE_PRECISION_SHARE + interior) + (matrices * STIFFNESS_PER_DOF + 6.0) * dofs;
     let rows = (pieces * dofs - bodies * 3.0 * nodes(mesh)).max(0.0) + contact;
     // The factor of the coarse matrix has blocks of six where that of a brick mesh has blocks of three; the amplitudes of the contact
     // subdomains take three dense matrices: constant part, active set, its LU.

@@ -10,6 +10,9 @@ use crate::lattice;
 use crate::scene::{BodyScene, Scene};
 use crate::shape::{AdmissibleSet, HeightMap};
 
+/// Ratio of the edges of a brick from which it is extreme: total FETI takes hundreds of products and more.
+const EXTREME_BRICK: f64 = 30.0;
+
 /// The discrete problem behind a scene.
 #[derive(Debug)]
 pub struct ContactProblem {
@@ -47,6 +50,27 @@ impl ContactProblem {
     /// Scenes of the bodies, lower first.
     pub fn bodies(&self) -> impl Iterator<Item = &BodyScene> {
         std::iter::once(&self.scene.lower).chain(self.scene.upper.as_ref().map(|upper| &upper.body))
+    }
+
+    /// Edges of the bricks of the lower body at the start, mm.
+    fn brick_edges(&self) -> [f64; 3] {
+        let lengths = [self.scene.size[0], self.scene.size[1], self.scene.start_height];
+        std::array::from_fn(|axis| lengths[axis] / self.scene.mesh[axis] as f64)
+    }
+
+    /// Longest over shortest edge of the bricks, where it is extreme.
+    pub fn extreme_aspect(&self) -> Option<f64> {
+        let [a, b, height] = self.brick_edges();
+        let aspect = a.max(b).max(height) / a.min(b).min(height);
+        (aspect >= EXTREME_BRICK).then_some(aspect)
+    }
+
+    /// The height of the bricks over both edges of their plan, or both edges over the height, where that is extreme: bricks
+    /// are plates or rods along x₃ then.
+    pub fn flat_or_tall(&self) -> Option<f64> {
+        let [a, b, height] = self.brick_edges();
+        let ratio = (height / a.max(b)).max(a.min(b) / height);
+        (ratio >= EXTREME_BRICK).then_some(ratio)
     }
 
     /// The lower body of a shape.

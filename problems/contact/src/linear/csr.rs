@@ -48,13 +48,21 @@ impl Csr {
 
     /// The transposed matrix.
     pub fn transpose(&self) -> Self {
-        let mut rows = vec![Vec::new(); self.column_count];
+        let mut starts = vec![0; self.column_count + 1];
+        for &column in &self.columns {
+            starts[column as usize + 1] += 1;
+        }
+        (0..self.column_count).for_each(|column| starts[column + 1] += starts[column]);
+        let (mut columns, mut values) = (vec![0; self.columns.len()], vec![0.0; self.values.len()]);
+        let mut next = starts.clone();
         for row in 0..self.row_count() {
             for (column, value) in self.row(row) {
-                rows[column].push((row, value));
+                columns[next[column]] = u32::try_from(row).expect("invariant: fewer than 2³² rows");
+                values[next[column]] = value;
+                next[column] += 1;
             }
         }
-        Self::from_rows(self.row_count(), rows)
+        Self { starts, columns, values, column_count: self.row_count() }
     }
 
     /// Row `row` of A x.

@@ -59,6 +59,8 @@ impl Clock {
 
 /// c relative to the assembled diagonal of the contact nodes: the Schur complement's diagonal is about half of it.
 const STIFFNESS_SHARE: f64 = 0.5;
+/// Smallest share of c that flat or tall bricks leave: with less, displacements count too little against forces.
+const SMALLEST_SHARE: f64 = 0.01;
 
 impl TornSolver {
     /// Tears the bodies of a problem.
@@ -159,7 +161,7 @@ impl TornSolver {
         Stage::CoarseSpace.enter();
         let grounded = self.model.grounded_amplitudes(&system, &configuration);
         let space = CoarseSpace::new(&self.model, &system, grounded)?;
-        let stiffness = STIFFNESS_SHARE * self.model.contact_stiffness(&system);
+        let stiffness = STIFFNESS_SHARE * self.flat_or_tall_share() * self.model.contact_stiffness(&system);
         let load = configuration.load(stiffness);
         seconds.coarse_space = clock.lap();
         Stage::Contact.enter();
@@ -186,6 +188,12 @@ impl TornSolver {
         let Configuration { blocks, gaps, .. } = configuration;
         let state = TornState { blocks, space, solution, displacement, gaps, stiffness, load, system, seconds };
         Ok((state, forces, work, returned))
+    }
+
+    /// What flat or tall bricks leave of c: the diagonal of K is their largest stiffness, and most displacements of the
+    /// boundary meet a smaller one.
+    fn flat_or_tall_share(&self) -> f64 {
+        self.problem().flat_or_tall().map_or(1.0, |ratio| ratio.recip().max(SMALLEST_SHARE))
     }
 
     /// The contact problem of a factored shape; `scales` are c and the load.

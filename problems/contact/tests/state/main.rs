@@ -5,7 +5,9 @@
 mod closed_forms;
 mod dual_qp;
 mod fields;
+mod flat_and_tall_bricks;
 mod friction_too_weak;
+mod nearly_incompressible;
 mod paths_agree;
 mod scene_structure;
 mod several_processes;

@@ -15,6 +15,9 @@ pub enum Formulation {
     MeanDilatation,
 }
 
+/// Poisson's ratio above which a material counts as nearly incompressible: up to it, Krylov methods do not notice.
+const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
+
 /// Young's modulus and Poisson's ratio of an isotropic material, and the formulation of its bricks.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Material {
@@ -41,6 +44,18 @@ impl Material {
     #[must_use]
     pub fn with_formulation(self, formulation: Formulation) -> Self {
         Self { formulation, ..self }
+    }
+
+    /// A material of the same shear modulus and formulation that can be compressed, for a nearly incompressible one. Where a
+    /// body may evade a change of volume, its stiffness is that of shear, and this material has it; standard bricks can evade
+    /// less, so that theirs is stiffer.
+    pub fn compressible_neighbour(&self) -> Option<Self> {
+        let poisson_ratio = match self.formulation {
+            Formulation::Standard => NEARLY_INCOMPRESSIBLE,
+            Formulation::MeanDilatation => 0.45,
+        };
+        let young_modulus = 2.0 * self.shear_modulus() * (1.0 + poisson_ratio);
+        (self.poisson_ratio > NEARLY_INCOMPRESSIBLE).then_some(Self { young_modulus, poisson_ratio, ..*self })
     }
 
     /// How bricks of this material see the change of volume.

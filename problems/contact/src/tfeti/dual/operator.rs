@@ -2,7 +2,6 @@
 
 use crate::linear::entry::{Entry, Row};
 use crate::linear::real::Real;
-use crate::linear::right_side::RightSide;
 use crate::linear::vector::add_scaled;
 use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, TornVector};
 use rayon::prelude::*;
@@ -44,7 +43,7 @@ impl<'a> DualOperator<'a> {
 
     /// F λ.
     pub fn apply(&self, multipliers: &RowVector) -> RowVector {
-        self.apply_with(multipliers, |factors, part| factors.inverse.solve_in_place(part))
+        self.apply_with(multipliers, |factors, part| factors.solve(part))
     }
 
     /// F of a search direction, in the precision asked for.
@@ -58,6 +57,7 @@ impl<'a> DualOperator<'a> {
     /// F λ with the subdomain solves in single precision: relative error near 1e-6, half the memory traffic.
     fn apply_single(&self, multipliers: &RowVector) -> RowVector {
         self.apply_with(multipliers, |factors, part| {
+            factors.balance(part);
             // Brought to size one, so that no unit system leaves the range of single precision.
             let size = part.iter().fold(0.0, |size: f64, entry| size.max(entry.abs()));
             if size > 0.0 {
@@ -66,6 +66,7 @@ impl<'a> DualOperator<'a> {
                 for (entry, single) in part.iter_mut().zip(single) {
                     *entry = size * f64::from(single);
                 }
+                factors.balance(part);
             }
         })
     }
@@ -86,7 +87,7 @@ impl<'a> DualOperator<'a> {
         count: usize,
     ) -> RowVector<Row<E, N>> {
         self.applications.fetch_add(count, Ordering::Relaxed);
-        self.solve_subdomains(multipliers, torn, |factors, part| RightSide::solve(&factors.inverse, part));
+        self.solve_subdomains(multipliers, torn, |factors, part| factors.solve(part));
         self.gather_columns(torn)
     }
 
@@ -104,7 +105,7 @@ impl<'a> DualOperator<'a> {
             for (load, force) in part.iter_mut().zip(&forces[first..]) {
                 *load = force.zip(load, |force, held| force - held);
             }
-            RightSide::solve(&factors.inverse, part);
+            factors.solve(part);
         });
         self.gather_columns(torn)
     }
@@ -157,7 +158,7 @@ impl<'a> DualOperator<'a> {
     /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere, from `loaded` = K⁺ f; method.md (4.2).
     pub fn displacement(&self, mut loaded: TornVector, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
         let mut torn = self.model.zeros();
-        self.solve_subdomains(multipliers, &mut torn.0, |factors, part| factors.inverse.solve_in_place(part));
+        self.solve_subdomains(multipliers, &mut torn.0, |factors, part| factors.solve(part));
         add_scaled(&mut loaded.0, -1.0, &torn.0);
         let size = self.model.pattern.pattern.dimension();
         let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).zip(amplitudes.par_chunks(6));

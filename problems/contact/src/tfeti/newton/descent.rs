@@ -26,6 +26,9 @@ const IMAGE_REPLACEMENT: f64 = 1e-4;
 
 /// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
 const MAX_STALLED_PRODUCTS: usize = 10;
+/// The same for nearly incompressible bodies and for flat or tall bricks: pressures, or bending, that the preconditioner does
+/// not know take products of their own.
+const MAX_STALLED_SLOW: usize = 20;
 
 impl TornContact<'_> {
     /// Brings the residual of an iterate down to the tolerance, or as far as it falls; appends to the history.
@@ -39,6 +42,7 @@ impl TornContact<'_> {
     ) -> Result<f64, ContactError> {
         let mut residual = directions.combine(self, iterate, start);
         let mut replaced = residual;
+        let patience = self.patience();
         while residual > settings.tolerance
             && directions.len() < 2 * settings.max_krylov
             && self.products_left(settings) > 0
@@ -57,18 +61,30 @@ impl TornContact<'_> {
                 }
                 history.push(residual);
                 Stage::Contact.reached(history.len() - 1, residual);
-                let done = residual <= settings.tolerance
-                    || stagnates(history, MAX_STALLED_PRODUCTS)
-                    || self.products_left(settings) == 0;
+                let done =
+                    residual <= settings.tolerance || stagnates(history, patience) || self.products_left(settings) == 0;
                 if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {
                     break;
                 }
             }
-            if stagnates(history, MAX_STALLED_PRODUCTS) {
+            if stagnates(history, patience) {
                 break;
             }
         }
         Ok(residual)
+    }
+
+    /// Precision of the products with directions: factors of flat or tall bricks lose all digits of single precision.
+    fn descent_precision(&self) -> Precision {
+        if self.operator.model.problem.flat_or_tall().is_some() { Precision::Double } else { self.precision }
+    }
+
+    /// Products in which the residual must at least halve.
+    fn patience(&self) -> usize {
+        let problem = &self.operator.model.problem;
+        let slow = problem.flat_or_tall().is_some()
+            || problem.bodies().any(|body| body.material.compressible_neighbour().is_some());
+        if slow { MAX_STALLED_SLOW } else { MAX_STALLED_PRODUCTS }
     }
 
     /// Replaces the image of the multipliers by a product in double precision; returns the residual.
@@ -93,7 +109,7 @@ impl TornContact<'_> {
         let defect: Vec<f64> = self.space.resultant(&direction).iter().map(|value| -value).collect();
         active.enforce(&mut step, &defect);
         add_scaled(&mut direction, 1.0, &rows.trial(&step));
-        let image = self.operator.apply_direction(&direction, self.precision);
+        let image = self.operator.apply_direction(&direction, self.descent_precision());
         let amplitudes = balancing_amplitudes(active, &rows.unknowns_of(&direction), &image);
         directions.push(self, Direction { amplitudes, forces: Some((direction, image)) });
     }

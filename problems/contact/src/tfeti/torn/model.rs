@@ -170,7 +170,7 @@ impl TornModel {
                     &self.pattern,
                     &self.symbolic,
                     &scene.material,
-                    &rigid.modes,
+                    Arc::clone(&rigid),
                     |local| block.brick(lattice::add(local, place.first_cell)),
                     &load,
                     subdomain.interior.as_deref(),
@@ -278,7 +278,7 @@ impl TornModel {
         let mut torn = self.zeros();
         for dof in points.iter().flat_map(|point| row_entries(point.start)) {
             if let Some(factors) = &system.parts[dof / size].factors {
-                torn.0[dof] = factors.stiffness[starts[dof % size]];
+                torn.0[dof] = factors.boundary_stiffness()[starts[dof % size]];
             }
         }
         self.share_interface(&mut torn.0);

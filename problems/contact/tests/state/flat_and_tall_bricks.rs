@@ -1,0 +1,31 @@
+//! Plates and rods on total FETI: the state is that of direct condensation.
+
+use contact::contact_shape::{ContactShape, SolverKind};
+use contact::linear::vector::{add_scaled, norm};
+use contact::scene::{CounterSurface, Scene, signorini};
+use nonsmooth::{Accuracy, StateSolver};
+
+#[test]
+fn plates_one_to_a_hundred_and_rods_are_solved() {
+    for (height, pressure) in [(1.0, 30.0), (1e4, 30.0)] {
+        let mut scene = Scene { mesh: [4; 3], subdomains: [2; 3], start_height: height, ..signorini().unwrap() };
+        scene.counter_surface = CounterSurface::Plane { height: 1.00001 * height };
+        scene.bounds.minimum_height = 0.5 * height;
+        scene.bounds.volume = [0.8e4 * height, 1.2e4 * height];
+        for load in &mut scene.lower.loads {
+            load.traction = [0.0, 0.0, pressure];
+        }
+        let solve = |kind| {
+            let shape = ContactShape::new(scene.clone(), kind).unwrap();
+            let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+            let products = state.work().dual_operator_applications;
+            (state.forces.normal, products)
+        };
+        let ((mut difference, products), (direct, _)) = (solve(SolverKind::Newton), solve(SolverKind::Direct));
+        add_scaled(&mut difference, -1.0, &direct);
+        let relative = norm(&difference) / norm(&direct);
+        println!("height {height}: {products} products, {relative:e}");
+        assert!(relative < 1e-6, "height {height}: {relative:e}");
+        assert!(products < 1500, "height {height}: {products}");
+    }
+}
