@@ -106,7 +106,8 @@ pub struct BundleTrustConfig {
     pub good_fraction: f64,
     /// Largest factor by which the weight u = 1/t falls after one serious step. Default 8; > 1.
     pub weight_decrease: f64,
-    /// Largest factor by which the weight rises after one null step. Default 10; > 1.
+    /// Largest factor by which the weight rises after one null step; where Θ bends down along the step, the weight at least doubles.
+    /// Default 10; > 1.
     pub weight_increase: f64,
     /// Range of the weight relative to its first value: u stays within [first/range, first·range]. Default 1e10; > 1. This
     /// is the finite floor and ceiling of the trust parameter t.

@@ -205,6 +205,14 @@ fn steps_along_which_the_outer_function_overflows_are_shortened() {
 }
 
 #[test]
+fn a_subgradient_that_is_no_number_is_named() {
+    let blind = FnOuter::new(|c: &Vector| (c.norm_squared(), c * f64::NAN));
+    let theta = CompositeFunction::new(2, blind, |x: &Vector| (x.clone(), Matrix::identity(2, 2)));
+    let error = method().minimize(&theta, v(&[3.0, 1.0])).unwrap_err();
+    assert_eq!(error.to_string(), "the first evaluation failed: subgradient is not finite");
+}
+
+#[test]
 fn the_number_of_outputs_may_change_from_point_to_point() {
     let calls = Cell::new(0);
     let theta = CompositeFunction::new(2, Maximum, |x: &Vector| {

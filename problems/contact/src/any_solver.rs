@@ -28,7 +28,7 @@ const MIN_PRODUCTS: usize = 100;
 /// forces and lengths in different units, and a defect of the gluing grows along a slender body.
 const COMFORTABLE_SHARE: f64 = 0.01;
 /// Poisson's ratio of standard bricks from which total FETI takes hundreds of products and more.
-const NEARLY_INCOMPRESSIBLE: f64 = 0.499;
+const LOCKING: f64 = 0.499;
 
 /// Cost of a state by direct condensation, in products with F of as many operations, up to which it takes less time with all its
 /// derivatives than one by total FETI: dense operations are the faster ones (docs/scaling.md).
@@ -263,7 +263,7 @@ fn proves_friction_too_weak(error: &ContactError) -> bool {
 fn slow_for_total_feti(problem: &ContactProblem) -> Option<String> {
     let locking = problem.bodies().map(|body| body.material).filter(|m| m.formulation() == Formulation::Standard);
     let ratio = locking.map(|material| material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
-    if ratio >= NEARLY_INCOMPRESSIBLE {
+    if ratio >= LOCKING {
         return Some(format!("Poisson's ratio {ratio} is nearly incompressible"));
     }
     problem.extreme_aspect().map(|aspect| format!("bricks have edges 1 : {aspect:.0}"))

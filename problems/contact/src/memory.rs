@@ -46,10 +46,10 @@ pub(crate) fn estimate(scene: &Scene, kind: SolverKind, preconditioner: Precondi
     let per_piece =
         factor_values(dofs) * (1.0 + SINGLE_PRECISION_SHARE + interior) + (matrices * STIFFNESS_PER_DOF + 6.0) * dofs;
     let rows = (pieces * dofs - bodies * 3.0 * nodes(mesh)).max(0.0) + contact;
-    // The factor of the coarse matrix has blocks of six where that of a brick mesh has blocks of three; the amplitudes of the contact
-    // subdomains take three dense matrices: constant part, active set, its LU.
+    // The factor of the coarse matrix has blocks of six where that of a brick mesh has blocks of three; those of the contact
+    // subdomains take six dense matrices: constant part, its factor, two active sets with their LU.
     let held = 6.0 * bodies * (scene.subdomains[0] * scene.subdomains[1]) as f64;
-    let coarse = 1.3 * 4.0 * factor_values(3.0 * pieces) + 3.0 * held * held;
+    let coarse = 1.3 * 4.0 * factor_values(3.0 * pieces) + 6.0 * held * held;
     let (dual, torn) = TANGENT_VECTORS;
     let tangents = SINGLE * columns.min(MAX_COLUMNS) as f64 * (dual * rows + torn * pieces * dofs);
     NUMBER * (pieces * per_piece + DUAL_VECTORS * rows + coarse) + tangents

@@ -70,7 +70,7 @@ impl OuterCut {
             return Err(SubproblemError::OuterSize { expected, found });
         }
         if !(value.is_finite() && subgradient.iter().all(|entry| entry.is_finite())) {
-            return Err(SubproblemError::OuterNotFinite);
+            return Err(SubproblemError::OuterNotFinite { at_base: false });
         }
         Ok(Self { value, subgradient, outputs, multiplier: 0.0 })
     }
@@ -264,7 +264,7 @@ impl CompositeModel<'_> {
         let linearization = self.linearization;
         let (metric, pull) = (self.metric(), self.pull_to_origin());
         let mut cuts = known;
-        cuts.push(OuterCut::at(self.outer, linearization.outputs.clone())?);
+        cuts.push(OuterCut::at(self.outer, linearization.outputs.clone()).map_err(SubproblemError::at_base)?);
         let (mut slopes, mut offsets, mut ids) = (vec![], vec![], vec![]);
         loop {
             for newest in &cuts[slopes.len()..] {

@@ -60,8 +60,8 @@ pub(crate) enum SubproblemError {
     NegativeCurvature { eigenvalue: f64 },
     #[error("the subgradient of the outer function has {found} entries, expected {expected}")]
     OuterSize { expected: usize, found: usize },
-    #[error("the outer function is not finite at the outputs that a step leads to")]
-    OuterNotFinite,
+    #[error("value or subgradient of the outer function is not finite")]
+    OuterNotFinite { at_base: bool },
     #[error("the outer function panicked: {message}")]
     OuterPanicked { message: String },
     #[error("its solution is not finite or contradicts itself")]
@@ -69,6 +69,14 @@ pub(crate) enum SubproblemError {
 }
 
 impl SubproblemError {
+    /// The same error, where h was asked for at the base of the model: a shorter step cannot help.
+    pub(crate) fn at_base(self) -> Self {
+        match self {
+            Self::OuterNotFinite { .. } => Self::OuterNotFinite { at_base: true },
+            other => other,
+        }
+    }
+
     /// Whether it is a fault of the outer function, which no other step cures.
     pub(crate) fn blames_outer(&self) -> bool {
         matches!(
@@ -77,6 +85,7 @@ impl SubproblemError {
                 | Self::NegativeCurvature { .. }
                 | Self::OuterSize { .. }
                 | Self::OuterPanicked { .. }
+                | Self::OuterNotFinite { at_base: true }
         )
     }
 }

@@ -10,7 +10,8 @@ use crate::lattice;
 use crate::scene::{BodyScene, Scene};
 use crate::shape::{AdmissibleSet, HeightMap};
 
-/// Ratio of the edges of a brick from which it is extreme: total FETI takes hundreds of products and more.
+/// Ratio of the edges of a brick from which it is extreme: total FETI may take hundreds of products and more, above all for plates and
+/// for bricks that are long in the plan.
 const EXTREME_BRICK: f64 = 30.0;
 
 /// The discrete problem behind a scene.

@@ -19,15 +19,20 @@ impl Csr {
     /// A matrix with `column_count` columns from its rows of (column, value).
     pub fn from_rows(column_count: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Self {
         let mut matrix = Self { starts: vec![0], column_count, ..Self::default() };
+        matrix.extend(rows);
+        matrix
+    }
+
+    /// Appends rows of (column, value).
+    pub fn extend(&mut self, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) {
         for row in rows {
             for (column, value) in row {
-                debug_assert!(column < column_count);
-                matrix.columns.push(u32::try_from(column).expect("invariant: fewer than 2³² dofs"));
-                matrix.values.push(value);
+                debug_assert!(column < self.column_count);
+                self.columns.push(u32::try_from(column).expect("invariant: fewer than 2³² dofs"));
+                self.values.push(value);
             }
-            matrix.starts.push(matrix.columns.len());
+            self.starts.push(self.columns.len());
         }
-        matrix
     }
 
     /// Number of rows.

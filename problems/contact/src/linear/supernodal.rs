@@ -24,8 +24,10 @@ pub fn solve<E: Real, const N: usize>(symbolic: &SymbolicSupernodalCholesky<usiz
     }
 }
 
-/// Partial sums of a product of a column: two registers of eight.
-const PARTIAL_SUMS: usize = 16;
+/// Partial sums of the product of a column with a vector: one register of eight.
+const PARTIAL_SUMS: usize = 8;
+/// Columns whose products with a vector are formed at once.
+const COLUMNS_AT_ONCE: usize = 4;
 
 /// Forward sweep over the first `count` columns of L, for an x in elimination order.
 pub fn eliminate<V: Entry>(symbolic: &SymbolicSupernodalCholesky<usize>, values: &[f64], count: usize, x: &mut [V]) {
@@ -35,7 +37,9 @@ pub fn eliminate<V: Entry>(symbolic: &SymbolicSupernodalCholesky<usize>, values:
         || {
             for index in 0..symbolic.n_supernodes() {
                 let panel = Panel::new(symbolic, values, index);
-                panel.eliminate(count, x, &mut below);
+                if panel.begin < count {
+                    panel.eliminate(count, x, &mut below);
+                }
             }
         },
     );
@@ -49,7 +53,9 @@ pub fn substitute<V: Entry>(symbolic: &SymbolicSupernodalCholesky<usize>, values
         || {
             for index in (0..symbolic.n_supernodes()).rev() {
                 let panel = Panel::new(symbolic, values, index);
-                panel.substitute(count, x, &mut below);
+                if panel.begin < count {
+                    panel.substitute(count, x, &mut below);
+                }
             }
         },
     );
@@ -237,31 +243,43 @@ impl Panel<'_, f64> {
         below.clear();
         below.extend(self.pattern.iter().map(|&row| x[row]));
         let own = &mut x[self.begin..self.begin + self.width];
-        for (index, column) in self.columns(count).rev() {
+        // What lies below first: the columns of a tile read it once.
+        let mut columns: Vec<(usize, &[f64])> = self.columns(count).collect();
+        let tiles = columns.chunks_exact(COLUMNS_AT_ONCE);
+        for &(index, column) in tiles.remainder() {
+            own[index].add_scaled(-1.0, &products([&column[self.width..]], below)[0]);
+        }
+        for tile in tiles {
+            let parts: [&[f64]; COLUMNS_AT_ONCE] = std::array::from_fn(|t| &tile[t].1[self.width..]);
+            for (t, sum) in products(parts, below).iter().enumerate() {
+                own[tile[t].0].add_scaled(-1.0, sum);
+            }
+        }
+        while let Some((index, column)) = columns.pop() {
             let (before, solved) = own.split_at_mut(index + 1);
-            let (near, far) = column[index + 1..].split_at(solved.len());
-            before[index].add_scaled(-1.0, &product(near, solved));
-            before[index].add_scaled(-1.0, &product(far, below));
+            before[index].add_scaled(-1.0, &products([&column[index + 1..self.width]], solved)[0]);
             before[index].scale(1.0 / column[index]);
         }
     }
 }
 
-/// Σ_i column[i] x_i, by partial sums that do not wait for each other.
+/// Σ_i columns[t][i] x_i for several columns, by partial sums that do not wait for each other.
 #[inline(always)]
-fn product<V: Entry>(column: &[f64], x: &[V]) -> V {
-    let mut sums = [V::ZERO; PARTIAL_SUMS];
-    let (columns, entries) = (column.chunks_exact(PARTIAL_SUMS), x.chunks_exact(PARTIAL_SUMS));
-    for (entry, x) in columns.remainder().iter().zip(entries.remainder()) {
-        sums[0].accumulate(*entry, x);
-    }
-    for (column, x) in columns.zip(entries) {
-        for (sum, (entry, x)) in sums.iter_mut().zip(column.iter().zip(x)) {
-            sum.accumulate(*entry, x);
+fn products<V: Entry, const COUNT: usize>(columns: [&[f64]; COUNT], x: &[V]) -> [V; COUNT] {
+    let mut sums = [[V::ZERO; PARTIAL_SUMS]; COUNT];
+    let columns = columns.map(|column| &column[..x.len()]);
+    let whole = x.len() - x.len() % PARTIAL_SUMS;
+    for first in (0..whole).step_by(PARTIAL_SUMS) {
+        for (sums, column) in sums.iter_mut().zip(columns) {
+            let entries = column[first..first + PARTIAL_SUMS].iter().zip(&x[first..first + PARTIAL_SUMS]);
+            sums.iter_mut().zip(entries).for_each(|(sum, (entry, x))| sum.accumulate(*entry, x));
         }
     }
-    let mut all = V::ZERO;
-    sums.iter().for_each(|sum| all.add_scaled(1.0, sum));
+    let mut all = [V::ZERO; COUNT];
+    for ((all, sums), column) in all.iter_mut().zip(&sums).zip(columns) {
+        sums.iter().for_each(|sum| all.add_scaled(1.0, sum));
+        column[whole..].iter().zip(&x[whole..]).for_each(|(entry, x)| all.accumulate(*entry, x));
+    }
     all
 }
 

@@ -71,7 +71,8 @@ impl TornSolver {
         Self::with_communication(problem, preconditioner, Arc::new(InProcess))
     }
 
-    /// As [`TornSolver::new`], for one process of several: each solves the same problem and works on its own subdomains.
+    /// As [`TornSolver::new`], for one process of several: each solves the same problem and works on its own subdomains. All processes
+    /// call the same functions of the solver in the same order.
     ///
     /// # Errors
     /// As [`TornSolver::new`].
@@ -308,7 +309,7 @@ impl TornSolver {
         contact.tangents(surface, changes, tolerance)
     }
 
-    /// All bodies of a solved shape, lower first; torn copies of a node averaged.
+    /// All bodies of a solved shape, lower first; torn copies of a node averaged. Where there are several processes, all of them call it.
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for a state of another mesh.
@@ -317,7 +318,7 @@ impl TornSolver {
         Ok(whole_bodies(&self.model, &state.blocks, &state.displacement))
     }
 
-    /// Strain energy ½ uᵀK u, N·mm.
+    /// Strain energy ½ uᵀK u, N·mm. Where there are several processes, all of them call it.
     pub fn strain_energy(&self, state: &TornState) -> f64 {
         let pattern = &self.model.pattern.pattern;
         let energy = |factors: &SubdomainFactors, subdomain: &TornSubdomain| {

@@ -5,9 +5,14 @@ use contact::linear::vector::{add_scaled, norm};
 use contact::scene::{CounterSurface, Scene, signorini};
 use nonsmooth::{Accuracy, StateSolver};
 
+/// Products allowed.
+const FLAT: usize = 1500;
+const TALL: usize = 520;
+
 #[test]
 fn plates_one_to_a_hundred_and_rods_are_solved() {
-    for (height, pressure) in [(1.0, 30.0), (1e4, 30.0)] {
+    // 1 : 100 was refused before K⁺ was balanced, and the study's uniformly loaded rod of 100 : 1 took 448 products (77 now); this one is bent.
+    for (height, pressure, allowed) in [(1.0, 30.0, FLAT), (1e4, 30.0, TALL)] {
         let mut scene = Scene { mesh: [4; 3], subdomains: [2; 3], start_height: height, ..signorini().unwrap() };
         scene.counter_surface = CounterSurface::Plane { height: 1.00001 * height };
         scene.bounds.minimum_height = 0.5 * height;
@@ -24,8 +29,7 @@ fn plates_one_to_a_hundred_and_rods_are_solved() {
         let ((mut difference, products), (direct, _)) = (solve(SolverKind::Newton), solve(SolverKind::Direct));
         add_scaled(&mut difference, -1.0, &direct);
         let relative = norm(&difference) / norm(&direct);
-        println!("height {height}: {products} products, {relative:e}");
         assert!(relative < 1e-6, "height {height}: {relative:e}");
-        assert!(products < 1500, "height {height}: {products}");
+        assert!(products <= allowed, "height {height}: {products}, allowed: {allowed}");
     }
 }

@@ -16,13 +16,16 @@ type Message = (Vec<Vec<f64>>, Option<String>);
 #[derive(Debug)]
 struct Rank {
     rank: usize,
+    /// Whether it reports a failure when all agree.
+    fails: bool,
     to: Vec<Mutex<Sender<Message>>>,
     from: Vec<Mutex<Receiver<Message>>>,
 }
 
 impl Rank {
     fn all(count: usize) -> Vec<Self> {
-        let mut ranks: Vec<Self> = (0..count).map(|rank| Self { rank, to: vec![], from: vec![] }).collect();
+        let mut ranks: Vec<Self> =
+            (0..count).map(|rank| Self { rank, fails: false, to: vec![], from: vec![] }).collect();
         for sender in 0..count {
             for receiver in 0..count {
                 let (to, from) = channel();
@@ -58,13 +61,14 @@ impl Communication for Rank {
     }
 
     fn agree(&self, failure: Option<String>) -> Option<String> {
+        let failure = failure.or_else(|| self.fails.then(|| format!("rank {}: no memory", self.rank)));
         self.all_to_all(&(vec![], failure)).into_iter().find_map(|(_, failure)| failure)
     }
 }
 
 #[derive(Debug, PartialEq)]
 struct Outcome {
-    normal: Vec<f64>,
+    forces: [Vec<f64>; 2],
     heights: Vec<f64>,
     tangents: Vec<Vec<f64>>,
     displacement: Vec<f64>,
@@ -93,7 +97,7 @@ fn solve(scene: &Scene, communication: Option<Rank>) -> Outcome {
     let tangents = solver.tangents(&state, &changes, 1e-6).unwrap().forces;
     let bodies = solver.bodies(&state).unwrap();
     Outcome {
-        normal: forces.normal,
+        forces: [forces.normal, forces.tangential.as_flattened().to_vec()],
         heights,
         tangents,
         displacement: bodies.iter().flat_map(|body| body.displacement.as_flattened().to_vec()).collect(),
@@ -114,7 +118,8 @@ fn on_threads<T: Send + 'static>(
 
 #[test]
 fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
-    for (scene, subdomains) in [(signorini().unwrap(), [2; 3]), (hertz().unwrap(), [2, 1, 2])] {
+    let scenes = [(signorini(), [2; 3]), (hertz(), [2, 1, 2]), (signorini(), [1; 3]), (signorini(), [2, 1, 1])];
+    for (scene, subdomains) in scenes.map(|(scene, subdomains)| (scene.unwrap(), subdomains)) {
         let scene = Scene { mesh: [4; 3], subdomains, ..scene };
         let alone = solve(&scene, None);
         for (processes, threads) in [(1, 1), (2, 2), (3, 1), (4, 1)] {
@@ -129,29 +134,23 @@ fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
     }
 }
 
-/// A process that has subdomains to itself and hears of a failure elsewhere.
-#[derive(Debug)]
-struct Bereaved;
-
-impl Communication for Bereaved {
-    fn owned(&self, count: usize) -> Range<usize> {
-        0..count
-    }
-
-    fn share(&self, _pieces: &mut [Vec<f64>]) {}
-
-    fn agree(&self, failure: Option<String>) -> Option<String> {
-        failure.or_else(|| Some("rank 1: no memory".to_owned()))
-    }
-}
-
 #[test]
 fn a_failure_in_one_process_ends_the_others() {
-    let scene = Scene { mesh: [4; 3], ..signorini().unwrap() };
-    let controls = vec![scene.start_height; 36];
-    let problem = Arc::new(ContactProblem::new(scene).unwrap());
-    let solver = TornSolver::with_communication(problem, PreconditionerKind::Dirichlet, Arc::new(Bereaved)).unwrap();
-    let error = solver.solve(&controls, None, 1e-8).unwrap_err();
-    assert!(matches!(&error, ContactError::Factorization { .. }), "{error}");
-    assert!(error.to_string().contains("subdomain of another process") && error.to_string().contains("no memory"));
+    let mut ranks = Rank::all(3);
+    ranks[1].fails = true;
+    let handles = ranks.into_iter().map(|rank| {
+        on_threads(1, move || {
+            let scene = Scene { mesh: [4; 3], ..signorini().unwrap() };
+            let controls = vec![scene.start_height; 36];
+            let problem = Arc::new(ContactProblem::new(scene).unwrap());
+            let kind = PreconditionerKind::Dirichlet;
+            let solver = TornSolver::with_communication(problem, kind, Arc::new(rank)).unwrap();
+            solver.solve(&controls, None, 1e-8).unwrap_err()
+        })
+    });
+    for handle in handles.collect::<Vec<_>>() {
+        let error = handle.join().unwrap();
+        assert!(matches!(&error, ContactError::Factorization { .. }), "{error}");
+        assert!(error.to_string().contains("rank 1: no memory"), "{error}");
+    }
 }

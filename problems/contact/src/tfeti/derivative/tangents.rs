@@ -121,12 +121,9 @@ impl TornContact<'_> {
 
     /// Whether single precision alone reaches a tolerance, judged by the condition of the subdomains.
     fn single_is_enough(&self, tolerance: f64) -> bool {
-        let model = self.operator.model;
-        let error = |index: usize| self.operator.system.parts[index].factors.iter().map(|f| f.forward_error).collect();
-        let worst = model.share_pieces(error).concat().into_iter().fold(0.0, f64::max);
         self.precision == Precision::Mixed
             && tolerance >= TIGHTEST_SINGLE
-            && SINGLE_ROUNDING * worst <= MAX_ROUNDING_SHARE * tolerance
+            && SINGLE_ROUNDING * self.operator.system.forward_error <= MAX_ROUNDING_SHARE * tolerance
     }
 }
 

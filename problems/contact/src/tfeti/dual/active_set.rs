@@ -12,6 +12,7 @@ use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::active_rows::ActiveRows;
 use crate::tfeti::dual::coarse_matrix::CoarseFactor;
 use crate::tfeti::dual::coarse_space::CoarseSpace;
+use crate::tfeti::torn::RowVector;
 
 /// The rows of an active set that holds all rigid motions, with its factored coarse matrix G_T Gqᵀ.
 #[derive(Debug)]
@@ -72,6 +73,16 @@ impl<'a> ActiveSet<'a> {
             for (v, jump) in v.iter_mut().zip(self.rows.test_transposed(&self.space.jumps(amplitudes))) {
                 v.add_scaled(1.0, &jump);
             }
+        });
+    }
+
+    /// v −= T Gqᵀ (G_T Gqᵀ)⁻¹ G v for multipliers v = T y + w with any w: then G v = 0.
+    pub fn balance(&self, v: &mut RowVector) {
+        self.space.timed(|| {
+            let mut defect = self.space.resultant(v);
+            self.coarse.solve_in_place(&mut defect);
+            let jumps = self.rows.test_transposed(&self.space.jumps(&defect));
+            add_scaled(v, -1.0, &self.rows.trial(&jumps));
         });
     }
 

@@ -6,9 +6,9 @@
 //! S = K_CC − K_CI K_II⁻¹ K_IC once per shape;    method.md (4.9)
 //! b_C ← b_C − K_CI K_II⁻¹ b_I,   (S + U) a_C = b_C,   K_II a_I = b_I − K_IC a_C
 //! ```
-//! K = G_E G_Eᵀ is symmetric and sparse, and singular where contact alone holds a body. K + I_C is positive definite. Its factor
-//! serves both ends: its leading columns eliminate I, and its trailing block L₂₂ gives S = L₂₂L₂₂ᵀ − I_C. The weight of I_C is one,
-//! because G is dimensionless and its rows are of that size.
+//! K = G_E G_Eᵀ is symmetric and sparse, and singular where contact alone holds a body. K + w I_C is positive definite. Its factor
+//! serves both ends: its leading columns eliminate I, and its trailing block L₂₂ gives S = L₂₂L₂₂ᵀ − w I_C. w is the mean of the diagonal
+//! of K_CC, so that the difference keeps its digits; where K_CC is zero, w is one, because G is dimensionless.
 
 use crate::error::ContactError;
 use crate::linear::cholesky::NumericFactor;
@@ -20,7 +20,7 @@ use faer::Mat;
 /// The part of the coarse matrix that all active sets of a shape share, with the subdomains away from contact eliminated.
 #[derive(Debug)]
 pub struct CondensedCoarse {
-    /// Factor of K + I_C.
+    /// Factor of K + w I_C.
     factor: NumericFactor,
     /// S, and what holds the grounded motions.
     schur: Mat<f64>,
@@ -35,14 +35,18 @@ impl CondensedCoarse {
     /// [`ContactError::Factorization`] when the rows of B_E leave more motions of a body free than its contact nodes see.
     pub fn new(pattern: &CoarsePattern, mut values: Vec<f64>, grounded: &[Vec<f64>]) -> Result<Self, ContactError> {
         let contact = pattern.contact_amplitudes();
-        for &amplitude in contact {
-            values[pattern.lower.starts()[amplitude]] += 1.0;
-        }
-        let factor = pattern.symbolic.factorize(&values)?;
+        let diagonal = |&amplitude: &usize| pattern.lower.starts()[amplitude];
+        let mean = contact.iter().map(|amplitude| values[diagonal(amplitude)]).sum::<f64>() / contact.len() as f64;
+        let weight = if mean > 0.0 { mean } else { 1.0 };
+        contact.iter().for_each(|amplitude| values[diagonal(amplitude)] += weight);
+        let factor = pattern.symbolic.factorize(&values).map_err(|error| ContactError::Factorization {
+            what: "constant part of the coarse matrix".into(),
+            reason: error.reason,
+        })?;
         let trailing = factor.trailing_block(contact.len());
         let mut schur = multiply_columns(&trailing, &trailing.transpose().to_owned());
         for (p, &row) in contact.iter().enumerate() {
-            schur[(p, p)] -= 1.0;
+            schur[(p, p)] -= weight;
             for (q, &column) in contact.iter().enumerate() {
                 // Amplitudes and G are dimensionless, so a unit weight is of the size of G Gᵀ.
                 schur[(p, q)] += grounded.iter().map(|motion| motion[row] * motion[column]).sum::<f64>();

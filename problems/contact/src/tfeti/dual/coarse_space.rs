@@ -34,16 +34,22 @@ pub struct CoarseSpace {
     spent: AtomicU64,
 }
 
+/// Rows of Gᵀ that are built before they are packed: enough for all threads, few beside the packed ones.
+const ROWS_AT_ONCE: usize = 1 << 14;
+
 impl CoarseSpace {
     /// The coarse space of a factored system. `grounded`: amplitude vectors of motions that nothing holds.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when the constant part of the coarse matrix is not positive semidefinite to rounding.
     pub fn new(model: &TornModel, system: &TornSystem, grounded: Vec<Vec<f64>>) -> Result<Self, ContactError> {
-        let entries: Vec<Vec<(usize, f64)>> =
-            (0..model.constraints.row_count()).into_par_iter().map(|row| coarse_row(model, system, row)).collect();
+        let row_count = model.constraints.row_count();
+        let mut rows = Csr::from_rows(MOTIONS * system.parts.len(), []);
+        for first in (0..row_count).step_by(ROWS_AT_ONCE) {
+            let block = (first..row_count.min(first + ROWS_AT_ONCE)).into_par_iter();
+            rows.extend(block.map(|row| coarse_row(model, system, row)).collect::<Vec<_>>());
+        }
         let resultants = system.parts.iter().flat_map(|part| part.rigid.resultants.iter().copied()).collect();
-        let rows = Csr::from_rows(MOTIONS * system.parts.len(), entries);
         let (transposed, pattern) = (rows.transpose(), Arc::clone(&model.coarse));
         let equality_count = model.constraints.equality_count;
         let condensed =
@@ -113,6 +119,11 @@ impl CoarseSpace {
         })
     }
 
+    /// Number of rigid amplitudes of subdomains with contact rows.
+    pub fn contact_amplitude_count(&self) -> usize {
+        self.pattern.contact_amplitudes().len()
+    }
+
     /// G λ of multipliers over all rows.
     pub fn resultant<V: Entry>(&self, multipliers: &[V]) -> Vec<V> {
         let mut result = vec![V::ZERO; self.rows.column_count()];
@@ -131,7 +142,7 @@ impl CoarseSpace {
 /// One row of Gᵀ: the row of B on the rigid modes of the subdomains it touches.
 fn coarse_row(model: &TornModel, system: &TornSystem, row: usize) -> Vec<(usize, f64)> {
     let size = model.pattern.pattern.dimension();
-    let mut entries: Vec<(usize, f64)> = Vec::with_capacity(48);
+    let mut entries: Vec<(usize, f64)> = Vec::with_capacity(2 * MOTIONS);
     for (dof, value) in model.constraints.rows.row(row) {
         let subdomain = dof / size;
         let first = 6 * subdomain;

@@ -103,15 +103,17 @@ impl TornContact<'_> {
         let mut residual = rows.test_transposed(&iterate.jumps);
         rows.add_compliance(&rows.unknowns_of(&iterate.multipliers), &mut residual, -1.0);
         let rigid = active.amplitudes(&residual);
-        active.add_rigid(&rigid, &mut residual);
-        directions.push(self, Direction { amplitudes: rigid, forces: None });
-        let mut step = self.precondition(rows, &residual, |z| active.project(z));
-        let defect: Vec<f64> = self.space.resultant(&direction).iter().map(|value| -value).collect();
-        active.enforce(&mut step, &defect);
+        let jumps = self.space.jumps(&rigid);
+        add_scaled(&mut residual, 1.0, &rows.test_transposed(&jumps));
+        directions.push(Direction { amplitudes: rigid, forces: None }, jumps);
+        // One correction brings the preconditioned residual and the change of the law into equilibrium.
+        let step = self.precondition(rows, &residual, |_| ());
         add_scaled(&mut direction, 1.0, &rows.trial(&step));
+        active.balance(&mut direction);
         let image = self.operator.apply_direction(&direction, self.descent_precision());
         let amplitudes = balancing_amplitudes(active, &rows.unknowns_of(&direction), &image);
-        directions.push(self, Direction { amplitudes, forces: Some((direction, image)) });
+        let jumps = self.space.jumps(&amplitudes);
+        directions.push(Direction { amplitudes, forces: Some((direction, image)) }, jumps);
     }
 }
 

@@ -9,7 +9,7 @@ use crate::error::ContactError;
 use crate::tfeti::dual::{Iterate, Precision, TornContact, TornSolution};
 use crate::tfeti::newton::linear_solve::LinearAccuracy;
 use crate::tfeti::newton::recycling::Recycled;
-use crate::tfeti::newton::settings::{NewtonSettings, Recycling};
+use crate::tfeti::newton::settings::NewtonSettings;
 use crate::tfeti::newton::stagnation::{circles, stagnates};
 
 /// First and largest forcing term.
@@ -30,7 +30,7 @@ impl TornContact<'_> {
     /// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],
     /// [`ContactError::NotFinite`], [`ContactError::Unheld`] when an active set leaves a motion free.
     pub fn solve(&self, start: Option<&[f64]>, settings: &NewtonSettings) -> Result<TornSolution, ContactError> {
-        let mut recycled = (settings.recycling == Recycling::On).then(Recycled::default);
+        let mut recycled = settings.recycling.pays(self.space.contact_amplitude_count()).then(Recycled::default);
         let mut iterate = self.start(start, settings.max_products, recycled.as_mut())?;
         let mut residual = self.residual(&iterate);
         let mut history = vec![residual];

@@ -88,7 +88,8 @@ impl TornContact<'_> {
                 add_scaled(&mut image, *coefficient, &product);
                 if let Some(recycled) = recycled.as_deref_mut() {
                     let amplitudes = balancing_amplitudes(active, direction, &product);
-                    recycled.push(self, Direction { amplitudes, forces: Some((rows.trial(direction), product)) });
+                    let jumps = self.space.jumps(&amplitudes);
+                    recycled.push(Direction { amplitudes, forces: Some((rows.trial(direction), product)) }, jumps);
                 }
             }
         }

@@ -49,9 +49,8 @@ impl Recycled {
         self.directions.len()
     }
 
-    /// Adds a direction.
-    pub fn push(&mut self, contact: &TornContact<'_>, direction: Direction) {
-        let mut jumps = contact.space.jumps(&direction.amplitudes);
+    /// Adds a direction, with the jumps Gᵀ b of its amplitudes.
+    pub fn push(&mut self, direction: Direction, mut jumps: RowVector) {
         if let Some((_, image)) = &direction.forces {
             add_scaled(&mut jumps, -1.0, image);
         }

@@ -17,8 +17,7 @@ impl TornContact<'_> {
     pub(crate) fn not_converged(&self, residual: f64, settings: &NewtonSettings, history: Vec<f64>) -> ContactError {
         let largest = self.gaps.iter().fold(0.0, |largest: f64, gap| largest.max(gap.abs()));
         let gaps = f64::EPSILON * self.stiffness * largest / self.load;
-        let parts = self.operator.system.parts.iter().filter_map(|part| part.factors.as_ref());
-        let stiffness = parts.map(|factors| factors.forward_error).fold(0.0, f64::max);
+        let stiffness = self.operator.system.forward_error;
         let (floor, what) = if gaps > stiffness {
             (gaps, "gaps (distances or loads of very different size)")
         } else {

@@ -39,14 +39,26 @@ impl NewtonSettings {
     }
 }
 
+/// Rigid amplitudes of subdomains at the contact boundary up to which directions are recycled: with more, the repeated factorisation of
+/// their dense matrix outweighs the products saved.
+const MAX_CONTACT_AMPLITUDES: usize = 2100;
+
 /// Use of the dual directions that a solve has already multiplied with F.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Recycling {
-    /// Every product serves all later iterates: fewest products with F, more dense algebra.
+    /// Every product serves all later iterates: fewest products with F, more dense algebra. Beyond 2100 rigid amplitudes of
+    /// subdomains at the contact boundary, whose dense matrix every active set factors, it counts as [`Recycling::Off`].
     #[default]
     On,
     /// Newton steps with a GMRES of their own.
     Off,
+}
+
+impl Recycling {
+    /// Whether directions are recycled with so many rigid amplitudes at the contact boundary.
+    pub(crate) fn pays(self, contact_amplitudes: usize) -> bool {
+        self == Self::On && contact_amplitudes <= MAX_CONTACT_AMPLITUDES
+    }
 }

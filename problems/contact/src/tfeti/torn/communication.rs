@@ -6,7 +6,8 @@
 //!
 //! ```text
 //! product with F, preconditioner:   values at the dofs with rows          once per product
-//! contact stiffness, resultants, sensitivities, displacements:            once per shape
+//! contact stiffness, factor errors, sensitivities, displacements:         once per shape
+//! resultants of tangents:                                                 once per column
 //! ```
 //! Every process then adds the pieces itself, in the order of the subdomains, as a single process does: results are the same to
 //! the last bit for any number of processes.
@@ -16,7 +17,12 @@ use std::ops::Range;
 
 /// One process of a run. All processes call the same functions in the same order.
 pub trait Communication: Debug + Send + Sync {
-    /// The subdomains of this process, out of `count`.
+    /// Whether there is no other process. The answer is the same in all processes.
+    fn is_alone(&self) -> bool {
+        false
+    }
+
+    /// The subdomains of this process, out of `count`; there may be none.
     fn owned(&self, count: usize) -> Range<usize>;
 
     /// Completes pieces of which `pieces[i]` belongs to subdomain i: those of other processes' subdomains are replaced by what these
@@ -32,6 +38,10 @@ pub trait Communication: Debug + Send + Sync {
 pub struct InProcess;
 
 impl Communication for InProcess {
+    fn is_alone(&self) -> bool {
+        true
+    }
+
     fn owned(&self, count: usize) -> Range<usize> {
         0..count
     }

@@ -69,8 +69,10 @@ pub struct TornPart {
 pub struct TornSystem {
     /// All subdomains, lower body first.
     pub parts: Vec<TornPart>,
-    /// Numeric factorisations done for this shape.
+    /// Numeric factorisations done for this shape, by all processes.
     pub factorizations: usize,
+    /// Largest [`SubdomainFactors::forward_error`] of all subdomains.
+    pub forward_error: f64,
 }
 
 impl TornModel {
@@ -147,7 +149,9 @@ impl TornModel {
             factors.map(|factors| factors.factorizations() as f64).collect()
         };
         let factorizations = self.share_pieces(count).concat().into_iter().sum::<f64>() as usize;
-        Ok(TornSystem { parts, factorizations })
+        let error = |index: usize| parts[index].factors.iter().map(|factors| factors.forward_error).collect();
+        let forward_error = self.share_pieces(error).concat().into_iter().fold(0.0, f64::max);
+        Ok(TornSystem { parts, factorizations, forward_error })
     }
 
     fn factorize_body(&self, body: usize, scene: &BodyScene, block: &Block) -> Result<Vec<TornPart>, ContactError> {
@@ -193,14 +197,9 @@ impl TornModel {
         self.subdomains[subdomain].interior.as_deref()
     }
 
-    /// Whether all subdomains belong to this process, so that nothing has to travel.
-    pub fn is_whole(&self) -> bool {
-        self.communication.owned(self.subdomains.len()) == (0..self.subdomains.len())
-    }
-
     /// Completes a torn vector, or a block of columns, at the dofs with rows: those of other processes' subdomains are filled in.
     pub fn share_interface<V: Entry>(&self, torn: &mut [V]) {
-        if self.is_whole() {
+        if self.communication.is_alone() {
             return;
         }
         let transposed = &self.constraints.transposed;
@@ -209,7 +208,7 @@ impl TornModel {
 
     /// Completes a torn vector at all dofs.
     pub fn share_torn(&self, torn: &mut TornVector) {
-        if !self.is_whole() {
+        if !self.communication.is_alone() {
             self.share_dofs(&mut torn.0, |_| true);
         }
     }
