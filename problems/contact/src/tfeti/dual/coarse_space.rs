@@ -12,7 +12,6 @@ use crate::linear::entry::Entry;
 use crate::tfeti::dual::coarse_matrix::CondensedCoarse;
 use crate::tfeti::torn::{CoarsePattern, RowVector, TornModel, TornSystem};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -162,24 +161,30 @@ fn coarse_row(model: &TornModel, system: &TornSystem, row: usize) -> Vec<(usize,
 fn gram(pattern: &CoarsePattern, [rows, transposed]: [&Csr; 2], count: usize) -> Vec<f64> {
     let (starts, pattern_rows) = (pattern.lower.starts(), pattern.lower.rows());
     let columns_of = |own: usize| {
-        let mut blocks: BTreeMap<usize, [[f64; MOTIONS]; MOTIONS]> = BTreeMap::new();
-        for (row, _) in transposed.row(MOTIONS * own).take_while(|(row, _)| *row < count) {
-            // A row holds the six amplitudes of a subdomain side by side.
-            let entries: Vec<(usize, f64)> = rows.row(row).collect();
-            let of_own = entries.chunks_exact(MOTIONS).find(|six| six[0].0 == MOTIONS * own).into_iter().flatten();
-            for (column, &(_, right)) in of_own.enumerate() {
-                for six in entries.chunks_exact(MOTIONS).filter(|six| six[0].0 >= MOTIONS * own) {
-                    let block = blocks.entry(six[0].0).or_default();
-                    six.iter().enumerate().for_each(|(i, (_, left))| block[column][i] += left * right);
+        let first = MOTIONS * own;
+        // A row holds the six amplitudes of a subdomain side by side, and so does the pattern.
+        let coupled: Vec<usize> =
+            pattern_rows[starts[first]..starts[first + 1]].iter().step_by(MOTIONS).copied().collect();
+        let place =
+            |amplitude: usize| coupled.binary_search(&amplitude).expect("invariant: the pattern couples all of a row");
+        let mut blocks = vec![[[0.0; MOTIONS]; MOTIONS]; coupled.len()];
+        let mut entries = Vec::new();
+        for (row, _) in transposed.row(first).take_while(|(row, _)| *row < count) {
+            entries.clear();
+            entries.extend(rows.row(row));
+            let of_own = entries.chunks_exact(MOTIONS).find(|six| six[0].0 == first).into_iter().flatten();
+            let mut own_values = [0.0; MOTIONS];
+            own_values.iter_mut().zip(of_own).for_each(|(own, (_, value))| *own = *value);
+            for six in entries.chunks_exact(MOTIONS).filter(|six| six[0].0 >= first) {
+                for (column, right) in blocks[place(six[0].0)].iter_mut().zip(own_values) {
+                    column.iter_mut().zip(six).for_each(|(value, (_, left))| *value += left * right);
                 }
             }
         }
-        let value = |column: usize, row: usize| {
-            blocks.get(&(row - row % MOTIONS)).map_or(0.0, |block| block[column][row % MOTIONS])
-        };
+        let value = |column: usize, row: usize| blocks[place(row - row % MOTIONS)][column][row % MOTIONS];
         (0..MOTIONS)
             .flat_map(|column| {
-                let range = starts[MOTIONS * own + column]..starts[MOTIONS * own + column + 1];
+                let range = starts[first + column]..starts[first + column + 1];
                 pattern_rows[range].iter().map(|&row| value(column, row)).collect::<Vec<f64>>()
             })
             .collect::<Vec<f64>>()
