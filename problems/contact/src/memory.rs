@@ -12,7 +12,8 @@ const NUMBER: f64 = 8.0;
 const DUAL_VECTORS: f64 = 140.0;
 /// Bytes of one number in single precision.
 const SINGLE: f64 = 4.0;
-/// Dual vectors and torn vectors that each column of a Jacobian keeps while it advances, in single precision: directions, their images, subdomain solutions.
+/// Dual vectors and torn vectors that each column of a Jacobian keeps while it advances, in single precision: directions, their images,
+/// subdomain solutions.
 const TANGENT_VECTORS: (f64, f64) = (36.0, 8.0);
 /// Size of the factor of the interior matrix, which the Dirichlet preconditioner needs, over that of a subdomain's factor.
 const INTERIOR_SHARE: f64 = 0.45;

@@ -33,7 +33,8 @@ const PATIENCE: usize = 3;
 pub(in crate::bundle) type Noted = Option<Result<(), String>>;
 
 impl Composite {
-    /// Learns what came of a step of the model: `ratio` is the decrease over the predicted one, none if the oracle failed.
+    /// Learns what came of a step of the model: `ratio` is the decrease over the predicted one, none if the oracle failed. A step that
+    /// has met kinks (`met`) counts as no success of the model even where it is accepted.
     fn learn(&mut self, proposal: &Proposal, ratio: Option<f64>, accepted: bool, met: bool) {
         self.weight = proposal.weight;
         if accepted {

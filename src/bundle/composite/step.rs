@@ -41,8 +41,8 @@ impl Run<'_, '_> {
     }
 
     /// The step of the model at a base with a weight, and the trial point that it leads to; none where the subproblem cannot be
-    /// solved, or where h overflows along the step. `set`: the admissible set, if it is not that of the run; `origin`: the vector from the base to the point that
-    /// lengths are measured from, if this point is not the base.
+    /// solved, or where h overflows along the step. `set`: the admissible set, if it is not that of the run; `origin`: the vector from
+    /// the base to the point that lengths are measured from, if this point is not the base.
     pub(super) fn composite_step(
         &mut self,
         base: &Base,

@@ -127,8 +127,8 @@ impl TornModel {
         })
     }
 
-    /// Factors the subdomains of the given blocks (lower, then upper); its count of factorisations is that of all processes. The upper body keeps its shape: it is factored at the
-    /// first call and shared afterwards.
+    /// Factors the subdomains of the given blocks (lower, then upper). The upper body keeps its shape: it is factored at the first call
+    /// and shared afterwards. Factorisations are counted over all processes.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] from a subdomain.
