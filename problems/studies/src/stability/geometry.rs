@@ -22,7 +22,7 @@ pub fn cases() -> Vec<Case> {
             scene
         });
         let mut case = ContactCase::new(scene).check(uniform(1.0, 0.05));
-        if height < 0.1 || height >= 1e4 {
+        if !(0.1..1e4).contains(&height) {
             case = case.limit([&["BeyondPrecision"], &[]], FACTORS);
         }
         let case = case.case(GROUP, format!("height to width {:e}", height / 10.0));
