@@ -33,15 +33,12 @@ const PATIENCE: usize = 3;
 pub(in crate::bundle) type Noted = Option<Result<(), String>>;
 
 impl Composite {
-    /// Learns what came of a step of the model: `ratio` is the decrease over the predicted one, none if the oracle failed. A step that
-    /// has met kinks (`met`) counts as no success of the model even where it is accepted.
-    fn learn(&mut self, proposal: &Proposal, ratio: Option<f64>, accepted: bool, met: bool) {
+    /// Learns what came of a step of the model: `ratio` is the decrease over the predicted one, none if the oracle failed.
+    fn learn(&mut self, proposal: &Proposal, ratio: Option<f64>, accepted: bool) {
         self.weight = proposal.weight;
         if accepted {
             self.failures = 0;
-            if !met {
-                self.pause.succeed();
-            }
+            self.pause.succeed();
             self.longest = f64::INFINITY;
             if ratio.is_some_and(|ratio| ratio >= GOOD_RATIO) {
                 self.weight /= FACTOR;
@@ -80,7 +77,6 @@ impl Run<'_, '_> {
             return noted;
         }
         let own = trial.proposal.origin == Origin::CompositeModel;
-        let mut met = false;
         if let (Some(outer), Some(base)) = (self.outer, &composite.base) {
             let seen = Seen { outer, base, point, change: trial.comparison.change, end: known.as_ref() };
             if !own {
@@ -88,14 +84,13 @@ impl Run<'_, '_> {
                     composite.pause.prolong();
                 }
             } else if composite.kinks.met(&seen, trial.proposal.predicted_decrease, trial.serious) {
-                met = true;
                 composite.pause.fail(MAX_PAUSE);
             }
         }
         let correcting = std::mem::take(&mut composite.correcting);
         if own && (trial.serious || !correcting) {
             let ratio = trial.comparison.change / trial.comparison.model_change;
-            composite.learn(trial.proposal, Some(ratio), trial.serious, met);
+            composite.learn(trial.proposal, Some(ratio), trial.serious);
         }
         if trial.serious {
             self.rebase(point, value, known);
@@ -139,7 +134,7 @@ impl Run<'_, '_> {
             excursion.give_up();
         } else if proposal.origin == Origin::CompositeModel {
             composite.correcting = false;
-            composite.learn(proposal, None, false, false);
+            composite.learn(proposal, None, false);
         }
     }
 
