@@ -242,9 +242,7 @@ impl Run<'_, '_> {
                 (event.value, event.work) = (Some(evaluation.value), evaluation.work);
                 if let Some((known, noted)) = self.note(&center, evaluation.linearization.take()) {
                     event.linearized = noted;
-                    // The proof that an excursion carries is one of the old value and Jacobian.
-                    self.end_excursion();
-                    self.proof = None;
+                    self.forget_excursion();
                     self.rebase(&center, evaluation.value, known);
                 }
                 self.add_cut(center.clone(), &evaluation, false);

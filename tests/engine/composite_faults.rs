@@ -204,8 +204,48 @@ fn steps_along_which_the_outer_function_overflows_are_shortened() {
     assert!(ended && (report.value - 2.0).abs() < 1e-9, "{report}");
 }
 
+/// c(x) = x with an h of which only the objective knows the subgradient.
+struct Secret;
+
+impl NonsmoothObjective for Secret {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        1
+    }
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        Some(&NoSubgradient)
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let x = request.point[0];
+        let mut evaluation = Evaluation::exact(x.abs(), v(&[x.signum()]), ());
+        let (outputs, jacobian) = (v(&[x]), Matrix::identity(1, 1));
+        evaluation.linearization =
+            request.linearization.map(|_| Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None }));
+        Ok(Answer::Accurate(evaluation))
+    }
+}
+
+/// |c| without a subgradient.
+struct NoSubgradient;
+
+impl OuterFunction for NoSubgradient {
+    fn value(&self, outputs: &Vector) -> f64 {
+        outputs[0].abs()
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        outputs * f64::NAN
+    }
+}
+
 #[test]
 fn a_subgradient_that_is_no_number_is_named() {
+    let report = method().minimize(&Secret, v(&[3.0])).unwrap();
+    let reason = "value or subgradient of the outer function is not finite".to_owned();
+    assert_eq!(report.termination, Termination::SubproblemFailed { reason });
     let blind = FnOuter::new(|c: &Vector| (c.norm_squared(), c * f64::NAN));
     let theta = CompositeFunction::new(2, blind, |x: &Vector| (x.clone(), Matrix::identity(2, 2)));
     let error = method().minimize(&theta, v(&[3.0, 1.0])).unwrap_err();

@@ -91,6 +91,13 @@ impl Run<'_, '_> {
         Break(word)
     }
 
+    /// Ends an excursion together with its proof, which the center evaluated anew has outdated.
+    pub(in crate::bundle) fn forget_excursion(&mut self) {
+        if let Some(composite) = &mut self.composite {
+            composite.excursion = None;
+        }
+    }
+
     /// The termination of the stationary center, if a limit ends the run on an excursion from this center.
     pub(in crate::bundle) fn end_excursion(&mut self) -> Option<Termination> {
         let excursion = self.composite.as_mut()?.excursion.take()?;

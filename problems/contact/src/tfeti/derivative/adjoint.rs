@@ -134,7 +134,11 @@ impl AdjointSystem<'_> {
         // Once single precision has failed, the system is so ill conditioned that its residual may rest for long.
         let patience = if precision == self.contact.precision { MAX_STALLED_ITERATIONS } else { MAX_KRYLOV };
         let project = |v: &mut [f64]| self.active.project_adjoint(v);
-        let precondition = |v: &[f64]| self.contact.precondition(&self.active.rows, v, project);
+        let precondition = |v: &[f64]| {
+            let mut z = self.contact.precondition(&self.active.rows, v);
+            project(&mut z);
+            z
+        };
         let product = |z: &[f64]| {
             let mut projected = self.apply(z, precision);
             project(&mut projected);

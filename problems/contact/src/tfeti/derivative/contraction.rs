@@ -137,7 +137,7 @@ impl TornContact<'_> {
             &residual,
             reduction * size,
             max_krylov,
-            |v| self.precondition(rows, v, |z| active.project(z)),
+            |v| self.projected_precondition(active, v),
             |z| self.reduced_product(active, z).0,
         );
         add_scaled(&mut unknowns, 1.0, &krylov.solution);

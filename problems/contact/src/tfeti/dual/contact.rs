@@ -147,11 +147,17 @@ impl<'a> TornContact<'a> {
         (reduced, product)
     }
 
-    /// (Qᵀ M Q + Z) v, projected as the system that it preconditions.
-    pub(crate) fn precondition(&self, rows: &ActiveRows<'_>, v: &[f64], project: impl Fn(&mut [f64])) -> Vec<f64> {
+    /// P (Qᵀ M Q + Z) v.
+    pub(crate) fn projected_precondition(&self, active: &ActiveSet<'_>, v: &[f64]) -> Vec<f64> {
+        let mut z = self.precondition(&active.rows, v);
+        active.project(&mut z);
+        z
+    }
+
+    /// (Qᵀ M Q + Z) v.
+    pub(crate) fn precondition(&self, rows: &ActiveRows<'_>, v: &[f64]) -> Vec<f64> {
         let mut z = rows.test_transposed(&self.preconditioner.apply(&rows.test(v)));
         rows.add_spring(v, &mut z);
-        project(&mut z);
         z
     }
 }

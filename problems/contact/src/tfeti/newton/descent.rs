@@ -107,7 +107,7 @@ impl TornContact<'_> {
         add_scaled(&mut residual, 1.0, &rows.test_transposed(&jumps));
         directions.push(Direction { amplitudes: rigid, forces: None }, jumps);
         // One correction brings the preconditioned residual and the change of the law into equilibrium.
-        let step = self.precondition(rows, &residual, |_| ());
+        let step = self.precondition(rows, &residual);
         add_scaled(&mut direction, 1.0, &rows.trial(&step));
         active.balance(&mut direction);
         let image = self.operator.apply_direction(&direction, self.descent_precision());

@@ -79,7 +79,7 @@ impl TornContact<'_> {
                 target,
                 accuracy.max_krylov.min(allowed.saturating_sub(self.operator.applications())),
                 accuracy.patience,
-                |v| self.precondition(rows, v, |z| active.project(z)),
+                |v| self.projected_precondition(active, v),
                 |z| self.reduced_product(active, z),
             );
             let directions = krylov.directions.iter().zip(krylov.payloads);
