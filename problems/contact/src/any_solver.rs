@@ -7,6 +7,7 @@
 //! the choice. Where bodies are too large to be condensed, total FETI is alone.
 
 use crate::body::elasticity::Formulation;
+use crate::communication::Communication;
 use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{
     Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, MAX_RESIDUAL,
@@ -59,6 +60,7 @@ pub enum AnySolver {
 pub struct AutoSolver {
     problem: Arc<ContactProblem>,
     preconditioner: PreconditionerKind,
+    communication: Arc<dyn Communication>,
     torn: OnceLock<TotalFeti>,
     direct: OnceLock<DirectSolver>,
     /// Why direct condensation comes first, if it does.
@@ -110,7 +112,8 @@ impl From<DirectSolver> for AnySolver {
 }
 
 impl AnySolver {
-    /// The solver of a kind; `preconditioner` is for total FETI, `wanted` for the choice of `auto`.
+    /// The solver of a kind, in one process of those that `communication` connects; `preconditioner` is for total FETI, `wanted`
+    /// for the choice of `auto`.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
@@ -119,12 +122,14 @@ impl AnySolver {
         kind: SolverKind,
         preconditioner: PreconditionerKind,
         wanted: Wanted,
+        communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
-        let torn = |problem, method| TotalFeti::new(problem, preconditioner, method).map(Self::from);
+        let torn = |problem, method| {
+            TotalFeti::with_communication(problem, preconditioner, method, Arc::clone(&communication)).map(Self::from)
+        };
         match kind {
-            SolverKind::Auto => {
-                AutoSolver::new(problem, preconditioner, wanted).map(|solver| Self::Auto(Box::new(solver)))
-            }
+            SolverKind::Auto => AutoSolver::new(problem, preconditioner, wanted, Arc::clone(&communication))
+                .map(|solver| Self::Auto(Box::new(solver))),
             SolverKind::Newton => torn(problem, DualMethod::Newton(Recycling::default())),
             SolverKind::AugmentedLagrangian => torn(problem, DualMethod::SuccessiveApproximations),
             SolverKind::Direct => DirectSolver::new(problem).map(Self::from),
@@ -164,6 +169,7 @@ impl AutoSolver {
         problem: Arc<ContactProblem>,
         preconditioner: PreconditionerKind,
         wanted: Wanted,
+        communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
         let scene = &problem.scene;
         let condensable = memory::estimate(scene, SolverKind::Direct, preconditioner, 0) <= MAX_CONDENSED_BYTES;
@@ -173,7 +179,7 @@ impl AutoSolver {
         let cheaper = cheaper.then(|| "Jacobians of all pressures cost least there".to_owned());
         let direct_first = if condensable { slow_for_total_feti(&problem).or(cheaper) } else { None };
         let (torn, direct) = (OnceLock::new(), OnceLock::new());
-        let solver = Self { problem, preconditioner, torn, direct, direct_first, max_products };
+        let solver = Self { problem, preconditioner, communication, torn, direct, direct_first, max_products };
         match solver.direct_first {
             Some(_) => solver.direct().map(|_| ())?,
             None => solver.torn().map(|_| ())?,
@@ -183,7 +189,10 @@ impl AutoSolver {
 
     fn torn(&self) -> Result<&TotalFeti, ContactError> {
         let method = DualMethod::Newton(Recycling::default());
-        prepared(&self.torn, || TotalFeti::new(Arc::clone(&self.problem), self.preconditioner, method))
+        prepared(&self.torn, || {
+            let communication = Arc::clone(&self.communication);
+            TotalFeti::with_communication(Arc::clone(&self.problem), self.preconditioner, method, communication)
+        })
     }
 
     fn direct(&self) -> Result<&DirectSolver, ContactError> {

@@ -7,6 +7,7 @@
 //! entry per normal force, then, with friction, two per node for the tangential forces
 //! ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries).
 
+use crate::communication::{Communication, InProcess};
 use crate::equilibrium::{ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolverState, ValueError};
 use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
@@ -51,11 +52,12 @@ impl ContactShape {
     /// # Errors
     /// [`SceneError`] for a bad field, a scene that needs more memory than there is, or a size whose symbolic analysis fails.
     pub fn new(scene: Scene, kind: SolverKind) -> Result<Self, SceneError> {
-        Self::for_use(scene, kind, PreconditionerKind::default(), Wanted::States)
+        Self::for_use(scene, kind, PreconditionerKind::default(), Wanted::States, Arc::new(InProcess))
     }
 
     /// As [`ContactShape::new`], with a choice of the preconditioner of total FETI, and for what the solver will be asked for: the
-    /// choice of `auto` depends on it.
+    /// choice of `auto` depends on it. Where there are several processes, all of them do the same: total FETI shares the
+    /// subdomains among them, direct condensation is repeated by each.
     ///
     /// # Errors
     /// As [`ContactShape::new`].
@@ -64,12 +66,13 @@ impl ContactShape {
         kind: SolverKind,
         preconditioner: PreconditionerKind,
         wanted: Wanted,
+        communication: Arc<dyn Communication>,
     ) -> Result<Self, SceneError> {
         scene.validate()?;
         let columns = if wanted == Wanted::Jacobians { scene.control_points.iter().product() } else { 0 };
         memory::check(&scene, kind, preconditioner, columns)?;
         let problem = Arc::new(ContactProblem::new(scene)?);
-        let solver = AnySolver::new(problem, kind, preconditioner, wanted)
+        let solver = AnySolver::new(problem, kind, preconditioner, wanted, communication)
             .map_err(|error| SceneError::out_of_range("mesh.bricks", error, "a size that can be factored"))?;
         Ok(Self { solver })
     }

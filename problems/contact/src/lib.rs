@@ -45,12 +45,14 @@
 //! | [`direct`] | direct condensation: an independent path |
 //! | [`qp`], [`linear`] | dual QPs over half-lines and discs; factorisations |
 //! | [`fields`], [`vtk`] | displacements, stresses and contact fields of a solved shape; their files |
+//! | [`communication`] | what passes between the processes of a run |
 //! | [`memory`] | memory estimated before any work |
 //! | [`plausibility`] | what linear elasticity, the mesh and uniqueness say about a state |
 //! | [`error`] | what can be wrong with a scene, and why a contact problem has no answer |
 
 mod any_solver;
 pub mod body;
+pub mod communication;
 pub mod contact_shape;
 pub mod cost;
 pub mod direct;

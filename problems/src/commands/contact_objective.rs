@@ -2,11 +2,13 @@
 
 use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
+use contact::communication::InProcess;
 use contact::contact_shape::{ContactShape, ContactState, Wanted};
 use contact::cost::PressureCost;
 use contact::plausibility::Warning;
 use nonsmooth::{Accuracy, CompositeObjective, Cost, StateSolver, Vector};
 use scene_file::{Case, MethodName};
+use std::sync::Arc;
 
 /// Θ of a scene: the pressure measure of the contact state that the control heights lead to. Where Σσ^p may lie outside the range
 /// of doubles, Θ is its p-th root.
@@ -35,7 +37,8 @@ pub fn optimized_objective(case: &Case) -> Result<ContactObjective, Failure> {
 }
 
 fn objective_for(case: &Case, wanted: Wanted) -> Result<ContactObjective, Failure> {
-    let shape = ContactShape::for_use(case.scene.clone(), case.solver, case.preconditioner, wanted)?;
+    let shape =
+        ContactShape::for_use(case.scene.clone(), case.solver, case.preconditioner, wanted, Arc::new(InProcess))?;
     let cost = PressureCost::new(case.measure, &shape.problem().boundary)?.normalised_for(&case.scene);
     Ok(CompositeObjective::new(shape, cost))
 }

@@ -1,5 +1,6 @@
 //! Total FETI as a contact solver: semismooth Newton, or the paper's successive approximations.
 
+use crate::communication::{Communication, InProcess};
 use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, Sensitivities, SolvedBody,
     SolverState, Tangents,
@@ -37,7 +38,20 @@ impl TotalFeti {
         preconditioner: PreconditionerKind,
         method: DualMethod,
     ) -> Result<Self, ContactError> {
-        Ok(Self { solver: TornSolver::new(problem, preconditioner)?, method })
+        Self::with_communication(problem, preconditioner, method, Arc::new(InProcess))
+    }
+
+    /// As [`TotalFeti::new`], in one process of several; see [`TornSolver::with_communication`].
+    ///
+    /// # Errors
+    /// As [`TotalFeti::new`].
+    pub fn with_communication(
+        problem: Arc<ContactProblem>,
+        preconditioner: PreconditionerKind,
+        method: DualMethod,
+        communication: Arc<dyn Communication>,
+    ) -> Result<Self, ContactError> {
+        Ok(Self { solver: TornSolver::with_communication(problem, preconditioner, communication)?, method })
     }
 
     /// Solves one shape with at most so many products with F in Newton's method; a failure says what work it cost.

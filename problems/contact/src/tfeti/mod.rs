@@ -28,6 +28,5 @@ pub use newton::{NewtonSettings, Recycling};
 pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
 pub use solver::{TornSolver, TornState};
 pub use torn::{
-    Communication, Constraints, InProcess, PreconditionerKind, RowVector, SubdomainFactors, SubdomainRigid, TornModel,
-    TornSystem, TornVector,
+    Constraints, PreconditionerKind, RowVector, SubdomainFactors, SubdomainRigid, TornModel, TornSystem, TornVector,
 };

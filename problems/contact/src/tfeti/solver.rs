@@ -1,6 +1,7 @@
 //! From a shape to its contact forces and their derivative by TFETI.
 
 use crate::body::mesh::Block;
+use crate::communication::{Communication, InProcess};
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::{self, Linearization};
 use crate::equilibrium::{
@@ -13,8 +14,7 @@ use crate::tfeti::derivative::{MovedSurface, height_sensitivities};
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::NewtonSettings;
 use crate::tfeti::torn::{
-    Communication, InProcess, PreconditionerKind, SubdomainFactors, TornModel, TornSubdomain, TornSystem, TornVector,
-    whole_bodies,
+    PreconditionerKind, SubdomainFactors, TornModel, TornSubdomain, TornSystem, TornVector, whole_bodies,
 };
 use std::sync::Arc;
 use std::time::Instant;

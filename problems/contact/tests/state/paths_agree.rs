@@ -1,5 +1,6 @@
 //! Independent paths give the same state: TFETI against direct condensation, different tearings, different numbers of threads.
 
+use contact::communication::InProcess;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind, Wanted};
 use contact::equilibrium::ContactProblem;
 use contact::scene::{Scene, hertz, signorini};
@@ -61,7 +62,8 @@ fn every_preconditioner_gives_the_same_state() {
     scene.mesh = [6; 3];
     let control = bent(&scene);
     let state = |kind| {
-        let shape = ContactShape::for_use(scene.clone(), SolverKind::Newton, kind, Wanted::States).unwrap();
+        let shape = ContactShape::for_use(scene.clone(), SolverKind::Newton, kind, Wanted::States, Arc::new(InProcess))
+            .unwrap();
         shape.solve(&control, None, Accuracy::TIGHTEST).unwrap()
     };
     let reference = state(PreconditionerKind::Dirichlet);

@@ -56,7 +56,7 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
                 );
             },
         );
-        if !model.communication.is_alone() {
+        if model.communication.size() > 1 {
             for column in 0..changes.len() {
                 let of = |index: usize| resultants[6 * index..6 * (index + 1)].iter().map(|value| value.get(column));
                 let pieces = model.share_pieces(|index| of(index).collect());

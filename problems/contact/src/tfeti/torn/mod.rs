@@ -6,7 +6,6 @@
 //! ```
 
 mod coarse_pattern;
-mod communication;
 mod constraints;
 mod factors;
 mod model;
@@ -16,7 +15,6 @@ mod rigid_modes;
 mod vectors;
 
 pub use coarse_pattern::CoarsePattern;
-pub use communication::{Communication, InProcess};
 pub use constraints::Constraints;
 pub use factors::{SubdomainFactors, SubdomainRigid};
 pub use model::{TornModel, TornSubdomain, TornSystem};

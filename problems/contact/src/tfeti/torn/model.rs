@@ -4,6 +4,7 @@ use crate::body::elasticity::traction::face_weights;
 use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::body::mesh::{Block, Subdomain, Tearing};
 use crate::body::shape_load::loaded_faces;
+use crate::communication::Communication;
 use crate::equilibrium::modes::motions;
 use crate::equilibrium::{Configuration, ContactProblem};
 use crate::error::ContactError;
@@ -13,7 +14,6 @@ use crate::linear::entry::Entry;
 use crate::linear::vector::dot;
 use crate::scene::BodyScene;
 use crate::tfeti::torn::coarse_pattern::CoarsePattern;
-use crate::tfeti::torn::communication::Communication;
 use crate::tfeti::torn::constraints::{BodyRows, Constraints};
 use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors, SubdomainRigid};
 use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
@@ -155,7 +155,7 @@ impl TornModel {
     }
 
     fn factorize_body(&self, body: usize, scene: &BodyScene, block: &Block) -> Result<Vec<TornPart>, ContactError> {
-        let owned = self.communication.owned(self.subdomains.len());
+        let owned = self.owned();
         let parts: Result<Vec<TornPart>, ContactError> = self
             .subdomains
             .par_iter()
@@ -199,7 +199,7 @@ impl TornModel {
 
     /// Completes a torn vector, or a block of columns, at the dofs with rows: those of other processes' subdomains are filled in.
     pub fn share_interface<V: Entry>(&self, torn: &mut [V]) {
-        if self.communication.is_alone() {
+        if self.communication.size() == 1 {
             return;
         }
         let transposed = &self.constraints.transposed;
@@ -208,21 +208,21 @@ impl TornModel {
 
     /// Completes a torn vector at all dofs.
     pub fn share_torn(&self, torn: &mut TornVector) {
-        if !self.communication.is_alone() {
+        if self.communication.size() > 1 {
             self.share_dofs(&mut torn.0, |_| true);
         }
     }
 
     fn share_dofs<V: Entry>(&self, torn: &mut [V], shared: impl Fn(usize) -> bool) {
         let size = self.pattern.pattern.dimension();
-        let owned = self.communication.owned(self.subdomains.len());
+        let owned = self.owned();
         let dofs = |subdomain: usize| (size * subdomain..size * (subdomain + 1)).filter(|&dof| shared(dof));
         let values = |dof: usize| (0..V::WIDTH).map(move |column| (dof, column));
         let piece = |subdomain| dofs(subdomain).flat_map(values).map(|(dof, column)| torn[dof].get(column)).collect();
         let mut pieces: Vec<Vec<f64>> = (0..self.subdomains.len())
             .map(|subdomain| if owned.contains(&subdomain) { piece(subdomain) } else { vec![] })
             .collect();
-        self.communication.share(&mut pieces);
+        pieces = self.complete(&pieces);
         for (subdomain, piece) in pieces.iter().enumerate().filter(|(subdomain, _)| !owned.contains(subdomain)) {
             for ((dof, column), value) in dofs(subdomain).flat_map(values).zip(piece) {
                 torn[dof].set(column, *value);
@@ -232,11 +232,25 @@ impl TornModel {
 
     /// What `own` gives for the subdomains, by the processes that work on them, in the order of the subdomains.
     pub fn share_pieces(&self, own: impl Fn(usize) -> Vec<f64>) -> Vec<Vec<f64>> {
-        let owned = self.communication.owned(self.subdomains.len());
+        let owned = self.owned();
         let piece = |subdomain| if owned.contains(&subdomain) { own(subdomain) } else { vec![] };
-        let mut pieces: Vec<Vec<f64>> = (0..self.subdomains.len()).map(piece).collect();
-        self.communication.share(&mut pieces);
-        pieces
+        let pieces: Vec<Vec<f64>> = (0..self.subdomains.len()).map(piece).collect();
+        self.complete(&pieces)
+    }
+
+    /// The subdomains of this process.
+    fn owned(&self) -> std::ops::Range<usize> {
+        let (rank, size, count) = (self.communication.rank(), self.communication.size(), self.subdomains.len());
+        rank * count / size..(rank + 1) * count / size
+    }
+
+    /// Pieces of all subdomains from those of the own ones.
+    fn complete(&self, pieces: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let own = &pieces[self.owned()];
+        let lengths: Vec<f64> = own.iter().map(|piece| piece.len() as f64).collect();
+        let lengths = self.communication.gather_any(&lengths).concat();
+        let mut values = self.communication.gather_any(&own.concat()).concat().into_iter();
+        lengths.iter().map(|&length| values.by_ref().take(length as usize).collect()).collect()
     }
 
     /// The zero vector over torn dofs.

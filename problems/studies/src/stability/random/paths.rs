@@ -2,6 +2,7 @@
 
 use crate::stability::random::cone;
 use contact::WorkEstimate;
+use contact::communication::InProcess;
 use contact::contact_shape::{AnySolver, SolverKind, Wanted};
 use contact::direct::{CompliantContact, DirectSolver};
 use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
@@ -87,7 +88,13 @@ impl Examined {
     }
 
     fn at(&self, kind: SolverKind, controls: &[f64]) -> Outcome {
-        let solver = AnySolver::new(Arc::clone(&self.problem), kind, PreconditionerKind::default(), Wanted::States);
+        let solver = AnySolver::new(
+            Arc::clone(&self.problem),
+            kind,
+            PreconditionerKind::default(),
+            Wanted::States,
+            Arc::new(InProcess),
+        );
         let solved = solver.and_then(|solver| {
             let state = solver.solve(controls, None, TOLERANCE)?;
             let friction = self.problem.boundary.has_friction();
