@@ -2,61 +2,63 @@
 
 use crate::linear::entry::{Entry, Row, vectorized};
 use crate::linear::real::Real;
+use crate::linear::sums::Sums;
 use rayon::prelude::*;
 
 /// Rows that are worked on together: their numbers stay in the cache of one core, and sums in single precision stay short.
 const CHUNK: usize = 256;
 
 /// aᵀb per column, for every a of a list.
-pub fn products<E: Real, const N: usize>(list: &[&[Row<E, N>]], b: &[Row<E, N>]) -> Vec<Row<f64, N>> {
-    let partial: Vec<Vec<Row<E, N>>> = b
-        .par_chunks(CHUNK)
-        .enumerate()
-        .map(|(chunk, b)| {
-            let product = |a: &&[Row<E, N>]| {
-                let a = &a[chunk * CHUNK..][..b.len()];
-                vectorized(
+pub fn products<E: Real, const N: usize>(sums: &dyn Sums, list: &[&[Row<E, N>]], b: &[Row<E, N>]) -> Vec<Row<f64, N>> {
+    let numbers = sums.sum(b.len(), Row::<f64, N>::WIDTH * list.len(), &|part, sums| {
+        for first in part.clone().step_by(CHUNK) {
+            let chunk = first..part.end.min(first + CHUNK);
+            for (a, sums) in list.iter().zip(sums.chunks_exact_mut(Row::<f64, N>::WIDTH)) {
+                let (a, b) = (&a[chunk.clone()], &b[chunk.clone()]);
+                let product = vectorized(
                     #[inline(always)]
                     || {
-                        let mut sum = Row::ZERO;
+                        let mut sum = Row::<E, N>::ZERO;
                         for (a, b) in a.iter().zip(b) {
                             sum.add_product(a, b);
                         }
                         sum
                     },
-                )
-            };
-            list.iter().map(product).collect()
-        })
-        .collect();
-    let mut sums = vec![Row::ZERO; list.len()];
-    for chunk in partial {
-        for (sum, partial) in sums.iter_mut().zip(chunk) {
-            sum.add_scaled(1.0, &partial.to());
+                );
+                sums.iter_mut().zip(product.iter()).for_each(|(sum, product)| *sum += product.double());
+            }
         }
-    }
-    sums
+    });
+    rows(&numbers)
 }
 
 /// |a|₂ per column, with squares in double precision, so that they neither overflow nor underflow whatever the units.
-pub fn norms<E: Real, const N: usize>(a: &[Row<E, N>]) -> Row<f64, N> {
-    let square = |a: &[Row<E, N>]| {
-        vectorized(
+pub fn norms<E: Real, const N: usize>(sums: &dyn Sums, a: &[Row<E, N>]) -> Row<f64, N> {
+    let numbers = sums.sum(a.len(), Row::<f64, N>::WIDTH, &|part, sums| {
+        let square = vectorized(
             #[inline(always)]
             || {
                 let mut sum = Row::<f64, N>::ZERO;
-                for a in a {
+                for a in &a[part] {
                     let a = a.to();
                     sum.add_product(&a, &a);
                 }
                 sum
             },
-        )
+        );
+        sums.iter_mut().zip(square.iter()).for_each(|(sum, square)| *sum += square);
+    });
+    rows(&numbers)[0].map(f64::sqrt)
+}
+
+/// Numbers as rows.
+fn rows<const N: usize>(numbers: &[f64]) -> Vec<Row<f64, N>> {
+    let row = |numbers: &[f64]| {
+        let mut row = Row::ZERO;
+        numbers.iter().enumerate().for_each(|(column, &number)| row.set(column, number));
+        row
     };
-    let partial: Vec<Row<f64, N>> = a.par_chunks(CHUNK).map(square).collect();
-    let mut sum = Row::ZERO;
-    partial.iter().for_each(|partial| sum.add_scaled(1.0, partial));
-    sum.map(f64::sqrt)
+    numbers.chunks_exact(Row::<f64, N>::WIDTH).map(row).collect()
 }
 
 /// y += Σ factors∘x, with one factor per column for every x; x may have another precision than y.

@@ -10,6 +10,7 @@ use crate::linear::columns::{add_combination, norms, products};
 use crate::linear::entry::Row;
 use crate::linear::gmres::MAX_STALLED_ITERATIONS;
 use crate::linear::real::Real;
+use crate::linear::sums::Sums;
 
 /// Directions, payloads and their coefficients: X = Σ coefficients∘directions.
 pub struct ColumnCombination<E, P, const N: usize> {
@@ -31,15 +32,16 @@ fn reached<const N: usize>(residuals: &Row<f64, N>, targets: &Row<f64, N>) -> bo
 /// Minimises |r − A x| per column over growing Krylov spaces until every norm is at most its target, `max_iterations` is
 /// reached, or the largest ratio of a norm to its target does not halve in 40 iterations; the caller judges the residuals.
 ///
-/// `precondition(r)` returns M r; `apply(z)` returns (A z, payload).
+/// `sums`: inner products; `precondition(r)` returns M r; `apply(z)` returns (A z, payload).
 pub fn gcr<E: Real, P, const N: usize>(
+    sums: &dyn Sums,
     mut residual: Vec<Row<E, N>>,
     targets: &Row<f64, N>,
     max_iterations: usize,
     mut precondition: impl FnMut(&[Row<E, N>]) -> Vec<Row<E, N>>,
     mut apply: impl FnMut(&[Row<E, N>]) -> (Vec<Row<E, N>>, P),
 ) -> ColumnCombination<E, P, N> {
-    let residuals = norms(&residual);
+    let residuals = norms(sums, &residual);
     let mut result =
         ColumnCombination { directions: Vec::new(), payloads: Vec::new(), coefficients: Vec::new(), residuals };
     let (mut images, mut squares) = (Vec::<Vec<Row<E, N>>>::new(), Vec::<Row<f64, N>>::new());
@@ -48,14 +50,17 @@ pub fn gcr<E: Real, P, const N: usize>(
         let direction = precondition(&residual);
         let (mut image, payload) = apply(&direction);
         let earlier: Vec<&[Row<E, N>]> = images.iter().map(Vec::as_slice).collect();
-        let column: Vec<Row<f64, N>> =
-            products(&earlier, &image).iter().zip(&squares).map(|(product, square)| ratio(product, square)).collect();
+        let column: Vec<Row<f64, N>> = products(sums, &earlier, &image)
+            .iter()
+            .zip(&squares)
+            .map(|(product, square)| ratio(product, square))
+            .collect();
         let terms: Vec<_> = column.iter().map(|entry| entry.map(|entry| -entry)).zip(earlier).collect();
         add_combination(&mut image, &terms);
-        let [square, along] = [&image, &residual].map(|other| products(&[&image], other).swap_remove(0));
+        let [square, along] = [&image, &residual].map(|other| products(sums, &[&image], other).swap_remove(0));
         let coefficient = ratio(&along, &square);
         add_combination(&mut residual, &[(coefficient.map(|entry| -entry), image.as_slice())]);
-        result.residuals = norms(&residual);
+        result.residuals = norms(sums, &residual);
         result.directions.push(direction);
         result.payloads.push(payload);
         result.coefficients.push(coefficient);
@@ -96,6 +101,7 @@ fn largest_share<const N: usize>(norms: &Row<f64, N>, targets: &Row<f64, N>) -> 
 mod tests {
     use super::*;
     use crate::linear::entry::Entry;
+    use crate::linear::sums::Whole;
 
     #[test]
     fn every_column_is_solved_in_at_most_n_steps() {
@@ -114,7 +120,7 @@ mod tests {
             (0..3).for_each(|row| expected[row].set(column, values[row]));
         }
         let targets = Row::ZERO.map(|_: f64| 1e-12);
-        let krylov = gcr(apply(&expected), &targets, 10, |r| r.to_vec(), |z| (apply(z), ()));
+        let krylov = gcr(&Whole, apply(&expected), &targets, 10, |r| r.to_vec(), |z| (apply(z), ()));
         assert_eq!(krylov.directions.len(), 3);
         assert!(reached(&krylov.residuals, &targets));
         let mut found = vec![Row::<f64, 1>::ZERO; 3];

@@ -6,7 +6,8 @@
 //! The operator may attach a payload to every product (the dual operator's product before projection), so that the caller
 //! can recombine it without a further application.
 
-use crate::linear::vector::{norm, orthogonalise};
+use crate::linear::sums::Sums;
+use crate::linear::vector::norm;
 
 /// Directions, payloads and their coefficients: x = Σ coefficients·directions.
 #[derive(Debug)]
@@ -27,8 +28,9 @@ pub const MAX_STALLED_ITERATIONS: usize = 40;
 /// Minimises |r − A x| over growing Krylov spaces until the norm falls to `target`, `max_iterations` is reached, or the norm
 /// does not halve in `patience` iterations; the caller judges the residual.
 ///
-/// `precondition(v)` returns z = M v; `apply(z)` returns (A z, payload).
+/// `sums`: inner products; `precondition(v)` returns z = M v; `apply(z)` returns (A z, payload).
 pub fn gmres<P>(
+    sums: &dyn Sums,
     residual: &[f64],
     target: f64,
     max_iterations: usize,
@@ -36,7 +38,7 @@ pub fn gmres<P>(
     mut precondition: impl FnMut(&[f64]) -> Vec<f64>,
     mut apply: impl FnMut(&[f64]) -> (Vec<f64>, P),
 ) -> Combination<P> {
-    let start = norm(residual);
+    let start = sums.norm(residual);
     let mut result =
         Combination { directions: Vec::new(), payloads: Vec::new(), coefficients: Vec::new(), residual: start };
     if start <= target || start == 0.0 {
@@ -50,8 +52,8 @@ pub fn gmres<P>(
         let (mut image, payload) = apply(&direction);
         result.directions.push(direction);
         result.payloads.push(payload);
-        let column = orthogonalise(&mut image, &basis);
-        let length = norm(&image);
+        let column = sums.orthogonalise(&mut image, &basis);
+        let length = sums.norm(&image);
         result.residual = triangle.append(column, length);
         history.push(result.residual);
         // A vanishing new vector means the solution is exact in this space; NaN ends the loop as well.
@@ -119,6 +121,7 @@ impl Triangle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::sums::Whole;
     use crate::linear::vector::{add_scaled, dot};
 
     #[test]
@@ -127,7 +130,8 @@ mod tests {
         let multiply = |x: &[f64]| a.iter().map(|row| dot(row, x)).collect::<Vec<_>>();
         let expected = [1.0, -2.0, 3.0];
         let b = multiply(&expected);
-        let result = gmres(&b, 1e-13 * norm(&b), 10, MAX_STALLED_ITERATIONS, |v| v.to_vec(), |z| (multiply(z), ()));
+        let result =
+            gmres(&Whole, &b, 1e-13 * norm(&b), 10, MAX_STALLED_ITERATIONS, |v| v.to_vec(), |z| (multiply(z), ()));
         let mut x = vec![0.0; 3];
         for (c, z) in result.coefficients.iter().zip(&result.directions) {
             add_scaled(&mut x, *c, z);

@@ -12,6 +12,7 @@ pub mod ordering;
 pub(crate) mod pcg;
 pub(crate) mod real;
 pub(crate) mod right_side;
+pub(crate) mod sums;
 mod supernodal;
 pub mod symmetric;
 pub mod vector;

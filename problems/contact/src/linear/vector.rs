@@ -19,19 +19,6 @@ pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Takes the components along orthonormal vectors off v, twice against rounding; returns them.
-pub fn orthogonalise(v: &mut [f64], basis: &[Vec<f64>]) -> Vec<f64> {
-    let mut components = vec![0.0; basis.len()];
-    for _pass in 0..2 {
-        for (component, vector) in components.iter_mut().zip(basis) {
-            let projection = dot(vector, v);
-            *component += projection;
-            add_scaled(v, -projection, vector);
-        }
-    }
-    components
-}
-
 /// y += factor·x.
 pub fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
     debug_assert_eq!(x.len(), y.len());

@@ -1,6 +1,7 @@
 //! Largest eigenvalue by a few Lanczos steps.
 
-use crate::linear::vector::{dot, norm, orthogonalise};
+use crate::linear::sums::Whole;
+use crate::linear::vector::{dot, norm};
 use crate::qp::{QpError, SymmetricOperator};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -23,7 +24,7 @@ pub fn largest_eigenvalue(operator: &dyn SymmetricOperator, steps: usize) -> Res
         let mut image = vec![0.0; dimension];
         operator.apply(current, &mut image);
         diagonal.push(dot(current, &image));
-        orthogonalise(&mut image, &basis);
+        Whole::orthogonalise(&mut image, &basis);
         let length = norm(&image);
         if !length.is_finite() {
             return Err(QpError::NotFinite { what: "product with the quadratic form" });

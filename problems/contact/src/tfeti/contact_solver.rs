@@ -110,7 +110,8 @@ impl ContactSolver for TotalFeti {
     }
 
     fn sizes(&self) -> [usize; 2] {
-        [self.solver.model().dof_count, self.solver.model().constraints.row_count()]
+        let model = self.solver.model();
+        [model.total_dofs, model.constraints.total_equality_count + model.problem.boundary.row_count]
     }
 
     fn left_out(&self) -> Option<&'static str> {

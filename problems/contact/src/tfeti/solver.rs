@@ -6,7 +6,7 @@ use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::{self, Linearization};
 use crate::equilibrium::{
     Configuration, ContactForces, ContactProblem, Diagnosis, Failed, Kink, Residuals, Sensitivities, SolvedBody, Stage,
-    StageSeconds, Tangents, ValueError, Work,
+    StageSeconds, Tangents, Work,
 };
 use crate::error::ContactError;
 use crate::linear::vector::{add_scaled, dot, norm};
@@ -221,7 +221,7 @@ impl TornSolver {
     }
 
     fn check(&self, state: &TornState) -> Result<(), ContactError> {
-        let (expected, found) = (self.model.dof_count, state.displacement.0.len());
+        let (expected, found) = (self.model.interface.torn_count(), state.displacement.0.len());
         if expected != found || state.blocks.iter().any(|block| block.grid != self.problem().grid) {
             return Err(ContactError::ForeignState { what: "torn dofs", expected, found });
         }
@@ -278,11 +278,10 @@ impl TornSolver {
         let natural =
             dot(scaled.contact(), iterate.multipliers.contact()).abs() / (contact.stiffness * height + contact.load);
         let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, tolerance, natural)?;
-        let terms = contact.weighted_residuals(iterate, &adjoint, &scaled);
-        let value_error = ValueError::from_terms(&terms, scaled.contact(), iterate.multipliers.contact());
+        let value_error = contact.value_error(iterate, &adjoint, &scaled);
         let adjoint_seconds = clock.lap();
         Stage::ShapeDerivative.enter();
-        let heights = height_sensitivities(&self.model, &state.system, &state.blocks[0], &state.displacement, &adjoint);
+        let heights = height_sensitivities(&self.model, &state.blocks[0], &state.displacement, &adjoint);
         let (applications, shape_seconds) = (contact.operator.applications(), clock.lap());
         Ok(Sensitivities { heights, applications, adjoint_seconds, shape_seconds, value_error })
     }
@@ -321,17 +320,14 @@ impl TornSolver {
     /// Strain energy ½ uᵀK u, N·mm. Where there are several processes, all of them call it.
     pub fn strain_energy(&self, state: &TornState) -> f64 {
         let pattern = &self.model.pattern.pattern;
-        let energy = |factors: &SubdomainFactors, subdomain: &TornSubdomain| {
+        let energy = |(part, subdomain): (&Arc<SubdomainFactors>, &TornSubdomain)| {
             let u = &state.displacement.0[subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count()];
             let mut image = vec![0.0; pattern.dimension()];
-            pattern.multiply(&factors.stiffness, u, &mut image);
+            pattern.multiply(&part.stiffness, u, &mut image);
             0.5 * dot(u, &image)
         };
-        let piece = |index: usize| {
-            let factors = state.system.parts[index].factors.iter();
-            factors.map(|factors| energy(factors, &self.model.subdomains[index])).collect()
-        };
-        self.model.share_pieces(piece).concat().into_iter().sum()
+        let own: Vec<f64> = state.system.parts.iter().zip(&self.model.subdomains).map(energy).collect();
+        self.model.distribution.sum(&own, 1)[0]
     }
 }
 
@@ -373,7 +369,7 @@ fn admissible_forces(contact: &TornContact<'_>, forces: &[f64], linearizations: 
 }
 
 impl TornState {
-    /// λ over all rows, to start a similar problem from.
+    /// λ over the rows of this process, to start a similar problem from.
     pub fn multipliers(&self) -> &[f64] {
         &self.solution.iterate.multipliers
     }
@@ -383,7 +379,7 @@ impl TornState {
         &self.blocks
     }
 
-    /// Displacements over the torn dofs of this process (zero elsewhere), mm.
+    /// Displacements over the torn dofs of this process, then its ghosts, mm.
     pub fn displacement(&self) -> &[f64] {
         &self.displacement.0
     }

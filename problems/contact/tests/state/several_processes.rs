@@ -2,10 +2,10 @@
 //! the state of a single process, to the last bit.
 
 use contact::communication::{Communication, Parcel};
-use contact::equilibrium::ContactProblem;
+use contact::equilibrium::{ContactProblem, ContactSolver, SolverState};
 use contact::error::ContactError;
 use contact::scene::{Scene, hertz, signorini};
-use contact::tfeti::{PreconditionerKind, TornSolver};
+use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TornSolver, TotalFeti};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 
@@ -74,22 +74,26 @@ struct Outcome {
     tangents: Vec<Vec<f64>>,
     displacement: Vec<f64>,
     gluing_defect: f64,
+    contraction: f64,
     strain_energy: f64,
     factorizations: usize,
     products: usize,
 }
 
-fn solve(scene: &Scene, communication: Option<Rank>) -> Outcome {
+fn solve(scene: &Scene, communication: Option<Rank>, method: DualMethod) -> Outcome {
     let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
+    let kind = PreconditionerKind::Dirichlet;
     let solver = match communication {
-        Some(rank) => {
-            TornSolver::with_communication(Arc::clone(&problem), PreconditionerKind::Dirichlet, Arc::new(rank))
-        }
-        None => TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet),
+        Some(rank) => TotalFeti::with_communication(Arc::clone(&problem), kind, method, Arc::new(rank)),
+        None => TotalFeti::new(Arc::clone(&problem), kind, method),
     }
     .unwrap();
     let controls = vec![scene.start_height; 36];
-    let (state, forces, work) = solver.solve(&controls, None, 1e-12).unwrap();
+    let first = solver.solve(&controls, None, 1e-6).unwrap();
+    let moved: Vec<f64> = (0..36).map(|index| scene.start_height - 0.01 * (index as f64).sin()).collect();
+    let state = solver.solve(&moved, Some(&first.solution.warm_start()), 1e-10).unwrap();
+    let (forces, work) = (state.forces.clone(), state.work());
+    let state = state.solution;
     let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.3 * row as f64).sin()).collect();
     let heights = solver.sensitivities(&state, &dual, 1e-11).unwrap().heights;
     let changes: Vec<Vec<f64>> = (0..3)
@@ -97,13 +101,15 @@ fn solve(scene: &Scene, communication: Option<Rank>) -> Outcome {
         .collect();
     let tangents = solver.tangents(&state, &changes, 1e-6).unwrap().forces;
     let bodies = solver.bodies(&state).unwrap();
+    let contraction = solver.diagnose(&state).unwrap().contraction;
     Outcome {
         forces: [forces.normal, forces.tangential.as_flattened().to_vec()],
         heights,
         tangents,
         displacement: bodies.iter().flat_map(|body| body.displacement.as_flattened().to_vec()).collect(),
         gluing_defect: bodies.iter().map(|body| body.gluing_defect).fold(0.0, f64::max),
-        strain_energy: solver.strain_energy(&state),
+        contraction,
+        strain_energy: solver.strain_energy(&state).unwrap(),
         factorizations: work.factorizations,
         products: work.dual_operator_applications,
     }
@@ -119,14 +125,21 @@ fn on_threads<T: Send + 'static>(
 
 #[test]
 fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
-    let scenes = [(signorini(), [2; 3]), (hertz(), [2, 1, 2]), (signorini(), [1; 3]), (signorini(), [2, 1, 1])];
-    for (scene, subdomains) in scenes.map(|(scene, subdomains)| (scene.unwrap(), subdomains)) {
+    let newton = DualMethod::Newton(Recycling::On);
+    let cases = [
+        (signorini(), [2; 3], newton),
+        (hertz(), [2, 1, 2], newton),
+        (signorini(), [1; 3], newton),
+        (hertz(), [2, 2, 1], DualMethod::Newton(Recycling::Off)),
+        (signorini(), [2, 2, 1], DualMethod::SuccessiveApproximations),
+    ];
+    for (scene, subdomains, method) in cases.map(|(scene, subdomains, method)| (scene.unwrap(), subdomains, method)) {
         let scene = Scene { mesh: [4; 3], subdomains, ..scene };
-        let alone = solve(&scene, None);
+        let alone = solve(&scene, None, method);
         for (processes, threads) in [(1, 1), (2, 2), (3, 1), (4, 1)] {
             let ranks = Rank::all(processes).into_iter().map(|rank| {
                 let scene = scene.clone();
-                on_threads(threads, move || solve(&scene, Some(rank)))
+                on_threads(threads, move || solve(&scene, Some(rank), method))
             });
             for (rank, handle) in ranks.collect::<Vec<_>>().into_iter().enumerate() {
                 assert_eq!(handle.join().unwrap(), alone, "rank {rank} of {processes}");

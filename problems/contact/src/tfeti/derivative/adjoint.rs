@@ -12,7 +12,7 @@ use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::gmres::{MAX_STALLED_ITERATIONS, gmres};
 use crate::linear::pcg::pcg;
-use crate::linear::vector::{add_scaled, norm};
+use crate::linear::vector::add_scaled;
 use crate::tfeti::derivative::cycles::{
     CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
 };
@@ -68,7 +68,7 @@ impl TornContact<'_> {
         let system = AdjointSystem { contact: self, active, right };
         let mut iterate = system.at_zero();
         // Where equilibrium alone determines the forces, all of the right side is rigid and only rounding is left of it.
-        let size = iterate.residual.max(SMALLEST_PROJECTED_SHARE * norm(&system.right));
+        let size = iterate.residual.max(SMALLEST_PROJECTED_SHARE * self.norm(&system.right));
         let goal = if size < ROUNDING_SHARE * natural { TIGHTEST_ACCEPTABLE * natural } else { tolerance * size };
         let size = size.max(natural);
         let mut precision = self.precision;
@@ -120,7 +120,7 @@ impl AdjointSystem<'_> {
     fn with_residual(&self, unknowns: Vec<f64>, rest: Vec<f64>) -> AdjointIterate {
         let mut projected = rest.clone();
         self.active.project_adjoint(&mut projected);
-        AdjointIterate { residual: norm(&projected), unknowns, rest, projected }
+        AdjointIterate { residual: self.contact.norm(&projected), unknowns, rest, projected }
     }
 
     /// One run of a Krylov method with products in a given precision, towards a residual of `goal`; then the residual by one
@@ -144,13 +144,15 @@ impl AdjointSystem<'_> {
             project(&mut projected);
             projected
         };
+        let sums = self.contact.operator.model.sums();
         if self.contact.boundary.has_friction() {
-            let krylov = gmres(&iterate.projected, target, MAX_KRYLOV, patience, precondition, |z| (product(z), ()));
+            let krylov =
+                gmres(&sums, &iterate.projected, target, MAX_KRYLOV, patience, precondition, |z| (product(z), ()));
             for (coefficient, z) in krylov.coefficients.iter().zip(&krylov.directions) {
                 add_scaled(&mut iterate.unknowns, *coefficient, z);
             }
         } else {
-            let krylov = pcg(&iterate.projected, target, MAX_KRYLOV, precondition, product);
+            let krylov = pcg(&sums, &iterate.projected, target, MAX_KRYLOV, precondition, product);
             add_scaled(&mut iterate.unknowns, 1.0, &krylov.solution);
         }
         let mut rest = self.right.clone();

@@ -10,7 +10,8 @@ use crate::equilibrium::diagnosis::{Diagnosis, spectral_radius};
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::pcg::pcg;
-use crate::linear::vector::{add_scaled, norm, orthogonalise};
+use crate::linear::sums::Whole;
+use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::{ActiveSet, Friction, TornContact};
 
 /// Arnoldi steps.
@@ -56,7 +57,7 @@ impl TornContact<'_> {
                 });
             }
             let size = norm(&image);
-            for (row, component) in orthogonalise(&mut image, &basis).into_iter().enumerate() {
+            for (row, component) in Whole::orthogonalise(&mut image, &basis).into_iter().enumerate() {
                 hessenberg[row * steps + taken] = component;
             }
             taken += 1;
@@ -132,8 +133,9 @@ impl TornContact<'_> {
         let mut residual: Vec<f64> = rows.test_transposed(&image).into_iter().map(|entry| -entry).collect();
         rows.add_compliance(&unknowns, &mut residual, -1.0);
         active.project(&mut residual);
-        let size = norm(&residual);
+        let size = self.norm(&residual);
         let krylov = pcg(
+            &self.operator.model.sums(),
             &residual,
             reduction * size,
             max_krylov,

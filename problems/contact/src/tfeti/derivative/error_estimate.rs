@@ -7,19 +7,27 @@
 //! From K u + Bᵀλ = f, (I − D) dλ − c D B du = dr and its transpose. Every iterate has G λ = e, so that nothing else is left
 //! over. [`crate::equilibrium::ValueError`] says what the terms are used for.
 
-use crate::equilibrium::law;
+use crate::equilibrium::{ValueError, law};
+use crate::linear::sums::Sums;
 use crate::linear::vector::dot;
 use crate::tfeti::derivative::adjoint::TornAdjoint;
 use crate::tfeti::dual::{Iterate, TornContact};
 use crate::tfeti::torn::RowVector;
 
 impl TornContact<'_> {
-    /// Terms of the error of J, one per row of B_E and one per contact node; `direction` is j.
-    pub fn weighted_residuals(&self, iterate: &Iterate, adjoint: &TornAdjoint, direction: &RowVector) -> Vec<f64> {
+    /// The error of J, from terms for every row of B_E and every contact node; `direction` is j.
+    pub fn value_error(&self, iterate: &Iterate, adjoint: &TornAdjoint, direction: &RowVector) -> ValueError {
         let image = self.operator.gather(adjoint.displacement.clone());
         let residual = self.law_residual(iterate);
         let (glued, eta) = adjoint.multipliers.split();
-        let mut terms: Vec<f64> = glued.iter().zip(iterate.jumps.iter()).map(|(eta, jump)| eta * jump).collect();
+        let equality = iterate.jumps.split().0;
+        let sums = self.operator.model.sums().sum(equality.len(), 2, &|part, sums| {
+            for term in glued[part.clone()].iter().zip(&equality[part]).map(|(eta, jump)| eta * jump) {
+                sums[0] += term;
+                sums[1] += term.abs();
+            }
+        });
+        let (mut first_order, mut absolute) = (sums[0], sums[1]);
         let (j, image, forces) = (direction.contact(), image.contact(), iterate.multipliers.contact());
         for point in &self.boundary.points {
             let rows = point.rows();
@@ -28,8 +36,10 @@ impl TornContact<'_> {
             law::project(outside, self.boundary.friction, &mut inside);
             let moved: Vec<f64> = inside.iter().zip(outside).map(|(inside, force)| inside - force).collect();
             let weights: Vec<f64> = rows.clone().map(|row| j[row] - image[row] - eta[row] / self.stiffness).collect();
-            terms.push(dot(&weights, &residual[rows.clone()]) + dot(&j[rows], &moved));
+            let term = dot(&weights, &residual[rows.clone()]) + dot(&j[rows], &moved);
+            first_order += term;
+            absolute += term.abs();
         }
-        terms
+        ValueError::from_sums(first_order, absolute, j, forces)
     }
 }

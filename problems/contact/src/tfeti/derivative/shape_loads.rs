@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 /// Torn forces and their resultants along the rigid motions, one column per change of the heights.
 pub struct ShapeLoads<E, const N: usize> {
-    /// r over torn dofs, N; zero on the subdomains of other processes.
+    /// r over the torn dofs of this process, N.
     pub forces: Vec<Row<E, N>>,
     /// δe of all subdomains, N.
     pub resultants: Vec<Row<E, N>>,
@@ -31,12 +31,12 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
     ) -> Self {
         debug_assert!(changes.len() <= LANES * N);
         let scene = &model.problem.scene.lower;
-        let mut forces = vec![Row::ZERO; model.dof_count];
+        let mut forces = vec![Row::ZERO; model.interface.owned_count()];
         let mut resultants = vec![Row::ZERO; 6 * system.parts.len()];
         let parts = forces.par_chunks_mut(model.pattern.pattern.dimension()).zip(resultants.par_chunks_mut(6));
         parts.zip(model.subdomains.par_iter().zip(&system.parts)).for_each(
             |((forces, resultants), (subdomain, part))| {
-                if subdomain.body != 0 || part.factors.is_none() {
+                if subdomain.body != 0 {
                     return;
                 }
                 let u = &displacement.0[subdomain.first_dof..subdomain.first_dof + forces.len()];
@@ -47,7 +47,7 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
                 vectorized(
                     #[inline(always)]
                     || {
-                        for (resultant, mode) in resultants.iter_mut().zip(&part.rigid.modes) {
+                        for (resultant, mode) in resultants.iter_mut().zip(&part.modes) {
                             for (value, force) in mode.iter().zip(&*forces) {
                                 resultant.accumulate(*value, force);
                             }
@@ -56,15 +56,7 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
                 );
             },
         );
-        if model.communication.size() > 1 {
-            for column in 0..changes.len() {
-                let of = |index: usize| resultants[6 * index..6 * (index + 1)].iter().map(|value| value.get(column));
-                let pieces = model.share_pieces(|index| of(index).collect());
-                for (resultant, value) in resultants.iter_mut().zip(pieces.concat()) {
-                    resultant.set(column, value);
-                }
-            }
-        }
+        let resultants = model.distribution.gather(&resultants, 6);
         Self { forces, resultants }
     }
 }

@@ -149,16 +149,16 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
     fn evaluate(&self, mut unknowns: Vec<Row<D, N>>) -> TangentIterate<D, N> {
         let (rows, operator) = (&self.active.rows, &self.contact.operator);
         self.active.enforce(&mut unknowns, &self.loads.resultants);
-        let mut torn = vec![Row::ZERO; operator.model.dof_count];
+        let mut torn = vec![Row::ZERO; operator.model.interface.torn_count()];
         let mut jumps = operator.free_jumps(&self.loads.forces, &rows.trial(&unknowns), &mut torn, self.count);
         for (point, approach) in self.contact.boundary.points.iter().zip(&self.approaches) {
             jumps.contact_mut()[point.start].add_scaled(1.0, approach);
         }
         let mut projected = rows.test_transposed(&jumps);
         rows.add_compliance(&unknowns, &mut projected, -1.0);
-        let natural = norms(&projected);
+        let natural = norms(&operator.model.sums(), &projected);
         let openings = self.release(&mut projected, &jumps);
-        TangentIterate { unknowns, residuals: norms(&projected), projected, openings, natural }
+        TangentIterate { unknowns, residuals: norms(&operator.model.sums(), &projected), projected, openings, natural }
     }
 
     /// y = 0, brought into equilibrium.
@@ -185,7 +185,7 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
         let targets = goals.zip(&sizes, |goal, size| (goal / size).max(reduction));
         let scaled = |row: &Row<D, N>| row.zip(&sizes, |row, size| E::of(row.double() / size));
         let residual = iterate.projected.iter().map(scaled).collect();
-        let torn = RefCell::new(vec![Row::<E, N>::ZERO; contact.operator.model.dof_count]);
+        let torn = RefCell::new(vec![Row::<E, N>::ZERO; contact.operator.model.interface.torn_count()]);
         let precondition = |v: &[Row<E, N>]| {
             let image = contact.preconditioner.apply_columns(&rows.test(v), &mut torn.borrow_mut());
             let mut z = rows.test_transposed(&image);
@@ -200,7 +200,7 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
             let openings = self.release(&mut reduced, &image);
             (reduced, openings)
         };
-        let krylov = gcr(residual, &targets, MAX_KRYLOV, precondition, apply);
+        let krylov = gcr(&contact.operator.model.sums(), residual, &targets, MAX_KRYLOV, precondition, apply);
         let factors = krylov.coefficients.iter().map(|factor| factor.zip(&sizes, |factor, size| factor * size));
         let factors: Vec<Row<f64, N>> = factors.collect();
         let terms: Vec<_> = factors.iter().copied().zip(krylov.directions.iter().map(Vec::as_slice)).collect();

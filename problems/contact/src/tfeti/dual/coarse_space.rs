@@ -10,7 +10,8 @@ use crate::linear::cholesky::NumericFactor;
 use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
 use crate::tfeti::dual::coarse_matrix::CondensedCoarse;
-use crate::tfeti::torn::{CoarsePattern, RowVector, TornModel, TornSystem};
+use crate::tfeti::dual::coarse_rows::TornModes;
+use crate::tfeti::torn::{CoarsePattern, Distribution, RowVector, TornModel, TornSystem};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -19,7 +20,7 @@ use std::time::{Duration, Instant};
 /// G, e and the part of the coarse matrix that all active sets share.
 #[derive(Debug)]
 pub struct CoarseSpace {
-    /// Gᵀ: rows of B × rigid amplitudes.
+    /// Gᵀ: rows of B of this process × rigid amplitudes of all.
     rows: Csr,
     transposed: Csr,
     resultants: Vec<f64>,
@@ -29,6 +30,7 @@ pub struct CoarseSpace {
     /// G_E G_Eᵀ, and the grounded motions.
     condensed: CondensedCoarse,
     equality_count: usize,
+    distribution: Arc<Distribution>,
     /// Nanoseconds spent on it after it was built.
     spent: AtomicU64,
 }
@@ -42,19 +44,23 @@ impl CoarseSpace {
     /// # Errors
     /// [`ContactError::Factorization`] when the constant part of the coarse matrix is not positive semidefinite to rounding.
     pub fn new(model: &TornModel, system: &TornSystem, grounded: Vec<Vec<f64>>) -> Result<Self, ContactError> {
-        let row_count = model.constraints.row_count();
-        let mut rows = Csr::from_rows(MOTIONS * system.parts.len(), []);
-        for first in (0..row_count).step_by(ROWS_AT_ONCE) {
-            let block = (first..row_count.min(first + ROWS_AT_ONCE)).into_par_iter();
-            rows.extend(block.map(|row| coarse_row(model, system, row)).collect::<Vec<_>>());
+        let (constraints, distribution) = (&model.constraints, &model.distribution);
+        let modes = TornModes::new(model, system);
+        let mut rows = Csr::from_rows(MOTIONS * distribution.count(), []);
+        let equality_count = constraints.equality_count;
+        for first in (0..equality_count).step_by(ROWS_AT_ONCE) {
+            let block = (first..equality_count.min(first + ROWS_AT_ONCE)).into_par_iter();
+            rows.extend(block.map(|row| modes.coarse_row(row)).collect::<Vec<_>>());
         }
-        let resultants = system.parts.iter().flat_map(|part| part.rigid.resultants.iter().copied()).collect();
+        rows.extend(modes.contact_rows());
+        let resultants: Vec<f64> = system.parts.iter().flat_map(|part| part.resultants.iter().copied()).collect();
+        let resultants = distribution.gather(&resultants, MOTIONS);
         let (transposed, pattern) = (rows.transpose(), Arc::clone(&model.coarse));
-        let equality_count = model.constraints.equality_count;
-        let condensed =
-            CondensedCoarse::new(&pattern, gram(&pattern, [&rows, &transposed], equality_count), &grounded)?;
+        let values = gram(&pattern, [&rows, &transposed], equality_count, distribution);
+        let condensed = CondensedCoarse::new(&pattern, values, &grounded)?;
+        let distribution = Arc::clone(distribution);
         let spent = AtomicU64::new(0);
-        Ok(Self { transposed, rows, resultants, pattern, grounded, condensed, equality_count, spent })
+        Ok(Self { transposed, rows, resultants, pattern, grounded, condensed, equality_count, distribution, spent })
     }
 
     /// Does a part of the coarse work, and counts its wall-clock time.
@@ -71,7 +77,7 @@ impl CoarseSpace {
         Duration::from_nanos(self.spent.load(Ordering::Relaxed)).as_secs_f64()
     }
 
-    /// Number of rows of B.
+    /// Number of rows of B of this process.
     pub fn row_count(&self) -> usize {
         self.rows.row_count()
     }
@@ -102,7 +108,8 @@ impl CoarseSpace {
     /// # Errors
     /// [`ContactError::Factorization`] when the rows leave a rigid motion free.
     pub fn gram_factor(&self) -> Result<NumericFactor, ContactError> {
-        let mut values = gram(&self.pattern, [&self.rows, &self.transposed], self.row_count());
+        let matrices = [&self.rows, &self.transposed];
+        let mut values = gram(&self.pattern, matrices, self.row_count(), &self.distribution);
         let (lower, contact) = (&self.pattern.lower, self.pattern.contact_amplitudes());
         for motion in &self.grounded {
             for (index, &column) in contact.iter().enumerate() {
@@ -123,11 +130,12 @@ impl CoarseSpace {
         self.pattern.contact_amplitudes().len()
     }
 
-    /// G λ of multipliers over all rows.
+    /// G λ of multipliers over the rows of this process: the resultants on all subdomains.
     pub fn resultant<V: Entry>(&self, multipliers: &[V]) -> Vec<V> {
-        let mut result = vec![V::ZERO; self.rows.column_count()];
-        self.transposed.multiply(multipliers, &mut result);
-        result
+        let owned = self.distribution.owned();
+        let mut own = vec![V::ZERO; MOTIONS * owned.len()];
+        self.transposed.multiply_from(MOTIONS * owned.start, multipliers, &mut own);
+        self.distribution.gather(&own, MOTIONS)
     }
 
     /// Gᵀ a.
@@ -138,27 +146,9 @@ impl CoarseSpace {
     }
 }
 
-/// One row of Gᵀ: the row of B on the rigid modes of the subdomains it touches.
-fn coarse_row(model: &TornModel, system: &TornSystem, row: usize) -> Vec<(usize, f64)> {
-    let size = model.pattern.pattern.dimension();
-    let mut entries: Vec<(usize, f64)> = Vec::with_capacity(2 * MOTIONS);
-    for (dof, value) in model.constraints.rows.row(row) {
-        let subdomain = dof / size;
-        let first = 6 * subdomain;
-        // Dofs of one row that belong to one subdomain are rare; they are simply added up.
-        let position = entries.iter().position(|(index, _)| *index == first).unwrap_or_else(|| {
-            entries.extend((first..first + 6).map(|index| (index, 0.0)));
-            entries.len() - 6
-        });
-        for (entry, mode) in entries[position..].iter_mut().zip(&system.parts[subdomain].rigid.modes) {
-            entry.1 += value * mode[dof - subdomain * size];
-        }
-    }
-    entries
-}
-
-/// Σ (row of Gᵀ)ᵀ(row of Gᵀ) over the first `count` rows of Gᵀ, as lower values over the coarse pattern.
-fn gram(pattern: &CoarsePattern, [rows, transposed]: [&Csr; 2], count: usize) -> Vec<f64> {
+/// Σ (row of Gᵀ)ᵀ(row of Gᵀ) over the first `count` rows of Gᵀ, as lower values over the coarse pattern. A process has all rows that
+/// touch its subdomains, and forms the columns of these.
+fn gram(pattern: &CoarsePattern, [rows, transposed]: [&Csr; 2], count: usize, distribution: &Distribution) -> Vec<f64> {
     let (starts, pattern_rows) = (pattern.lower.starts(), pattern.lower.rows());
     let columns_of = |own: usize| {
         let first = MOTIONS * own;
@@ -189,8 +179,7 @@ fn gram(pattern: &CoarsePattern, [rows, transposed]: [&Csr; 2], count: usize) ->
             })
             .collect::<Vec<f64>>()
     };
-    let columns: Vec<Vec<f64>> = (0..rows.column_count() / MOTIONS).into_par_iter().map(columns_of).collect();
-    columns.concat()
+    distribution.complete(distribution.owned().into_par_iter().map(columns_of).collect()).concat()
 }
 
 #[cfg(test)]

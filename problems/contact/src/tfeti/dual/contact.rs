@@ -9,6 +9,7 @@ use crate::equilibrium::ContactBoundary;
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
+use crate::linear::sums::Sums;
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::active_rows::{ActiveRows, Friction};
 use crate::tfeti::dual::active_set::ActiveSet;
@@ -60,6 +61,12 @@ impl<'a> TornContact<'a> {
         Self { operator, space, preconditioner, boundary, constant, gaps, stiffness, load, precision }
     }
 
+    /// |v|₂ of a vector over rows of B_E, over all rows, or over unknowns of an active set.
+    pub(crate) fn norm(&self, v: &[f64]) -> f64 {
+        let sums: &dyn Sums = &self.operator.model.sums();
+        sums.norm(v)
+    }
+
     /// The zero vector over all rows.
     pub(crate) fn zeros(&self) -> RowVector {
         self.operator.model.constraints.zeros()
@@ -89,7 +96,7 @@ impl<'a> TornContact<'a> {
 
     /// |(c w_E, λ − Π(λ + c w))|₂ over the load.
     pub(crate) fn residual(&self, iterate: &Iterate) -> f64 {
-        let glued = self.stiffness * norm(iterate.jumps.split().0);
+        let glued = self.stiffness * self.norm(iterate.jumps.split().0);
         glued.hypot(norm(&self.law_residual(iterate))) / self.load
     }
 

@@ -10,6 +10,7 @@
 mod active_rows;
 mod active_set;
 mod coarse_matrix;
+mod coarse_rows;
 mod coarse_space;
 mod contact;
 mod iterate;

@@ -123,25 +123,20 @@ impl<'a> DualOperator<'a> {
         });
     }
 
-    /// B u of the torn displacements of all processes.
+    /// B u.
     pub fn gather(&self, mut torn: TornVector) -> RowVector {
         self.gather_columns(&mut torn.0)
     }
 
     fn gather_columns<V: Entry>(&self, torn: &mut [V]) -> RowVector<V> {
-        let constraints = &self.model.constraints;
-        self.model.share_interface(torn);
-        constraints.multiply(&constraints.rows, torn)
+        self.model.rows_times(&self.model.constraints.rows, torn)
     }
 
-    /// Calls `work(first dof, factors, part)` with the parts of a torn vector that belong to this process and clears the others.
+    /// Calls `work(first dof, factors, part)` with the parts of a torn vector that belong to the subdomains of this process.
     fn for_each_subdomain<V: Entry>(&self, torn: &mut [V], work: impl Fn(usize, &SubdomainFactors, &mut [V]) + Sync) {
         let size = self.model.pattern.pattern.dimension();
         let parts = torn.par_chunks_mut(size).zip(&self.system.parts).enumerate();
-        parts.for_each(|(index, (values, part))| match &part.factors {
-            Some(factors) => work(index * size, factors, values),
-            None => values.fill(V::ZERO),
-        });
+        parts.for_each(|(index, (values, factors))| work(index * size, factors, values));
     }
 
     /// K⁺ f.
@@ -155,15 +150,16 @@ impl<'a> DualOperator<'a> {
         torn
     }
 
-    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, zero elsewhere, from `loaded` = K⁺ f; method.md (4.2).
+    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, from `loaded` = K⁺ f and the amplitudes of all; method.md (4.2).
     pub fn displacement(&self, mut loaded: TornVector, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
         let mut torn = self.model.zeros();
         self.solve_subdomains(multipliers, &mut torn.0, |factors, part| factors.solve(part));
         add_scaled(&mut loaded.0, -1.0, &torn.0);
         let size = self.model.pattern.pattern.dimension();
-        let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).zip(amplitudes.par_chunks(6));
-        parts.filter(|((_, part), _)| part.factors.is_some()).for_each(|((values, part), amplitudes)| {
-            for (mode, amplitude) in part.rigid.modes.iter().zip(amplitudes) {
+        let own = &amplitudes[6 * self.model.distribution.owned().start..];
+        let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).zip(own.par_chunks(6));
+        parts.for_each(|((values, part), amplitudes)| {
+            for (mode, amplitude) in part.modes.iter().zip(amplitudes) {
                 add_scaled(values, *amplitude, mode);
             }
         });

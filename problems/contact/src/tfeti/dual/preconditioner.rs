@@ -41,17 +41,13 @@ impl<'a> Preconditioner<'a> {
         let (model, constraints) = (self.model, &self.model.constraints);
         let size = model.pattern.pattern.dimension();
         let parts = torn.par_chunks_mut(size).zip(&self.system.parts).enumerate();
-        parts.for_each(|(index, (values, part))| match &part.factors {
-            Some(factors) => {
-                constraints.weighted_transposed.multiply_rows(index * size, residual, values);
-                if values.iter().any(|entry| *entry != V::ZERO) {
-                    self.apply_subdomain(index, factors, values);
-                }
+        parts.for_each(|(index, (values, factors))| {
+            constraints.weighted_transposed.multiply_rows(index * size, residual, values);
+            if values.iter().any(|entry| *entry != V::ZERO) {
+                self.apply_subdomain(index, factors, values);
             }
-            None => values.fill(V::ZERO),
         });
-        model.share_interface(torn);
-        constraints.multiply(&constraints.weighted, torn)
+        model.rows_times(&constraints.weighted, torn)
     }
 
     /// S or K_BB times the boundary part. Entries of the interior come out meaningless; nothing reads them, since B_D has no

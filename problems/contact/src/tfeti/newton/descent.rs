@@ -105,7 +105,7 @@ impl TornContact<'_> {
         let rigid = active.amplitudes(&residual);
         let jumps = self.space.jumps(&rigid);
         add_scaled(&mut residual, 1.0, &rows.test_transposed(&jumps));
-        directions.push(Direction { amplitudes: rigid, forces: None }, jumps);
+        directions.push(self, Direction { amplitudes: rigid, forces: None }, jumps);
         // One correction brings the preconditioned residual and the change of the law into equilibrium.
         let step = self.precondition(rows, &residual);
         add_scaled(&mut direction, 1.0, &rows.trial(&step));
@@ -113,7 +113,7 @@ impl TornContact<'_> {
         let image = self.operator.apply_direction(&direction, self.descent_precision());
         let amplitudes = balancing_amplitudes(active, &rows.unknowns_of(&direction), &image);
         let jumps = self.space.jumps(&amplitudes);
-        directions.push(Direction { amplitudes, forces: Some((direction, image)) }, jumps);
+        directions.push(self, Direction { amplitudes, forces: Some((direction, image)) }, jumps);
     }
 }
 

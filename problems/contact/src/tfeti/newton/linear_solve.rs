@@ -6,7 +6,7 @@
 
 use crate::error::ContactError;
 use crate::linear::gmres::{MAX_STALLED_ITERATIONS, gmres};
-use crate::linear::vector::{add_scaled, norm};
+use crate::linear::vector::add_scaled;
 use crate::tfeti::dual::{ActiveRows, ActiveSet, Iterate, TornContact};
 use crate::tfeti::newton::recycling::{Direction, Recycled};
 use crate::tfeti::torn::RowVector;
@@ -68,13 +68,14 @@ impl TornContact<'_> {
             image = self.operator.apply(&rows.trial(&unknowns));
             let mut projected = self.reduced_residual(rows, &unknowns, &image);
             active.project(&mut projected);
-            let size = norm(&projected);
+            let size = self.norm(&projected);
             let target = accuracy.target.max(accuracy.reduction * *first.get_or_insert(size));
             if size <= target || size > MAX_REFINED_SHARE * last {
                 break;
             }
             last = size;
             let krylov = gmres(
+                &self.operator.model.sums(),
                 &projected,
                 target,
                 accuracy.max_krylov.min(allowed.saturating_sub(self.operator.applications())),
@@ -89,7 +90,8 @@ impl TornContact<'_> {
                 if let Some(recycled) = recycled.as_deref_mut() {
                     let amplitudes = balancing_amplitudes(active, direction, &product);
                     let jumps = self.space.jumps(&amplitudes);
-                    recycled.push(Direction { amplitudes, forces: Some((rows.trial(direction), product)) }, jumps);
+                    let forces = Some((rows.trial(direction), product));
+                    recycled.push(self, Direction { amplitudes, forces }, jumps);
                 }
             }
         }

@@ -12,6 +12,7 @@
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
 use crate::linear::dense::DenseCholesky;
+use crate::linear::sums::Sums;
 use crate::linear::vector::{add_scaled, dot, norm};
 use crate::tfeti::dual::{Iterate, TornContact};
 use crate::tfeti::torn::RowVector;
@@ -50,19 +51,25 @@ impl Recycled {
     }
 
     /// Adds a direction, with the jumps Gᵀ b of its amplitudes.
-    pub fn push(&mut self, direction: Direction, mut jumps: RowVector) {
+    pub fn push(&mut self, contact: &TornContact<'_>, direction: Direction, mut jumps: RowVector) {
         if let Some((_, image)) = &direction.forces {
             add_scaled(&mut jumps, -1.0, image);
         }
         self.directions.push(direction);
         self.jumps.push(jumps);
         let last = self.jumps[self.jumps.len() - 1].split().0;
-        self.products.push(self.jumps.iter().map(|other| dot(other.split().0, last)).collect());
+        self.products.push(self.equality_products(contact, last));
+    }
+
+    /// (dw_k)_E · v of every direction.
+    fn equality_products(&self, contact: &TornContact<'_>, v: &[f64]) -> Vec<f64> {
+        let sums: &dyn Sums = &contact.operator.model.sums();
+        sums.dots(&self.jumps.iter().map(|jumps| jumps.split().0).collect::<Vec<_>>(), v)
     }
 
     /// Combines the directions, again while a round at least halves the residual; returns the residual.
     pub fn combine(&self, contact: &TornContact<'_>, iterate: &mut Iterate, residual: f64) -> f64 {
-        let mut position = Position::of(self, iterate);
+        let mut position = Position::of(self, contact, iterate);
         let mut best = residual;
         for _round in 0..MAX_ROUNDS {
             let Some(weights) = self.least_squares(contact, &position) else { break };
@@ -174,14 +181,14 @@ struct Position {
 }
 
 impl Position {
-    fn of(recycled: &Recycled, iterate: &Iterate) -> Self {
+    fn of(recycled: &Recycled, contact: &TornContact<'_>, iterate: &Iterate) -> Self {
         let (glued, jumps) = iterate.jumps.split();
         Self {
             weights: vec![0.0; recycled.len()],
             forces: iterate.multipliers.contact().to_vec(),
             jumps: jumps.to_vec(),
-            start_square: dot(glued, glued),
-            start_slopes: recycled.jumps.iter().map(|jumps| dot(jumps.split().0, glued)).collect(),
+            start_square: contact.norm(glued).powi(2),
+            start_slopes: recycled.equality_products(contact, glued),
         }
     }
 

@@ -114,7 +114,7 @@ impl TornContact<'_> {
         settings: &AugmentedLagrangianSettings,
     ) -> Result<(TornSolution, AugmentedLagrangianCounts), ContactError> {
         let acceptable = settings.tolerance.max(TIGHTEST_ACCEPTABLE);
-        let coarse = OrthonormalCoarse::new(self.space)?;
+        let coarse = OrthonormalCoarse::new(self.space, self.operator.model)?;
         let dual = ProjectedDual { operator: &self.operator, coarse: &coarse };
         let linear = dual.homogenised(&self.constant);
         let mut state = self.first(&self.start(start, usize::MAX, None)?, &coarse);
@@ -122,7 +122,7 @@ impl TornContact<'_> {
         let mut aimed = *settings;
         let (iterate, residual) = loop {
             self.approximate(&dual, &linear, &aimed, &mut state, &mut history)?;
-            let iterate = self.balanced(&self.operator.model.constraints.row_vector(&state.warm.x)?, &state.bounds)?;
+            let iterate = self.balanced(&self.operator.model.constraints.own_rows(&state.warm.x), &state.bounds)?;
             let residual = self.residual(&iterate);
             let spent = history.len() >= settings.max_fixed_point_steps || aimed.tolerance <= TIGHTEST_TOLERANCE;
             if residual.is_nan() || residual <= acceptable || spent {
@@ -176,15 +176,15 @@ impl TornContact<'_> {
 
     /// The first slip bounds and multipliers: those of an iterate. Where the QP's gradient is −w, Cᵀμ is its rigid part.
     fn first(&self, iterate: &Iterate, coarse: &OrthonormalCoarse<'_>) -> FixedPoint {
-        let multipliers = coarse.apply(&iterate.jumps).into_iter().map(|entry| -entry).collect();
-        let warm = WarmStart { x: iterate.multipliers.to_vec(), multipliers, ..WarmStart::default() };
+        let multipliers = coarse.apply(&coarse.whole(&iterate.jumps)).into_iter().map(|entry| -entry).collect();
+        let warm = WarmStart { x: coarse.whole(&iterate.multipliers), multipliers, ..WarmStart::default() };
         let bounds = self.slip_bounds(iterate.multipliers.contact());
         FixedPoint { bounds, warm, changes: Vec::new(), counts: AugmentedLagrangianCounts::default() }
     }
 
     /// λ_N ≥ 0, |λ_T| ≤ Ψ.
     fn feasible_set(&self, bounds: &[f64]) -> Result<SeparableSet, ContactError> {
-        let equality = self.operator.model.constraints.equality_count;
+        let equality = self.operator.model.constraints.total_equality_count;
         let mut blocks = Vec::with_capacity(2 * bounds.len());
         for (point, &radius) in self.boundary.points.iter().zip(bounds) {
             let index = equality + point.start;
@@ -193,7 +193,7 @@ impl TornContact<'_> {
                 blocks.push(Block::Disc { first: index + 1, size: point.tangents.len(), centre: [0.0; 2], radius });
             }
         }
-        Ok(SeparableSet::new(self.operator.model.constraints.row_count(), blocks)?)
+        Ok(SeparableSet::new(equality + self.boundary.row_count, blocks)?)
     }
 
     /// Solves the Tresca problem of the current slip bounds as far as they deserve.
@@ -226,7 +226,7 @@ impl TornContact<'_> {
 
     /// The rows of B_E and the packed contact rows of a vector of the QP solver.
     fn split<'v>(&self, all: &'v [f64]) -> (&'v [f64], &'v [f64]) {
-        all.split_at(self.operator.model.constraints.equality_count)
+        all.split_at(self.operator.model.constraints.total_equality_count)
     }
 
     /// The relative residual, as Newton measures it, for the jumps that the multipliers of the equalities imply.
@@ -239,7 +239,7 @@ impl TornContact<'_> {
 
     /// Ψ ← 𝓕λ_N; sliding tractions keep to the circle. Watches the contraction.
     fn advance(&self, state: &mut FixedPoint, solution: SmalseSolution) -> Result<(), ContactError> {
-        let equality = self.operator.model.constraints.equality_count;
+        let equality = self.operator.model.constraints.total_equality_count;
         let bounds = self.slip_bounds(self.split(&solution.warm.x).1);
         let change = difference(&bounds, &state.bounds);
         if !change.is_finite() {

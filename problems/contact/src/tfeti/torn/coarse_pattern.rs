@@ -9,9 +9,12 @@
 use crate::equilibrium::modes::MOTIONS;
 use crate::error::ContactError;
 use crate::linear::cholesky::SymbolicFactor;
-use crate::linear::csr::Csr;
 use crate::linear::ordering::nested_dissection;
 use crate::linear::symmetric::LowerPattern;
+use crate::tfeti::torn::constraints::Constraints;
+use crate::tfeti::torn::distribution::Distribution;
+use crate::tfeti::torn::interface::Interface;
+use crate::tfeti::torn::numbering::Numbering;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -29,38 +32,45 @@ pub struct CoarsePattern {
 }
 
 impl CoarsePattern {
-    /// The pattern of the rows of B, of which the first `equality_count` belong to B_E. The bodies are torn into `counts`
-    /// subdomains per axis each, of `size` dofs.
+    /// The pattern of the rows of B of all processes. The bodies are torn into `counts` subdomains per axis each, of `size` dofs.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when the symbolic analysis fails.
-    pub fn new(rows: &Csr, equality_count: usize, counts: [usize; 3], size: usize) -> Result<Self, ContactError> {
-        let subdomains = rows.column_count() / size;
-        let mut neighbours = vec![BTreeSet::new(); subdomains];
+    pub fn new(
+        constraints: &Constraints,
+        interface: &Interface,
+        numbering: &Numbering,
+        distribution: &Distribution,
+        counts: [usize; 3],
+        size: usize,
+    ) -> Result<Self, ContactError> {
+        let owned = distribution.owned();
+        // A process has all rows that touch its subdomains, so that it knows all their neighbours.
+        let mut neighbours = vec![BTreeSet::new(); owned.len()];
         let mut touched = Vec::new();
-        for row in 0..equality_count {
+        for row in 0..constraints.equality_count {
             touched.clear();
-            touched.extend(rows.row(row).map(|(dof, _)| dof / size));
+            touched.extend(constraints.rows.row(row).map(|(place, _)| interface.dof(place) / size));
             touched.sort_unstable();
             touched.dedup();
-            for (index, &own) in touched.iter().enumerate() {
-                neighbours[own].extend(&touched[index + 1..]);
+            for (index, own) in touched.iter().enumerate().filter(|(_, own)| owned.contains(own)) {
+                neighbours[own - owned.start].extend(&touched[index + 1..]);
             }
         }
-        let contact: BTreeSet<usize> =
-            (equality_count..rows.row_count()).flat_map(|row| rows.row(row).map(|(dof, _)| dof / size)).collect();
-        for &own in &contact {
-            neighbours[own].extend(contact.range(own + 1..));
+        let contact = &constraints.contact_subdomains;
+        for own in contact.iter().filter(|own| owned.contains(own)) {
+            neighbours[own - owned.start].extend(contact.range(own + 1..));
         }
-        let per_body = counts.iter().product::<usize>();
-        let dissected = nested_dissection(counts);
-        let interior = (0..subdomains / per_body)
-            .flat_map(|body| dissected.iter().map(move |&place| body * per_body + place))
+        let pieces = neighbours.iter().map(|numbers| numbers.iter().map(|&number: &usize| number as f64).collect());
+        let neighbours = distribution.complete(pieces.collect());
+        let (subdomains, dissected) = (distribution.count(), nested_dissection(counts));
+        let interior = (0..numbering.body_count())
+            .flat_map(|body| dissected.iter().map(move |&place| numbering.number(body, place)))
             .filter(|subdomain| !contact.contains(subdomain));
         let amplitudes = |subdomain: usize| MOTIONS * subdomain..MOTIONS * (subdomain + 1);
         let order: Vec<usize> = interior.chain(contact.iter().copied()).flat_map(amplitudes).collect();
         let columns = (0..subdomains).flat_map(|own| {
-            let coupled: Vec<usize> = neighbours[own].iter().copied().flat_map(amplitudes).collect();
+            let coupled: Vec<usize> = neighbours[own].iter().flat_map(|&number| amplitudes(number as usize)).collect();
             amplitudes(own).map(move |column| (column..MOTIONS * (own + 1)).chain(coupled.iter().copied()).collect())
         });
         let lower = Arc::new(LowerPattern::from_columns(columns.collect()));

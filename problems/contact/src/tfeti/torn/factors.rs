@@ -64,25 +64,7 @@ impl InteriorClass {
     }
 }
 
-/// What every process knows of a subdomain: its rigid motions and their loads.
-#[derive(Debug)]
-pub struct SubdomainRigid {
-    /// Orthonormal rigid modes, six columns.
-    pub modes: Vec<Vec<f64>>,
-    /// Resultants Rᵀ f of the loads along them, N.
-    pub resultants: Vec<f64>,
-}
-
-impl SubdomainRigid {
-    /// From the coordinates of the nodes and the nodal loads.
-    pub fn new(coordinates: &[[f64; 3]], load: &[f64]) -> Self {
-        let modes = orthonormal_modes(coordinates);
-        let resultants = modes.iter().map(|mode| dot(mode, load)).collect();
-        Self { modes, resultants }
-    }
-}
-
-/// The matrices of one subdomain, on the process that works on it.
+/// The matrices and rigid motions of one subdomain.
 #[derive(Debug)]
 pub struct SubdomainFactors {
     /// Values of the stiffness matrix K over [`LocalPattern::pattern`].
@@ -95,7 +77,10 @@ pub struct SubdomainFactors {
     pub loaded_displacement: Vec<f64>,
     /// Factor of the interior matrix of [`SubdomainFactors::boundary_stiffness`], if the preconditioner needs it.
     pub interior: Option<NumericFactor>,
-    rigid: Arc<SubdomainRigid>,
+    /// Orthonormal rigid modes, six columns.
+    pub modes: Vec<Vec<f64>>,
+    /// Resultants Rᵀ f of the loads along them, N.
+    pub resultants: Vec<f64>,
     /// |K⁺K x − x|/|x| modulo rigid motions for a probe x: the digits that the condition of K takes.
     pub forward_error: f64,
 }
@@ -109,7 +94,7 @@ const LOST_DIGITS: f64 = 1e-10;
 impl SubdomainFactors {
     /// Assembles and factors one subdomain.
     ///
-    /// `rigid`: its rigid motions; `brick`: nodes of a local brick; `load`: consistent nodal loads; `interior`: class to factor
+    /// `coordinates` of its nodes; `brick`: nodes of a local brick; `load`: consistent nodal loads; `interior`: class to factor
     /// for the Dirichlet preconditioner.
     ///
     /// # Errors
@@ -118,17 +103,18 @@ impl SubdomainFactors {
         pattern: &LocalPattern,
         symbolic: &Arc<SymbolicFactor>,
         material: &Material,
-        rigid: Arc<SubdomainRigid>,
+        coordinates: &[[f64; 3]],
         brick: impl Fn([usize; 3]) -> Nodes<f64>,
         load: &[f64],
         interior: Option<&InteriorClass>,
     ) -> Result<Self, ContactError> {
         let stiffness = pattern.assemble(material, &brick);
         let compressible = material.compressible_neighbour().map(|neighbour| pattern.assemble(&neighbour, &brick));
-        let modes = &rigid.modes;
-        let regularised = regularise(pattern, &stiffness, modes);
+        let modes = orthonormal_modes(coordinates);
+        let resultants = modes.iter().map(|mode| dot(mode, load)).collect();
+        let regularised = regularise(pattern, &stiffness, &modes);
         let inverse = symbolic.factorize(&regularised)?;
-        let forward_error = check_generalised_inverse(pattern, &stiffness, &inverse, modes)?;
+        let forward_error = check_generalised_inverse(pattern, &stiffness, &inverse, &modes)?;
         let interior = match interior.and_then(|class| class.symbolic.as_ref().map(|symbolic| (class, symbolic))) {
             Some((class, symbolic)) => {
                 Some(symbolic.factorize(&class.submatrix.gather(compressible.as_ref().unwrap_or(&stiffness)))?)
@@ -137,7 +123,7 @@ impl SubdomainFactors {
         };
         let loaded_displacement = Vec::new();
         let mut factors =
-            Self { stiffness, compressible, inverse, loaded_displacement, interior, rigid, forward_error };
+            Self { stiffness, compressible, inverse, loaded_displacement, interior, modes, resultants, forward_error };
         if load.iter().any(|&force| force != 0.0) {
             let mut displacement = load.to_vec();
             factors.solve(&mut displacement);
@@ -158,7 +144,7 @@ impl SubdomainFactors {
         if self.forward_error <= LOST_DIGITS {
             return;
         }
-        for mode in &self.rigid.modes {
+        for mode in &self.modes {
             let mut amplitude = V::ZERO;
             mode.iter().zip(&*x).for_each(|(&entry, x)| amplitude.add_scaled(entry, x));
             mode.iter().zip(&mut *x).for_each(|(&entry, x)| x.add_scaled(-entry, &amplitude));

@@ -7,16 +7,22 @@
 
 mod coarse_pattern;
 mod constraints;
+mod distribution;
 mod factors;
+mod interface;
 mod model;
+mod numbering;
 mod preconditioner_kind;
 mod recovery;
 mod rigid_modes;
+mod row_sums;
+mod scene_rows;
 mod vectors;
 
 pub use coarse_pattern::CoarsePattern;
 pub use constraints::Constraints;
-pub use factors::{SubdomainFactors, SubdomainRigid};
+pub use distribution::Distribution;
+pub use factors::SubdomainFactors;
 pub use model::{TornModel, TornSubdomain, TornSystem};
 pub use preconditioner_kind::PreconditionerKind;
 pub use recovery::whole_bodies;

@@ -1,4 +1,4 @@
-//! The torn scene: what is fixed for a run, and the factored system of one shape.
+//! The torn scene: what is fixed for a run, and the factored system of one shape. A process holds its own subdomains only.
 
 use crate::body::elasticity::traction::face_weights;
 use crate::body::local_pattern::{LocalPattern, fixing_nodes};
@@ -10,14 +10,20 @@ use crate::equilibrium::{Configuration, ContactProblem};
 use crate::error::ContactError;
 use crate::lattice;
 use crate::linear::cholesky::SymbolicFactor;
+use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
 use crate::linear::vector::dot;
 use crate::scene::BodyScene;
 use crate::tfeti::torn::coarse_pattern::CoarsePattern;
-use crate::tfeti::torn::constraints::{BodyRows, Constraints};
-use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors, SubdomainRigid};
+use crate::tfeti::torn::constraints::Constraints;
+use crate::tfeti::torn::distribution::Distribution;
+use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors};
+use crate::tfeti::torn::interface::Interface;
+use crate::tfeti::torn::numbering::Numbering;
 use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
-use crate::tfeti::torn::vectors::TornVector;
+use crate::tfeti::torn::row_sums::RowSums;
+use crate::tfeti::torn::scene_rows::BodyRows;
+use crate::tfeti::torn::vectors::{RowVector, TornVector};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
@@ -29,7 +35,7 @@ pub struct TornSubdomain {
     pub body: usize,
     /// Its place in the block.
     pub place: Subdomain,
-    /// Its first torn dof.
+    /// Its first dof in the torn vectors of its process.
     pub first_dof: usize,
     interior: Option<Arc<InteriorClass>>,
 }
@@ -39,44 +45,44 @@ pub struct TornSubdomain {
 pub struct TornModel {
     /// The problem that was torn.
     pub problem: Arc<ContactProblem>,
-    /// All subdomains, lower body first.
+    /// The subdomains of this process, in the order of all subdomains.
     pub subdomains: Vec<TornSubdomain>,
+    /// Bodies and places of all subdomains.
+    pub numbering: Numbering,
+    /// Which process works on which subdomains.
+    pub distribution: Arc<Distribution>,
     /// Rows of B.
     pub constraints: Constraints,
+    /// Dofs that this process shares with others.
+    pub interface: Interface,
     /// Pattern shared by all subdomains.
     pub pattern: LocalPattern,
     /// Pattern of the coarse matrices.
     pub coarse: Arc<CoarsePattern>,
     symbolic: Arc<SymbolicFactor>,
-    fixed: OnceLock<Vec<TornPart>>,
-    /// The process this model lives in.
-    pub communication: Arc<dyn Communication>,
-    /// Number of torn dofs.
-    pub dof_count: usize,
-}
-
-/// One subdomain of one shape.
-#[derive(Debug, Clone)]
-pub struct TornPart {
-    /// Rigid motions, known to every process.
-    pub rigid: Arc<SubdomainRigid>,
-    /// Factors, on the process that works on the subdomain.
-    pub factors: Option<Arc<SubdomainFactors>>,
+    /// Factors of the upper body.
+    fixed: OnceLock<Vec<Arc<SubdomainFactors>>>,
+    /// Number of torn dofs of all processes.
+    pub total_dofs: usize,
 }
 
 /// The factored subdomains of one shape.
 #[derive(Debug)]
 pub struct TornSystem {
-    /// All subdomains, lower body first.
-    pub parts: Vec<TornPart>,
+    /// The subdomains of this process, in their order.
+    pub parts: Vec<Arc<SubdomainFactors>>,
     /// Numeric factorisations done for this shape, by all processes.
     pub factorizations: usize,
     /// Largest [`SubdomainFactors::forward_error`] of all subdomains.
     pub forward_error: f64,
 }
 
+/// Work on a subdomain of the upper body relative to one of the lower body, whose shape changes: products alone, no factors and
+/// no sums for the derivative.
+const FIXED_WEIGHT: f64 = 0.5;
+
 impl TornModel {
-    /// Tears the bodies of a problem and builds its rows.
+    /// Tears the bodies of a problem and builds the rows of this process.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
@@ -85,45 +91,51 @@ impl TornModel {
         preconditioner: PreconditionerKind,
         communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
-        let tearing = Tearing::new(&problem.grid, problem.scene.subdomains);
-        let size = tearing.subdomains[0].dof_count();
-        let per_body = tearing.subdomains.len();
-        let offsets: Vec<usize> = (0..per_body * problem.bodies().count()).map(|index| index * size).collect();
-        let dof_count = offsets.len() * size;
-        let rows: Vec<BodyRows<'_>> = problem
-            .bodies()
-            .zip(offsets.chunks_exact(per_body))
-            .map(|(scene, offsets)| BodyRows { grid: &problem.grid, tearing: &tearing, scene, offsets })
-            .collect();
-        let constraints = Constraints::new(&problem.scene, &rows, &problem.boundary, dof_count);
         let counts = problem.scene.subdomains;
-        let coarse = Arc::new(CoarsePattern::new(&constraints.rows, constraints.equality_count, counts, size)?);
+        let tearing = Tearing::new(&problem.grid, counts);
+        let size = tearing.subdomains[0].dof_count();
+        let numbering = Numbering::new(&tearing, counts, problem.bodies().count());
+        let weight = |number| if numbering.place(number).0 == 0 { 1.0 } else { FIXED_WEIGHT };
+        let distribution =
+            Arc::new(Distribution::new(communication, &(0..numbering.count()).map(weight).collect::<Vec<f64>>()));
+        let offsets = |body| (0..tearing.subdomains.len()).map(|index| size * numbering.number(body, index)).collect();
+        let bodies: Vec<BodyRows<'_>> = problem
+            .bodies()
+            .enumerate()
+            .map(|(body, scene)| BodyRows { grid: &problem.grid, tearing: &tearing, scene, offsets: offsets(body) })
+            .collect();
+        let (constraints, interface) =
+            Constraints::new(&problem.scene, &bodies, &problem.boundary, size, &distribution);
+        let coarse = Arc::new(CoarsePattern::new(&constraints, &interface, &numbering, &distribution, counts, size)?);
         let cells = tearing.subdomains[0].cells;
         let fixing = fixing_nodes(cells);
         let pattern = LocalPattern::new(cells, &fixing);
         let symbolic = pattern.symbolic(&fixing)?;
         let mut classes = HashMap::new();
-        let mut subdomains = Vec::with_capacity(offsets.len());
-        for (index, &first_dof) in offsets.iter().enumerate() {
+        let mut subdomains = Vec::with_capacity(distribution.owned().len());
+        for number in distribution.owned() {
+            let first_dof = size * subdomains.len();
             let interior = match preconditioner {
                 PreconditionerKind::Dirichlet => {
                     Some(interior_class(&mut classes, &pattern, &constraints, first_dof..first_dof + size)?)
                 }
                 PreconditionerKind::Lumped | PreconditionerKind::None => None,
             };
-            let place = tearing.subdomains[index % per_body].clone();
-            subdomains.push(TornSubdomain { body: index / per_body, place, first_dof, interior });
+            let (body, place) = numbering.place(number);
+            subdomains.push(TornSubdomain { body, place: place.clone(), first_dof, interior });
         }
         Ok(Self {
             problem,
             subdomains,
+            total_dofs: size * numbering.count(),
+            numbering,
+            distribution,
             constraints,
+            interface,
             pattern,
             coarse,
             symbolic,
             fixed: OnceLock::new(),
-            communication,
-            dof_count,
         })
     }
 
@@ -133,57 +145,52 @@ impl TornModel {
     /// # Errors
     /// [`ContactError::Factorization`] from a subdomain.
     pub fn factorize(&self, blocks: &[Block]) -> Result<TornSystem, ContactError> {
-        let mut parts = self.factorize_body(0, &self.problem.scene.lower, &blocks[0])?;
-        let mut factored = parts.len();
+        let lower = self.factorize_body(0, &self.problem.scene.lower, &blocks[0])?;
+        let count = |parts: &[Arc<SubdomainFactors>]| parts.iter().map(|part| part.factorizations()).sum::<usize>();
+        let mut factored = count(&lower);
         if let (Some(upper), Some(block)) = (&self.problem.scene.upper, blocks.get(1)) {
             if self.fixed.get().is_none() {
                 let upper = self.factorize_body(1, &upper.body, block)?;
-                factored += upper.len();
+                factored += count(&upper);
                 // Another thread may have been first; its factors are the same.
                 let _ = self.fixed.set(upper);
             }
-            parts.extend(self.fixed.get().into_iter().flatten().cloned());
         }
-        let count = |index: usize| {
-            let factors = parts[index].factors.iter().filter(|_| index < factored);
-            factors.map(|factors| factors.factorizations() as f64).collect()
-        };
-        let factorizations = self.share_pieces(count).concat().into_iter().sum::<f64>() as usize;
-        let error = |index: usize| parts[index].factors.iter().map(|factors| factors.forward_error).collect();
-        let forward_error = self.share_pieces(error).concat().into_iter().fold(0.0, f64::max);
+        let (mut lower, mut upper) = (lower.into_iter(), self.fixed.get().into_iter().flatten().cloned());
+        let part = |subdomain: &TornSubdomain| if subdomain.body == 0 { lower.next() } else { upper.next() };
+        let parts: Vec<Arc<SubdomainFactors>> = self.subdomains.iter().filter_map(part).collect();
+        let factorizations = self.distribution.sum_of_processes(factored as f64) as usize;
+        let forward_error = parts.iter().map(|part| part.forward_error).fold(0.0, f64::max);
+        let forward_error = self.distribution.largest(forward_error);
         Ok(TornSystem { parts, factorizations, forward_error })
     }
 
-    fn factorize_body(&self, body: usize, scene: &BodyScene, block: &Block) -> Result<Vec<TornPart>, ContactError> {
-        let owned = self.owned();
-        let parts: Result<Vec<TornPart>, ContactError> = self
-            .subdomains
-            .par_iter()
-            .enumerate()
-            .filter(|(_, subdomain)| subdomain.body == body)
-            .map(|(index, subdomain)| {
-                let place = &subdomain.place;
-                let coordinates: Vec<[f64; 3]> =
-                    (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect();
-                let load = loads(scene, place, block);
-                let rigid = Arc::new(SubdomainRigid::new(&coordinates, &load));
-                if !owned.contains(&index) {
-                    return Ok(TornPart { rigid, factors: None });
-                }
-                let factors = SubdomainFactors::new(
-                    &self.pattern,
-                    &self.symbolic,
-                    &scene.material,
-                    Arc::clone(&rigid),
-                    |local| block.brick(lattice::add(local, place.first_cell)),
-                    &load,
-                    subdomain.interior.as_deref(),
-                )?;
-                Ok(TornPart { rigid, factors: Some(Arc::new(factors)) })
-            })
-            .collect();
+    /// The factors of the subdomains of a body in this process.
+    fn factorize_body(
+        &self,
+        body: usize,
+        scene: &BodyScene,
+        block: &Block,
+    ) -> Result<Vec<Arc<SubdomainFactors>>, ContactError> {
+        let factor = |subdomain: &TornSubdomain| {
+            let place = &subdomain.place;
+            let coordinates: Vec<[f64; 3]> =
+                (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect();
+            let factors = SubdomainFactors::new(
+                &self.pattern,
+                &self.symbolic,
+                &scene.material,
+                &coordinates,
+                |local| block.brick(lattice::add(local, place.first_cell)),
+                &loads(scene, place, block),
+                subdomain.interior.as_deref(),
+            )?;
+            Ok(Arc::new(factors))
+        };
+        let own = self.subdomains.par_iter().filter(|subdomain| subdomain.body == body);
+        let parts: Result<Vec<Arc<SubdomainFactors>>, ContactError> = own.map(factor).collect();
         // A process that goes on alone would wait for the others forever.
-        let failure = self.communication.agree(parts.as_ref().err().map(ToString::to_string));
+        let failure = self.distribution.communication().agree(parts.as_ref().err().map(ToString::to_string));
         match failure {
             Some(reason) if parts.is_ok() => {
                 Err(ContactError::Factorization { what: "subdomain of another process".into(), reason })
@@ -197,65 +204,20 @@ impl TornModel {
         self.subdomains[subdomain].interior.as_deref()
     }
 
-    /// Completes a torn vector, or a block of columns, at the dofs with rows: those of other processes' subdomains are filled in.
-    pub fn share_interface<V: Entry>(&self, torn: &mut [V]) {
-        if self.communication.size() == 1 {
-            return;
-        }
-        let transposed = &self.constraints.transposed;
-        self.share_dofs(torn, |dof| transposed.row(dof).next().is_some());
+    /// B u or B_D u for torn displacements u, or for a block of columns; their ghosts are filled in.
+    pub fn rows_times<V: Entry>(&self, rows: &Csr, torn: &mut [V]) -> RowVector<V> {
+        self.interface.complete(&self.distribution, torn);
+        self.constraints.multiply(rows, torn, &self.distribution)
     }
 
-    /// Completes a torn vector at all dofs.
-    pub fn share_torn(&self, torn: &mut TornVector) {
-        if self.communication.size() > 1 {
-            self.share_dofs(&mut torn.0, |_| true);
-        }
+    /// Inner products of vectors over rows.
+    pub fn sums(&self) -> RowSums<'_> {
+        RowSums { constraints: &self.constraints, distribution: &self.distribution }
     }
 
-    fn share_dofs<V: Entry>(&self, torn: &mut [V], shared: impl Fn(usize) -> bool) {
-        let size = self.pattern.pattern.dimension();
-        let owned = self.owned();
-        let dofs = |subdomain: usize| (size * subdomain..size * (subdomain + 1)).filter(|&dof| shared(dof));
-        let values = |dof: usize| (0..V::WIDTH).map(move |column| (dof, column));
-        let piece = |subdomain| dofs(subdomain).flat_map(values).map(|(dof, column)| torn[dof].get(column)).collect();
-        let mut pieces: Vec<Vec<f64>> = (0..self.subdomains.len())
-            .map(|subdomain| if owned.contains(&subdomain) { piece(subdomain) } else { vec![] })
-            .collect();
-        pieces = self.complete(&pieces);
-        for (subdomain, piece) in pieces.iter().enumerate().filter(|(subdomain, _)| !owned.contains(subdomain)) {
-            for ((dof, column), value) in dofs(subdomain).flat_map(values).zip(piece) {
-                torn[dof].set(column, *value);
-            }
-        }
-    }
-
-    /// What `own` gives for the subdomains, by the processes that work on them, in the order of the subdomains.
-    pub fn share_pieces(&self, own: impl Fn(usize) -> Vec<f64>) -> Vec<Vec<f64>> {
-        let owned = self.owned();
-        let piece = |subdomain| if owned.contains(&subdomain) { own(subdomain) } else { vec![] };
-        let pieces: Vec<Vec<f64>> = (0..self.subdomains.len()).map(piece).collect();
-        self.complete(&pieces)
-    }
-
-    /// The subdomains of this process.
-    fn owned(&self) -> std::ops::Range<usize> {
-        let (rank, size, count) = (self.communication.rank(), self.communication.size(), self.subdomains.len());
-        rank * count / size..(rank + 1) * count / size
-    }
-
-    /// Pieces of all subdomains from those of the own ones.
-    fn complete(&self, pieces: &[Vec<f64>]) -> Vec<Vec<f64>> {
-        let own = &pieces[self.owned()];
-        let lengths: Vec<f64> = own.iter().map(|piece| piece.len() as f64).collect();
-        let lengths = self.communication.gather_any(&lengths).concat();
-        let mut values = self.communication.gather_any(&own.concat()).concat().into_iter();
-        lengths.iter().map(|&length| values.by_ref().take(length as usize).collect()).collect()
-    }
-
-    /// The zero vector over torn dofs.
+    /// The zero vector over the torn dofs of this process and their ghosts.
     pub fn zeros(&self) -> TornVector {
-        TornVector(vec![0.0; self.dof_count])
+        TornVector(vec![0.0; self.interface.torn_count()])
     }
 
     /// Coarse amplitudes of the motions that nothing holds: Rᵀ of their displacement on every subdomain.
@@ -274,9 +236,9 @@ impl TornModel {
                         displacement.push(basis.iter().zip(coefficients).map(|(b, c)| b[component] * c).sum::<f64>());
                     }
                 }
-                amplitudes.extend(part.rigid.modes.iter().map(|mode| dot(mode, &displacement)));
+                amplitudes.extend(part.modes.iter().map(|mode| dot(mode, &displacement)));
             }
-            amplitudes
+            self.distribution.gather(&amplitudes, 6)
         };
         grounded.iter().map(amplitudes).collect()
     }
@@ -286,26 +248,27 @@ impl TornModel {
         let size = self.pattern.pattern.dimension();
         let starts = self.pattern.pattern.starts();
         let points = &self.problem.boundary.points;
-        let row_entries =
-            |start: usize| self.constraints.rows.row(self.constraints.equality_count + start).map(|(dof, _)| dof);
-        let mut torn = self.zeros();
-        for dof in points.iter().flat_map(|point| row_entries(point.start)) {
-            if let Some(factors) = &system.parts[dof / size].factors {
-                torn.0[dof] = factors.boundary_stiffness()[starts[dof % size]];
+        let own = self.constraints.own_contact_rows(&self.distribution);
+        // Per body: the sum of the diagonals at the copies of a node, in its normal row.
+        let of_body = |body: usize| {
+            let mut torn = self.zeros();
+            for (subdomain, part) in self.subdomains.iter().zip(&system.parts).filter(|(own, _)| own.body == body) {
+                let diagonal = &mut torn.0[subdomain.first_dof..subdomain.first_dof + size];
+                for (dof, diagonal) in diagonal.iter_mut().enumerate() {
+                    *diagonal = part.boundary_stiffness()[starts[dof]];
+                }
             }
-        }
-        self.share_interface(&mut torn.0);
-        let mut diagonals = vec![0.0; 2 * points.len()];
-        for (point, diagonal) in points.iter().zip(diagonals.chunks_exact_mut(2)) {
-            for dof in row_entries(point.start) {
-                diagonal[self.subdomains[dof / size].body] += torn.0[dof];
-            }
-        }
-        let series = |diagonal: &[f64]| match self.problem.scene.upper {
-            Some(_) => 1.0 / (1.0 / diagonal[0] + 1.0 / diagonal[1]),
-            None => diagonal[0],
+            self.interface.complete(&self.distribution, &mut torn.0);
+            let first = self.constraints.equality_count;
+            let sum = |&row: &usize| vec![self.constraints.rows.row(first + row).map(|(dof, _)| torn.0[dof]).sum()];
+            self.constraints.complete_contact(&own.iter().map(sum).collect::<Vec<_>>(), &self.distribution).concat()
         };
-        diagonals.chunks_exact(2).map(series).sum::<f64>() / points.len() as f64
+        let diagonals: Vec<Vec<f64>> = (0..self.problem.bodies().count()).map(of_body).collect();
+        let series = |row: usize| match &diagonals[..] {
+            [lower, upper] => 1.0 / (1.0 / lower[row] + 1.0 / upper[row]),
+            bodies => bodies[0][row],
+        };
+        points.iter().map(|point| series(point.start)).sum::<f64>() / points.len() as f64
     }
 }
 

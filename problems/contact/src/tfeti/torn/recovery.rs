@@ -6,23 +6,20 @@ use crate::lattice;
 use crate::tfeti::torn::model::TornModel;
 use crate::tfeti::torn::vectors::TornVector;
 
-/// All bodies of a shape, lower first, from the displacements over the torn dofs of this process (zero elsewhere); the copies
-/// of a node are averaged.
+/// All bodies of a shape, lower first, from the displacements over the torn dofs of this process; the copies of a node are averaged.
 pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> Vec<SolvedBody> {
-    let mut torn = torn.clone();
-    model.share_torn(&mut torn);
-    blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, &torn)).collect()
+    let size = model.pattern.pattern.dimension();
+    let own = &torn.0[..model.interface.owned_count()];
+    let pieces = model.distribution.complete(own.chunks_exact(size).map(<[f64]>::to_vec).collect());
+    blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, &pieces)).collect()
 }
 
-fn whole_body(model: &TornModel, body: usize, block: &Block, TornVector(torn): &TornVector) -> SolvedBody {
+fn whole_body(model: &TornModel, body: usize, block: &Block, torn: &[Vec<f64>]) -> SolvedBody {
     let grid = &block.grid;
-    let pieces = || model.subdomains.iter().enumerate().filter(|(_, piece)| piece.body == body);
     let copies = || {
-        pieces().flat_map(|(_, piece)| {
-            (0..piece.place.node_count()).map(move |local| {
-                let first = piece.first_dof + 3 * local;
-                (grid.node(piece.place.block_position(local)), [torn[first], torn[first + 1], torn[first + 2]])
-            })
+        model.numbering.of_body(body).flat_map(|(number, place)| {
+            let displacements = torn[number].as_chunks::<3>().0.iter().copied();
+            (0..place.node_count()).map(|local| grid.node(place.block_position(local))).zip(displacements)
         })
     };
     // Per node: the sum over its copies, and their number.
@@ -39,9 +36,10 @@ fn whole_body(model: &TornModel, body: usize, block: &Block, TornVector(torn): &
         spread[node] += copy.iter().zip(displacement[node]).map(|(copy, mean)| (copy - mean).powi(2)).sum::<f64>();
     }
     let mut subdomains = vec![0; grid.brick_count()];
-    for (index, piece) in pieces() {
-        for brick in lattice::points(piece.place.first_cell, piece.place.cells) {
-            subdomains[grid.brick(brick)] = index;
+    let before = body * model.numbering.count() / model.numbering.body_count();
+    for (index, (_, place)) in model.numbering.of_body(body).enumerate() {
+        for brick in lattice::points(place.first_cell, place.cells) {
+            subdomains[grid.brick(brick)] = before + index;
         }
     }
     SolvedBody {

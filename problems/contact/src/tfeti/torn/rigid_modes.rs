@@ -1,7 +1,8 @@
 //! The six rigid body modes of a floating subdomain, known analytically and orthonormalised.
 
 use crate::equilibrium::modes::{MOTIONS, motions};
-use crate::linear::vector::{norm, orthogonalise};
+use crate::linear::sums::Whole;
+use crate::linear::vector::norm;
 
 /// Orthonormal basis of the rigid motions of a set of nodes, six columns of three dofs per node.
 pub fn orthonormal_modes(nodes: &[[f64; 3]]) -> Vec<Vec<f64>> {
@@ -27,7 +28,7 @@ pub fn orthonormalise(vectors: &mut [Vec<f64>]) {
     for index in 0..vectors.len() {
         let (done, rest) = vectors.split_at_mut(index);
         let vector = &mut rest[0];
-        orthogonalise(vector, done);
+        Whole::orthogonalise(vector, done);
         let length = norm(vector);
         vector.iter_mut().for_each(|entry| *entry /= length);
     }

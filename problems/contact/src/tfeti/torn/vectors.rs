@@ -19,10 +19,6 @@ impl<V> RowVector<V> {
         Self { values, equality_count }
     }
 
-    pub(crate) fn into_values(self) -> Vec<V> {
-        self.values
-    }
-
     /// The rows of B_E, and the packed contact rows.
     pub fn split(&self) -> (&[V], &[V]) {
         self.values.split_at(self.equality_count)
