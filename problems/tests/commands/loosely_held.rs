@@ -39,13 +39,21 @@ fn the_default_finds_the_states_of_loosely_held_bodies() {
     }
 }
 
-/// Total FETI alone used to return a state with a resultant of 5e-3 of the load. It does not get further than such residuals.
+/// Total FETI alone used to return a state with a resultant of 5e-3 of the load. Whether it finds the state of this scene hangs on
+/// rounding; what it returns is the state, or a refusal.
 #[test]
-fn a_state_that_does_not_balance_the_load_is_refused_with_its_residuals() {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/loosely_held/two_bodies_q028.toml");
+fn total_feti_alone_finds_the_state_of_two_loosely_held_bodies_or_refuses() {
+    let (name, values) = SCENES[0];
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/data/loosely_held/{name}.toml"));
     let file = file.display().to_string();
-    let output = run(CONTACT, &[&file, "evaluate", "--solver", "newton"]);
+    let output = run(CONTACT, &[&file, "evaluate", "--solver", "newton", "--json"]);
     let message = errors(&output);
+    if output.status.success() {
+        let result = json(CONTACT, &[&file, "evaluate", "--solver", "newton", "--json"]);
+        let objective = result["objective"].as_f64().unwrap();
+        assert!((objective / values[0] - 1.0).abs() <= 1e-7, "{objective:e}");
+        return;
+    }
     assert_eq!(output.status.code(), Some(1), "{message}");
     let refusals = ["are no state", "did not converge: residual"];
     assert!(refusals.iter().any(|words| message.contains(words)), "{message}");
