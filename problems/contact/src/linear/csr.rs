@@ -83,16 +83,11 @@ impl Csr {
     /// y = A x.
     pub fn multiply<V: Entry>(&self, x: &[V], y: &mut [V]) {
         debug_assert_eq!((x.len(), y.len()), (self.column_count, self.row_count()));
-        self.multiply_from(0, x, y);
-    }
-
-    /// The rows of A x from `first` on, as many as y has.
-    pub fn multiply_from<V: Entry>(&self, first: usize, x: &[V], y: &mut [V]) {
         if y.len() * V::WIDTH < PARALLEL_NUMBERS {
-            self.multiply_rows(first, x, y);
+            self.multiply_rows(0, x, y);
         } else {
             let rows = (PARALLEL_NUMBERS / 4).div_ceil(V::WIDTH);
-            y.par_chunks_mut(rows).enumerate().for_each(|(index, y)| self.multiply_rows(first + index * rows, x, y));
+            y.par_chunks_mut(rows).enumerate().for_each(|(index, y)| self.multiply_rows(index * rows, x, y));
         }
     }
 

@@ -3,6 +3,7 @@
 //! The modes at the ghosts come from the processes that own them. A contact row is formed by its owner, and all processes are told.
 
 use crate::equilibrium::modes::MOTIONS;
+use crate::tfeti::dual::rigid_rows::Six;
 use crate::tfeti::torn::{TornModel, TornSystem};
 
 /// The rigid modes at all dofs of a torn vector.
@@ -21,22 +22,22 @@ impl<'a> TornModes<'a> {
         Self { model, system, ghosts: model.interface.of_ghosts(&model.distribution, MOTIONS, own) }
     }
 
-    /// One row of Gᵀ: amplitudes and values, the six of a subdomain side by side.
-    pub fn coarse_row(&self, row: usize) -> Vec<(usize, f64)> {
+    /// One row of Gᵀ.
+    pub fn coarse_row(&self, row: usize) -> Vec<(usize, Six)> {
         let (size, interface) = (self.model.pattern.pattern.dimension(), &self.model.interface);
-        let mut entries: Vec<(usize, f64)> = Vec::with_capacity(2 * MOTIONS);
+        let mut blocks: Vec<(usize, Six)> = Vec::with_capacity(2);
         for (place, value) in self.model.constraints.rows.row(row) {
-            let first = MOTIONS * (interface.dof(place) / size);
+            let subdomain = interface.dof(place) / size;
             // Dofs of one row that belong to one subdomain are rare; they are simply added up.
-            let position = entries.iter().position(|(index, _)| *index == first).unwrap_or_else(|| {
-                entries.extend((first..first + MOTIONS).map(|index| (index, 0.0)));
-                entries.len() - MOTIONS
+            let position = blocks.iter().position(|(other, _)| *other == subdomain).unwrap_or_else(|| {
+                blocks.push((subdomain, [0.0; MOTIONS]));
+                blocks.len() - 1
             });
-            for (mode, entry) in entries[position..].iter_mut().take(MOTIONS).enumerate() {
-                entry.1 += value * self.at(place, mode);
+            for (mode, entry) in blocks[position].1.iter_mut().enumerate() {
+                *entry += value * self.at(place, mode);
             }
         }
-        entries
+        blocks
     }
 
     /// A mode at a place of a torn vector.
@@ -49,13 +50,15 @@ impl<'a> TornModes<'a> {
     }
 
     /// The contact rows of Gᵀ of all processes.
-    pub fn contact_rows(&self) -> Vec<Vec<(usize, f64)>> {
+    pub fn contact_rows(&self) -> Vec<Vec<(usize, Six)>> {
         let (constraints, distribution) = (&self.model.constraints, &self.model.distribution);
         let own = constraints.own_contact_rows(distribution).iter();
         let own = own.map(|row| self.coarse_row(constraints.equality_count + row));
-        let numbers = own.map(|row| row.into_iter().flat_map(|(index, value)| [index as f64, value]).collect());
+        let numbers = own.map(|row| {
+            row.into_iter().flat_map(|(subdomain, six)| [subdomain as f64].into_iter().chain(six)).collect()
+        });
         let rows = constraints.complete_contact(&numbers.collect::<Vec<_>>(), distribution);
-        let entries = |row: Vec<f64>| row.chunks_exact(2).map(|pair| (pair[0] as usize, pair[1])).collect();
-        rows.into_iter().map(entries).collect()
+        let block = |numbers: &[f64]| (numbers[0] as usize, std::array::from_fn(|mode| numbers[mode + 1]));
+        rows.iter().map(|row| row.chunks_exact(MOTIONS + 1).map(block).collect()).collect()
     }
 }

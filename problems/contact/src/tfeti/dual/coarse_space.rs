@@ -7,10 +7,10 @@
 use crate::equilibrium::modes::MOTIONS;
 use crate::error::ContactError;
 use crate::linear::cholesky::NumericFactor;
-use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
 use crate::tfeti::dual::coarse_matrix::CondensedCoarse;
 use crate::tfeti::dual::coarse_rows::TornModes;
+use crate::tfeti::dual::rigid_rows::RigidRows;
 use crate::tfeti::torn::{CoarsePattern, Distribution, RowVector, TornModel, TornSystem};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -20,9 +20,10 @@ use std::time::{Duration, Instant};
 /// G, e and the part of the coarse matrix that all active sets share.
 #[derive(Debug)]
 pub struct CoarseSpace {
-    /// Gᵀ: rows of B of this process × rigid amplitudes of all.
-    rows: Csr,
-    transposed: Csr,
+    /// Gᵀ: rows of B of this process.
+    rows: RigidRows,
+    /// The same by the subdomains of this process.
+    transposed: RigidRows,
     resultants: Vec<f64>,
     pattern: Arc<CoarsePattern>,
     /// Motions that nothing holds.
@@ -46,7 +47,7 @@ impl CoarseSpace {
     pub fn new(model: &TornModel, system: &TornSystem, grounded: Vec<Vec<f64>>) -> Result<Self, ContactError> {
         let (constraints, distribution) = (&model.constraints, &model.distribution);
         let modes = TornModes::new(model, system);
-        let mut rows = Csr::from_rows(MOTIONS * distribution.count(), []);
+        let mut rows = RigidRows::new();
         let equality_count = constraints.equality_count;
         for first in (0..equality_count).step_by(ROWS_AT_ONCE) {
             let block = (first..equality_count.min(first + ROWS_AT_ONCE)).into_par_iter();
@@ -55,7 +56,7 @@ impl CoarseSpace {
         rows.extend(modes.contact_rows());
         let resultants: Vec<f64> = system.parts.iter().flat_map(|part| part.resultants.iter().copied()).collect();
         let resultants = distribution.gather(&resultants, MOTIONS);
-        let (transposed, pattern) = (rows.transpose(), Arc::clone(&model.coarse));
+        let (transposed, pattern) = (rows.of_subdomains(distribution.owned()), Arc::clone(&model.coarse));
         let values = gram(&pattern, [&rows, &transposed], equality_count, distribution);
         let condensed = CondensedCoarse::new(&pattern, values, &grounded)?;
         let distribution = Arc::clone(distribution);
@@ -79,7 +80,7 @@ impl CoarseSpace {
 
     /// Number of rows of B of this process.
     pub fn row_count(&self) -> usize {
-        self.rows.row_count()
+        self.rows.count()
     }
 
     /// e.
@@ -97,8 +98,10 @@ impl CoarseSpace {
     pub fn combine(&self, combination: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let mut combined: Vec<(usize, f64)> = Vec::with_capacity(48);
         for &(row, weight) in combination {
-            let entries = self.rows.row(row);
-            combined.extend(entries.map(|(index, value)| (self.pattern.contact_place(index), weight * value)));
+            for (subdomain, block) in self.rows.blocks(row) {
+                let first = self.pattern.contact_place(MOTIONS * subdomain);
+                combined.extend(block.iter().enumerate().map(|(mode, value)| (first + mode, weight * value)));
+            }
         }
         combined
     }
@@ -132,46 +135,41 @@ impl CoarseSpace {
 
     /// G λ of multipliers over the rows of this process: the resultants on all subdomains.
     pub fn resultant<V: Entry>(&self, multipliers: &[V]) -> Vec<V> {
-        let owned = self.distribution.owned();
-        let mut own = vec![V::ZERO; MOTIONS * owned.len()];
-        self.transposed.multiply_from(MOTIONS * owned.start, multipliers, &mut own);
-        self.distribution.gather(&own, MOTIONS)
+        self.distribution.gather(&self.transposed.resultants(multipliers), MOTIONS)
     }
 
     /// Gᵀ a.
     pub fn jumps<V: Entry>(&self, amplitudes: &[V]) -> RowVector<V> {
-        let mut result = vec![V::ZERO; self.row_count()];
-        self.rows.multiply(amplitudes, &mut result);
-        RowVector::new(result, self.equality_count)
+        RowVector::new(self.rows.jumps(amplitudes), self.equality_count)
     }
 }
 
 /// Σ (row of Gᵀ)ᵀ(row of Gᵀ) over the first `count` rows of Gᵀ, as lower values over the coarse pattern. A process has all rows that
 /// touch its subdomains, and forms the columns of these.
-fn gram(pattern: &CoarsePattern, [rows, transposed]: [&Csr; 2], count: usize, distribution: &Distribution) -> Vec<f64> {
+fn gram(
+    pattern: &CoarsePattern,
+    [rows, transposed]: [&RigidRows; 2],
+    count: usize,
+    distribution: &Distribution,
+) -> Vec<f64> {
     let (starts, pattern_rows) = (pattern.lower.starts(), pattern.lower.rows());
+    let owned = distribution.owned();
     let columns_of = |own: usize| {
         let first = MOTIONS * own;
-        // A row holds the six amplitudes of a subdomain side by side, and so does the pattern.
+        // The pattern holds the six amplitudes of a subdomain side by side.
         let coupled: Vec<usize> =
-            pattern_rows[starts[first]..starts[first + 1]].iter().step_by(MOTIONS).copied().collect();
+            pattern_rows[starts[first]..starts[first + 1]].iter().step_by(MOTIONS).map(|row| row / MOTIONS).collect();
         let place =
-            |amplitude: usize| coupled.binary_search(&amplitude).expect("invariant: the pattern couples all of a row");
+            |subdomain: usize| coupled.binary_search(&subdomain).expect("invariant: the pattern couples all of a row");
         let mut blocks = vec![[[0.0; MOTIONS]; MOTIONS]; coupled.len()];
-        let mut entries = Vec::new();
-        for (row, _) in transposed.row(first).take_while(|(row, _)| *row < count) {
-            entries.clear();
-            entries.extend(rows.row(row));
-            let of_own = entries.chunks_exact(MOTIONS).find(|six| six[0].0 == first).into_iter().flatten();
-            let mut own_values = [0.0; MOTIONS];
-            own_values.iter_mut().zip(of_own).for_each(|(own, (_, value))| *own = *value);
-            for six in entries.chunks_exact(MOTIONS).filter(|six| six[0].0 >= first) {
-                for (column, right) in blocks[place(six[0].0)].iter_mut().zip(own_values) {
-                    column.iter_mut().zip(six).for_each(|(value, (_, left))| *value += left * right);
+        for (row, right) in transposed.blocks(own - owned.start).take_while(|(row, _)| *row < count) {
+            for (subdomain, left) in rows.blocks(row).filter(|(subdomain, _)| *subdomain >= own) {
+                for (column, right) in blocks[place(subdomain)].iter_mut().zip(right) {
+                    column.iter_mut().zip(left).for_each(|(value, left)| *value += left * right);
                 }
             }
         }
-        let value = |column: usize, row: usize| blocks[place(row - row % MOTIONS)][column][row % MOTIONS];
+        let value = |column: usize, row: usize| blocks[place(row / MOTIONS)][column][row % MOTIONS];
         (0..MOTIONS)
             .flat_map(|column| {
                 let range = starts[first + column]..starts[first + column + 1];
@@ -179,7 +177,7 @@ fn gram(pattern: &CoarsePattern, [rows, transposed]: [&Csr; 2], count: usize, di
             })
             .collect::<Vec<f64>>()
     };
-    distribution.complete(distribution.owned().into_par_iter().map(columns_of).collect()).concat()
+    distribution.complete(owned.clone().into_par_iter().map(columns_of).collect()).concat()
 }
 
 #[cfg(test)]
@@ -208,9 +206,11 @@ mod tests {
 
     /// The rows of G as columns of a dense matrix, times one number per row of B.
     fn dense(space: &CoarseSpace, count: usize) -> Mat<f64> {
-        let mut columns = Mat::<f64>::zeros(space.rows.column_count(), count);
+        let mut columns = Mat::<f64>::zeros(space.resultants.len(), count);
         for row in 0..count {
-            space.rows.row(row).for_each(|(index, value)| columns[(index, row)] = value);
+            for (subdomain, block) in space.rows.blocks(row) {
+                (0..MOTIONS).for_each(|mode| columns[(MOTIONS * subdomain + mode, row)] = block[mode]);
+            }
         }
         columns
     }
@@ -225,7 +225,7 @@ mod tests {
         ];
         for (scene, subdomains, ground) in cases {
             let space = coarse_space(scene.expect("a preset"), subdomains, ground);
-            let (count, first) = (space.rows.column_count(), space.equality_count);
+            let (count, first) = (space.resultants.len(), space.equality_count);
             // Every other contact row, with another row added on one side, as friction does.
             let chosen: Vec<usize> = (first..space.row_count() - 1).step_by(2).collect();
             let glued = dense(&space, first);

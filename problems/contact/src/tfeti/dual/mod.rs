@@ -16,6 +16,7 @@ mod contact;
 mod iterate;
 mod operator;
 mod preconditioner;
+mod rigid_rows;
 
 pub use active_rows::{ActiveRows, Friction};
 pub use active_set::ActiveSet;
