@@ -132,7 +132,7 @@ impl Distribution {
         let counts: Vec<usize> = self.branch_counts.iter().map(|branches| count * branches).collect();
         let sums = self.communication.gather(&sums, &counts);
         let mut pieces = self.branches.iter().zip(sums.chunks_exact(count)).peekable();
-        total(0..self.count(), count, &mut pieces)
+        total(0..self.count(), &mut pieces)
     }
 
     /// The sum of one term of every process, in the order of processes.
@@ -177,15 +177,14 @@ fn subtotal(terms: &[f64], count: usize) -> Vec<f64> {
 /// The sums of a branch from those of the branches that the processes have summed: the next of `pieces`, in order.
 fn total<'a, P: Iterator<Item = (&'a Range<usize>, &'a [f64])>>(
     branch: Range<usize>,
-    count: usize,
     pieces: &mut Peekable<P>,
 ) -> Vec<f64> {
     match pieces.next_if(|(piece, _)| **piece == branch) {
         Some((_, sums)) => sums.to_vec(),
         None => {
             let middle = middle(&branch);
-            let left = total(branch.start..middle, count, pieces);
-            added(left, &total(middle..branch.end, count, pieces))
+            let left = total(branch.start..middle, pieces);
+            added(left, &total(middle..branch.end, pieces))
         }
     }
 }
@@ -212,7 +211,7 @@ mod tests {
             let sums: Vec<Vec<f64>> =
                 branches.iter().map(|branch| subtotal(&terms[2 * branch.start..2 * branch.end], 2)).collect();
             let mut pieces = branches.iter().zip(sums.iter().map(Vec::as_slice)).peekable();
-            assert_eq!(total(0..21, 2, &mut pieces), whole, "{bounds:?}");
+            assert_eq!(total(0..21, &mut pieces), whole, "{bounds:?}");
         }
     }
 }

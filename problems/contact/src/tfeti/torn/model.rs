@@ -148,13 +148,11 @@ impl TornModel {
         let lower = self.factorize_body(0, &self.problem.scene.lower, &blocks[0])?;
         let count = |parts: &[Arc<SubdomainFactors>]| parts.iter().map(|part| part.factorizations()).sum::<usize>();
         let mut factored = count(&lower);
-        if let (Some(upper), Some(block)) = (&self.problem.scene.upper, blocks.get(1)) {
-            if self.fixed.get().is_none() {
-                let upper = self.factorize_body(1, &upper.body, block)?;
-                factored += count(&upper);
-                // Another thread may have been first; its factors are the same.
-                let _ = self.fixed.set(upper);
-            }
+        if let (Some(upper), Some(block), None) = (&self.problem.scene.upper, blocks.get(1), self.fixed.get()) {
+            let upper = self.factorize_body(1, &upper.body, block)?;
+            factored += count(&upper);
+            // Another thread may have been first; its factors are the same.
+            let _ = self.fixed.set(upper);
         }
         let (mut lower, mut upper) = (lower.into_iter(), self.fixed.get().into_iter().flatten().cloned());
         let part = |subdomain: &TornSubdomain| if subdomain.body == 0 { lower.next() } else { upper.next() };
