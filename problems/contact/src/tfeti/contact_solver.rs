@@ -98,7 +98,7 @@ impl TotalFeti {
 
 impl SolverState for TornState {
     fn warm_start(&self) -> ContactWarmStart {
-        ContactWarmStart::Multipliers(self.multipliers().to_vec())
+        ContactWarmStart::Multipliers(self.multipliers())
     }
 }
 

@@ -14,7 +14,7 @@ use crate::tfeti::derivative::{MovedSurface, height_sensitivities};
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::NewtonSettings;
 use crate::tfeti::torn::{
-    PreconditionerKind, SubdomainFactors, TornModel, TornSubdomain, TornSystem, TornVector, whole_bodies,
+    Constraints, PreconditionerKind, SubdomainFactors, TornModel, TornSubdomain, TornSystem, TornVector, whole_bodies,
 };
 use std::sync::Arc;
 use std::time::Instant;
@@ -33,6 +33,7 @@ pub struct TornState {
     blocks: Vec<Block>,
     system: TornSystem,
     space: CoarseSpace,
+    constraints: Arc<Constraints>,
     solution: TornSolution,
     displacement: TornVector,
     gaps: Vec<f64>,
@@ -187,7 +188,9 @@ impl TornSolver {
         forces.residuals.check(allowed).map_err(|error| Failed { error: Box::new(error), work })?;
         seconds.recovery = clock.lap();
         let Configuration { blocks, gaps, .. } = configuration;
-        let state = TornState { blocks, space, solution, displacement, gaps, stiffness, load, system, seconds };
+        let constraints = Arc::clone(&self.model.constraints);
+        let state =
+            TornState { blocks, space, constraints, solution, displacement, gaps, stiffness, load, system, seconds };
         Ok((state, forces, work, returned))
     }
 
@@ -369,9 +372,9 @@ fn admissible_forces(contact: &TornContact<'_>, forces: &[f64], linearizations: 
 }
 
 impl TornState {
-    /// λ over the rows of this process, to start a similar problem from.
-    pub fn multipliers(&self) -> &[f64] {
-        &self.solution.iterate.multipliers
+    /// λ over all rows, to start a similar problem from. Where there are several processes, all of them call it.
+    pub fn multipliers(&self) -> Vec<f64> {
+        self.constraints.whole(&self.solution.iterate.multipliers, self.space.distribution())
     }
 
     /// The bodies, lower first.

@@ -106,7 +106,7 @@ fn warm_start_needs_fewer_products() {
     let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet).expect("torn");
     let settings = AugmentedLagrangianSettings::to(1e-7);
     let cold = paper(&solver, None, &settings).expect("cold");
-    let warm = paper(&solver, Some(cold.state.multipliers()), &settings).expect("warm");
+    let warm = paper(&solver, Some(&cold.state.multipliers()), &settings).expect("warm");
     let (cold_work, warm_work) = (cold.work.dual_operator_applications, warm.work.dual_operator_applications);
     assert!(3 * warm_work < 2 * cold_work, "{warm_work} against {cold_work}");
     assert!(difference(&warm.forces, &cold.forces) < 1e-4);

@@ -78,6 +78,11 @@ impl CoarseSpace {
         Duration::from_nanos(self.spent.load(Ordering::Relaxed)).as_secs_f64()
     }
 
+    /// Which process works on which subdomains.
+    pub fn distribution(&self) -> &Distribution {
+        &self.distribution
+    }
+
     /// Number of rows of B of this process.
     pub fn row_count(&self) -> usize {
         self.rows.count()

@@ -163,16 +163,17 @@ impl Constraints {
         RowVector::new(own.collect(), self.equality_count)
     }
 
-    /// Given values, one per row of this process.
+    /// The rows of this process of given values, one per row of all processes.
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] when their number is not that of the rows.
     pub fn row_vector(&self, values: &[f64]) -> Result<RowVector, ContactError> {
-        let (expected, found) = (self.row_count(), values.len());
+        let contact = self.row_count() - self.equality_count;
+        let (expected, found) = (self.total_equality_count + contact, values.len());
         if expected != found {
             return Err(ContactError::ForeignState { what: "multipliers", expected, found });
         }
-        Ok(RowVector::new(values.to_vec(), self.equality_count))
+        Ok(self.own_rows(values))
     }
 
     /// ν of the node of every packed contact row.

@@ -52,7 +52,7 @@ pub struct TornModel {
     /// Which process works on which subdomains.
     pub distribution: Arc<Distribution>,
     /// Rows of B.
-    pub constraints: Constraints,
+    pub constraints: Arc<Constraints>,
     /// Dofs that this process shares with others.
     pub interface: Interface,
     /// Pattern shared by all subdomains.
@@ -130,7 +130,7 @@ impl TornModel {
             total_dofs: size * numbering.count(),
             numbering,
             distribution,
-            constraints,
+            constraints: Arc::new(constraints),
             interface,
             pattern,
             coarse,
