@@ -23,7 +23,9 @@ fn main() {
         exit(1);
     }
     if !has_libclang() {
-        println!("cargo::warning=libclang was not found in the usual places; if the build fails for it: apt-get install {PACKAGES}");
+        println!(
+            "cargo::warning=libclang was not found in the usual places; if the build fails for it: apt-get install {PACKAGES}"
+        );
     }
 }
 
@@ -42,6 +44,8 @@ fn has_libclang() -> bool {
     let plain = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu"];
     let versions = std::fs::read_dir("/usr/lib").into_iter().flatten().flatten();
     let versioned = versions.map(|entry| entry.path()).filter(|path| path.to_string_lossy().contains("llvm"));
-    named || succeeds("llvm-config", &["--version"]) || plain.iter().any(|folder| holds(Path::new(folder)))
+    named
+        || succeeds("llvm-config", &["--version"])
+        || plain.iter().any(|folder| holds(Path::new(folder)))
         || versioned.into_iter().any(|folder| holds(&folder.join("lib")))
 }

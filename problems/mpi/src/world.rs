@@ -107,7 +107,9 @@ mod tests {
 
     #[test]
     fn rounds_hold_every_value_once_and_none_holds_too_many() {
-        for (counts, limit, number) in [(vec![3, 0, 5], 100, 1), (vec![3, 0, 5], 6, 3), (vec![0, 0], 5, 1), (vec![7], 2, 4)] {
+        for (counts, limit, number) in
+            [(vec![3, 0, 5], 100, 1), (vec![3, 0, 5], 6, 3), (vec![0, 0], 5, 1), (vec![7], 2, 4)]
+        {
             let rounds = rounds(&counts, limit);
             assert_eq!(rounds.len(), number, "{counts:?}");
             for round in &rounds {

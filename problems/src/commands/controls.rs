@@ -15,7 +15,11 @@ const LARGEST_FILE: u64 = 1 << 20;
 ///
 /// # Errors
 /// [`SceneError`] for an unreadable file, a wrong count, numbers that are not finite, controls outside U.
-pub fn load(shape: &ContactShape<SharedSolver>, case: &Case, (option, file): (&str, Option<&Path>)) -> Result<Vector, SceneError> {
+pub fn load(
+    shape: &ContactShape<SharedSolver>,
+    case: &Case,
+    (option, file): (&str, Option<&Path>),
+) -> Result<Vector, SceneError> {
     let place = file.map_or_else(|| "surface.start".to_owned(), |_| option.to_owned());
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
     let controls = match (file, &case.start) {

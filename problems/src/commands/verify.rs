@@ -59,7 +59,11 @@ pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
     let text = format!(
         "{}no contact node changes its status up to the step {:.1e} mm (nearest kink: relative margin {:.1e}, {} nodes weakly active)\n\
          relative residuals of the state: {}\n{}",
-        result.test, step, result.smallest_margin, result.weakly_active, result.residuals,
+        result.test,
+        step,
+        result.smallest_margin,
+        result.weakly_active,
+        result.residuals,
         result.processes.iter().map(|usage| format!("processes: {usage}\n")).collect::<String>()
     );
     let write = |folder: &Folder| {

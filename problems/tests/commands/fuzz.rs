@@ -4,10 +4,10 @@
 //! a few thousand. Inputs are a function of their number alone. Nothing is solved: reading, conversion, validation, the
 //! memory estimate, and for small scenes the discrete problem with its admissible set.
 
+use contact::communication::InProcess;
 use contact::cost::PressureCost;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
-use contact::communication::InProcess;
 use contact::memory;
 use nonsmooth::Journal;
 use problems::commands::parse_controls;

@@ -6,7 +6,7 @@
 //! * `kill`, the signal 9;
 //! * `exit`, an end without a word to MPI;
 //! * `memory`, an allocation that no machine can serve;
-//! * `flat`, bodies so flat that they cannot be factored: from that call on, it hears another height than 50 mm.
+//! * `flat`, bodies so flat that they cannot be factored: from that call on, it hears another height than 100 mm.
 
 use contact::communication::{Communication, Parcel};
 use problems_mpi::World;
@@ -24,7 +24,7 @@ struct Failing {
 }
 
 /// The height that `flat` replaces, and what it puts in its place, mm.
-const HEIGHTS: [f64; 2] = [50.0, 1e-9];
+const HEIGHTS: [f64; 2] = [100.0, 1e-9];
 
 impl Failing {
     /// Fails if it is time to.
@@ -49,13 +49,14 @@ impl Failing {
         }
     }
 
-    /// What `flat` makes of an announcement: a length in bytes, and the bytes in numbers.
+    /// What `flat` makes of an announcement: a length in bytes, and the bytes in numbers. Heights of controls stand side by side,
+    /// which tells them from the single height of the scene.
     fn flattened(&self, heard: Vec<f64>) -> Vec<f64> {
         let [old, new] = HEIGHTS.map(f64::to_le_bytes);
         let mut bytes: Vec<u8> = heard.iter().flat_map(|number| number.to_le_bytes()).collect();
         let mut start = old.len();
-        while start + old.len() <= bytes.len() {
-            if bytes[start..start + old.len()] == old {
+        while start + 2 * old.len() <= bytes.len() {
+            if bytes[start..].starts_with(&[old, old].concat()) {
                 bytes[start..start + old.len()].copy_from_slice(&new);
             }
             start += 1;

@@ -76,7 +76,8 @@ pub fn optimize(
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
     }
-    watch_interrupts();
+    // What starts several processes asks the others to end when one has failed, and must not make them talk.
+    watch_interrupts(session.processes.is_alone());
     let optimizer = &loaded.case.optimizer;
     let mut step = optimizer.first_step.unwrap_or_else(|| first_step(&first, &controls));
     let start = controls.clone();

@@ -21,8 +21,8 @@ pub use traffic::Usage;
 use crate::commands::failure::Failure;
 use announcement::{Plan, Task};
 use contact::communication::Communication;
-use contact::contact_shape::{ContactShape, SolverKind, Wanted};
 use contact::communication::InProcess;
+use contact::contact_shape::{ContactShape, SolverKind, Wanted};
 use contact::error::SceneError;
 use leader::Leader;
 use scene_file::Case;
@@ -36,6 +36,11 @@ impl Processes {
     /// A single process.
     pub fn alone() -> Self {
         Self(None)
+    }
+
+    /// Whether there is no other process.
+    pub fn is_alone(&self) -> bool {
+        self.0.is_none()
     }
 
     /// The map of a case, prepared in all processes.
@@ -102,10 +107,12 @@ pub fn run_together<T>(
     let other = builds.iter().position(|other| *other != builds[0]);
     match (other, communication.rank()) {
         (Some(other), 0) => {
-            let name = |build: &[f64]| String::from_utf8_lossy(&build.iter().map(|b| *b as u8).collect::<Vec<u8>>()).into_owned();
+            let name = |build: &[f64]| {
+                String::from_utf8_lossy(&build.iter().map(|b| *b as u8).collect::<Vec<u8>>()).into_owned()
+            };
             let [first, other_build] = [&builds[0], &builds[other]].map(|build| name(build));
             Err(Failure::Input(format!(
-                "process {other} runs {other_build}, process 0 runs {first}: all processes must run the same build of the program"
+                "process {other} runs {other_build}, process 0 runs {first}: all processes must run the same build of the program on processors of the same kind"
             )))
         }
         (Some(_), _) => Ok(None),
@@ -116,7 +123,8 @@ pub fn run_together<T>(
             Ok(Some(result))
         }
         (None, rank) => {
-            let failed = |reason| Failure::Computation(format!("process {rank} does not understand process 0: {reason}"));
+            let failed =
+                |reason| Failure::Computation(format!("process {rank} does not understand process 0: {reason}"));
             follower::follow(communication).map(|()| None).map_err(failed)
         }
     }

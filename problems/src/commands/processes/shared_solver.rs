@@ -60,9 +60,7 @@ impl SharedSolver {
         products: impl FnOnce(&T) -> usize,
     ) -> Result<T, ContactError> {
         match (&self.shared, &state.shared) {
-            (Some(name), Some(of)) => {
-                name.leader.agreed(task(name.id, of.id), || own(&self.own, &state.own), products)
-            }
+            (Some(name), Some(of)) => name.leader.agreed(task(name.id, of.id), || own(&self.own, &state.own), products),
             (None, None) => own(&self.own, &state.own),
             _ => Err(ContactError::OtherSolver),
         }

@@ -41,9 +41,7 @@ impl Counted {
     pub fn pair(inner: &Arc<dyn Communication>) -> [Arc<Self>; 2] {
         let (bytes, messages, waiting) = (AtomicU64::new(0), AtomicU64::new(0), AtomicU64::new(0));
         let counters = Arc::new(Counters { bytes, messages, waiting, begun: processor_seconds() });
-        [true, false].map(|counts| {
-            Arc::new(Self { inner: Arc::clone(inner), counters: Arc::clone(&counters), counts })
-        })
+        [true, false].map(|counts| Arc::new(Self { inner: Arc::clone(inner), counters: Arc::clone(&counters), counts }))
     }
 
     /// What the process has sent and used so far.
