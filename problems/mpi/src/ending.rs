@@ -26,7 +26,9 @@ pub fn end_all(message: &str) -> ! {
 /// From now on a panic in any thread of this process ends all processes: those that wait for it would wait for ever.
 pub fn end_with_panics(rank: usize, size: usize) {
     panic::set_hook(Box::new(move |info: &PanicHookInfo<'_>| {
-        let words = info.payload_as_str().unwrap_or("no words");
+        let payload = info.payload();
+        let words = payload.downcast_ref::<String>().map(String::as_str);
+        let words = words.or_else(|| payload.downcast_ref().copied()).unwrap_or("no words");
         let place = info.location().map_or_else(String::new, |place| format!(" at {place}"));
         let patience = PATIENCE.saturating_mul(u32::try_from(rank).unwrap_or(u32::MAX));
         thread::sleep(patience.min(LONGEST_PATIENCE));

@@ -26,6 +26,9 @@ struct Failing {
 /// The height that `flat` replaces, and what it puts in its place, mm.
 const HEIGHTS: [f64; 2] = [100.0, 1e-9];
 
+/// So many equal numbers side by side are heights of controls; lengths of the scene are not so many.
+const RUN: usize = 4;
+
 impl Failing {
     /// Fails if it is time to.
     fn fail(&self) {
@@ -49,17 +52,20 @@ impl Failing {
         }
     }
 
-    /// What `flat` makes of an announcement: a length in bytes, and the bytes in numbers. Heights of controls stand side by side,
-    /// which tells them from the single height of the scene.
+    /// What `flat` makes of an announcement: a length in bytes, and the bytes in numbers.
     fn flattened(&self, heard: Vec<f64>) -> Vec<f64> {
         let [old, new] = HEIGHTS.map(f64::to_le_bytes);
         let mut bytes: Vec<u8> = heard.iter().flat_map(|number| number.to_le_bytes()).collect();
+        let run = old.repeat(RUN);
         let mut start = old.len();
-        while start + 2 * old.len() <= bytes.len() {
-            if bytes[start..].starts_with(&[old, old].concat()) {
+        let mut inside = false;
+        while start + old.len() <= bytes.len() {
+            let here = bytes[start..].starts_with(&old);
+            inside = here && (inside || bytes[start..].starts_with(&run));
+            if inside {
                 bytes[start..start + old.len()].copy_from_slice(&new);
             }
-            start += 1;
+            start += if inside { old.len() } else { 1 };
         }
         bytes.chunks_exact(old.len()).map(|word| f64::from_le_bytes(word.try_into().expect("eight bytes"))).collect()
     }

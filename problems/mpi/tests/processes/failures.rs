@@ -51,7 +51,13 @@ fn many(count: usize, seed: u64) {
         let kept = folder.path().join(number.to_string());
         failed += usize::from(fails(random.below(processes), processes, call, kind, &kept));
         assert!(number < 4 * count, "{failed} failures in {number} runs");
-        if kept.join("start.json").exists() && kept.join("scene.toml").exists() {
+        let begun = kept.join("start.json").exists() && kept.join("scene.toml").exists();
+        if begun && kind == "flat" {
+            // The journal holds the failure as what came of the evaluation, as for a single process.
+            let (output, _) = ended(started(PROGRAM, 2, &["--resume", text(&kept), "--json"]));
+            assert!(output.status.success() || errors(&output).contains("Cholesky"), "{}", errors(&output));
+            continued += 1;
+        } else if begun {
             let report = together(2, &["--resume", text(&kept), "--json"]);
             for key in ["objective", "controls", "evaluations", "certificate"] {
                 assert_eq!(report[key], expected[key], "{key} after failure {number}");
