@@ -53,7 +53,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     if let Some(command) = continued.as_ref().filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
         text += &format!("to continue: {command}\n");
     }
-    let usage = session.processes.usage(loaded.case.solver)?;
+    let usage = session.processes.usage(comparison.own[0][1].state.solver)?;
     text += &usage.iter().map(|usage| format!("processes: {usage}\n")).collect::<String>();
     let object = json(&comparison.summary(usage))?;
     let write = |folder: &Folder| {
