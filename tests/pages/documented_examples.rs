@@ -12,8 +12,8 @@ const AROUND_THE_BUILD: [&str; 7] = [
     "cargo build --release --locked",
     "cargo build --release --locked --offline",
     "cargo package -p nonsmooth -p contact -p figures -p scene_file -p problems --locked",
-    "cargo doc --workspace --no-deps --locked",
-    "cargo doc --workspace --no-deps --locked --open",
+    "cargo build --release --locked -p problems-mpi",
+    "cargo doc --no-deps --locked --open",
 ];
 
 /// The built example, beside this test's folder; built now if the test was built alone.

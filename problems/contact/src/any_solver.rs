@@ -172,7 +172,7 @@ impl AutoSolver {
         communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
         let scene = &problem.scene;
-        let condensable = memory::estimate(scene, SolverKind::Direct, preconditioner, 0) <= MAX_CONDENSED_BYTES;
+        let condensable = memory::estimate(scene, SolverKind::Direct, preconditioner, 0, 1) <= MAX_CONDENSED_BYTES;
         let products = WorkEstimate::of(scene).products_per_condensed_state();
         let max_products = condensable.then(|| products.max(MIN_PRODUCTS));
         let cheaper = wanted == Wanted::Jacobians && products <= MAX_PRODUCTS_WITH_JACOBIANS;

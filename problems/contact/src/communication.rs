@@ -49,6 +49,13 @@ impl dyn Communication + '_ {
         self.gather(&[value][..counts[self.rank()]], &counts)[0]
     }
 
+    /// The values that process 0 has; what the others give is ignored.
+    pub fn all_of_first(&self, values: Vec<f64>) -> Vec<f64> {
+        let count = self.of_first(values.len() as f64) as usize;
+        let counts: Vec<usize> = (0..self.size()).map(|rank| if rank == 0 { count } else { 0 }).collect();
+        self.gather(if self.rank() == 0 { &values } else { &[] }, &counts)
+    }
+
     /// The failure of the first process that reports one, known to all; none if no process has failed. A process that fails
     /// and goes on alone would leave the others waiting.
     pub fn agree(&self, failure: Option<String>) -> Option<String> {

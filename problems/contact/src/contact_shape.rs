@@ -70,12 +70,24 @@ impl ContactShape {
     ) -> Result<Self, SceneError> {
         scene.validate()?;
         let columns = if wanted == Wanted::Jacobians { scene.control_points.iter().product() } else { 0 };
-        memory::check(&scene, kind, preconditioner, columns)?;
+        check_processes(&scene, kind, communication.size())?;
+        memory::check(&scene, kind, preconditioner, columns, &*communication)?;
         let problem = Arc::new(ContactProblem::new(scene)?);
         let solver = AnySolver::new(problem, kind, preconditioner, wanted, communication)
             .map_err(|error| SceneError::out_of_range("mesh.bricks", error, "a size that can be factored"))?;
         Ok(Self { solver })
     }
+}
+
+/// Refuses processes that would own no subdomain. Direct condensation, which every process repeats, takes any number of them.
+fn check_processes(scene: &Scene, kind: SolverKind, processes: usize) -> Result<(), SceneError> {
+    let bodies = if scene.upper.is_some() { 2 } else { 1 };
+    let subdomains = bodies * scene.subdomains.iter().product::<usize>();
+    if kind == SolverKind::Direct || processes <= subdomains {
+        return Ok(());
+    }
+    let allowed = format!("at most {subdomains}, as many as there are subdomains (mesh.subdomains)");
+    Err(SceneError::out_of_range("number of processes", processes, allowed))
 }
 
 impl<S: ContactSolver> ContactShape<S> {
@@ -87,6 +99,11 @@ impl<S: ContactSolver> ContactShape<S> {
     /// The contact solver.
     pub fn contact_solver(&self) -> &S {
         &self.solver
+    }
+
+    /// The contact solver, for a map that does more with it.
+    pub fn into_solver(self) -> S {
+        self.solver
     }
 
     /// The discrete problem.

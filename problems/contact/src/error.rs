@@ -82,6 +82,12 @@ pub enum SceneError {
         /// What went wrong.
         reason: String,
     },
+    /// Another process refuses what this one would accept: less memory is free where it runs.
+    #[error("{reason}")]
+    OtherProcess {
+        /// What that process says.
+        reason: String,
+    },
     /// The admissible set is contradictory.
     #[error("admissible set: {0}")]
     Set(#[from] nonsmooth::InputError),
@@ -230,6 +236,12 @@ pub enum ContactError {
     /// A state was handed to another kind of solver than the one that found it.
     #[error("the state was found by another kind of contact solver")]
     OtherSolver,
+    /// Another process failed where this one did not.
+    #[error("{reason}")]
+    OtherProcess {
+        /// What that process says, with its number.
+        reason: String,
+    },
     /// A result is not finite.
     #[error("{what} is not finite")]
     NotFinite {

@@ -1,6 +1,7 @@
 //! The command and the options of the contact binaries, and the fields of the scene file that the options override.
 
 use crate::commands::failure::Failure;
+use crate::commands::processes::SharedSolver;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use contact::body::elasticity::Formulation;
@@ -142,7 +143,7 @@ impl Arguments {
     }
 
     /// What was left out because the scene does not need it or an option says so, in words.
-    pub fn left_out(&self, shape: &ContactShape) -> Vec<&'static str> {
+    pub fn left_out(&self, shape: &ContactShape<SharedSolver>) -> Vec<&'static str> {
         let mut left_out = shape.left_out();
         left_out.extend(self.no_checks.then_some("checks of uniqueness and plausibility (--no-checks)"));
         left_out

@@ -1,12 +1,12 @@
 //! The command line of the contact binaries: parse, compute, print.
 
 use crate::commands::arguments::{Arguments, Command};
-use crate::commands::contact_objective::objective;
 use crate::commands::failure::Failure;
 use crate::commands::folder::json;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
-use crate::commands::output::{finish, leave};
+use crate::commands::output::{finish, leave, left};
+use crate::commands::processes::Processes;
 use crate::commands::{compare, evaluate, optimize, recheck, verify};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
 use contact::equilibrium::STAGE_TARGET;
@@ -39,11 +39,19 @@ pub fn run(binary: &'static str, scene: &str) -> ExitCode {
     finish(execute(|| Ok((scene?, None)), &arguments), arguments.kept())
 }
 
-/// Runs the binary that takes any scene.
+/// Runs the binary that takes any scene, in a single process.
 pub fn run_any() -> ExitCode {
-    let command = Arguments::help_with_defaults(AnyScene::command(), None);
+    run_any_among("contact3d", &Processes::alone())
+}
+
+/// Runs a binary of this name that takes any scene, in the first of its processes.
+pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
+    let command = Arguments::help_with_defaults(AnyScene::command().name(binary), None);
     let parsed = command.try_get_matches().and_then(|found| AnyScene::from_arg_matches(&found));
-    let AnyScene { scene, arguments } = parsed.unwrap_or_else(|error| leave(&error));
+    let AnyScene { scene, arguments } = match parsed {
+        Ok(parsed) => parsed,
+        Err(error) => return left(&error),
+    };
     let missing = || Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into());
     if arguments.resume.is_some() && scene.is_some() {
         let words = "SCENE.toml and --resume together: a resumed run has its scene in its folder";
@@ -55,13 +63,28 @@ pub fn run_any() -> ExitCode {
         let command = scene.to_str().is_some_and(|word| Command::from_str(word, true).is_ok());
         if command && !scene.exists() { Err(missing()) } else { Ok((SceneFile::read(&scene)?, Some(scene))) }
     };
-    finish(execute(open, &arguments), arguments.kept())
+    finish(execute_among(open, &arguments, processes), arguments.kept())
 }
 
 /// Computes what the arguments ask for, on the scene that `open` reads unless a run is resumed. The text belongs on stdout.
+///
+/// # Errors
+/// [`Failure`] with its exit status.
 pub fn execute(
     open: impl FnOnce() -> Result<(SceneFile, Option<PathBuf>), Failure>,
     arguments: &Arguments,
+) -> Result<String, Failure> {
+    execute_among(open, arguments, &Processes::alone())
+}
+
+/// As [`execute`], in the first of several processes.
+///
+/// # Errors
+/// [`Failure`] with its exit status.
+pub fn execute_among(
+    open: impl FnOnce() -> Result<(SceneFile, Option<PathBuf>), Failure>,
+    arguments: &Arguments,
+    processes: &Processes,
 ) -> Result<String, Failure> {
     if arguments.print_schema {
         return json(schema());
@@ -77,15 +100,14 @@ pub fn execute(
         return Ok(loaded.file.print()?);
     }
     if let Some(threads) = arguments.threads {
-        // A second call in one process keeps the first pool; results do not depend on it.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+        processes.use_threads(threads.into())?;
     }
-    let session = Session { arguments, clock: Instant::now(), status };
+    let session = Session { arguments, clock: Instant::now(), status, processes: processes.clone() };
     let result = match arguments.command {
         Command::Optimize => optimize::run(&loaded, &session),
         Command::Compare => compare::run(&loaded, &session),
-        Command::Evaluate => evaluate::run(&objective(&loaded.case)?, &loaded, arguments),
-        Command::Verify => verify::run(&objective(&loaded.case)?, &loaded.case, arguments),
+        Command::Evaluate => evaluate::run(&loaded, &session),
+        Command::Verify => verify::run(&loaded.case, &session),
         Command::Recheck => recheck::run(&loaded.case, arguments),
     };
     session.status.clear();

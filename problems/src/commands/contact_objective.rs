@@ -2,43 +2,50 @@
 
 use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
-use contact::communication::InProcess;
+use crate::commands::processes::{Processes, SharedSolver, SharedState};
 use contact::contact_shape::{ContactShape, ContactState, Wanted};
 use contact::cost::PressureCost;
 use contact::plausibility::Warning;
 use nonsmooth::{Accuracy, CompositeObjective, Cost, StateSolver, Vector};
 use scene_file::{Case, MethodName};
-use std::sync::Arc;
 
 /// Θ of a scene: the pressure measure of the contact state that the control heights lead to. Where Σσ^p may lie outside the range
 /// of doubles, Θ is its p-th root.
-pub type ContactObjective = CompositeObjective<ContactShape, PressureCost>;
+pub type ContactObjective = CompositeObjective<ContactShape<SharedSolver>, PressureCost>;
+
+/// Θ of a case, for single shapes, in a single process.
+///
+/// # Errors
+/// [`Failure::Input`] naming the field.
+pub fn objective(case: &Case) -> Result<ContactObjective, Failure> {
+    objective_among(case, &Processes::alone())
+}
 
 /// Θ of a case, for single shapes.
 ///
 /// # Errors
 /// [`Failure::Input`] naming the field.
-pub fn objective(case: &Case) -> Result<ContactObjective, Failure> {
-    objective_for(case, Wanted::States)
+pub fn objective_among(case: &Case, processes: &Processes) -> Result<ContactObjective, Failure> {
+    objective_for(case, Wanted::States, processes)
 }
 
 /// Θ of a case, for its optimization.
 ///
 /// # Errors
 /// [`Failure::Input`] naming the field.
-pub fn optimized_objective(case: &Case) -> Result<ContactObjective, Failure> {
+pub fn optimized_objective(case: &Case, processes: &Processes) -> Result<ContactObjective, Failure> {
     objective_for(
         case,
         match case.optimizer.method {
             MethodName::Composite => Wanted::Jacobians,
             MethodName::Bundle => Wanted::States,
         },
+        processes,
     )
 }
 
-fn objective_for(case: &Case, wanted: Wanted) -> Result<ContactObjective, Failure> {
-    let shape =
-        ContactShape::for_use(case.scene.clone(), case.solver, case.preconditioner, wanted, Arc::new(InProcess))?;
+fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
+    let shape = processes.shape(case, wanted)?;
     let cost = PressureCost::new(case.measure, &shape.problem().boundary)?.normalised_for(&case.scene);
     Ok(CompositeObjective::new(shape, cost))
 }
@@ -49,7 +56,7 @@ pub struct SolvedShape {
     /// Control heights, mm.
     pub controls: Vector,
     /// The contact state.
-    pub state: ContactState,
+    pub state: ContactState<SharedState>,
     /// Θ.
     pub value: f64,
     /// Largest contact pressure, MPa.

@@ -1,6 +1,7 @@
 //! Control files: a JSON array of numbers.
 
 use crate::commands::folder::file_error;
+use crate::commands::processes::SharedSolver;
 use contact::contact_shape::ContactShape;
 use contact::error::SceneError;
 use nonsmooth::{StateSolver, Vector};
@@ -14,7 +15,11 @@ const LARGEST_FILE: u64 = 1 << 20;
 ///
 /// # Errors
 /// [`SceneError`] for an unreadable file, a wrong count, numbers that are not finite, controls outside U.
-pub fn load(shape: &ContactShape, case: &Case, (option, file): (&str, Option<&Path>)) -> Result<Vector, SceneError> {
+pub fn load(
+    shape: &ContactShape<SharedSolver>,
+    case: &Case,
+    (option, file): (&str, Option<&Path>),
+) -> Result<Vector, SceneError> {
     let place = file.map_or_else(|| "surface.start".to_owned(), |_| option.to_owned());
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
     let controls = match (file, &case.start) {

@@ -1,11 +1,11 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
-use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::{ContactObjective, SolvedShape, checks};
+use crate::commands::contact_objective::{SolvedShape, checks, objective_among};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
-use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::loaded_scene::{LoadedScene, Session};
+use crate::commands::processes::Usage;
 use crate::commands::report::files;
 use contact::contact_shape::SolverKind;
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
@@ -39,6 +39,8 @@ struct EvaluationJson {
     diagnosis: Option<Diagnosis>,
     seconds: Seconds,
     left_out: Vec<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    processes: Option<Usage>,
 }
 
 #[derive(Debug, Serialize)]
@@ -48,7 +50,8 @@ struct Seconds {
 }
 
 /// The command.
-pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
+pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
+    let (objective, arguments) = (&objective_among(&loaded.case, &session.processes)?, session.arguments);
     let solver = objective.solver();
     let controls = controls::load(solver, &loaded.case, ("--controls", arguments.controls.as_deref()))?;
     let folder = Folder::of_command(&loaded.case, arguments)?;
@@ -85,6 +88,7 @@ pub fn run(objective: &ContactObjective, loaded: &LoadedScene, arguments: &Argum
         diagnosis: arguments.diagnose.then(|| solver.diagnose(state)).transpose()?,
         seconds: Seconds { state: state_seconds, subgradient: subgradient_seconds },
         left_out: arguments.left_out(solver),
+        processes: session.processes.usage(state.solver)?,
     };
     let object = json(&result)?;
     let write = |folder: &Folder| files::write_evaluation(folder, loaded, objective, &shape, &object, &result.warnings);
@@ -150,6 +154,7 @@ impl fmt::Display for EvaluationJson {
         for warning in &self.warnings {
             writeln!(f, "warning              {warning}")?;
         }
-        writeln!(f, "left out             {}", self.left_out.join("; "))
+        writeln!(f, "left out             {}", self.left_out.join("; "))?;
+        self.processes.iter().try_for_each(|usage| writeln!(f, "processes            {usage}"))
     }
 }

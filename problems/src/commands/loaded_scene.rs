@@ -2,6 +2,7 @@
 
 use crate::commands::arguments::Arguments;
 use crate::commands::long_run::StatusLine;
+use crate::commands::processes::Processes;
 use contact::error::SceneError;
 use scene_file::{Case, SceneFile};
 use std::path::{Path, PathBuf};
@@ -51,7 +52,7 @@ fn folder(path: Option<&Path>) -> &Path {
     path.and_then(Path::parent).unwrap_or(Path::new(""))
 }
 
-/// What all optimizations of one invocation have in common.
+/// What all parts of one invocation have in common.
 #[derive(Debug, Clone)]
 pub struct Session<'a> {
     /// The command line.
@@ -60,4 +61,6 @@ pub struct Session<'a> {
     pub clock: Instant,
     /// The line on which progress is shown.
     pub status: StatusLine,
+    /// The processes that work on it.
+    pub processes: Processes,
 }

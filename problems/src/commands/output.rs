@@ -31,6 +31,12 @@ pub fn finish(result: Result<String, Failure>, kept: Option<&Path>) -> ExitCode 
     ExitCode::from(status)
 }
 
+/// Prints the message of a failure on stderr; its exit status.
+pub fn print_failure(failure: &Failure) -> ExitCode {
+    notice(&format!("error: {failure}"));
+    ExitCode::from(failure.status())
+}
+
 /// The kind of the error of a stdout that was closed from the beginning.
 const CLOSED: io::ErrorKind = io::ErrorKind::NotConnected;
 
@@ -82,12 +88,27 @@ pub fn arguments<A: Parser>() -> A {
 
 /// Prints help, version or what is wrong with the arguments, and ends the program.
 pub fn leave(error: &Error) -> ! {
+    std::process::exit(i32::from(said(error)))
+}
+
+/// As [`leave`], for a program that has to end in another way.
+pub fn left(error: &Error) -> ExitCode {
+    ExitCode::from(said(error))
+}
+
+/// Prints help, version or what is wrong with the arguments; the exit status.
+fn said(error: &Error) -> u8 {
     // What the parser prints itself is not flushed before the end.
     let printed = if error.use_stderr() { error.print() } else { print(&error.render().to_string()) };
-    let mut status = error.exit_code();
-    if let Err(reason) = printed {
-        notice(&format!("error: stdout: {reason}; the result was not printed"));
-        status = status.max(1);
+    let status = if error.exit_code() == 0 { 0 } else { BAD_INPUT };
+    match printed {
+        Ok(()) => status,
+        Err(reason) => {
+            notice(&format!("error: stdout: {reason}; the result was not printed"));
+            status.max(1)
+        }
     }
-    std::process::exit(status)
 }
+
+/// Exit status of wrong arguments.
+const BAD_INPUT: u8 = 2;

@@ -1,10 +1,11 @@
 //! `verify`: Taylor test of the subgradient on the smooth piece around one shape.
 
-use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::ContactObjective;
+use crate::commands::contact_objective::{ContactObjective, objective_among};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
+use crate::commands::loaded_scene::Session;
+use crate::commands::processes::{SharedState, Usage};
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactStatus, Residuals};
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
@@ -34,10 +35,13 @@ struct VerificationJson {
     weakly_active: usize,
     /// Certificates of the state that the test is made around.
     residuals: Residuals,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    processes: Option<Usage>,
 }
 
 /// The command.
-pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> Result<String, Failure> {
+pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
+    let (objective, arguments) = (&objective_among(case, &session.processes)?, session.arguments);
     let shape = objective.solver();
     let control = controls::load(shape, case, ("--controls", arguments.controls.as_deref()))?;
     let folder = Folder::of_command(case, arguments)?;
@@ -49,12 +53,18 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
         smallest_margin: here.forces.kink.smallest_margin,
         weakly_active: here.forces.kink.weakly_active,
         residuals: here.forces.residuals,
+        processes: session.processes.usage(here.solver)?,
     };
     let object = json(&result)?;
     let text = format!(
         "{}no contact node changes its status up to the step {:.1e} mm (nearest kink: relative margin {:.1e}, {} nodes weakly active)\n\
-         relative residuals of the state: {}\n",
-        result.test, step, result.smallest_margin, result.weakly_active, result.residuals
+         relative residuals of the state: {}\n{}",
+        result.test,
+        step,
+        result.smallest_margin,
+        result.weakly_active,
+        result.residuals,
+        result.processes.iter().map(|usage| format!("processes: {usage}\n")).collect::<String>()
     );
     let write = |folder: &Folder| {
         folder.write("verification.json", &object)?;
@@ -71,7 +81,7 @@ pub fn run(objective: &ContactObjective, case: &Case, arguments: &Arguments) -> 
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,
-) -> Result<(ContactState, f64, TaylorTest), Failure> {
+) -> Result<(ContactState<SharedState>, f64, TaylorTest), Failure> {
     let direction = nonsmooth::verify::seeded_direction(control.len(), DIRECTION_SEED);
     let here = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
     let step = smooth_step(objective, control, &direction, &here.forces.status)?;

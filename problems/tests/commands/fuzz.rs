@@ -4,6 +4,7 @@
 //! a few thousand. Inputs are a function of their number alone. Nothing is solved: reading, conversion, validation, the
 //! memory estimate, and for small scenes the discrete problem with its admissible set.
 
+use contact::communication::InProcess;
 use contact::cost::PressureCost;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
@@ -159,7 +160,7 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
     let file = SceneFile::parse(text, "input.toml")?;
     assert_eq!(SceneFile::parse(&file.print()?, "printed").as_ref().ok(), Some(&file), "the printed file differs");
     let case = Case::new(&file, folder)?;
-    memory::check(&case.scene, case.solver, case.preconditioner, 0)?;
+    memory::check(&case.scene, case.solver, case.preconditioner, 0, &InProcess)?;
     let nodes = (case.scene.mesh[0] + 1) * (case.scene.mesh[1] + 1);
     if nodes <= SMALL && case.scene.control_points.iter().product::<usize>() <= SMALL {
         let start =

@@ -27,6 +27,7 @@ mod nothing_lost;
 mod pages_run;
 mod pictures;
 mod pins;
+mod processes;
 mod recheck;
 mod reports;
 mod stages;

@@ -122,7 +122,7 @@ impl<S> ContactState<S> {
     }
 
     /// The same shape with another form of the solver's own part.
-    pub(crate) fn map<T>(self, change: impl FnOnce(S) -> T) -> ContactState<T> {
+    pub fn map<T>(self, change: impl FnOnce(S) -> T) -> ContactState<T> {
         let Self { forces, solution, load, solver, reason, contraction, stages, work, adjoint_applications } = self;
         let solution = change(solution);
         ContactState { forces, solution, load, solver, reason, contraction, stages, work, adjoint_applications }

@@ -3,6 +3,7 @@
 use crate::commands::contact_objective::SolvedShape;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::{Ending, ending};
+use crate::commands::processes::Usage;
 use serde::Serialize;
 use std::fmt;
 
@@ -48,6 +49,8 @@ struct ComparisonJson<'a> {
     controls_with_friction: &'a [f64],
     controls_without_friction: &'a [f64],
     conclusion: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    processes: Option<Usage>,
 }
 
 /// How far two surfaces are apart, mm.
@@ -143,8 +146,8 @@ impl Comparison<'_> {
         sentences
     }
 
-    /// The JSON.
-    pub fn summary(&self) -> impl Serialize {
+    /// The JSON, with what several processes have used.
+    pub fn summary(&self, processes: Option<Usage>) -> impl Serialize {
         ComparisonJson {
             friction: self.friction(),
             shapes: self.rows(),
@@ -155,6 +158,7 @@ impl Comparison<'_> {
             controls_with_friction: self.runs[0].report.solution.as_slice(),
             controls_without_friction: self.runs[1].report.solution.as_slice(),
             conclusion: self.conclusion(),
+            processes,
         }
     }
 }

@@ -22,7 +22,8 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         let allowed = "a coefficient > 0 to compare with no friction at all";
         return Err(session.arguments.blame(SceneError::out_of_range("friction", 0, allowed)).into());
     }
-    let (folder, initial_controls) = begin(&optimized_objective(&loaded.case)?, loaded, None, &COMPARED, session)?;
+    let (folder, initial_controls) =
+        begin(&optimized_objective(&loaded.case, &session.processes)?, loaded, None, &COMPARED, session)?;
     let folder = folder.as_ref();
     let continued = folder.map(|folder| resume_command(folder.folder().path(), true));
     let (as_json, parts) = (session.arguments.json, parts(loaded, folder)?);
@@ -52,7 +53,9 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     if let Some(command) = continued.as_ref().filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
         text += &format!("to continue: {command}\n");
     }
-    let object = json(&comparison.summary())?;
+    let usage = session.processes.usage(comparison.own[0][1].state.solver)?;
+    text += &usage.iter().map(|usage| format!("processes: {usage}\n")).collect::<String>();
+    let object = json(&comparison.summary(usage))?;
     let write = |folder: &Folder| {
         files::write_comparison(folder, loaded, &comparison)?;
         folder.write("report.txt", &text)?;

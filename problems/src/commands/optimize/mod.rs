@@ -48,8 +48,10 @@ pub fn report(
     };
     let shapes = [solved(&first.initial_controls)?, solved(&last.report.solution)?];
     let checks = checks(&last.objective, &shapes[1], session.arguments)?;
-    let object = json(&summary(last, runs, &shapes, &checks, session.arguments))?;
+    let usage = session.processes.usage(shapes[1].state.solver)?;
     let mut text = page(last, &shapes, &checks, session.arguments) + &stages_page(runs, optimization.meshes);
+    text += &usage.iter().map(|usage| format!("processes:   {usage}\n")).collect::<String>();
+    let object = json(&summary(last, runs, &shapes, &checks, session.arguments, usage))?;
     if let Some(command) = continued.filter(|_| optimization.can_continue()) {
         text += &format!("to continue: {command}\n");
     }

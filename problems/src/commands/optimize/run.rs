@@ -71,18 +71,19 @@ pub fn optimize(
     session: &Session<'_>,
 ) -> Result<OptimizationRun, Failure> {
     let stages = stages(&loaded.case);
-    let first = optimized_objective(&stages[0].case)?;
+    let first = optimized_objective(&stages[0].case, &session.processes)?;
     let (folder, mut controls) = begin(&first, loaded, given, &[], session)?;
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
     }
-    watch_interrupts();
+    // What starts several processes asks the others to end when one has failed, and must not make them talk.
+    watch_interrupts(session.processes.is_alone());
     let optimizer = &loaded.case.optimizer;
     let mut step = optimizer.first_step.unwrap_or_else(|| first_step(&first, &controls));
     let start = controls.clone();
     let (mut mesh_runs, mut first) = (Vec::new(), Some(first));
     for stage in &stages {
-        let objective = first.take().map_or_else(|| optimized_objective(&stage.case), Ok)?;
+        let objective = first.take().map_or_else(|| optimized_objective(&stage.case, &session.processes), Ok)?;
         let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
         if let Some(seed) = stage.random_start {
             controls = random_start(&objective, &start, step, seed)?;

@@ -4,6 +4,7 @@ use crate::commands::arguments::Arguments;
 use crate::commands::contact_objective::SolvedShape;
 use crate::commands::evaluate::said;
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::processes::Usage;
 use contact::contact_shape::SolverKind;
 use contact::equilibrium::{Kink, Residuals};
 use contact::plausibility::Warning;
@@ -51,6 +52,8 @@ struct OptimizationJson<'a> {
     /// Those of the optimizer have the code `optimizer`, the others look at the final state.
     warnings: Vec<Warning>,
     left_out: Vec<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    processes: Option<Usage>,
 }
 
 /// One evaluation.
@@ -181,6 +184,7 @@ pub fn summary<'a>(
     shapes: &'a [SolvedShape; 2],
     checks: &[Warning],
     arguments: &Arguments,
+    processes: Option<Usage>,
 ) -> impl Serialize + use<'a> {
     let MeshRun { report, objective, replayed, .. } = last;
     let active = |multipliers: &Vector| multipliers.iter().filter(|multiplier| **multiplier != 0.0).count();
@@ -218,6 +222,7 @@ pub fn summary<'a>(
         solver_reason: shapes[1].state.reason.as_deref(),
         warnings: all_warnings(report, checks),
         left_out: arguments.left_out(objective.solver()),
+        processes,
     }
 }
 

@@ -1,0 +1,170 @@
+//! What the first process announces to the others: the next task that all of them do together.
+
+use contact::communication::Communication;
+use contact::contact_shape::{ContactWarmStart, SolverKind, Wanted};
+use contact::scene::Scene;
+use contact::tfeti::PreconditionerKind;
+use serde::{Deserialize, Serialize};
+
+/// Name of a solver or of a state, the same in all processes.
+pub type Id = u64;
+
+/// What all processes do next. Every task but the last ends at the same time in all of them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Task {
+    /// Use so many threads.
+    Threads(usize),
+    /// Prepare the solver of a scene, which has this name from now on.
+    Prepare(Id, Box<Plan>),
+    /// Solve a shape; its state has the second name from now on.
+    Solve(Id, Id, Box<Shape>),
+    /// Sensitivities of a state for a dual, to a tolerance.
+    Sensitivities(Id, Id, Vec<f64>, f64),
+    /// Tangents of a state for changes of the heights, to a tolerance.
+    Tangents(Id, Id, Vec<Vec<f64>>, f64),
+    /// Contraction and condition at a state.
+    Diagnose(Id, Id),
+    /// Estimate of the contraction at a state, for at most so many products.
+    Contraction(Id, Id, usize),
+    /// All bodies of a state.
+    Bodies(Id, Id),
+    /// Strain energy of a state.
+    StrainEnergy(Id, Id),
+    /// What a shape similar to that of a state can be solved from.
+    WarmStart(Id),
+    /// Tell what this process has sent and used.
+    Measure,
+    /// The run has ended.
+    End,
+}
+
+/// A scene and how it is to be solved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// The scene, with all that its file refers to.
+    pub scene: Scene,
+    /// The contact solver.
+    pub kind: SolverKind,
+    /// Its preconditioner.
+    pub preconditioner: PreconditionerKind,
+    /// Whether Jacobians will be asked for.
+    pub jacobians: bool,
+}
+
+impl Plan {
+    /// What the solver will be asked for.
+    pub fn wanted(&self) -> Wanted {
+        if self.jacobians { Wanted::Jacobians } else { Wanted::States }
+    }
+}
+
+/// A shape to be solved.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Shape {
+    /// Control heights, mm.
+    pub controls: Vec<f64>,
+    /// What a similar shape has left.
+    pub start: Option<ContactWarmStart>,
+    /// Relative residual wanted.
+    pub tolerance: f64,
+}
+
+/// A task, with the states and solvers that nobody needs any longer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Announcement {
+    /// What to do next.
+    pub task: Task,
+    /// Names of what may be dropped before.
+    pub released: Vec<Id>,
+}
+
+/// Bytes of a number.
+const NUMBER: usize = size_of::<f64>();
+
+impl Announcement {
+    /// Sends an announcement to all other processes. The first process calls this where the others call [`Self::hear`].
+    ///
+    /// # Errors
+    /// The reason in words if the announcement has no form in bytes.
+    pub fn tell(&self, communication: &dyn Communication) -> Result<(), String> {
+        let bytes = postcard::to_allocvec(self).map_err(|error| error.to_string())?;
+        // The length stands first, since the last number may be filled up.
+        let packed = bytes.chunks(NUMBER).map(|chunk| {
+            let mut word = [0; NUMBER];
+            word[..chunk.len()].copy_from_slice(chunk);
+            f64::from_le_bytes(word)
+        });
+        let numbers = std::iter::once(bytes.len() as f64).chain(packed).collect();
+        communication.all_of_first(numbers);
+        Ok(())
+    }
+
+    /// Waits for the next announcement of the first process.
+    ///
+    /// # Errors
+    /// The reason in words if what was heard is no announcement.
+    pub fn hear(communication: &dyn Communication) -> Result<Self, String> {
+        let numbers = communication.all_of_first(Vec::new());
+        let (length, packed) = numbers.split_first().ok_or("an announcement without length")?;
+        let bytes: Vec<u8> = packed.iter().flat_map(|number| number.to_le_bytes()).collect();
+        let bytes = bytes.get(..*length as usize).ok_or("an announcement without end")?;
+        postcard::from_bytes(bytes).map_err(|error| error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use contact::communication::Parcel;
+    use contact::scene::{hertz, signorini};
+    use std::sync::Mutex;
+
+    /// A process that hears what was sent before.
+    #[derive(Debug, Default)]
+    struct Echo(Mutex<std::collections::VecDeque<Vec<f64>>>);
+
+    impl Communication for Echo {
+        fn rank(&self) -> usize {
+            0
+        }
+
+        fn size(&self) -> usize {
+            1
+        }
+
+        fn gather(&self, own: &[f64], _counts: &[usize]) -> Vec<f64> {
+            let mut sent = self.0.lock().expect("no test thread panics here");
+            if own.is_empty() || own == [0.0] {
+                return sent.pop_front().expect("something was sent");
+            }
+            sent.push_back(own.to_vec());
+            own.to_vec()
+        }
+
+        fn exchange(&self, _parcels: &mut [Parcel]) {}
+    }
+
+    #[test]
+    fn every_bit_of_a_task_arrives() {
+        let echo = Echo::default();
+        let start = Some(ContactWarmStart::Multipliers(vec![f64::NEG_INFINITY, -0.0, 5e-324, f64::MAX]));
+        let shape = |controls| Shape { controls, start: start.clone(), tolerance: f64::INFINITY };
+        let plan = |scene: Scene| {
+            let (kind, preconditioner) = (SolverKind::Newton, PreconditionerKind::Lumped);
+            Box::new(Plan { scene, kind, preconditioner, jacobians: true })
+        };
+        let tasks = [
+            Task::Threads(3),
+            Task::Prepare(7, plan(signorini().expect("a preset"))),
+            Task::Prepare(u64::MAX, plan(hertz().expect("a preset"))),
+            Task::Solve(7, 8, Box::new(shape((0..1000).map(|i| (f64::from(i)).sqrt()).collect()))),
+            Task::Tangents(7, 8, vec![vec![], vec![0.1; 5]], 1e-9),
+            Task::End,
+        ];
+        for task in tasks {
+            let told = Announcement { task, released: vec![1, 1 << 60] };
+            told.tell(&echo).expect("it has a form");
+            assert_eq!(Announcement::hear(&echo), Ok(told));
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Every process but the first: it does what the first announces, until the run ends.
+
+use crate::commands::processes::announcement::{Announcement, Id, Shape, Task};
+use crate::commands::processes::leader::prepared;
+use crate::commands::processes::traffic::Counted;
+use crate::commands::processes::use_threads;
+use contact::communication::Communication;
+use contact::contact_shape::{AnySolver, AnyState};
+use contact::equilibrium::{ContactSolver, SolverState};
+use contact::error::ContactError;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// What a process keeps between tasks.
+struct Follower {
+    announcing: Arc<Counted>,
+    counted: Arc<Counted>,
+    solvers: BTreeMap<Id, AnySolver>,
+    states: BTreeMap<Id, AnyState>,
+}
+
+/// Does what the first process announces, until that says that the run has ended. It prints nothing, and reads and writes no file.
+///
+/// # Errors
+/// The reason in words if an announcement is not understood; then the processes do not run the same program.
+pub fn follow(communication: &Arc<dyn Communication>) -> Result<(), String> {
+    let [counted, announcing] = Counted::pair(communication);
+    let (solvers, states) = (BTreeMap::new(), BTreeMap::new());
+    let mut follower = Follower { announcing, counted, solvers, states };
+    loop {
+        let Announcement { task, released } = Announcement::hear(&*follower.announcing)?;
+        for id in released {
+            follower.states.remove(&id);
+            follower.solvers.remove(&id);
+        }
+        if task == Task::End {
+            return Ok(());
+        }
+        follower.does(task)?;
+    }
+}
+
+impl Follower {
+    /// Takes part in one task.
+    fn does(&mut self, task: Task) -> Result<(), String> {
+        match task {
+            Task::Threads(threads) => use_threads(threads),
+            Task::Prepare(id, plan) => {
+                let solver = prepared(*plan, Arc::clone(&self.counted));
+                self.agree(solver.as_ref().err());
+                self.solvers.extend(solver.ok().map(|solver| (id, solver)));
+            }
+            Task::Solve(solver, id, shape) => {
+                let Shape { controls, start, tolerance } = *shape;
+                let state = self.solver(solver)?.solve(&controls, start.as_ref(), tolerance);
+                self.agree(state.as_ref().err());
+                self.states.extend(state.ok().map(|state| (id, state.solution)));
+            }
+            Task::Sensitivities(solver, state, direction, tolerance) => {
+                self.derives(solver, state, |solver, state| solver.sensitivities(state, &direction, tolerance))?;
+            }
+            Task::Tangents(solver, state, changes, tolerance) => {
+                self.derives(solver, state, |solver, state| solver.tangents(state, &changes, tolerance))?;
+            }
+            Task::Diagnose(solver, state) => self.derives(solver, state, AnySolver::diagnose)?,
+            Task::Contraction(solver, state, products) => {
+                self.derives(solver, state, |solver, state| solver.estimate_contraction(state, products))?;
+            }
+            Task::Bodies(solver, state) => self.derives(solver, state, AnySolver::bodies)?,
+            Task::StrainEnergy(solver, state) => {
+                let _ = self.solver(solver)?.strain_energy(self.state(state)?);
+            }
+            Task::WarmStart(state) => {
+                let _ = self.state(state)?.warm_start();
+            }
+            Task::Measure => {
+                self.counted.figures().gather(&*self.announcing);
+            }
+            Task::End => {}
+        }
+        Ok(())
+    }
+
+    /// Takes part in something that is computed from a state; what comes of it is the matter of the first process.
+    fn derives<T>(
+        &self,
+        solver: Id,
+        state: Id,
+        compute: impl FnOnce(&AnySolver, &AnyState) -> Result<T, ContactError>,
+    ) -> Result<(), String> {
+        let result = compute(self.solver(solver)?, self.state(state)?);
+        self.agree(result.err().as_ref());
+        Ok(())
+    }
+
+    /// Tells the others whether the own part of a task has failed.
+    fn agree(&self, error: Option<&impl ToString>) {
+        let announcing: &dyn Communication = &*self.announcing;
+        let rank = announcing.rank();
+        announcing.agree(error.map(|error| format!("process {rank}: {}", error.to_string())));
+    }
+
+    fn solver(&self, id: Id) -> Result<&AnySolver, String> {
+        self.solvers.get(&id).ok_or_else(|| format!("there is no solver {id}"))
+    }
+
+    fn state(&self, id: Id) -> Result<&AnyState, String> {
+        self.states.get(&id).ok_or_else(|| format!("there is no state {id}"))
+    }
+}

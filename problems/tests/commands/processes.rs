@@ -1,0 +1,167 @@
+//! Several processes, played by threads: the first runs a command, the others follow it. The package `problems-mpi` tests the same
+//! with real ones.
+
+use contact::communication::{Communication, Parcel};
+use problems::commands::processes::run_together;
+use problems::commands::{Arguments, execute, execute_among};
+use scene_file::SceneFile;
+use serde_json::Value;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
+use testset::kit::{scratch, text};
+
+/// One of several processes, with a channel to and from each of the others.
+#[derive(Debug)]
+struct Rank {
+    rank: usize,
+    to: Vec<Mutex<Sender<Vec<f64>>>>,
+    from: Vec<Mutex<Receiver<Vec<f64>>>>,
+}
+
+impl Rank {
+    fn all(count: usize) -> Vec<Self> {
+        let mut ranks: Vec<Self> = (0..count).map(|rank| Self { rank, to: vec![], from: vec![] }).collect();
+        for sender in 0..count {
+            for receiver in 0..count {
+                let (to, from) = channel();
+                ranks[sender].to.push(Mutex::new(to));
+                ranks[receiver].from.push(Mutex::new(from));
+            }
+        }
+        ranks
+    }
+
+    fn send(&self, rank: usize, values: &[f64]) {
+        self.to[rank].lock().unwrap().send(values.to_vec()).unwrap();
+    }
+
+    fn receive(&self, rank: usize) -> Vec<f64> {
+        self.from[rank].lock().unwrap().recv().unwrap()
+    }
+}
+
+impl Communication for Rank {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn size(&self) -> usize {
+        self.to.len()
+    }
+
+    fn gather(&self, own: &[f64], counts: &[usize]) -> Vec<f64> {
+        (0..self.size()).for_each(|rank| self.send(rank, own));
+        let received: Vec<Vec<f64>> = (0..self.size()).map(|rank| self.receive(rank)).collect();
+        assert!(received.iter().map(Vec::len).eq(counts.iter().copied()));
+        received.concat()
+    }
+
+    fn exchange(&self, parcels: &mut [Parcel]) {
+        parcels.iter().for_each(|parcel| self.send(parcel.rank, &parcel.outgoing));
+        parcels.iter_mut().for_each(|parcel| parcel.incoming = self.receive(parcel.rank));
+    }
+}
+
+fn arguments(options: &[&str]) -> Arguments {
+    clap::Parser::try_parse_from([&["contact3d", "--json"], options].concat()).unwrap()
+}
+
+fn open() -> Result<(SceneFile, Option<std::path::PathBuf>), problems::commands::Failure> {
+    Ok((SceneFile::parse(include_str!("../../scenes/signorini.toml"), "signorini.toml")?, None))
+}
+
+/// What the first of so many processes says: JSON, or the message and the exit status of its failure.
+fn together(count: usize, options: &[&str]) -> Result<Value, (String, u8)> {
+    let arguments = arguments(options);
+    let handles: Vec<_> = Rank::all(count)
+        .into_iter()
+        .map(|rank| {
+            let arguments = arguments.clone();
+            std::thread::spawn(move || {
+                let communication: Arc<dyn Communication> = Arc::new(rank);
+                let build = "the build of the test";
+                run_together(&communication, build, |processes| execute_among(open, &arguments, processes)).unwrap()
+            })
+        })
+        .collect();
+    let mut results: Vec<_> = handles.into_iter().map(|handle| handle.join().unwrap()).collect();
+    assert!(results[1..].iter().all(Option::is_none), "only the first process says something");
+    let text = results.remove(0).unwrap().map_err(|failure| (failure.to_string(), failure.status()));
+    text.map(|text| serde_json::from_str(&text).unwrap())
+}
+
+/// A report without times, and without what several processes have used.
+fn found(mut report: Value) -> Value {
+    for entry in report["course"].as_array_mut().into_iter().flatten() {
+        entry["seconds"].take();
+    }
+    let fields = report.as_object_mut().unwrap();
+    fields.remove("seconds");
+    fields.remove("processes");
+    report
+}
+
+fn alone(options: &[&str]) -> Value {
+    found(serde_json::from_str(&execute(open, &arguments(options)).unwrap()).unwrap())
+}
+
+#[test]
+fn several_processes_find_what_one_finds_to_the_last_bit() {
+    let optimize = ["optimize", "--mesh", "4", "--max-evaluations", "5", "--solver"];
+    let commands = [
+        ["evaluate", "--diagnose", "--mesh", "4", "--solver", "auto"].as_slice(),
+        &[&optimize[..], &["newton"]].concat(),
+        &[&optimize[..], &["direct"]].concat(),
+    ];
+    for options in commands {
+        let expected = alone(options);
+        for count in [1, 2, 3] {
+            let report = together(count, options).unwrap();
+            assert_eq!(report["processes"]["processes"], count);
+            assert_eq!(found(report), expected, "{options:?} by {count} processes");
+        }
+    }
+}
+
+#[test]
+fn another_number_of_processes_continues_a_run() {
+    let folder = scratch();
+    let folder = folder.path().join("run");
+    let run = ["--mesh", "4", "--solver", "newton", "--max-evaluations"];
+    let expected = alone(&[&run[..], &["6"]].concat());
+    together(3, &[&run[..], &["3", "--out", text(&folder)]].concat()).unwrap();
+    let report = together(2, &["--resume", text(&folder), "--max-evaluations", "6"]).unwrap();
+    assert_eq!(report["resumed_evaluations"], 3);
+    for key in ["objective", "controls", "termination", "certificate", "course"] {
+        assert_eq!(found(report.clone())[key], expected[key], "{key}");
+    }
+}
+
+#[test]
+fn a_refusal_and_a_failure_are_those_of_a_single_process() {
+    for options in [["evaluate", "--mesh", "4", "--load-factor", "-1"], ["verify", "--mesh", "6", "--subdomains", "4"]]
+    {
+        let expected = execute(open, &arguments(&options)).unwrap_err();
+        assert_eq!(together(2, &options).unwrap_err(), (expected.to_string(), expected.status()));
+    }
+    let (message, status) = together(9, &["evaluate", "--mesh", "4"]).unwrap_err();
+    assert!(message.contains("number of processes = 9") && message.contains("at most 8"), "{message}");
+    assert_eq!(status, 2);
+}
+
+#[test]
+fn a_process_of_another_build_is_refused_by_the_first() {
+    let handles = Rank::all(3).into_iter().enumerate().map(|(number, rank)| {
+        std::thread::spawn(move || {
+            let communication: Arc<dyn Communication> = Arc::new(rank);
+            let build = if number == 2 { "version 2" } else { "version 1" };
+            run_together(&communication, build, |_| ())
+        })
+    });
+    let mut results: Vec<_> = handles.collect::<Vec<_>>().into_iter().map(|handle| handle.join().unwrap()).collect();
+    let failure = results.remove(0).unwrap_err();
+    assert_eq!(failure.status(), 2);
+    let message = failure.to_string();
+    assert!(message.contains("process 2 runs version 2, process 0 runs version 1"), "{message}");
+    assert!(results.into_iter().all(|result| matches!(result, Ok(None))));
+}
