@@ -101,11 +101,28 @@ fn wanted() -> Option<(usize, usize, String)> {
     Some((words.next()?.parse().ok()?, words.next()?.parse().ok()?, words.next()?.to_owned()))
 }
 
+/// Exchanges values with every other process before the command begins: as many as the two ranks decide, and none with some.
+fn exchange_with_all(world: &World) {
+    let number = |from: usize, to: usize| if from > to { 0 } else { 20_000 * from + to };
+    let value = |from: usize, to: usize, index: usize| (1000 * from + to) as f64 + 1e-6 * index as f64;
+    let values = |from, to| (0..number(from, to)).map(|index| value(from, to, index)).collect::<Vec<f64>>();
+    let (own, others) = (world.rank(), (0..world.size()).filter(|rank| *rank != world.rank()));
+    let parcel = |rank| Parcel { rank, outgoing: values(own, rank), incoming: vec![f64::NAN; number(rank, own)] };
+    let mut parcels: Vec<Parcel> = others.map(parcel).collect();
+    world.exchange(&mut parcels);
+    for Parcel { rank, incoming, .. } in parcels {
+        assert_eq!(incoming, values(rank, own), "from process {rank}");
+    }
+}
+
 fn main() -> ExitCode {
-    problems_mpi::run("contact3d-mpi", |inner| match wanted() {
-        Some((rank, at, kind)) if rank == inner.rank() => {
-            Arc::new(Failing { inner, calls: AtomicUsize::new(0), at, kind })
+    problems_mpi::run("contact3d-mpi", |inner| {
+        exchange_with_all(&inner);
+        match wanted() {
+            Some((rank, at, kind)) if rank == inner.rank() => {
+                Arc::new(Failing { inner, calls: AtomicUsize::new(0), at, kind })
+            }
+            _ => Arc::new(inner),
         }
-        _ => Arc::new(inner),
     })
 }

@@ -68,6 +68,16 @@ fn many(count: usize, seed: u64) {
     eprintln!("{failed} failures in {number} runs; {continued} folders continued by {PROGRAM}");
 }
 
+/// The program exchanges values between all pairs of processes before its command, and panics if one is wrong.
+#[test]
+fn parcels_of_any_size_arrive() {
+    let scene = scene("signorini");
+    for processes in [2, 4] {
+        let (output, _) = ended(started(FAILING, processes, &[text(&scene), "evaluate", "--mesh", "4"]));
+        assert!(output.status.success(), "{}", errors(&output));
+    }
+}
+
 #[test]
 fn a_failure_of_any_kind_ends_all_processes() {
     many(20, 1);
