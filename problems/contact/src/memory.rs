@@ -53,14 +53,15 @@ pub(crate) fn estimate(
     let matrices = if near(&scene.lower) || scene.upper.iter().any(|upper| near(&upper.body)) { 2.0 } else { 1.0 };
     let per_piece =
         factor_values(dofs) * (1.0 + SINGLE_PRECISION_SHARE + interior) + (matrices * STIFFNESS_PER_DOF + 6.0) * dofs;
-    let rows = (pieces * dofs - bodies * 3.0 * nodes(mesh)).max(0.0) + contact;
+    let glued = (pieces * dofs - bodies * 3.0 * nodes(mesh)).max(0.0);
     // The factor of the coarse matrix has blocks of six where that of a brick mesh has blocks of three; those of the contact
     // subdomains take six dense matrices: constant part, its factor, two active sets with their LU.
     let held = 6.0 * bodies * (scene.subdomains[0] * scene.subdomains[1]) as f64;
     let coarse = 1.3 * 4.0 * factor_values(3.0 * pieces) + 6.0 * held * held;
     let (dual, torn) = TANGENT_VECTORS;
-    // Factors and torn vectors are shared among the processes; every process has dual vectors and the coarse problem.
+    // Factors, torn vectors and rows of B_E are shared among the processes; every process has the contact rows and the coarse problem.
     let owned = (pieces / processes as f64).ceil();
+    let rows = glued * owned / pieces + contact;
     let tangents = SINGLE * columns.min(MAX_COLUMNS) as f64 * (dual * rows + torn * owned * dofs);
     NUMBER * (owned * per_piece + DUAL_VECTORS * rows + coarse) + tangents
 }

@@ -3,6 +3,7 @@
 //! ```text
 //! cli ─ cases ─ measure, memory ─ Row
 //! Rows ─ growth ─ Report ─ table (Markdown) or JSON
+//! model: figures of one core ─ predictions for many machines
 //! ```
 //! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
 //! stdout and nothing else there.
@@ -12,6 +13,7 @@ mod cli;
 mod growth;
 mod measure;
 mod memory;
+mod model;
 mod rows;
 mod table;
 
@@ -19,4 +21,5 @@ pub use cases::{Case, Extent, SceneName, Variant, word};
 pub use cli::{Arguments, run};
 pub use growth::{CountGrowth, Growth};
 pub use memory::peak as peak_memory;
+pub use model::{Machine, ModelReport, Network, Prediction, Run};
 pub use rows::{Adjoint, Report, Row, Sample, Solve, Start};
