@@ -8,13 +8,14 @@ use testset::kit::{Random, scratch, text};
 
 const FAILING: &str = env!("CARGO_BIN_EXE_contact3d-mpi-failing");
 
-/// Longest time of a run that fails: one that succeeds takes some seconds, and `mpirun` waits a second before it kills.
-const LONGEST: Duration = Duration::from_secs(30);
+/// Time after which a run hangs: one that succeeds takes some seconds, or half a minute on a busy machine.
+const LONGEST: Duration = Duration::from_secs(300);
 
 /// Kinds of failures, each with the exit status that it leads to.
 const KINDS: [(&str, i32); 5] = [("panic", 1), ("kill", 137), ("exit", 3), ("memory", 134), ("flat", 1)];
 
-const RUN: [&str; 8] = ["--mesh", "4", "--solver", "newton", "--max-evaluations", "3", "--json", "--out"];
+const RUN: [&str; 10] =
+    ["--mesh", "4", "--solver", "newton", "--threads", "1", "--max-evaluations", "3", "--json", "--out"];
 
 /// Lets one process fail; whether it did.
 fn fails(rank: usize, processes: usize, call: usize, (kind, status): (&str, i32), folder: &Path) -> bool {
@@ -36,7 +37,7 @@ fn fails(rank: usize, processes: usize, call: usize, (kind, status): (&str, i32)
     true
 }
 
-/// So many failures at places that a seed decides; every folder that is left is continued to the same end.
+/// So many failures at places that a seed decides; one in four folders that are left is continued to the same end.
 fn many(count: usize, seed: u64) {
     let (folder, scene) = (scratch(), scene("signorini"));
     let whole = folder.path().join("whole");
@@ -51,7 +52,7 @@ fn many(count: usize, seed: u64) {
         let kept = folder.path().join(number.to_string());
         failed += usize::from(fails(random.below(processes), processes, call, kind, &kept));
         assert!(number < 4 * count, "{failed} failures in {number} runs");
-        let begun = kept.join("start.json").exists() && kept.join("scene.toml").exists();
+        let begun = number % 4 == 0 && kept.join("start.json").exists() && kept.join("scene.toml").exists();
         if begun && kind.0 == "flat" {
             // The journal holds the failure as what came of the evaluation, as for a single process.
             let (output, _) = ended(started(PROGRAM, 2, &["--resume", text(&kept), "--json"]));
@@ -79,12 +80,7 @@ fn parcels_of_any_size_arrive() {
 }
 
 #[test]
-fn a_failure_of_any_kind_ends_all_processes() {
-    many(20, 1);
-}
-
-#[test]
-#[ignore = "minutes"]
 fn two_hundred_failures_end_all_processes() {
-    many(200, 2);
+    // Most of their time is waiting for `mpirun`.
+    std::thread::scope(|scope| (1..=4).for_each(|seed| drop(scope.spawn(move || many(50, seed)))));
 }
