@@ -29,6 +29,9 @@ pub struct Arguments {
     /// One solver only.
     #[arg(long, value_enum)]
     pub variant: Option<Variant>,
+    /// Clusters of C³ subdomains, which share six rigid motions; several numbers, with commas, are measured one after the other.
+    #[arg(long, value_name = "C", value_delimiter = ',', default_value = "1")]
+    pub clusters: Vec<usize>,
 }
 
 impl Arguments {
@@ -38,6 +41,12 @@ impl Arguments {
             (_, true) => Extent::Full,
             _ => Extent::Usual,
         }
+    }
+
+    /// Clusters that a solver is measured with.
+    fn clusters_of(&self, variant: Variant) -> impl Iterator<Item = usize> {
+        let torn = variant.preconditioner().is_some();
+        self.clusters.iter().copied().filter(move |&clusters| torn || clusters == 1)
     }
 
     /// What is measured, in order.
@@ -61,8 +70,11 @@ pub fn run() -> ExitCode {
 /// Measures what the arguments ask for; cases that fail are listed in the report.
 fn execute(arguments: &Arguments) -> Result<String, Failure> {
     let (mut rows, mut failures) = (Vec::new(), Vec::new());
-    for (case, variant) in arguments.plan() {
-        match measure::row(arguments.scene, case, variant) {
+    let plan = arguments.plan().into_iter();
+    for (case, variant, clusters) in
+        plan.flat_map(|(case, variant)| arguments.clusters_of(variant).map(move |c| (case, variant, c)))
+    {
+        match measure::row(arguments.scene, case, variant, clusters) {
             Ok(row) => {
                 notice(&table::progress(&row));
                 rows.push(row);
