@@ -9,7 +9,7 @@
 //! Nᵀ α = 0, and u solves the two equations. σ is a mean diagonal of K, so that A has no unit. G_c G_cᵀ + N Nᵀ is regular exactly if
 //! the cluster has no motion but these six.
 //!
-//! References: \[KlawonnRheinbach2010\], \[KozubekVondrakMensikHoraDostalHaplaKabelikovaCermak2013\].
+//! References: \[KlawonnRheinbach2010\], \[RihaBrzobohatyMarkopoulosMecaKozubek2016\].
 
 use crate::equilibrium::modes::MOTIONS;
 use crate::error::ContactError;
@@ -224,4 +224,32 @@ fn columns(part: &SubdomainFactors, dofs: &[usize]) -> Vec<f64> {
         }
     }
     columns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tfeti::torn::scene_rows;
+
+    /// Two bricks side by side along the first axis, glued at some of the four nodes between them.
+    fn two_bricks(glued: &[usize]) -> (ClusterRows, Vec<Vec<[f64; 3]>>) {
+        let corner = |node: usize| [node & 1, (node >> 1) & 1, node >> 2].map(|index| index as f64);
+        let first: Vec<[f64; 3]> = (0..8).map(corner).collect();
+        let second: Vec<[f64; 3]> = first.iter().map(|[x, y, z]| [x + 1.0, *y, *z]).collect();
+        let half = 0.5_f64.sqrt();
+        let row =
+            |node: usize| (0..3).map(move |c| vec![(3 * (2 * node + 1) + c, half), (24 + 3 * 2 * node + c, -half)]);
+        let rows: Vec<scene_rows::Row> = glued.iter().flat_map(|&node| row(node)).collect();
+        (ClusterRows::new(&rows, 0..48, 24), vec![first, second])
+    }
+
+    #[test]
+    fn only_three_nodes_off_a_line_make_one_body() {
+        for (glued, one) in
+            [(&[0, 1, 2][..], true), (&[0, 1, 2, 3], true), (&[0, 3], false), (&[1], false), (&[], false)]
+        {
+            let (rows, coordinates) = two_bricks(glued);
+            assert_eq!(moves_as_one_body(&rows, &coordinates), one, "{glued:?}");
+        }
+    }
 }

@@ -370,9 +370,7 @@ fn interior_class(
     joined: &[usize],
 ) -> Result<Arc<InteriorClass>, ContactError> {
     let mut marked: Vec<bool> = dofs.map(|dof| constraints.transposed.row(dof).next().is_none()).collect();
-    if std::env::var("INTERIOR").is_err() {
-        joined.iter().for_each(|&dof| marked[dof] = false);
-    }
+    joined.iter().for_each(|&dof| marked[dof] = false);
     if let Some(class) = classes.get(&marked) {
         return Ok(Arc::clone(class));
     }

@@ -31,38 +31,17 @@ impl BodyRows<'_> {
     fn joined(&self, position: [usize; 3], copies: &[usize]) -> Option<usize> {
         let cluster = copies[0] / self.cluster_size;
         let inside = copies.len() > 1 && copies.iter().all(|copy| copy / self.cluster_size == cluster);
-        (inside && self.is_chosen(position)).then_some(cluster)
+        (inside && self.is_near_a_corner(position)).then_some(cluster)
     }
 
-    fn is_chosen(&self, position: [usize; 3]) -> bool {
-        let rule = std::env::var("GLUE").unwrap_or_else(|_| "91".into());
-        let (edge, face) = (rule.as_bytes()[0] - b'0', rule.as_bytes()[1] - b'0');
+    /// Whether a node lies at a corner between subdomains, next to the end of an edge, or next to the corner of a face: few nodes, as far
+    /// apart on a face as inner nodes can be, so that neighbours hardly turn against each other.
+    fn is_near_a_corner(&self, position: [usize; 3]) -> bool {
         let cells = self.tearing.subdomains[0].cells;
-        let nodes = self.grid.nodes();
-        let rel: Vec<(usize, usize, bool)> = (0..3)
-            .filter(|&a| position[a] % cells[a] != 0 || position[a] == 0 || position[a] + 1 == nodes[a])
-            .map(|a| (position[a] % cells[a], cells[a], position[a] == 0 || position[a] + 1 == nodes[a]))
-            .collect();
-        let near = |&(r, c, end): &(usize, usize, bool)| end || r == 1 || r + 1 == c;
-        let middle = |&(r, c, _): &(usize, usize, bool)| r == c / 2;
-        match rel.len() {
-            0 => true,
-            1 => match edge {
-                0 => false,
-                1 => near(&rel[0]),
-                2 => middle(&rel[0]),
-                3 => near(&rel[0]) || middle(&rel[0]),
-                _ => true,
-            },
-            2 => match face {
-                0 => false,
-                1 => rel.iter().all(near),
-                2 => rel.iter().all(middle),
-                3 => rel.iter().all(|r| near(r) || middle(r)),
-                _ => true,
-            },
-            _ => false,
-        }
+        (0..3).all(|axis| {
+            let along = position[axis] % cells[axis];
+            along <= 1 || along + 1 == cells[axis]
+        })
     }
 }
 

@@ -97,3 +97,106 @@ impl TornSystem {
         self.parts[0].modes[0].len()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::equilibrium::ContactProblem;
+    use crate::linear::vector::{add_scaled, norm};
+    use crate::scene::{Scene, signorini};
+    use crate::tfeti::torn::{TornModel, TornOptions};
+
+    /// Bodies in clusters of 2 × 2 × 1 subdomains, and their system.
+    fn joined() -> (TornModel, TornSystem) {
+        let scene = Scene { mesh: [12, 6, 6], subdomains: [4, 2, 2], ..signorini().expect("a preset") };
+        let problem = Arc::new(ContactProblem::new(scene).expect("a scene"));
+        let options = TornOptions { clusters: [2, 2, 1], ..TornOptions::default() };
+        let model = TornModel::new(Arc::clone(&problem), options).expect("a torn scene");
+        let heights: Vec<f64> = (0..36).map(|index| 95.0 + (0.7 * f64::from(index)).sin()).collect();
+        let system = model.factorize(&problem.blocks(&heights).expect("blocks")).expect("factors");
+        (model, system)
+    }
+
+    /// x ← (I − B_cᵀ B_c) x and |B_c x| before.
+    fn hold_together(model: &TornModel, x: &mut [f64]) -> f64 {
+        let size = model.pattern.pattern.dimension() * model.numbering.members();
+        let jumps = x.chunks_exact_mut(size).zip(&model.constraints.joined).map(|(x, rows)| {
+            let mut jumps = vec![0.0; rows.count];
+            let first = |member: usize| member * size / rows.members.len();
+            for (member, part) in rows.members.iter().enumerate() {
+                part.entries.iter().for_each(|&(row, place, v)| jumps[row] += v * x[first(member) + part.dofs[place]]);
+            }
+            for (member, part) in rows.members.iter().enumerate() {
+                part.entries.iter().for_each(|&(row, place, v)| x[first(member) + part.dofs[place]] -= v * jumps[row]);
+            }
+            norm(&jumps)
+        });
+        jumps.fold(0.0, f64::max)
+    }
+
+    /// K x.
+    fn forces(model: &TornModel, system: &TornSystem, x: &[f64]) -> Vec<f64> {
+        let size = model.pattern.pattern.dimension();
+        let mut forces = vec![0.0; x.len()];
+        for ((part, x), forces) in system.parts.iter().zip(x.chunks_exact(size)).zip(forces.chunks_exact_mut(size)) {
+            model.pattern.pattern.multiply(&part.stiffness, x, forces);
+        }
+        forces
+    }
+
+    /// K̂⁺ f.
+    fn displacements(model: &TornModel, system: &TornSystem, forces: &[f64]) -> Vec<f64> {
+        let mut x = forces.to_vec();
+        let parts = x.chunks_exact_mut(model.pattern.pattern.dimension()).zip(&system.parts);
+        let resultants: Vec<[f64; MOTIONS]> = parts
+            .map(|(x, part)| {
+                let resultants = part.resultants_of(x);
+                part.solve(x);
+                resultants
+            })
+            .collect();
+        system.join(&model.constraints.joined, &resultants, &mut x);
+        x
+    }
+
+    #[test]
+    fn the_inverse_of_a_cluster_is_a_generalised_one() {
+        let (model, system) = joined();
+        let mut probe: Vec<f64> = (0..model.total_dofs).map(|index| (0.37 * index as f64).sin()).collect();
+        assert!(hold_together(&model, &mut probe) > 1.0);
+        // Forces of a joined cluster, with any reactions between its subdomains.
+        let expected = forces(&model, &system, &probe);
+        let mut loads = expected.clone();
+        hold_together(&model, &mut loads);
+        let mut found = displacements(&model, &system, &loads);
+        let mut rest = forces(&model, &system, &found);
+        let jumps = hold_together(&model, &mut found);
+        assert!(jumps < 1e-11 * norm(&probe), "{jumps:.1e}");
+        add_scaled(&mut rest, -1.0, &expected);
+        hold_together(&model, &mut rest);
+        assert!(norm(&rest) < 1e-11 * norm(&expected), "{:.1e}", norm(&rest) / norm(&expected));
+    }
+
+    #[test]
+    fn a_cluster_has_six_orthonormal_motions_without_strain_or_jumps() {
+        let (model, system) = joined();
+        let size = model.pattern.pattern.dimension() * model.numbering.members();
+        let scale = system.parts[0].stiffness.iter().fold(0.0, |scale: f64, value| scale.max(value.abs()));
+        for cluster in 0..model.numbering.cluster_count() {
+            let motion = |number: usize| -> Vec<f64> {
+                let mut all = vec![0.0; model.total_dofs];
+                (cluster * size..(cluster + 1) * size).for_each(|dof| all[dof] = system.motion(dof, number));
+                all
+            };
+            let motions: Vec<Vec<f64>> = (0..MOTIONS).map(motion).collect();
+            for (number, motion) in motions.iter().enumerate() {
+                for (other, second) in motions.iter().enumerate() {
+                    let product: f64 = motion.iter().zip(second).map(|(a, b)| a * b).sum();
+                    assert!((product - f64::from(u8::from(number == other))).abs() < 1e-12);
+                }
+                assert!(norm(&forces(&model, &system, motion)) < 1e-11 * scale);
+                assert!(hold_together(&model, &mut motion.clone()) < 1e-12);
+            }
+        }
+    }
+}
