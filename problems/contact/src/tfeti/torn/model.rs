@@ -4,6 +4,7 @@ use crate::body::elasticity::traction::face_weights;
 use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::body::mesh::{Block, Subdomain, Tearing};
 use crate::body::shape_load::loaded_faces;
+use crate::communication::Communication;
 use crate::equilibrium::modes::motions;
 use crate::equilibrium::{Configuration, ContactProblem};
 use crate::error::ContactError;
@@ -96,10 +97,7 @@ impl TornModel {
         let size = tearing.subdomains[0].dof_count();
         let numbering = Numbering::new(&tearing, counts, shape, problem.bodies().count());
         let members = numbering.members();
-        let weight = |cluster| if numbering.place(cluster * members).0 == 0 { 1.0 } else { FIXED_WEIGHT };
-        let weights: Vec<f64> = (0..numbering.cluster_count()).map(weight).collect();
-        let clusters = Arc::new(Distribution::new(communication, &weights));
-        let distribution = if members == 1 { Arc::clone(&clusters) } else { Arc::new(clusters.refined(members)) };
+        let [clusters, distribution] = distributions(communication, &numbering);
         let offsets = |body| (0..tearing.subdomains.len()).map(|index| size * numbering.number(body, index)).collect();
         let bodies: Vec<BodyRows<'_>> = problem
             .bodies()
@@ -304,6 +302,16 @@ impl TornModel {
     }
 }
 
+/// Which process works on which clusters, and on which subdomains.
+fn distributions(communication: Arc<dyn Communication>, numbering: &Numbering) -> [Arc<Distribution>; 2] {
+    let members = numbering.members();
+    let weight = |cluster| if numbering.place(cluster * members).0 == 0 { 1.0 } else { FIXED_WEIGHT };
+    let weights: Vec<f64> = (0..numbering.cluster_count()).map(weight).collect();
+    let clusters = Arc::new(Distribution::new(communication, &weights));
+    let subdomains = if members == 1 { Arc::clone(&clusters) } else { Arc::new(clusters.refined(members)) };
+    [clusters, subdomains]
+}
+
 /// Clusters per axis.
 fn cluster_counts(counts: [usize; 3], shape: [usize; 3]) -> Result<[usize; 3], ContactError> {
     if (0..3).any(|axis| shape[axis] == 0 || !counts[axis].is_multiple_of(shape[axis])) {
@@ -322,6 +330,9 @@ fn check_motions(
     shape: [usize; 3],
 ) -> Result<(), ContactError> {
     let members = numbering.members();
+    if members == 1 {
+        return Ok(());
+    }
     let nodes = |number: usize| {
         let place = numbering.place(number).1;
         (0..place.node_count()).map(|node| place.block_position(node).map(|index| index as f64)).collect()
@@ -329,7 +340,7 @@ fn check_motions(
     let first = distribution.owned().start;
     let loose = constraints.joined.par_iter().enumerate().any(|(index, rows)| {
         let numbers = first + members * index..first + members * (index + 1);
-        members > 1 && !moves_as_one_body(rows, &numbers.map(nodes).collect::<Vec<_>>())
+        !moves_as_one_body(rows, &numbers.map(nodes).collect::<Vec<_>>())
     });
     let reason = "their inner nodes do not hold the subdomains together; subdomains need more bricks".to_string();
     match distribution.communication().agree(loose.then_some(reason)) {
