@@ -164,6 +164,14 @@ pub enum ContactError {
         /// Norm of the resultants of the loads, N.
         resultant: f64,
     },
+    /// Subdomains cannot be joined to clusters of this shape.
+    #[error("clusters of {shape:?} subdomains are not allowed: {reason}")]
+    Clusters {
+        /// Subdomains per axis of a cluster.
+        shape: [usize; 3],
+        /// Why, and what is allowed.
+        reason: String,
+    },
     /// A symbolic analysis failed, a matrix is not positive definite, or a factorisation did not pass its residual check.
     #[error("{what}: {reason}")]
     Factorization {

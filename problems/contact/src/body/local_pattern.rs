@@ -53,6 +53,12 @@ impl LocalPattern {
         local
     }
 
+    /// Mean of the diagonal of a matrix, given by its values.
+    pub fn mean_diagonal(&self, values: &[f64]) -> f64 {
+        let (starts, dimension) = (self.pattern.starts(), self.pattern.dimension());
+        (0..dimension).map(|column| values[starts[column]]).sum::<f64>() / dimension as f64
+    }
+
     /// Local bricks (i, j, k) in the order of the scatter map.
     pub fn bricks(&self) -> impl Iterator<Item = [usize; 3]> + use<> {
         lattice::points([0; 3], self.shape.cells)

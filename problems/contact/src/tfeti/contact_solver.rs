@@ -1,6 +1,6 @@
 //! Total FETI as a contact solver: semismooth Newton, or the paper's successive approximations.
 
-use crate::communication::{Communication, InProcess};
+use crate::communication::Communication;
 use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, Sensitivities, SolvedBody,
     SolverState, Tangents,
@@ -8,7 +8,9 @@ use crate::equilibrium::{
 use crate::error::ContactError;
 use crate::solver_kind::SolverKind;
 use crate::tfeti::dual::TornContact;
-use crate::tfeti::{AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornSolver, TornState};
+use crate::tfeti::{
+    AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornOptions, TornSolver, TornState,
+};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
@@ -38,7 +40,7 @@ impl TotalFeti {
         preconditioner: PreconditionerKind,
         method: DualMethod,
     ) -> Result<Self, ContactError> {
-        Self::with_communication(problem, preconditioner, method, Arc::new(InProcess))
+        Self::with_options(problem, method, TornOptions { preconditioner, ..TornOptions::default() })
     }
 
     /// As [`TotalFeti::new`], in one process of several; see [`TornSolver::with_communication`].
@@ -51,7 +53,19 @@ impl TotalFeti {
         method: DualMethod,
         communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
-        Ok(Self { solver: TornSolver::with_communication(problem, preconditioner, communication)?, method })
+        Self::with_options(problem, method, TornOptions { preconditioner, communication, ..TornOptions::default() })
+    }
+
+    /// As [`TotalFeti::new`], with all options of the tearing.
+    ///
+    /// # Errors
+    /// As [`TornSolver::with_options`].
+    pub fn with_options(
+        problem: Arc<ContactProblem>,
+        method: DualMethod,
+        options: TornOptions,
+    ) -> Result<Self, ContactError> {
+        Ok(Self { solver: TornSolver::with_options(problem, options)?, method })
     }
 
     /// Solves one shape with at most so many products with F in Newton's method; a failure says what work it cost.

@@ -27,4 +27,6 @@ pub use dual::{DualOperator, Iterate, Precision, Preconditioner, TornContact, To
 pub use newton::{NewtonSettings, Recycling};
 pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
 pub use solver::{TornSolver, TornState};
-pub use torn::{Constraints, PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornSystem, TornVector};
+pub use torn::{
+    Constraints, PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornOptions, TornSystem, TornVector,
+};

@@ -1,7 +1,7 @@
 //! From a shape to its contact forces and their derivative by TFETI.
 
 use crate::body::mesh::Block;
-use crate::communication::{Communication, InProcess};
+use crate::communication::Communication;
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::{self, Linearization};
 use crate::equilibrium::{
@@ -14,7 +14,8 @@ use crate::tfeti::derivative::{MovedSurface, height_sensitivities};
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::NewtonSettings;
 use crate::tfeti::torn::{
-    Constraints, PreconditionerKind, SubdomainFactors, TornModel, TornSubdomain, TornSystem, TornVector, whole_bodies,
+    Constraints, PreconditionerKind, SubdomainFactors, TornModel, TornOptions, TornSubdomain, TornSystem, TornVector,
+    whole_bodies,
 };
 use std::sync::Arc;
 use std::time::Instant;
@@ -69,7 +70,7 @@ impl TornSolver {
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn new(problem: Arc<ContactProblem>, preconditioner: PreconditionerKind) -> Result<Self, ContactError> {
-        Self::with_communication(problem, preconditioner, Arc::new(InProcess))
+        Self::with_options(problem, TornOptions { preconditioner, ..TornOptions::default() })
     }
 
     /// As [`TornSolver::new`], for one process of several: each solves the same problem and works on its own subdomains. All processes
@@ -82,7 +83,16 @@ impl TornSolver {
         preconditioner: PreconditionerKind,
         communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
-        let model = TornModel::new(problem, preconditioner, communication)?;
+        Self::with_options(problem, TornOptions { preconditioner, communication, ..TornOptions::default() })
+    }
+
+    /// As [`TornSolver::with_communication`], with all options of the tearing.
+    ///
+    /// # Errors
+    /// As [`TornSolver::new`], and [`ContactError::Clusters`].
+    pub fn with_options(problem: Arc<ContactProblem>, options: TornOptions) -> Result<Self, ContactError> {
+        let preconditioner = options.preconditioner;
+        let model = TornModel::new(problem, options)?;
         Ok(Self { model, preconditioner, precision: Precision::default() })
     }
 

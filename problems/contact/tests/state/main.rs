@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 mod closed_forms;
+mod clusters;
 mod dual_qp;
 mod fields;
 mod flat_and_tall_bricks;

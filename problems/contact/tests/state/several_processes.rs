@@ -5,7 +5,7 @@ use contact::communication::{Communication, Parcel};
 use contact::equilibrium::{ContactProblem, ContactSolver, SolverState};
 use contact::error::ContactError;
 use contact::scene::{Scene, hertz, signorini};
-use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TornSolver, TotalFeti};
+use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TornOptions, TornSolver, TotalFeti};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 
@@ -80,14 +80,13 @@ struct Outcome {
     products: usize,
 }
 
-fn solve(scene: &Scene, communication: Option<Rank>, method: DualMethod) -> Outcome {
+fn solve(scene: &Scene, clusters: [usize; 3], communication: Option<Rank>, method: DualMethod) -> Outcome {
     let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
-    let kind = PreconditionerKind::Dirichlet;
-    let solver = match communication {
-        Some(rank) => TotalFeti::with_communication(Arc::clone(&problem), kind, method, Arc::new(rank)),
-        None => TotalFeti::new(Arc::clone(&problem), kind, method),
+    let mut options = TornOptions { clusters, ..TornOptions::default() };
+    if let Some(rank) = communication {
+        options.communication = Arc::new(rank);
     }
-    .unwrap();
+    let solver = TotalFeti::with_options(Arc::clone(&problem), method, options).unwrap();
     let controls = vec![scene.start_height; 36];
     let first = solver.solve(&controls, None, 1e-6).unwrap();
     let moved: Vec<f64> = (0..36).map(|index| scene.start_height - 0.01 * (index as f64).sin()).collect();
@@ -127,19 +126,21 @@ fn on_threads<T: Send + 'static>(
 fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
     let newton = DualMethod::Newton(Recycling::On);
     let cases = [
-        (signorini(), [2; 3], newton),
-        (hertz(), [2, 1, 2], newton),
-        (signorini(), [1; 3], newton),
-        (hertz(), [2, 2, 1], DualMethod::Newton(Recycling::Off)),
-        (signorini(), [2, 2, 1], DualMethod::SuccessiveApproximations),
+        (signorini(), [2; 3], [1; 3], newton),
+        (hertz(), [2, 1, 2], [1; 3], newton),
+        (signorini(), [1; 3], [1; 3], newton),
+        (hertz(), [2, 2, 1], [1; 3], DualMethod::Newton(Recycling::Off)),
+        (signorini(), [2, 2, 1], [1; 3], DualMethod::SuccessiveApproximations),
+        (hertz(), [2; 3], [1, 2, 1], newton),
+        (signorini(), [2; 3], [2, 1, 1], DualMethod::SuccessiveApproximations),
     ];
-    for (scene, subdomains, method) in cases.map(|(scene, subdomains, method)| (scene.unwrap(), subdomains, method)) {
-        let scene = Scene { mesh: [4; 3], subdomains, ..scene };
-        let alone = solve(&scene, None, method);
+    for (scene, subdomains, clusters, method) in cases {
+        let scene = Scene { mesh: [4; 3], subdomains, ..scene.unwrap() };
+        let alone = solve(&scene, clusters, None, method);
         for (processes, threads) in [(1, 1), (2, 2), (3, 1), (4, 1)] {
             let ranks = Rank::all(processes).into_iter().map(|rank| {
                 let scene = scene.clone();
-                on_threads(threads, move || solve(&scene, Some(rank), method))
+                on_threads(threads, move || solve(&scene, clusters, Some(rank), method))
             });
             for (rank, handle) in ranks.collect::<Vec<_>>().into_iter().enumerate() {
                 assert_eq!(handle.join().unwrap(), alone, "rank {rank} of {processes}");

@@ -6,7 +6,7 @@ use contact::direct::DirectSolver;
 use contact::equilibrium::ContactProblem;
 use contact::error::{ContactError, SceneError};
 use contact::scene::{self, Scene};
-use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
+use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TornOptions, TotalFeti};
 use serde::Serialize;
 use std::fmt;
 use std::sync::Arc;
@@ -158,6 +158,14 @@ impl Variant {
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails.
     pub fn solver(self, problem: &Arc<ContactProblem>) -> Result<AnySolver, ContactError> {
+        self.clustered_solver(problem, 1)
+    }
+
+    /// The solver of a problem with clusters of so many subdomains per axis.
+    ///
+    /// # Errors
+    /// As [`Variant::solver`], and [`ContactError::Clusters`].
+    pub fn clustered_solver(self, problem: &Arc<ContactProblem>, clusters: usize) -> Result<AnySolver, ContactError> {
         let problem = Arc::clone(problem);
         let Some(preconditioner) = self.preconditioner() else {
             return DirectSolver::new(problem).map(AnySolver::from);
@@ -167,7 +175,8 @@ impl Variant {
             Self::Gmres => DualMethod::Newton(Recycling::Off),
             _ => DualMethod::Newton(Recycling::On),
         };
-        TotalFeti::new(problem, preconditioner, method).map(AnySolver::from)
+        let options = TornOptions { preconditioner, clusters: [clusters; 3], ..TornOptions::default() };
+        TotalFeti::with_options(problem, method, options).map(AnySolver::from)
     }
 
     /// The preconditioner; none for direct condensation.

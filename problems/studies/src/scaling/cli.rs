@@ -30,6 +30,9 @@ pub struct Arguments {
     /// One solver only.
     #[arg(long, value_enum)]
     pub variant: Option<Variant>,
+    /// Clusters of C³ subdomains, which share six rigid motions; several numbers, with commas, are measured one after the other.
+    #[arg(long, value_name = "C", value_delimiter = ',', default_value = "1")]
+    pub clusters: Vec<usize>,
     /// Measure one core and predict time and memory of many ranks; with --case, of that case on 1, 2 and 4 ranks.
     #[arg(long, conflicts_with_all = ["quick", "full", "variant"])]
     pub model: bool,
@@ -46,7 +49,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = positive, requires = "model")]
     pub products: Option<f64>,
     /// Products with clusters over those without, in the model.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.5, value_parser = positive, requires = "model")]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.9, value_parser = positive, requires = "model")]
     pub cluster_products: f64,
 }
 
@@ -63,6 +66,12 @@ impl Arguments {
             (_, true) => Extent::Full,
             _ => Extent::Usual,
         }
+    }
+
+    /// Clusters that a solver is measured with.
+    fn clusters_of(&self, variant: Variant) -> impl Iterator<Item = usize> {
+        let torn = variant.preconditioner().is_some();
+        self.clusters.iter().copied().filter(move |&clusters| torn || clusters == 1)
     }
 
     /// What is measured, in order.
@@ -89,8 +98,11 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
         return predict(arguments);
     }
     let (mut rows, mut failures) = (Vec::new(), Vec::new());
-    for (case, variant) in arguments.plan() {
-        match measure::row(arguments.scene, case, variant) {
+    let plan = arguments.plan().into_iter();
+    for (case, variant, clusters) in
+        plan.flat_map(|(case, variant)| arguments.clusters_of(variant).map(move |c| (case, variant, c)))
+    {
+        match measure::row(arguments.scene, case, variant, clusters) {
             Ok(row) => {
                 notice(&table::progress(&row));
                 rows.push(row);

@@ -6,7 +6,7 @@ use crate::scaling::rows::{Row, Start};
 use clap::ValueEnum;
 use serde::Serialize;
 
-/// Growth of one solver at H/h = 7.
+/// Growth of one solver at H/h = 7, without clusters.
 #[derive(Debug, Clone, Serialize)]
 pub struct Growth {
     /// The scene.
@@ -41,7 +41,8 @@ impl Growth {
     /// Growth per variant, where at least two rows have H/h = 7.
     pub fn of(rows: &[Row]) -> Vec<Self> {
         let series = |variant: &Variant| -> Vec<&Row> {
-            rows.iter().filter(|row| row.variant == *variant && row.case.ratio() == RATIO).collect()
+            let alike = |row: &&Row| row.variant == *variant && row.case.ratio() == RATIO && row.clusters == 1;
+            rows.iter().filter(alike).collect()
         };
         let all = Variant::value_variants().iter().map(series);
         all.filter(|series| series.len() > 1).map(|series| Self::of_series(&series)).collect()

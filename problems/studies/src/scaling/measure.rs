@@ -32,7 +32,7 @@ const CHANGE: f64 = 1e-3;
 ///
 /// # Errors
 /// [`Failure`] when the timed cold state cannot be found; other failures are listed in the row.
-pub fn row(scene: SceneName, case: Case, variant: Variant) -> Result<Row, Failure> {
+pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> Result<Row, Failure> {
     memory::reset_peak();
     let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
     let [first, second] = problem.scene.control_points;
@@ -40,14 +40,14 @@ pub fn row(scene: SceneName, case: Case, variant: Variant) -> Result<Row, Failur
     let nearby: Vec<f64> =
         controls.iter().zip(&change).map(|(height, entry)| height + CHANGE * height * entry).collect();
     let clock = Instant::now();
-    let mut solver = variant.solver(&problem).map_err(failure)?;
+    let mut solver = variant.clustered_solver(&problem, clusters).map_err(failure)?;
     let setup_seconds = clock.elapsed().as_secs_f64();
     let [dofs, multipliers] = solver.sizes();
     let mut restart = None;
     let cold = median(|| {
         if restart.is_some() {
             // A solver keeps the factors of bodies whose shape has not changed; a cold state must not have them.
-            solver = variant.solver(&problem)?;
+            solver = variant.clustered_solver(&problem, clusters)?;
         }
         let (sample, state) = sample(&solver, &controls, None)?;
         restart = Some(state.solution.warm_start());
@@ -63,6 +63,8 @@ pub fn row(scene: SceneName, case: Case, variant: Variant) -> Result<Row, Failur
         scene,
         case,
         variant,
+        clusters,
+        coarse_unknowns: variant.preconditioner().map(|_| coarse_unknowns(&problem, clusters)),
         dofs,
         multipliers,
         contact_nodes: problem.boundary.points.len(),
@@ -75,10 +77,18 @@ pub fn row(scene: SceneName, case: Case, variant: Variant) -> Result<Row, Failur
     })
 }
 
+/// Rigid amplitudes of all clusters of `clusters` subdomains per axis.
+fn coarse_unknowns(problem: &ContactProblem, clusters: usize) -> usize {
+    let per_body: usize = problem.scene.subdomains.iter().map(|count| count / clusters).product();
+    6 * problem.bodies().count() * per_body
+}
+
 /// A solver's reason as a failed command.
 fn failure(error: ContactError) -> Failure {
     match error {
-        ContactError::InvertedElement { .. } | ContactError::NoEquilibrium { .. } => Failure::Input(error.to_string()),
+        ContactError::InvertedElement { .. } | ContactError::NoEquilibrium { .. } | ContactError::Clusters { .. } => {
+            Failure::Input(error.to_string())
+        }
         _ => Failure::Computation(error.to_string()),
     }
 }

@@ -80,6 +80,10 @@ pub struct Row {
     pub case: Case,
     /// The solver.
     pub variant: Variant,
+    /// Subdomains per edge of a cluster.
+    pub clusters: usize,
+    /// Rigid amplitudes of the clusters; none for direct condensation.
+    pub coarse_unknowns: Option<usize>,
     /// Torn degrees of freedom; untorn ones for direct condensation.
     pub dofs: usize,
     /// Rows of B; contact rows for direct condensation.

@@ -11,7 +11,7 @@ pub fn progress(row: &Row) -> String {
     format!(
         "{} {} {}: {} dofs, cold {:.2} s, {} products",
         word(&row.scene),
-        row.case,
+        name(row)[0],
         word(&row.variant),
         row.dofs,
         row.cold.seconds(),
@@ -22,11 +22,22 @@ pub fn progress(row: &Row) -> String {
 /// All tables.
 pub fn markdown(report: &Report) -> String {
     let machine = format!("{} threads run at once on this machine.\n", report.machine_threads);
-    [machine, counts(report), paper(report), seconds(report), direct(report), growth(report), failures(report)].concat()
+    [
+        machine,
+        counts(report),
+        paper(report),
+        seconds(report),
+        clusters(report),
+        direct(report),
+        growth(report),
+        failures(report),
+    ]
+    .concat()
 }
 
 fn name(row: &Row) -> Vec<String> {
-    vec![row.case.to_string(), row.case.ratio().to_string(), word(&row.variant)]
+    let clusters = if row.clusters == 1 { String::new() } else { format!(", clusters of {}³", row.clusters) };
+    vec![format!("{}{clusters}", row.case), row.case.ratio().to_string(), word(&row.variant)]
 }
 
 fn counts(report: &Report) -> String {
@@ -66,7 +77,9 @@ fn paper(report: &Report) -> String {
 
 /// The row of the same case with another solver.
 fn alike<'a>(report: &'a Report, row: &Row, variant: Variant) -> Option<&'a Row> {
-    report.rows.iter().find(|other| other.case == row.case && other.scene == row.scene && other.variant == variant)
+    report.rows.iter().find(|other| {
+        other.case == row.case && other.clusters == row.clusters && other.scene == row.scene && other.variant == variant
+    })
 }
 
 fn seconds(report: &Report) -> String {
@@ -88,6 +101,29 @@ fn seconds(report: &Report) -> String {
     let head = "N/S | H/h | solver | setup, once | assembly + factors | coarse space | Newton/Krylov | rest | adjoint | \
                 shape derivative | cold | warm | peak GiB";
     section("Seconds and memory (state to 1e-8 and subgradient to 1e-8)", head, rows)
+}
+
+/// What clusters cost and save, where there are any.
+fn clusters(report: &Report) -> String {
+    if report.rows.iter().all(|row| row.clusters == 1) {
+        return String::new();
+    }
+    let rows = report.rows.iter().filter_map(|row| {
+        let (unknowns, stages) = (row.coarse_unknowns?, row.cold.state.stages?);
+        let products = |tolerance| or_dash(row.solve(Start::Cold, tolerance), |solve| solve.applications().to_string());
+        let mut cells = vec![row.case.to_string(), row.case.ratio().to_string(), word(&row.variant)];
+        cells.extend(
+            [row.clusters.pow(3), row.case.subdomains.pow(3) / row.clusters.pow(3), unknowns].map(|n| n.to_string()),
+        );
+        cells.extend([products(TIMED), products(COLD[1]), row.cold.adjoint.applications.to_string()]);
+        let seconds = [row.setup_seconds, stages.factorization, stages.coarse_space, stages.newton, row.cold.seconds()];
+        cells.extend(seconds.map(short));
+        cells.push(row.peak_memory.map_or_else(|| "not told by this system".into(), |gib| format!("{gib:.2}")));
+        Some(cells)
+    });
+    let head = "N/S | H/h | solver | subdomains per cluster | clusters per body | coarse unknowns | cold 1e-8 | 1e-10 | adjoint 1e-8 | \
+                setup, once, s | assembly + factors | coarse space | Newton/Krylov | cold | peak GiB";
+    section("Clusters", head, rows)
 }
 
 fn direct(report: &Report) -> String {

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 pub struct ShapeLoads<E, const N: usize> {
     /// r over the torn dofs of this process, N.
     pub forces: Vec<Row<E, N>>,
-    /// δe of all subdomains, N.
+    /// δe of all clusters, N.
     pub resultants: Vec<Row<E, N>>,
 }
 
@@ -56,7 +56,7 @@ impl<E: Real, const N: usize> ShapeLoads<E, N> {
                 );
             },
         );
-        let resultants = model.distribution.gather(&resultants, 6);
+        let resultants = model.clusters.gather(&system.cluster_resultants(resultants), 6);
         Self { forces, resultants }
     }
 }

@@ -1,12 +1,12 @@
-//! The rows of Gᵀ = B R of a process: rows of B on the rigid modes of the subdomains they touch.
+//! The rows of Gᵀ = B R of a process: rows of B on the rigid motions of the clusters they touch.
 //!
-//! The modes at the ghosts come from the processes that own them. A contact row is formed by its owner, and all processes are told.
+//! A cluster is a single subdomain unless the tearing joins several. The motions at the ghosts come from the processes that own them. A contact row is formed by its owner, and all processes are told.
 
 use crate::equilibrium::modes::MOTIONS;
 use crate::tfeti::dual::rigid_rows::Six;
 use crate::tfeti::torn::{TornModel, TornSystem};
 
-/// The rigid modes at all dofs of a torn vector.
+/// The rigid motions at all dofs of a torn vector.
 pub struct TornModes<'a> {
     model: &'a TornModel,
     system: &'a TornSystem,
@@ -15,22 +15,22 @@ pub struct TornModes<'a> {
 }
 
 impl<'a> TornModes<'a> {
-    /// The modes of a factored system.
+    /// The motions of a factored system.
     pub fn new(model: &'a TornModel, system: &'a TornSystem) -> Self {
-        let size = model.pattern.pattern.dimension();
-        let own = |dof: usize, mode: usize| system.parts[dof / size].modes[mode][dof % size];
+        let own = |dof: usize, mode: usize| system.motion(dof, mode);
         Self { model, system, ghosts: model.interface.of_ghosts(&model.distribution, MOTIONS, own) }
     }
 
     /// One row of Gᵀ.
     pub fn coarse_row(&self, row: usize) -> Vec<(usize, Six)> {
-        let (size, interface) = (self.model.pattern.pattern.dimension(), &self.model.interface);
+        let (model, interface) = (self.model, &self.model.interface);
+        let size = model.pattern.pattern.dimension() * model.numbering.members();
         let mut blocks: Vec<(usize, Six)> = Vec::with_capacity(2);
         for (place, value) in self.model.constraints.rows.row(row) {
-            let subdomain = interface.dof(place) / size;
-            // Dofs of one row that belong to one subdomain are rare; they are simply added up.
-            let position = blocks.iter().position(|(other, _)| *other == subdomain).unwrap_or_else(|| {
-                blocks.push((subdomain, [0.0; MOTIONS]));
+            let cluster = interface.dof(place) / size;
+            // Dofs of one row that belong to one cluster are simply added up.
+            let position = blocks.iter().position(|(other, _)| *other == cluster).unwrap_or_else(|| {
+                blocks.push((cluster, [0.0; MOTIONS]));
                 blocks.len() - 1
             });
             for (mode, entry) in blocks[position].1.iter_mut().enumerate() {
@@ -40,11 +40,10 @@ impl<'a> TornModes<'a> {
         blocks
     }
 
-    /// A mode at a place of a torn vector.
+    /// A motion at a place of a torn vector.
     fn at(&self, place: usize, mode: usize) -> f64 {
-        let (size, owned) = (self.model.pattern.pattern.dimension(), self.model.interface.owned_count());
-        match place.checked_sub(owned) {
-            None => self.system.parts[place / size].modes[mode][place % size],
+        match place.checked_sub(self.model.interface.owned_count()) {
+            None => self.system.motion(place, mode),
             Some(ghost) => self.ghosts[MOTIONS * ghost + mode],
         }
     }
@@ -54,9 +53,8 @@ impl<'a> TornModes<'a> {
         let (constraints, distribution) = (&self.model.constraints, &self.model.distribution);
         let own = constraints.own_contact_rows(distribution).iter();
         let own = own.map(|row| self.coarse_row(constraints.equality_count + row));
-        let numbers = own.map(|row| {
-            row.into_iter().flat_map(|(subdomain, six)| [subdomain as f64].into_iter().chain(six)).collect()
-        });
+        let numbers =
+            own.map(|row| row.into_iter().flat_map(|(cluster, six)| [cluster as f64].into_iter().chain(six)).collect());
         let rows = constraints.complete_contact(&numbers.collect::<Vec<_>>(), distribution);
         let block = |numbers: &[f64]| (numbers[0] as usize, std::array::from_fn(|mode| numbers[mode + 1]));
         rows.iter().map(|row| row.chunks_exact(MOTIONS + 1).map(block).collect()).collect()

@@ -31,6 +31,7 @@ pub struct CoarseSpace {
     /// G_E G_Eᵀ, and the grounded motions.
     condensed: CondensedCoarse,
     equality_count: usize,
+    /// Which process works on which clusters.
     distribution: Arc<Distribution>,
     /// Nanoseconds spent on it after it was built.
     spent: AtomicU64,
@@ -45,7 +46,7 @@ impl CoarseSpace {
     /// # Errors
     /// [`ContactError::Factorization`] when the constant part of the coarse matrix is not positive semidefinite to rounding.
     pub fn new(model: &TornModel, system: &TornSystem, grounded: Vec<Vec<f64>>) -> Result<Self, ContactError> {
-        let (constraints, distribution) = (&model.constraints, &model.distribution);
+        let (constraints, distribution) = (&model.constraints, &model.clusters);
         let modes = TornModes::new(model, system);
         let mut rows = RigidRows::new();
         let equality_count = constraints.equality_count;
@@ -55,7 +56,7 @@ impl CoarseSpace {
         }
         rows.extend(modes.contact_rows());
         let resultants: Vec<f64> = system.parts.iter().flat_map(|part| part.resultants.iter().copied()).collect();
-        let resultants = distribution.gather(&resultants, MOTIONS);
+        let resultants = distribution.gather(&system.cluster_resultants(resultants), MOTIONS);
         let (transposed, pattern) = (rows.of_subdomains(distribution.owned()), Arc::clone(&model.coarse));
         let values = gram(&pattern, [&rows, &transposed], equality_count, distribution);
         let condensed = CondensedCoarse::new(&pattern, values, &grounded)?;
@@ -78,7 +79,7 @@ impl CoarseSpace {
         Duration::from_nanos(self.spent.load(Ordering::Relaxed)).as_secs_f64()
     }
 
-    /// Which process works on which subdomains.
+    /// Which process works on which clusters of subdomains.
     pub fn distribution(&self) -> &Distribution {
         &self.distribution
     }

@@ -1,7 +1,9 @@
 //! F = B K⁺ Bᵀ and the products around it; subdomains in parallel, sums in a fixed order.
 
+use crate::equilibrium::modes::MOTIONS;
 use crate::linear::entry::{Entry, Row};
 use crate::linear::real::Real;
+use crate::linear::right_side::RightSide;
 use crate::linear::vector::add_scaled;
 use crate::tfeti::torn::{RowVector, SubdomainFactors, TornModel, TornSystem, TornVector};
 use rayon::prelude::*;
@@ -100,27 +102,53 @@ impl<'a> DualOperator<'a> {
         count: usize,
     ) -> RowVector<Row<E, N>> {
         self.applications.fetch_add(count, Ordering::Relaxed);
-        self.for_each_subdomain(torn, |first, factors, part| {
+        let load = |first: usize, part: &mut [Row<E, N>]| {
             self.model.constraints.transposed.multiply_rows(first, multipliers, part);
             for (load, force) in part.iter_mut().zip(&forces[first..]) {
                 *load = force.zip(load, |force, held| force - held);
             }
-            factors.solve(part);
-        });
+        };
+        self.solve_loads(torn, load, |factors, part| factors.solve(part));
         self.gather_columns(torn)
     }
 
     /// K⁺ Bᵀ λ for a given product with K⁺.
-    fn solve_subdomains<V: Entry>(
+    fn solve_subdomains<V: RightSide>(
         &self,
         multipliers: &[V],
         torn: &mut [V],
         solve: impl Fn(&SubdomainFactors, &mut [V]) + Sync,
     ) {
-        self.for_each_subdomain(torn, |first, factors, part| {
+        let load = |first: usize, part: &mut [V]| {
             self.model.constraints.transposed.multiply_rows(first, multipliers, part);
-            solve(factors, part);
-        });
+        };
+        self.solve_loads(torn, load, solve);
+    }
+
+    /// K⁺ f for forces that `load` fills in subdomain by subdomain, given its first dof, and for a given product with K⁺ of a subdomain.
+    fn solve_loads<V: RightSide>(
+        &self,
+        torn: &mut [V],
+        load: impl Fn(usize, &mut [V]) + Sync,
+        solve: impl Fn(&SubdomainFactors, &mut [V]) + Sync,
+    ) {
+        let size = self.model.pattern.pattern.dimension();
+        let joined = self.system.is_joined();
+        let mut resultants = vec![[V::ZERO; MOTIONS]; if joined { self.system.parts.len() } else { 0 }];
+        let parts = torn.par_chunks_mut(size).zip(&self.system.parts).enumerate();
+        if joined {
+            parts.zip(&mut resultants).for_each(|((index, (values, factors)), resultants)| {
+                load(index * size, values);
+                *resultants = factors.resultants_of(values);
+                solve(factors, values);
+            });
+            self.system.join(&self.model.constraints.joined, &resultants, torn);
+        } else {
+            parts.for_each(|(index, (values, factors))| {
+                load(index * size, values);
+                solve(factors, values);
+            });
+        }
     }
 
     /// B u.
@@ -132,21 +160,17 @@ impl<'a> DualOperator<'a> {
         self.model.rows_times(&self.model.constraints.rows, torn)
     }
 
-    /// Calls `work(first dof, factors, part)` with the parts of a torn vector that belong to the subdomains of this process.
-    fn for_each_subdomain<V: Entry>(&self, torn: &mut [V], work: impl Fn(usize, &SubdomainFactors, &mut [V]) + Sync) {
-        let size = self.model.pattern.pattern.dimension();
-        let parts = torn.par_chunks_mut(size).zip(&self.system.parts).enumerate();
-        parts.for_each(|(index, (values, factors))| work(index * size, factors, values));
-    }
-
     /// K⁺ f.
     pub fn loaded_displacement(&self) -> TornVector {
         let mut torn = self.model.zeros();
-        self.for_each_subdomain(&mut torn.0, |_, factors, part| {
+        let size = self.model.pattern.pattern.dimension();
+        torn.0.par_chunks_mut(size).zip(&self.system.parts).for_each(|(part, factors)| {
             if !factors.loaded_displacement.is_empty() {
                 part.copy_from_slice(&factors.loaded_displacement);
             }
         });
+        let resultants: Vec<[f64; MOTIONS]> = self.system.parts.iter().map(|part| part.resultants).collect();
+        self.system.join(&self.model.constraints.joined, &resultants, &mut torn.0);
         torn
     }
 
@@ -156,11 +180,11 @@ impl<'a> DualOperator<'a> {
         self.solve_subdomains(multipliers, &mut torn.0, |factors, part| factors.solve(part));
         add_scaled(&mut loaded.0, -1.0, &torn.0);
         let size = self.model.pattern.pattern.dimension();
-        let own = &amplitudes[6 * self.model.distribution.owned().start..];
-        let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).zip(own.par_chunks(6));
-        parts.for_each(|((values, part), amplitudes)| {
-            for (mode, amplitude) in part.modes.iter().zip(amplitudes) {
-                add_scaled(values, *amplitude, mode);
+        let own = &amplitudes[MOTIONS * self.model.clusters.owned().start..];
+        let parts = loaded.0.par_chunks_mut(size).zip(&self.system.parts).enumerate();
+        parts.for_each(|(index, (values, part))| {
+            for (mode, amplitude) in part.modes.iter().zip(self.system.amplitudes_of(index, own)) {
+                add_scaled(values, amplitude, mode);
             }
         });
         loaded

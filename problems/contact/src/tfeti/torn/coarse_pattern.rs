@@ -1,10 +1,10 @@
 //! Which rigid amplitudes meet in the coarse matrix G Gᵀ, and the order of their elimination.
 //!
 //! ```text
-//! amplitudes of subdomains without contact rows, in nested dissection order │ amplitudes of subdomains with contact rows
+//! amplitudes of clusters without contact rows, in nested dissection order │ amplitudes of clusters with contact rows
 //! ```
-//! The rows of B_E couple a subdomain with its neighbours alone, and do so alike for all active sets. What an active set adds lies
-//! in the trailing block, whose amplitudes all count as coupled.
+//! The rows of B_E couple a cluster with its neighbours alone, and do so alike for all active sets. What an active set adds lies
+//! in the trailing block, whose amplitudes all count as coupled. A cluster is a single subdomain unless the tearing joins several.
 
 use crate::equilibrium::modes::MOTIONS;
 use crate::error::ContactError;
@@ -27,12 +27,13 @@ pub struct CoarsePattern {
     pub symbolic: Arc<SymbolicFactor>,
     /// Amplitudes in elimination order.
     order: Vec<usize>,
-    /// Number of amplitudes of subdomains without contact rows.
+    /// Number of amplitudes of clusters without contact rows.
     interior_count: usize,
 }
 
 impl CoarsePattern {
-    /// The pattern of the rows of B of all processes. The bodies are torn into `counts` subdomains per axis each, of `size` dofs.
+    /// The pattern of the rows of B of all processes. The bodies have `counts` clusters per axis each, of `size` dofs; `distribution` is
+    /// that of the clusters.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when the symbolic analysis fails.
@@ -57,19 +58,20 @@ impl CoarsePattern {
                 neighbours[own - owned.start].extend(&touched[index + 1..]);
             }
         }
-        let contact = &constraints.contact_subdomains;
+        let contact: BTreeSet<usize> =
+            constraints.contact_subdomains.iter().map(|subdomain| subdomain / numbering.members()).collect();
         for own in contact.iter().filter(|own| owned.contains(own)) {
             neighbours[own - owned.start].extend(contact.range(own + 1..));
         }
         let pieces = neighbours.iter().map(|numbers| numbers.iter().map(|&number: &usize| number as f64).collect());
         let neighbours = distribution.complete(pieces.collect());
-        let (subdomains, dissected) = (distribution.count(), nested_dissection(counts));
+        let (clusters, dissected) = (distribution.count(), nested_dissection(counts));
         let interior = (0..numbering.body_count())
-            .flat_map(|body| dissected.iter().map(move |&place| numbering.number(body, place)))
-            .filter(|subdomain| !contact.contains(subdomain));
-        let amplitudes = |subdomain: usize| MOTIONS * subdomain..MOTIONS * (subdomain + 1);
+            .flat_map(|body| dissected.iter().map(move |&place| numbering.cluster(body, place)))
+            .filter(|cluster| !contact.contains(cluster));
+        let amplitudes = |cluster: usize| MOTIONS * cluster..MOTIONS * (cluster + 1);
         let order: Vec<usize> = interior.chain(contact.iter().copied()).flat_map(amplitudes).collect();
-        let columns = (0..subdomains).flat_map(|own| {
+        let columns = (0..clusters).flat_map(|own| {
             let coupled: Vec<usize> = neighbours[own].iter().flat_map(|&number| amplitudes(number as usize)).collect();
             amplitudes(own).map(move |column| (column..MOTIONS * (own + 1)).chain(coupled.iter().copied()).collect())
         });
@@ -79,21 +81,21 @@ impl CoarsePattern {
         Ok(Self { lower, symbolic, order, interior_count })
     }
 
-    /// Number of amplitudes of subdomains without contact rows: they come first in the elimination order.
+    /// Number of amplitudes of clusters without contact rows: they come first in the elimination order.
     pub fn interior_count(&self) -> usize {
         self.interior_count
     }
 
-    /// Amplitudes of the subdomains with contact rows, ascending: the last ones of the elimination order.
+    /// Amplitudes of the clusters with contact rows, ascending: the last ones of the elimination order.
     pub fn contact_amplitudes(&self) -> &[usize] {
         &self.order[self.interior_count..]
     }
 
-    /// The place of an amplitude among those of the subdomains with contact rows.
+    /// The place of an amplitude among those of the clusters with contact rows.
     ///
     /// # Panics
-    /// If its subdomain has no contact rows.
+    /// If its cluster has no contact rows.
     pub fn contact_place(&self, amplitude: usize) -> usize {
-        self.contact_amplitudes().binary_search(&amplitude).expect("invariant: contact rows touch this subdomain")
+        self.contact_amplitudes().binary_search(&amplitude).expect("invariant: contact rows touch this cluster")
     }
 }

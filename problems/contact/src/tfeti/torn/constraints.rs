@@ -16,6 +16,7 @@ use crate::error::ContactError;
 use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
 use crate::scene::Scene;
+use crate::tfeti::torn::cluster_rows::ClusterRows;
 use crate::tfeti::torn::distribution::Distribution;
 use crate::tfeti::torn::interface::{Interface, InterfaceBuilder};
 use crate::tfeti::torn::scene_rows::{BodyRows, EqualityRow, Row, SceneRows, first_subdomain};
@@ -46,6 +47,8 @@ pub struct Constraints {
     pub owned_rows: Vec<usize>,
     /// Subdomains with contact rows.
     pub contact_subdomains: BTreeSet<usize>,
+    /// Rows of B_c of the clusters of this process; empty rows for clusters of one subdomain.
+    pub joined: Vec<ClusterRows>,
     /// Places of the rows of B_E of this process among those of all, and the number of rows that every process owns.
     places: Vec<usize>,
     own_counts: Vec<usize>,
@@ -99,6 +102,7 @@ impl Constraints {
             contact_subdomains: all.contact.iter().flat_map(|[row, _]| row.iter().map(|(dof, _)| dof / size)).collect(),
             contact_order: ranks.clone().flat_map(of_rank).collect(),
             contact_counts: ranks.map(|rank| of_rank(rank).count()).collect(),
+            joined: cluster_rows(&all, &bodies[0], &subdomains, size),
             normalisation: all.normalisation,
         };
         (constraints, interface)
@@ -190,6 +194,13 @@ fn places(all: &SceneRows) -> Vec<usize> {
         before[subdomain + 1] = before[subdomain] + count;
     }
     all.equality.iter().map(|EqualityRow { owner, index, .. }| before[*owner] + index).collect()
+}
+
+/// B_c of the clusters of this process, whose subdomains have `size` dofs each.
+fn cluster_rows(all: &SceneRows, body: &BodyRows<'_>, subdomains: &Range<usize>, size: usize) -> Vec<ClusterRows> {
+    let dofs = |index: usize| size * subdomains.start + index * body.cluster_size;
+    let rows = all.joined.iter().enumerate();
+    rows.map(|(index, rows)| ClusterRows::new(rows, dofs(index)..dofs(index + 1), size)).collect()
 }
 
 /// What this process exchanges: for a row of B_E, all processes that it touches need all of its dofs; for a contact row, its owner.

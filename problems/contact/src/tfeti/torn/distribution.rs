@@ -42,6 +42,11 @@ impl Distribution {
             bounds.push(number);
         }
         bounds.push(count);
+        Self::of_bounds(communication, bounds)
+    }
+
+    fn of_bounds(communication: Arc<dyn Communication>, bounds: Vec<usize>) -> Self {
+        let count = bounds[bounds.len() - 1];
         let (mut branches, mut branch_counts) = (Vec::new(), Vec::new());
         for pair in bounds.windows(2) {
             let first = branches.len();
@@ -49,6 +54,11 @@ impl Distribution {
             branch_counts.push(branches.len() - first);
         }
         Self { communication, bounds, branches, branch_counts }
+    }
+
+    /// The distribution of the subdomains where this one is that of clusters of `each` subdomains.
+    pub fn refined(&self, each: usize) -> Self {
+        Self::of_bounds(Arc::clone(&self.communication), self.bounds.iter().map(|bound| each * bound).collect())
     }
 
     /// The subdomains of this process.

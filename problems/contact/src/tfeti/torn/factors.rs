@@ -17,9 +17,10 @@
 use crate::body::elasticity::Material;
 use crate::body::elasticity::brick::Nodes;
 use crate::body::local_pattern::{LocalPattern, fixing_nodes};
+use crate::equilibrium::modes::MOTIONS;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
-use crate::linear::entry::Entry;
+use crate::linear::entry::{Entry, vectorized};
 use crate::linear::right_side::RightSide;
 use crate::linear::symmetric::{LowerPattern, Submatrix, SymmetricBlock};
 use crate::linear::vector::{add_scaled, dot};
@@ -80,7 +81,7 @@ pub struct SubdomainFactors {
     /// Orthonormal rigid modes, six columns.
     pub modes: Vec<Vec<f64>>,
     /// Resultants Rᵀ f of the loads along them, N.
-    pub resultants: Vec<f64>,
+    pub resultants: [f64; MOTIONS],
     /// |K⁺K x − x|/|x| modulo rigid motions for a probe x: the digits that the condition of K takes.
     pub forward_error: f64,
 }
@@ -111,7 +112,7 @@ impl SubdomainFactors {
         let stiffness = pattern.assemble(material, &brick);
         let compressible = material.compressible_neighbour().map(|neighbour| pattern.assemble(&neighbour, &brick));
         let modes = orthonormal_modes(coordinates);
-        let resultants = modes.iter().map(|mode| dot(mode, load)).collect();
+        let resultants = std::array::from_fn(|mode| dot(&modes[mode], load));
         let regularised = regularise(pattern, &stiffness, &modes);
         let inverse = symbolic.factorize(&regularised)?;
         let forward_error = check_generalised_inverse(pattern, &stiffness, &inverse, &modes)?;
@@ -130,6 +131,20 @@ impl SubdomainFactors {
             factors.loaded_displacement = displacement;
         }
         Ok(factors)
+    }
+
+    /// Rᵀ x.
+    pub(crate) fn resultants_of<V: Entry>(&self, x: &[V]) -> [V; MOTIONS] {
+        let mut resultants = [V::ZERO; MOTIONS];
+        vectorized(
+            #[inline(always)]
+            || {
+                for (resultant, mode) in resultants.iter_mut().zip(&self.modes) {
+                    mode.iter().zip(x).for_each(|(&value, x)| resultant.accumulate(value, x));
+                }
+            },
+        );
+        resultants
     }
 
     /// x ← K⁺ x, in the precision of x.
@@ -168,9 +183,7 @@ fn regularise(pattern: &LocalPattern, stiffness: &[f64], modes: &[Vec<f64>]) -> 
     let dofs: Vec<usize> = fixing_nodes(pattern.shape.cells).iter().flat_map(|node| 3 * node..3 * node + 3).collect();
     let mut restricted: Vec<Vec<f64>> = modes.iter().map(|mode| dofs.iter().map(|&dof| mode[dof]).collect()).collect();
     orthonormalise(&mut restricted);
-    let starts = pattern.pattern.starts();
-    let dimension = pattern.pattern.dimension();
-    let rho = (0..dimension).map(|column| stiffness[starts[column]]).sum::<f64>() / dimension as f64;
+    let rho = pattern.mean_diagonal(stiffness);
     let mut values = stiffness.to_vec();
     for (first, &row) in dofs.iter().enumerate() {
         for (second, &column) in dofs.iter().enumerate() {

@@ -5,6 +5,8 @@
 //! torn displacement ─ recovery ──▶ whole bodies
 //! ```
 
+mod cluster_factors;
+mod cluster_rows;
 mod coarse_pattern;
 mod constraints;
 mod distribution;
@@ -12,18 +14,22 @@ mod factors;
 mod interface;
 mod model;
 mod numbering;
+mod options;
 mod preconditioner_kind;
 mod recovery;
 mod rigid_modes;
 mod row_sums;
 mod scene_rows;
+mod system;
 mod vectors;
 
 pub use coarse_pattern::CoarsePattern;
 pub use constraints::Constraints;
 pub use distribution::Distribution;
 pub use factors::SubdomainFactors;
-pub use model::{TornModel, TornSubdomain, TornSystem};
+pub use model::{TornModel, TornSubdomain};
+pub use options::TornOptions;
 pub use preconditioner_kind::PreconditionerKind;
 pub use recovery::whole_bodies;
+pub use system::TornSystem;
 pub use vectors::{RowVector, TornVector};

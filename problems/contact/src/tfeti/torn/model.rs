@@ -14,15 +14,19 @@ use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
 use crate::linear::vector::dot;
 use crate::scene::BodyScene;
+use crate::tfeti::torn::cluster_factors::{ClusterFactors, moves_as_one_body};
+use crate::tfeti::torn::cluster_rows::ClusterRows;
 use crate::tfeti::torn::coarse_pattern::CoarsePattern;
 use crate::tfeti::torn::constraints::Constraints;
 use crate::tfeti::torn::distribution::Distribution;
 use crate::tfeti::torn::factors::{InteriorClass, SubdomainFactors};
 use crate::tfeti::torn::interface::Interface;
 use crate::tfeti::torn::numbering::Numbering;
+use crate::tfeti::torn::options::TornOptions;
 use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
 use crate::tfeti::torn::row_sums::RowSums;
 use crate::tfeti::torn::scene_rows::BodyRows;
+use crate::tfeti::torn::system::TornSystem;
 use crate::tfeti::torn::vectors::{RowVector, TornVector};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -51,6 +55,8 @@ pub struct TornModel {
     pub numbering: Numbering,
     /// Which process works on which subdomains.
     pub distribution: Arc<Distribution>,
+    /// Which process works on which clusters of subdomains: what has rigid motions of its own.
+    pub clusters: Arc<Distribution>,
     /// Rows of B.
     pub constraints: Arc<Constraints>,
     /// Dofs that this process shares with others.
@@ -61,20 +67,16 @@ pub struct TornModel {
     pub coarse: Arc<CoarsePattern>,
     symbolic: Arc<SymbolicFactor>,
     /// Factors of the upper body.
-    fixed: OnceLock<Vec<Arc<SubdomainFactors>>>,
+    fixed: OnceLock<FactoredBody>,
     /// Number of torn dofs of all processes.
     pub total_dofs: usize,
 }
 
-/// The factored subdomains of one shape.
-#[derive(Debug)]
-pub struct TornSystem {
-    /// The subdomains of this process, in their order.
-    pub parts: Vec<Arc<SubdomainFactors>>,
-    /// Numeric factorisations done for this shape, by all processes.
-    pub factorizations: usize,
-    /// Largest [`SubdomainFactors::forward_error`] of all subdomains.
-    pub forward_error: f64,
+/// The factors of the subdomains and clusters of a body in this process.
+#[derive(Debug, Clone)]
+struct FactoredBody {
+    parts: Vec<Arc<SubdomainFactors>>,
+    clusters: Vec<Arc<ClusterFactors>>,
 }
 
 /// Work on a subdomain of the upper body relative to one of the lower body, whose shape changes: products alone, no factors and
@@ -85,28 +87,34 @@ impl TornModel {
     /// Tears the bodies of a problem and builds the rows of this process.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when a symbolic analysis fails.
-    pub fn new(
-        problem: Arc<ContactProblem>,
-        preconditioner: PreconditionerKind,
-        communication: Arc<dyn Communication>,
-    ) -> Result<Self, ContactError> {
+    /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`] for clusters that do not divide the
+    /// subdomains, or whose subdomains the rows of B_c do not hold together.
+    pub fn new(problem: Arc<ContactProblem>, options: TornOptions) -> Result<Self, ContactError> {
+        let TornOptions { preconditioner, clusters: shape, communication } = options;
         let counts = problem.scene.subdomains;
+        let boxes = cluster_counts(counts, shape)?;
         let tearing = Tearing::new(&problem.grid, counts);
         let size = tearing.subdomains[0].dof_count();
-        let numbering = Numbering::new(&tearing, counts, problem.bodies().count());
-        let weight = |number| if numbering.place(number).0 == 0 { 1.0 } else { FIXED_WEIGHT };
-        let distribution =
-            Arc::new(Distribution::new(communication, &(0..numbering.count()).map(weight).collect::<Vec<f64>>()));
+        let numbering = Numbering::new(&tearing, counts, shape, problem.bodies().count());
+        let members = numbering.members();
+        let [clusters, distribution] = distributions(communication, &numbering);
         let offsets = |body| (0..tearing.subdomains.len()).map(|index| size * numbering.number(body, index)).collect();
         let bodies: Vec<BodyRows<'_>> = problem
             .bodies()
             .enumerate()
-            .map(|(body, scene)| BodyRows { grid: &problem.grid, tearing: &tearing, scene, offsets: offsets(body) })
+            .map(|(body, scene)| BodyRows {
+                grid: &problem.grid,
+                tearing: &tearing,
+                scene,
+                offsets: offsets(body),
+                cluster_size: size * members,
+            })
             .collect();
         let (constraints, interface) =
             Constraints::new(&problem.scene, &bodies, &problem.boundary, size, &distribution);
-        let coarse = Arc::new(CoarsePattern::new(&constraints, &interface, &numbering, &distribution, counts, size)?);
+        check_motions(&constraints, &numbering, &distribution, shape)?;
+        let coarse =
+            Arc::new(CoarsePattern::new(&constraints, &interface, &numbering, &clusters, boxes, size * members)?);
         let cells = tearing.subdomains[0].cells;
         let fixing = fixing_nodes(cells);
         let pattern = LocalPattern::new(cells, &fixing);
@@ -117,7 +125,9 @@ impl TornModel {
             let first_dof = size * subdomains.len();
             let interior = match preconditioner {
                 PreconditionerKind::Dirichlet => {
-                    Some(interior_class(&mut classes, &pattern, &constraints, first_dof..first_dof + size)?)
+                    let index = subdomains.len();
+                    let joined = &constraints.joined[index / members].members[index % members].dofs;
+                    Some(interior_class(&mut classes, &pattern, &constraints, first_dof..first_dof + size, joined)?)
                 }
                 PreconditionerKind::Lumped | PreconditionerKind::None => None,
             };
@@ -130,6 +140,7 @@ impl TornModel {
             total_dofs: size * numbering.count(),
             numbering,
             distribution,
+            clusters,
             constraints: Arc::new(constraints),
             interface,
             pattern,
@@ -146,7 +157,7 @@ impl TornModel {
     /// [`ContactError::Factorization`] from a subdomain.
     pub fn factorize(&self, blocks: &[Block]) -> Result<TornSystem, ContactError> {
         let lower = self.factorize_body(0, &self.problem.scene.lower, &blocks[0])?;
-        let count = |parts: &[Arc<SubdomainFactors>]| parts.iter().map(|part| part.factorizations()).sum::<usize>();
+        let count = |body: &FactoredBody| body.parts.iter().map(|part| part.factorizations()).sum::<usize>();
         let mut factored = count(&lower);
         if let (Some(upper), Some(block), None) = (&self.problem.scene.upper, blocks.get(1), self.fixed.get()) {
             let upper = self.factorize_body(1, &upper.body, block)?;
@@ -154,26 +165,23 @@ impl TornModel {
             // Another thread may have been first; its factors are the same.
             let _ = self.fixed.set(upper);
         }
-        let (mut lower, mut upper) = (lower.into_iter(), self.fixed.get().into_iter().flatten().cloned());
-        let part = |subdomain: &TornSubdomain| if subdomain.body == 0 { lower.next() } else { upper.next() };
-        let parts: Vec<Arc<SubdomainFactors>> = self.subdomains.iter().filter_map(part).collect();
+        let bodies = || std::iter::once(&lower).chain(self.fixed.get());
+        let mut parts: Vec<_> = bodies().map(|body| body.parts.iter().cloned()).collect();
+        let mut clusters: Vec<_> = bodies().map(|body| body.clusters.iter().cloned()).collect();
+        let parts: Vec<Arc<SubdomainFactors>> =
+            self.subdomains.iter().filter_map(|subdomain| parts[subdomain.body].next()).collect();
+        let first = self.subdomains.iter().step_by(self.numbering.members());
+        let clusters = first.filter_map(|subdomain| clusters[subdomain.body].next()).collect();
         let factorizations = self.distribution.sum_of_processes(factored as f64) as usize;
         let forward_error = parts.iter().map(|part| part.forward_error).fold(0.0, f64::max);
         let forward_error = self.distribution.largest(forward_error);
-        Ok(TornSystem { parts, factorizations, forward_error })
+        Ok(TornSystem { parts, clusters, factorizations, forward_error })
     }
 
-    /// The factors of the subdomains of a body in this process.
-    fn factorize_body(
-        &self,
-        body: usize,
-        scene: &BodyScene,
-        block: &Block,
-    ) -> Result<Vec<Arc<SubdomainFactors>>, ContactError> {
+    /// The factors of the subdomains and clusters of a body in this process.
+    fn factorize_body(&self, body: usize, scene: &BodyScene, block: &Block) -> Result<FactoredBody, ContactError> {
         let factor = |subdomain: &TornSubdomain| {
-            let place = &subdomain.place;
-            let coordinates: Vec<[f64; 3]> =
-                (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect();
+            let (place, coordinates) = (&subdomain.place, coordinates(&subdomain.place, block));
             let factors = SubdomainFactors::new(
                 &self.pattern,
                 &self.symbolic,
@@ -187,14 +195,38 @@ impl TornModel {
         };
         let own = self.subdomains.par_iter().filter(|subdomain| subdomain.body == body);
         let parts: Result<Vec<Arc<SubdomainFactors>>, ContactError> = own.map(factor).collect();
+        let factored =
+            parts.and_then(|parts| Ok(FactoredBody { clusters: self.join_body(body, block, &parts)?, parts }));
         // A process that goes on alone would wait for the others forever.
-        let failure = self.distribution.communication().agree(parts.as_ref().err().map(ToString::to_string));
+        let failure = self.distribution.communication().agree(factored.as_ref().err().map(ToString::to_string));
         match failure {
-            Some(reason) if parts.is_ok() => {
+            Some(reason) if factored.is_ok() => {
                 Err(ContactError::Factorization { what: "subdomain of another process".into(), reason })
             }
-            _ => parts,
+            _ => factored,
         }
+    }
+
+    /// What joins the clusters of a body in this process, from its factored subdomains; nothing where every subdomain is a cluster.
+    fn join_body(
+        &self,
+        body: usize,
+        block: &Block,
+        parts: &[Arc<SubdomainFactors>],
+    ) -> Result<Vec<Arc<ClusterFactors>>, ContactError> {
+        let members = self.numbering.members();
+        if members == 1 {
+            return Ok(vec![]);
+        }
+        let own = self.subdomains.par_chunks(members).zip(&self.constraints.joined);
+        let own: Vec<_> = own.filter(|(subdomains, _)| subdomains[0].body == body).collect();
+        let join = |((subdomains, rows), parts): (&(&[TornSubdomain], &ClusterRows), &[Arc<SubdomainFactors>])| {
+            let coordinates: Vec<Vec<[f64; 3]>> =
+                subdomains.iter().map(|subdomain| coordinates(&subdomain.place, block)).collect();
+            let stiffness = self.pattern.mean_diagonal(&parts[0].stiffness);
+            ClusterFactors::new(rows, parts, &coordinates, stiffness).map(Arc::new)
+        };
+        own.par_iter().zip(parts.par_chunks(members)).map(join).collect()
     }
 
     /// The class of a subdomain by its interior dofs: those without rows; none if the preconditioner needs none.
@@ -236,7 +268,7 @@ impl TornModel {
                 }
                 amplitudes.extend(part.modes.iter().map(|mode| dot(mode, &displacement)));
             }
-            self.distribution.gather(&amplitudes, 6)
+            self.clusters.gather(&system.cluster_resultants(amplitudes), 6)
         };
         grounded.iter().map(amplitudes).collect()
     }
@@ -270,6 +302,58 @@ impl TornModel {
     }
 }
 
+/// Which process works on which clusters, and on which subdomains.
+fn distributions(communication: Arc<dyn Communication>, numbering: &Numbering) -> [Arc<Distribution>; 2] {
+    let members = numbering.members();
+    let weight = |cluster| if numbering.place(cluster * members).0 == 0 { 1.0 } else { FIXED_WEIGHT };
+    let weights: Vec<f64> = (0..numbering.cluster_count()).map(weight).collect();
+    let clusters = Arc::new(Distribution::new(communication, &weights));
+    let subdomains = if members == 1 { Arc::clone(&clusters) } else { Arc::new(clusters.refined(members)) };
+    [clusters, subdomains]
+}
+
+/// Clusters per axis.
+fn cluster_counts(counts: [usize; 3], shape: [usize; 3]) -> Result<[usize; 3], ContactError> {
+    if (0..3).any(|axis| shape[axis] == 0 || !counts[axis].is_multiple_of(shape[axis])) {
+        let reason = format!("their numbers have to divide the {counts:?} subdomains of a body");
+        return Err(ContactError::Clusters { shape, reason });
+    }
+    Ok(std::array::from_fn(|axis| counts[axis] / shape[axis]))
+}
+
+/// Refuses clusters with other motions than those of a rigid body. Whether nodes hold subdomains together does not depend on the shape of
+/// the body; bricks of edge one stand for all.
+fn check_motions(
+    constraints: &Constraints,
+    numbering: &Numbering,
+    distribution: &Distribution,
+    shape: [usize; 3],
+) -> Result<(), ContactError> {
+    let members = numbering.members();
+    if members == 1 {
+        return Ok(());
+    }
+    let nodes = |number: usize| {
+        let place = numbering.place(number).1;
+        (0..place.node_count()).map(|node| place.block_position(node).map(|index| index as f64)).collect()
+    };
+    let first = distribution.owned().start;
+    let loose = constraints.joined.par_iter().enumerate().any(|(index, rows)| {
+        let numbers = first + members * index..first + members * (index + 1);
+        !moves_as_one_body(rows, &numbers.map(nodes).collect::<Vec<_>>())
+    });
+    let reason = "their inner nodes do not hold the subdomains together; subdomains need more bricks".to_string();
+    match distribution.communication().agree(loose.then_some(reason)) {
+        Some(reason) => Err(ContactError::Clusters { shape, reason }),
+        None => Ok(()),
+    }
+}
+
+/// Coordinates of the nodes of a subdomain.
+fn coordinates(place: &Subdomain, block: &Block) -> Vec<[f64; 3]> {
+    (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect()
+}
+
 /// Consistent nodal loads of a subdomain.
 fn loads(body: &BodyScene, place: &Subdomain, block: &Block) -> Vec<f64> {
     let mut load = vec![0.0; place.dof_count()];
@@ -287,14 +371,17 @@ fn loads(body: &BodyScene, place: &Subdomain, block: &Block) -> Vec<f64> {
     load
 }
 
-/// The interior class of one subdomain, shared among subdomains with the same interior dofs.
+/// The interior class of one subdomain, shared among subdomains with the same interior dofs: those without rows of B and B_c.
+/// `joined`: its dofs with rows of B_c. The preconditioner keeps these at zero, since they have no jumps.
 fn interior_class(
     classes: &mut HashMap<Vec<bool>, Arc<InteriorClass>>,
     pattern: &LocalPattern,
     constraints: &Constraints,
     dofs: std::ops::Range<usize>,
+    joined: &[usize],
 ) -> Result<Arc<InteriorClass>, ContactError> {
-    let marked: Vec<bool> = dofs.map(|dof| constraints.transposed.row(dof).next().is_none()).collect();
+    let mut marked: Vec<bool> = dofs.map(|dof| constraints.transposed.row(dof).next().is_none()).collect();
+    joined.iter().for_each(|&dof| marked[dof] = false);
     if let Some(class) = classes.get(&marked) {
         return Ok(Arc::clone(class));
     }

@@ -1,9 +1,10 @@
 //! The order of the subdomains: neighbours in the order are neighbours in the bodies, so that a range of it is compact.
 //!
 //! ```text
-//! a box of subdomains is halved across its longest axis, again and again;   subdomain k of the lower body, k of the upper one, k + 1 …
+//! a box of clusters is halved across its longest axis, again and again;   cluster k of the lower body, k of the upper one, k + 1 …
 //! ```
-//! The order does not depend on the number of processes. Every one of them gets a range of it: a recursive bisection.
+//! The subdomains of a cluster follow each other, in an order of the same kind; without clusters, every subdomain is one. The order does
+//! not depend on the number of processes. Every one of them gets a range of it: a recursive bisection.
 
 use crate::body::mesh::{Subdomain, Tearing};
 use crate::lattice;
@@ -15,22 +16,50 @@ pub struct Numbering {
     places: Vec<(usize, Subdomain)>,
     /// Numbers of the subdomains of every body, by their index in the tearing.
     numbers: Vec<Vec<usize>>,
+    /// Numbers of the clusters of every body, by their index in the box of clusters.
+    clusters: Vec<Vec<usize>>,
+    /// Subdomains per cluster.
+    members: usize,
 }
 
 impl Numbering {
-    /// Numbers the subdomains of bodies that are all torn alike, `counts` per axis.
-    pub fn new(tearing: &Tearing, counts: [usize; 3], bodies: usize) -> Self {
-        let mut order = Vec::with_capacity(tearing.subdomains.len());
-        bisect([0; 3], counts, &mut |place| order.push(lattice::index(counts, place)));
-        let mut numbers = vec![vec![0; order.len()]; bodies];
-        let mut places = Vec::with_capacity(bodies * order.len());
-        for index in order {
-            for (body, numbers) in numbers.iter_mut().enumerate() {
-                numbers[index] = places.len();
-                places.push((body, tearing.subdomains[index].clone()));
+    /// Numbers the subdomains of bodies that are all torn alike, `counts` per axis, in clusters of `shape` subdomains per axis, which
+    /// divides `counts`.
+    pub fn new(tearing: &Tearing, counts: [usize; 3], shape: [usize; 3], bodies: usize) -> Self {
+        let boxes: [usize; 3] = std::array::from_fn(|axis| counts[axis] / shape[axis]);
+        let (mut order, mut inner) = (Vec::new(), Vec::new());
+        bisect([0; 3], boxes, &mut |place| order.push(place));
+        bisect([0; 3], shape, &mut |place| inner.push(place));
+        let (mut numbers, mut clusters) =
+            (vec![vec![0; tearing.subdomains.len()]; bodies], vec![vec![0; order.len()]; bodies]);
+        let mut places = Vec::with_capacity(bodies * tearing.subdomains.len());
+        for cluster in order {
+            let first: [usize; 3] = std::array::from_fn(|axis| cluster[axis] * shape[axis]);
+            for body in 0..bodies {
+                clusters[body][lattice::index(boxes, cluster)] = places.len() / inner.len();
+                for &place in &inner {
+                    let index = lattice::index(counts, lattice::add(first, place));
+                    numbers[body][index] = places.len();
+                    places.push((body, tearing.subdomains[index].clone()));
+                }
             }
         }
-        Self { places, numbers }
+        Self { places, numbers, clusters, members: inner.len() }
+    }
+
+    /// Number of subdomains of a cluster.
+    pub fn members(&self) -> usize {
+        self.members
+    }
+
+    /// Number of clusters.
+    pub fn cluster_count(&self) -> usize {
+        self.count() / self.members
+    }
+
+    /// The number of a cluster of a body, by its index in the box of clusters.
+    pub fn cluster(&self, body: usize, index: usize) -> usize {
+        self.clusters[body][index]
     }
 
     /// Number of subdomains.
@@ -84,7 +113,7 @@ mod tests {
     fn every_subdomain_has_a_number_and_ranges_are_boxes() {
         let counts = [3, 4, 2];
         let tearing = Tearing::new(&Grid { cells: [6, 8, 2], size: [1.0, 1.0] }, counts);
-        let numbering = Numbering::new(&tearing, counts, 2);
+        let numbering = Numbering::new(&tearing, counts, [1; 3], 2);
         assert_eq!(numbering.count(), 48);
         for body in 0..2 {
             for (index, place) in tearing.subdomains.iter().enumerate() {
@@ -95,5 +124,21 @@ mod tests {
         // Half of the order is half of the box, across its longest axis.
         assert!((0..24).all(|number| numbering.place(number).1.first_cell[1] < 4));
         assert!((24..48).all(|number| numbering.place(number).1.first_cell[1] >= 4));
+    }
+
+    #[test]
+    fn the_subdomains_of_a_cluster_follow_each_other() {
+        let (counts, shape) = ([6, 4, 2], [3, 2, 1]);
+        let tearing = Tearing::new(&Grid { cells: [6, 4, 2], size: [1.0, 1.0] }, counts);
+        let numbering = Numbering::new(&tearing, counts, shape, 2);
+        assert_eq!((numbering.members(), numbering.cluster_count()), (6, 16));
+        for body in 0..2 {
+            for (index, place) in tearing.subdomains.iter().enumerate() {
+                let number = numbering.number(body, index);
+                assert_eq!(numbering.place(number), (body, place));
+                let cluster = std::array::from_fn(|axis| place.first_cell[axis] / shape[axis]);
+                assert_eq!(number / 6, numbering.cluster(body, lattice::index([2, 2, 2], cluster)));
+            }
+        }
     }
 }

@@ -16,6 +16,8 @@ pub struct BodyRows<'a> {
     pub scene: &'a BodyScene,
     /// First torn dof of every subdomain of the tearing, of all processes.
     pub offsets: Vec<usize>,
+    /// Dofs of a cluster.
+    pub cluster_size: usize,
 }
 
 impl BodyRows<'_> {
@@ -23,6 +25,23 @@ impl BodyRows<'_> {
     fn copies(&self, position: [usize; 3]) -> Vec<usize> {
         let copies = self.tearing.copies(position);
         copies.into_iter().map(|(subdomain, node)| self.offsets[subdomain] + 3 * node).collect()
+    }
+
+    /// The cluster that a node joins by rows of B_c, given its copies.
+    fn joined(&self, position: [usize; 3], copies: &[usize]) -> Option<usize> {
+        let cluster = copies[0] / self.cluster_size;
+        let inside = copies.len() > 1 && copies.iter().all(|copy| copy / self.cluster_size == cluster);
+        (inside && self.is_near_a_corner(position)).then_some(cluster)
+    }
+
+    /// Whether a node lies at a corner between subdomains, next to the end of an edge, or next to the corner of a face: few nodes, as far
+    /// apart on a face as inner nodes can be, so that neighbours hardly turn against each other.
+    fn is_near_a_corner(&self, position: [usize; 3]) -> bool {
+        let cells = self.tearing.subdomains[0].cells;
+        (0..3).all(|axis| {
+            let along = position[axis] % cells[axis];
+            along <= 1 || along + 1 == cells[axis]
+        })
     }
 }
 
@@ -43,6 +62,8 @@ pub struct EqualityRow {
 pub struct SceneRows {
     /// Rows of B_E that touch its subdomains, by ascending owner.
     pub equality: Vec<EqualityRow>,
+    /// Rows of B_c of its clusters.
+    pub joined: Vec<Vec<Row>>,
     /// Number of rows of B_E of every subdomain.
     pub counts: Vec<usize>,
     /// Number of gluing rows.
@@ -63,8 +84,16 @@ impl SceneRows {
         [count, size]: [usize; 2],
     ) -> Self {
         let (mut equality, mut counts, mut gluing_count) = (Vec::new(), vec![0; count], 0);
+        let clusters = own.start * size / bodies[0].cluster_size..own.end * size / bodies[0].cluster_size;
+        let mut joined = vec![Vec::new(); clusters.len()];
         for body in bodies {
-            gluing_count += equality_rows(body, |entries: Row| {
+            gluing_count += equality_rows(body, |cluster: Option<usize>, entries: Row| {
+                if let Some(cluster) = cluster {
+                    if clusters.contains(&cluster) {
+                        joined[cluster - clusters.start].push(entries);
+                    }
+                    return;
+                }
                 let owner = first_subdomain(&entries, size);
                 if entries.iter().any(|(dof, _)| own.contains(&(dof / size))) {
                     equality.push(EqualityRow { owner, index: counts[owner], entries });
@@ -84,7 +113,7 @@ impl SceneRows {
             }
             normalisation.push(scale.unwrap_or(1.0));
         }
-        Self { equality, counts, gluing_count, contact, normalisation }
+        Self { equality, joined, counts, gluing_count, contact, normalisation }
     }
 }
 
@@ -93,22 +122,24 @@ pub fn first_subdomain(row: &Row, size: usize) -> usize {
     row.iter().map(|(dof, _)| dof / size).min().unwrap_or(0)
 }
 
-/// Visits the rows of supports and gluing of one body; returns the number of gluing rows.
-fn equality_rows(body: &BodyRows<'_>, mut visit: impl FnMut(Row)) -> usize {
+/// Visits the rows of supports and gluing of one body, with the cluster whose row of B_c they are; returns the number of gluing rows of
+/// B_E.
+fn equality_rows(body: &BodyRows<'_>, mut visit: impl FnMut(Option<usize>, Row)) -> usize {
     let mut gluing_count = 0;
     for node in lattice::points([0; 3], body.grid.nodes()) {
         let copies = body.copies(node);
+        let joined = body.joined(node, &copies);
         for (component, held) in body.scene.held(body.grid, node).into_iter().enumerate() {
             if held {
-                copies.iter().for_each(|first| visit(vec![(first + component, 1.0)]));
+                copies.iter().for_each(|first| visit(None, vec![(first + component, 1.0)]));
                 continue;
             }
             for last in 1..copies.len() {
                 let scale = 1.0 / ((last * (last + 1)) as f64).sqrt();
                 let mut row: Row = copies[..last].iter().map(|first| (first + component, scale)).collect();
                 row.push((copies[last] + component, -(last as f64) * scale));
-                visit(row);
-                gluing_count += 1;
+                visit(joined, row);
+                gluing_count += usize::from(joined.is_none());
             }
         }
     }

@@ -55,7 +55,7 @@ impl Machine {
     }
 
     fn on_this_thread(scene: SceneName) -> Result<Self, Failure> {
-        let [small, large] = CASES.map(|case| measure::row(scene, case, Variant::Dirichlet));
+        let [small, large] = CASES.map(|case| measure::row(scene, case, Variant::Dirichlet, 1));
         let (small, large) = (small?, large?);
         let case = CASES[1];
         let estimate = WorkEstimate::of(&scene.scene(case)?);

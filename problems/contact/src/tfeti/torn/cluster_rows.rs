@@ -1,0 +1,44 @@
+//! The rows that hold a cluster together, B_c: some gluing rows between its subdomains are kept for good, not by multipliers.
+//!
+//! ```text
+//! B_c u = 0:   all Helmert rows of the chosen nodes whose copies all lie in the cluster;   such rows are none of B_E
+//! ```
+
+use crate::tfeti::torn::scene_rows::Row;
+use std::ops::Range;
+
+/// B_c of one cluster.
+#[derive(Debug)]
+pub struct ClusterRows {
+    /// Number of rows.
+    pub count: usize,
+    /// Their parts by subdomain.
+    pub members: Vec<MemberRows>,
+}
+
+/// The part of B_c on one subdomain.
+#[derive(Debug)]
+pub struct MemberRows {
+    /// Dofs of the subdomain that have rows, ascending.
+    pub dofs: Vec<usize>,
+    /// (row, place among `dofs`, value).
+    pub entries: Vec<(usize, usize, f64)>,
+}
+
+impl ClusterRows {
+    /// The parts of `rows` on the subdomains of a cluster of torn dofs `dofs`, `size` per subdomain.
+    pub fn new(rows: &[Row], dofs: Range<usize>, size: usize) -> Self {
+        let member = |first: usize| {
+            let own =
+                || rows.iter().enumerate().flat_map(|(index, row)| row.iter().map(move |&(dof, v)| (index, dof, v)));
+            let own = || own().filter(move |(_, dof, _)| (first..first + size).contains(dof));
+            let mut dofs: Vec<usize> = own().map(|(_, dof, _)| dof - first).collect();
+            dofs.sort_unstable();
+            dofs.dedup();
+            let place = |dof: usize| dofs.binary_search(&(dof - first)).expect("invariant: taken from these rows");
+            let entries = own().map(|(row, dof, value)| (row, place(dof), value)).collect();
+            MemberRows { entries, dofs }
+        };
+        Self { count: rows.len(), members: dofs.step_by(size).map(member).collect() }
+    }
+}

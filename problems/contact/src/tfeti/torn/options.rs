@@ -1,0 +1,23 @@
+//! What a torn model can be asked for.
+
+use crate::communication::{Communication, InProcess};
+use crate::tfeti::torn::preconditioner_kind::PreconditionerKind;
+use std::sync::Arc;
+
+/// How bodies are torn, preconditioned and divided among processes.
+#[derive(Debug, Clone)]
+pub struct TornOptions {
+    /// Which preconditioner.
+    pub preconditioner: PreconditionerKind,
+    /// Subdomains per axis of a cluster, which divide those of a body. The subdomains of a cluster share six rigid motions, so that the coarse
+    /// problem has six unknowns per cluster (hybrid total FETI). One subdomain per cluster is total FETI.
+    pub clusters: [usize; 3],
+    /// What connects the processes; each of them works on its own clusters.
+    pub communication: Arc<dyn Communication>,
+}
+
+impl Default for TornOptions {
+    fn default() -> Self {
+        Self { preconditioner: PreconditionerKind::default(), clusters: [1; 3], communication: Arc::new(InProcess) }
+    }
+}
