@@ -150,11 +150,12 @@ mod tests {
 
     #[test]
     fn several_processes_share_the_factors_and_no_process_needs_more_than_one_alone() {
-        // Measured at 24 bricks and 4 subdomains per edge: 222 MB on one process, 110 MB on each of four.
+        // Measured at 24 bricks and 4 subdomains per edge: 236 MB on one process, 86 MB on each of four, of which some 30 MB are those of
+        // a process without a scene.
         let scene = Scene { mesh: [24; 3], subdomains: [4; 3], ..signorini().expect("a preset") };
         let needed = |processes| estimate(&scene, SolverKind::Newton, PreconditionerKind::Dirichlet, 0, processes);
         let shares = [2, 4, 64].map(|processes| needed(processes) / needed(1));
-        assert!(0.3 < shares[1] && shares[1] < 0.6 && shares[0] < 1.0 && shares[2] < shares[1], "{shares:?}");
+        assert!(0.2 < shares[1] && shares[1] < 0.4 && shares[0] < 1.0 && shares[2] < shares[1], "{shares:?}");
         let condensed =
             [1, 4].map(|processes| estimate(&scene, SolverKind::Direct, PreconditionerKind::Dirichlet, 0, processes));
         assert_eq!(condensed[0], condensed[1]);

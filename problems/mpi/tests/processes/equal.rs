@@ -34,10 +34,10 @@ fn what_several_processes_use_is_told() {
     let usage = together(2, &[&arguments[..], &["--json"]].concat())["processes"].clone();
     assert!(usage["products"].as_u64() > Some(10) && usage["bytes_per_product"].as_f64() > Some(100.0), "{usage}");
     assert!(usage["messages_per_product"].as_f64() >= Some(1.0), "{usage}");
-    let (output, _) = ended(started(PROGRAM, 2, &arguments));
+    let output = ended(started(PROGRAM, 2, &arguments));
     let page = String::from_utf8(output.stdout).unwrap();
     assert_eq!(page.matches("processes            2; ").count(), 1, "{page}");
-    let (output, _) = ended(started(PROGRAM, 2, &[&arguments[..5], &["direct"]].concat()));
+    let output = ended(started(PROGRAM, 2, &[&arguments[..5], &["direct"]].concat()));
     let page = String::from_utf8(output.stdout).unwrap();
     assert!(page.contains("processes            2, each of which repeats the direct condensation"), "{page}");
 }
@@ -124,7 +124,7 @@ fn only_the_first_process_needs_the_files_and_the_arguments() {
     let options = ["here.toml", "evaluate", "--mesh", "4", "--json", "--solver", "newton"];
     command.args(["-n", "1", "--wdir", text(folder.path()), PROGRAM]).args(options);
     command.args([":", "-n", "1", "--wdir", text(elsewhere.path()), PROGRAM, "--bad"]);
-    let (output, _) = ended(command);
+    let output = ended(command);
     assert!(output.status.success(), "{}", errors(&output));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(without_times(report), without_times(alone(Some(&scene("signorini")), &options[1..]).unwrap()));

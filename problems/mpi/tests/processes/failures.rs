@@ -3,13 +3,9 @@
 use super::{PROGRAM, ended, errors, scene, started, together};
 use serde_json::Value;
 use std::path::Path;
-use std::time::Duration;
 use testset::kit::{Random, scratch, text};
 
 const FAILING: &str = env!("CARGO_BIN_EXE_contact3d-mpi-failing");
-
-/// Time after which a run hangs: one that succeeds takes some seconds, or half a minute on a busy machine.
-const LONGEST: Duration = Duration::from_secs(300);
 
 /// Kinds of failures, each with the exit status that it leads to.
 const KINDS: [(&str, i32); 5] = [("panic", 1), ("kill", 137), ("exit", 3), ("memory", 134), ("flat", 1)];
@@ -22,9 +18,8 @@ fn fails(rank: usize, processes: usize, call: usize, (kind, status): (&str, i32)
     let scene = scene("signorini");
     let mut command = started(FAILING, processes, &[&[text(&scene)], &RUN[..], &[text(folder)]].concat());
     command.env("FAILING_PROCESS", format!("{rank} {call} {kind}"));
-    let (output, time) = ended(command);
+    let output = ended(command);
     let place = format!("process {rank} of {processes}, call {call}, {kind}: {}", errors(&output));
-    assert!(time < LONGEST, "{time:?}: {place}");
     // A call that does not happen fails nowhere; the first process announces its heights and does not hear others.
     if output.status.success() {
         assert!(serde_json::from_slice::<Value>(&output.stdout).is_ok(), "{place}");
@@ -55,7 +50,7 @@ fn many(count: usize, seed: u64) {
         let begun = number % 4 == 0 && kept.join("start.json").exists() && kept.join("scene.toml").exists();
         if begun && kind.0 == "flat" {
             // The journal holds the failure as what came of the evaluation, as for a single process.
-            let (output, _) = ended(started(PROGRAM, 2, &["--resume", text(&kept), "--json"]));
+            let output = ended(started(PROGRAM, 2, &["--resume", text(&kept), "--json"]));
             assert!(output.status.success() || errors(&output).contains("Cholesky"), "{}", errors(&output));
             continued += 1;
         } else if begun {
@@ -66,6 +61,7 @@ fn many(count: usize, seed: u64) {
             continued += 1;
         }
     }
+    assert!(continued > 0, "no folder was continued");
     eprintln!("{failed} failures in {number} runs; {continued} folders continued by {PROGRAM}");
 }
 
@@ -74,7 +70,7 @@ fn many(count: usize, seed: u64) {
 fn parcels_of_any_size_arrive() {
     let scene = scene("signorini");
     for processes in [2, 4] {
-        let (output, _) = ended(started(FAILING, processes, &[text(&scene), "evaluate", "--mesh", "4"]));
+        let output = ended(started(FAILING, processes, &[text(&scene), "evaluate", "--mesh", "4"]));
         assert!(output.status.success(), "{}", errors(&output));
     }
 }

@@ -1,13 +1,13 @@
 //! Bad input and interruptions: one message, by process 0, and the exit status of a single process.
 
-use super::{PROGRAM, ended, errors, mpirun, scene, started};
+use super::{PATIENCE, PROGRAM, ended, errors, mpirun, scene, started};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use testset::kit::{scratch, text};
 
 /// Asserts that a command ends with status 2 and one message with these words.
 fn refused(command: Command, words: &[&str]) {
-    let (output, _) = ended(command);
+    let output = ended(command);
     let said = errors(&output);
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert_eq!(said.matches("error:").count(), 1, "{said}");
@@ -28,7 +28,7 @@ fn bad_input_is_refused_once() {
     refused(started(PROGRAM, 2, &[scene, "--resume", scene]), &["--resume"]);
     // The same load in the other direction pulls the body off the obstacle.
     let reversed = [&evaluate[..], &["--solver", "newton", "--load-factor", "-1"]].concat();
-    let (output, _) = ended(started(PROGRAM, 2, &reversed));
+    let output = ended(started(PROGRAM, 2, &reversed));
     assert_eq!(errors(&output).matches("error:").count(), 1, "{}", errors(&output));
     assert_eq!(output.status.code(), Some(2), "{}", errors(&output));
 }
@@ -60,7 +60,7 @@ fn an_interruption_of_the_first_process_ends_the_run_with_its_report() {
     let journal = out.join("journal.jsonl");
     let clock = Instant::now();
     while std::fs::read_to_string(&journal).unwrap_or_default().lines().count() < 3 {
-        assert!(clock.elapsed() < Duration::from_secs(60), "no evaluation in a minute");
+        assert!(clock.elapsed() < PATIENCE, "no evaluation in {PATIENCE:?}");
         std::thread::sleep(Duration::from_millis(5));
     }
     let process = std::fs::read_to_string(&number).unwrap();

@@ -109,10 +109,15 @@ impl Leader {
                 (own, other)
             })
             .map_err(|reason| SceneError::OtherProcess { reason })?;
-        match (own, other) {
+        let prepared = match (own, other) {
             (Ok(_), Some(reason)) => Err(SceneError::OtherProcess { reason }),
             (own, _) => own.map(|solver| (solver, id)),
+        };
+        if prepared.is_err() {
+            // Others may have prepared theirs.
+            self.release(id);
         }
+        prepared
     }
 
     /// What the processes have sent and used so far, in a run by a solver.

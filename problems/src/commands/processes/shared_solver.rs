@@ -69,10 +69,13 @@ impl SharedSolver {
 
 impl SolverState for SharedState {
     fn warm_start(&self) -> ContactWarmStart {
-        let own = || self.own.warm_start();
-        // Without the others, the own part would be all there is.
-        let led = self.shared.as_ref().map(|name| name.leader.together(Task::WarmStart(name.id), own));
-        led.and_then(Result::ok).unwrap_or_else(own)
+        match &self.shared {
+            None => self.own.warm_start(),
+            Some(name) => name
+                .leader
+                .together(Task::WarmStart(name.id), || self.own.warm_start())
+                .expect("invariant: a name has a form in bytes"),
+        }
     }
 }
 

@@ -33,8 +33,9 @@ pub struct Arguments {
     /// Clusters of C³ subdomains, which share six rigid motions; several numbers, with commas, are measured one after the other.
     #[arg(long, value_name = "C", value_delimiter = ',', default_value = "1")]
     pub clusters: Vec<usize>,
-    /// Measure one core and predict time and memory of many ranks; with --case, of that case on 1, 2 and 4 ranks.
-    #[arg(long, conflicts_with_all = ["quick", "full", "variant"])]
+    /// Measure one core and predict time and memory of many ranks (Signorini, 7 bricks per edge of a subdomain); with --case, of that
+    /// case on 1, 2 and 4 ranks.
+    #[arg(long, conflicts_with_all = ["quick", "full", "variant", "clusters"])]
     pub model: bool,
     /// Latency of the network of the model, microseconds.
     #[arg(long, value_name = "US", default_value_t = 2.0, value_parser = positive, requires = "model")]
@@ -43,13 +44,13 @@ pub struct Arguments {
     #[arg(long, value_name = "GBS", default_value_t = 10.0, value_parser = positive, requires = "model")]
     pub bandwidth: f64,
     /// Subdomains per rank in the model.
-    #[arg(long, value_name = "N", default_value_t = 125, value_parser = clap::value_parser!(u16).range(1..), requires = "model")]
+    #[arg(long, value_name = "N", default_value_t = 125, value_parser = clap::value_parser!(u16).range(1..), requires = "model", conflicts_with = "case")]
     pub per_rank: u16,
     /// Products of state and adjoint together in the model [default: those of a cold state to 1e-8 on 35/5].
     #[arg(long, value_name = "N", value_parser = positive, requires = "model")]
     pub products: Option<f64>,
     /// Products with clusters over those without, in the model.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.9, value_parser = positive, requires = "model")]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.9, value_parser = positive, requires = "model", conflicts_with = "case")]
     pub cluster_products: f64,
 }
 

@@ -126,7 +126,8 @@ impl ClusterFactors {
             (0..amplitudes).for_each(|column| matrix[(count + row, count + column)] = -held[(row, column)]);
         }
         let factor = DenseLu::new(&matrix);
-        if factor.pivot_ratio() == 0.0 {
+        let ratio = factor.pivot_ratio();
+        if !ratio.is_finite() || ratio <= f64::EPSILON {
             let (what, reason) =
                 ("generalised inverse of a cluster".into(), "the matrix of its rows is singular".into());
             return Err(ContactError::Factorization { what, reason });

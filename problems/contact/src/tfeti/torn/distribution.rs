@@ -8,6 +8,7 @@
 //! subdomains; everybody adds those in the order of the tree.
 
 use crate::communication::Communication;
+use crate::error::ContactError;
 use crate::linear::entry::Entry;
 use std::iter::Peekable;
 use std::ops::Range;
@@ -89,6 +90,20 @@ impl Distribution {
     /// What connects the processes.
     pub fn communication(&self) -> &dyn Communication {
         &*self.communication
+    }
+
+    /// What this process has computed, if no process has failed.
+    ///
+    /// # Errors
+    /// The own failure, else [`ContactError::Factorization`] with that of the first process that has one. A process that goes on
+    /// alone would wait for the others forever.
+    pub fn agreed<T>(&self, own: Result<T, ContactError>) -> Result<T, ContactError> {
+        match (self.communication().agree(own.as_ref().err().map(ToString::to_string)), own) {
+            (Some(reason), Ok(_)) => {
+                Err(ContactError::Factorization { what: "subdomain of another process".into(), reason })
+            }
+            (_, own) => own,
+        }
     }
 
     /// Pieces of all subdomains from those of the own ones.
@@ -192,6 +207,7 @@ fn total<'a, P: Iterator<Item = (&'a Range<usize>, &'a [f64])>>(
     match pieces.next_if(|(piece, _)| **piece == branch) {
         Some((_, sums)) => sums.to_vec(),
         None => {
+            assert!(branch.len() > 1, "invariant: the branches of the processes cover the tree");
             let middle = middle(&branch);
             let left = total(branch.start..middle, pieces);
             added(left, &total(middle..branch.end, pieces))

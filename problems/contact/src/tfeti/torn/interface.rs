@@ -82,11 +82,6 @@ impl Interface {
         self.owned.len() + self.ghosts.len()
     }
 
-    /// Dofs of other processes, ascending.
-    pub fn ghosts(&self) -> &[usize] {
-        &self.ghosts
-    }
-
     /// The dof at a place of a torn vector.
     pub fn dof(&self, place: usize) -> usize {
         if place < self.owned.len() { self.owned.start + place } else { self.ghosts[place - self.owned.len()] }

@@ -120,20 +120,19 @@ impl TornModel {
         let pattern = LocalPattern::new(cells, &fixing);
         let symbolic = pattern.symbolic(&fixing)?;
         let mut classes = HashMap::new();
-        let mut subdomains = Vec::with_capacity(distribution.owned().len());
-        for number in distribution.owned() {
-            let first_dof = size * subdomains.len();
+        let subdomain = |(index, number): (usize, usize)| {
+            let first_dof = size * index;
             let interior = match preconditioner {
                 PreconditionerKind::Dirichlet => {
-                    let index = subdomains.len();
                     let joined = &constraints.joined[index / members].members[index % members].dofs;
                     Some(interior_class(&mut classes, &pattern, &constraints, first_dof..first_dof + size, joined)?)
                 }
                 PreconditionerKind::Lumped | PreconditionerKind::None => None,
             };
             let (body, place) = numbering.place(number);
-            subdomains.push(TornSubdomain { body, place: place.clone(), first_dof, interior });
-        }
+            Ok(TornSubdomain { body, place: place.clone(), first_dof, interior })
+        };
+        let subdomains = distribution.agreed(distribution.owned().enumerate().map(subdomain).collect())?;
         Ok(Self {
             problem,
             subdomains,
@@ -197,14 +196,7 @@ impl TornModel {
         let parts: Result<Vec<Arc<SubdomainFactors>>, ContactError> = own.map(factor).collect();
         let factored =
             parts.and_then(|parts| Ok(FactoredBody { clusters: self.join_body(body, block, &parts)?, parts }));
-        // A process that goes on alone would wait for the others forever.
-        let failure = self.distribution.communication().agree(factored.as_ref().err().map(ToString::to_string));
-        match failure {
-            Some(reason) if factored.is_ok() => {
-                Err(ContactError::Factorization { what: "subdomain of another process".into(), reason })
-            }
-            _ => factored,
-        }
+        self.distribution.agreed(factored)
     }
 
     /// What joins the clusters of a body in this process, from its factored subdomains; nothing where every subdomain is a cluster.
@@ -372,7 +364,7 @@ fn loads(body: &BodyScene, place: &Subdomain, block: &Block) -> Vec<f64> {
 }
 
 /// The interior class of one subdomain, shared among subdomains with the same interior dofs: those without rows of B and B_c.
-/// `joined`: its dofs with rows of B_c. The preconditioner keeps these at zero, since they have no jumps.
+/// `joined`: its dofs with rows of B_c. They have no jumps between subdomains: contact rows alone move them in the preconditioner.
 fn interior_class(
     classes: &mut HashMap<Vec<bool>, Arc<InteriorClass>>,
     pattern: &LocalPattern,

@@ -10,7 +10,7 @@ pub struct RowVector<V = f64> {
     equality_count: usize,
 }
 
-/// A vector over torn dofs, subdomain by subdomain.
+/// A vector over the torn dofs of a process, subdomain by subdomain, then over its ghosts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TornVector(pub Vec<f64>);
 

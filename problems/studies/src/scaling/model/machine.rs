@@ -5,7 +5,7 @@
 
 use crate::scaling::cases::{Case, SceneName, Variant};
 use crate::scaling::measure;
-use crate::scaling::rows::Start;
+use crate::scaling::rows::{Row, Start};
 use contact::WorkEstimate;
 use faer::Mat;
 use problems::commands::Failure;
@@ -68,15 +68,17 @@ impl Machine {
         let (state, adjoint) = (&large.cold.state, &large.cold.adjoint);
         let (products, adjoint_products) = (state.applications() as f64, adjoint.applications as f64);
         let tight = large.solve(Start::Cold, measure::COLD[1]);
-        let tight_stages = tight.and_then(|solve| solve.stages).unwrap_or_default();
+        let tight = tight.ok_or_else(|| Failure::Computation("no state to 1e-10 for the model".into()))?;
+        let tight_stages = tight.stages.unwrap_or_default();
         let tight_seconds = tight_stages.newton + tight_stages.coarse_space;
-        let tight_products = tight.map_or(f64::NAN, |solve| solve.applications() as f64);
         let factor = (stages.equilibrium + stages.factorization) / pieces;
-        let gibibytes = |row: &crate::scaling::Row| row.peak_memory.unwrap_or(f64::NAN) * 1024.0_f64.powi(3);
-        let bytes = (gibibytes(&large) - gibibytes(&small)) / (pieces - count(CASES[0]));
+        let untold = || Failure::Computation("this system does not tell the memory of a process".into());
+        let bytes_of = |row: &Row| row.peak_memory.map(|peak| peak * 1024.0_f64.powi(3)).ok_or_else(untold);
+        let (small, large) = (bytes_of(&small)?, bytes_of(&large)?);
+        let bytes = (large - small) / (pieces - count(CASES[0]));
         Ok(Self {
             factor,
-            product: tight_seconds / (pieces * tight_products),
+            product: tight_seconds / (pieces * tight.applications() as f64),
             adjoint_product: adjoint.seconds / (pieces * adjoint_products),
             derivative: (stages.recovery + adjoint.shape_seconds) / pieces,
             products,
@@ -84,7 +86,7 @@ impl Machine {
             sparse_rate: estimate.torn_factorization / (pieces * factor),
             dense_rate: dense_rate(),
             bytes,
-            base_bytes: (gibibytes(&small) - count(CASES[0]) * bytes).max(0.0),
+            base_bytes: (small - count(CASES[0]) * bytes).max(0.0),
             subdomain_dofs: 3.0 * ((case.ratio() + 1) as f64).powi(3),
         })
     }

@@ -59,7 +59,7 @@ pub struct Prediction {
 /// Unknowns of a coarse unit.
 const AMPLITUDES: f64 = 6.0;
 /// Bricks per edge of a subdomain.
-const RATIO: f64 = 7.0;
+pub const RATIO: f64 = 7.0;
 /// Neighbours of a cube among cubes.
 const NEIGHBOURS: f64 = 26.0;
 /// Active sets of a state, each with a dense matrix of its own: the mean of cold and warm states at 35/5.

@@ -2,6 +2,7 @@
 
 use crate::markdown::section;
 use crate::scaling::cases::{Case, SceneName};
+use crate::scaling::model::prediction::RATIO;
 use crate::scaling::model::{Machine, Network, Prediction, Run};
 use problems::commands::Failure;
 use serde::Serialize;
@@ -40,8 +41,18 @@ const CASE_RANKS: [usize; 3] = [1, 2, 4];
 /// Measures this machine and predicts.
 ///
 /// # Errors
-/// [`Failure`] if a state of the measurement cannot be found.
+/// [`Failure`] for another scene or another number of bricks per subdomain than it knows, and if a state of the measurement cannot be
+/// found.
 pub fn report(scene: SceneName, options: &Options) -> Result<ModelReport, Failure> {
+    if scene != SceneName::Signorini {
+        return Err(Failure::Input("the model knows one body only: --scene signorini".into()));
+    }
+    if let Some(case) = options.case.filter(|case| case.ratio() as f64 != RATIO) {
+        let ratio = case.ratio();
+        return Err(Failure::Input(format!(
+            "{case} has {ratio} bricks per edge of a subdomain; the model knows {RATIO} only"
+        )));
+    }
     let (measured, network) = (Machine::measure(scene)?, options.network);
     let factor = options.products.map_or(1.0, |products| products / (measured.products + measured.adjoint_products));
     let (products, adjoint_products) = (factor * measured.products, factor * measured.adjoint_products);
