@@ -38,7 +38,7 @@ impl Processes {
         Self(None)
     }
 
-    /// Whether there is no other process.
+    /// Whether nothing but this process has been started, without MPI.
     pub fn is_alone(&self) -> bool {
         self.0.is_none()
     }

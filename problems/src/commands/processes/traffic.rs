@@ -106,7 +106,8 @@ pub struct Usage {
     processes: usize,
     /// Whether every process did the same work, by direct condensation.
     repeated: bool,
-    /// Products with the dual operator, those of adjoints and Jacobians included.
+    /// Products with the dual operator, those of adjoints and Jacobians included; those of failed states and of checks are not, though
+    /// their bytes and messages count.
     products: usize,
     /// Bytes that a process hands over for the others, per product: the mean of all processes. Every value counts once, however
     /// many processes get it. Null without products.

@@ -1,7 +1,8 @@
-//! The natural coarse space: what forces on the rows do to the rigid motions of the subdomains.
+//! The natural coarse space: what forces on the rows do to the rigid motions of the clusters. In total FETI every subdomain is a
+//! cluster of its own.
 //!
 //! ```text
-//! G = Rᵀ Bᵀ,   e = Rᵀ f:      G λ = e is the equilibrium of all subdomains,      Gᵀ a are the jumps of rigid amplitudes a
+//! G = Rᵀ Bᵀ,   e = Rᵀ f:      G λ = e is the equilibrium of all clusters,      Gᵀ a are the jumps of rigid amplitudes a
 //! ```
 
 use crate::equilibrium::modes::MOTIONS;
@@ -22,7 +23,7 @@ use std::time::{Duration, Instant};
 pub struct CoarseSpace {
     /// Gᵀ: rows of B of this process.
     rows: RigidRows,
-    /// The same by the subdomains of this process.
+    /// The same by the clusters of this process.
     transposed: RigidRows,
     resultants: Vec<f64>,
     pattern: Arc<CoarsePattern>,
@@ -57,7 +58,7 @@ impl CoarseSpace {
         rows.extend(modes.contact_rows());
         let resultants: Vec<f64> = system.parts.iter().flat_map(|part| part.resultants.iter().copied()).collect();
         let resultants = distribution.gather(&system.cluster_resultants(resultants), MOTIONS);
-        let (transposed, pattern) = (rows.of_subdomains(distribution.owned()), Arc::clone(&model.coarse));
+        let (transposed, pattern) = (rows.of_clusters(distribution.owned()), Arc::clone(&model.coarse));
         let values = gram(&pattern, [&rows, &transposed], equality_count, distribution);
         let condensed = CondensedCoarse::new(&pattern, values, &grounded)?;
         let distribution = Arc::clone(distribution);
@@ -104,8 +105,8 @@ impl CoarseSpace {
     pub fn combine(&self, combination: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let mut combined: Vec<(usize, f64)> = Vec::with_capacity(48);
         for &(row, weight) in combination {
-            for (subdomain, block) in self.rows.blocks(row) {
-                let first = self.pattern.contact_place(MOTIONS * subdomain);
+            for (cluster, block) in self.rows.blocks(row) {
+                let first = self.pattern.contact_place(MOTIONS * cluster);
                 combined.extend(block.iter().enumerate().map(|(mode, value)| (first + mode, weight * value)));
             }
         }
@@ -134,12 +135,12 @@ impl CoarseSpace {
         })
     }
 
-    /// Number of rigid amplitudes of subdomains with contact rows.
+    /// Number of rigid amplitudes of clusters with contact rows.
     pub fn contact_amplitude_count(&self) -> usize {
         self.pattern.contact_amplitudes().len()
     }
 
-    /// G λ of multipliers over the rows of this process: the resultants on all subdomains.
+    /// G λ of multipliers over the rows of this process: the resultants on all clusters.
     pub fn resultant<V: Entry>(&self, multipliers: &[V]) -> Vec<V> {
         self.distribution.gather(&self.transposed.resultants(multipliers), MOTIONS)
     }
@@ -151,7 +152,7 @@ impl CoarseSpace {
 }
 
 /// Σ (row of Gᵀ)ᵀ(row of Gᵀ) over the first `count` rows of Gᵀ, as lower values over the coarse pattern. A process has all rows that
-/// touch its subdomains, and forms the columns of these.
+/// touch its clusters, and forms the columns of these.
 fn gram(
     pattern: &CoarsePattern,
     [rows, transposed]: [&RigidRows; 2],
@@ -162,15 +163,15 @@ fn gram(
     let owned = distribution.owned();
     let columns_of = |own: usize| {
         let first = MOTIONS * own;
-        // The pattern holds the six amplitudes of a subdomain side by side.
+        // The pattern holds the six amplitudes of a cluster side by side.
         let coupled: Vec<usize> =
             pattern_rows[starts[first]..starts[first + 1]].iter().step_by(MOTIONS).map(|row| row / MOTIONS).collect();
         let place =
-            |subdomain: usize| coupled.binary_search(&subdomain).expect("invariant: the pattern couples all of a row");
+            |cluster: usize| coupled.binary_search(&cluster).expect("invariant: the pattern couples all of a row");
         let mut blocks = vec![[[0.0; MOTIONS]; MOTIONS]; coupled.len()];
         for (row, right) in transposed.blocks(own - owned.start).take_while(|(row, _)| *row < count) {
-            for (subdomain, left) in rows.blocks(row).filter(|(subdomain, _)| *subdomain >= own) {
-                for (column, right) in blocks[place(subdomain)].iter_mut().zip(right) {
+            for (cluster, left) in rows.blocks(row).filter(|(cluster, _)| *cluster >= own) {
+                for (column, right) in blocks[place(cluster)].iter_mut().zip(right) {
                     column.iter_mut().zip(left).for_each(|(value, left)| *value += left * right);
                 }
             }

@@ -26,7 +26,7 @@ impl<'a> Preconditioner<'a> {
         Self { model, system, kind, stiffness }
     }
 
-    /// The product with a residual (mm) over all rows; result in N.
+    /// The product with a residual (mm) over the rows of this process; result in N.
     pub fn apply(&self, residual: &RowVector) -> RowVector {
         self.apply_columns(residual, &mut self.model.zeros().0)
     }

@@ -1,14 +1,14 @@
-//! Gᵀ: rows of B times the rigid modes, in blocks of the six amplitudes of a subdomain.
+//! Gᵀ: rows of B times the rigid modes, in blocks of the six amplitudes of a cluster: of a subdomain, where none are joined.
 
 use crate::equilibrium::modes::MOTIONS;
 use crate::linear::entry::{Entry, vectorized};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What a row of B does to the six rigid amplitudes of a subdomain.
+/// What a row of B does to the six rigid amplitudes of a cluster.
 pub type Six = [f64; MOTIONS];
 
-/// Blocks row by row, or the same blocks subdomain by subdomain.
+/// Blocks row by row, or the same blocks cluster by cluster.
 #[derive(Debug)]
 pub struct RigidRows {
     starts: Vec<usize>,
@@ -26,11 +26,11 @@ impl RigidRows {
         Self { starts: vec![0], others: Vec::new(), values: Vec::new() }
     }
 
-    /// Appends rows of (subdomain, block).
+    /// Appends rows of (cluster, block).
     pub fn extend(&mut self, rows: impl IntoIterator<Item = Vec<(usize, Six)>>) {
         for row in rows {
-            for (subdomain, block) in row {
-                self.others.push(u32::try_from(subdomain).expect("invariant: fewer than 2³² subdomains"));
+            for (cluster, block) in row {
+                self.others.push(u32::try_from(cluster).expect("invariant: fewer than 2³² clusters"));
                 self.values.push(block);
             }
             self.starts.push(self.others.len());
@@ -42,25 +42,24 @@ impl RigidRows {
         self.starts.len() - 1
     }
 
-    /// The blocks of a row with their subdomains, or those of a subdomain with their rows, ascending.
+    /// The blocks of a row with their clusters, or those of a cluster with their rows, ascending.
     pub fn blocks(&self, list: usize) -> impl Iterator<Item = (usize, &Six)> {
         let range = self.starts[list]..self.starts[list + 1];
         self.others[range.clone()].iter().map(|&other| other as usize).zip(&self.values[range])
     }
 
-    /// The blocks of some subdomains, subdomain by subdomain.
-    pub fn of_subdomains(&self, subdomains: Range<usize>) -> Self {
-        let mut starts = vec![0; subdomains.len() + 1];
-        let place =
-            |subdomain: &u32| (*subdomain as usize).checked_sub(subdomains.start).filter(|s| *s < subdomains.len());
+    /// The blocks of some clusters, cluster by cluster.
+    pub fn of_clusters(&self, clusters: Range<usize>) -> Self {
+        let mut starts = vec![0; clusters.len() + 1];
+        let place = |cluster: &u32| (*cluster as usize).checked_sub(clusters.start).filter(|s| *s < clusters.len());
         self.others.iter().filter_map(place).for_each(|place| starts[place + 1] += 1);
-        (0..subdomains.len()).for_each(|place| starts[place + 1] += starts[place]);
-        let count = starts[subdomains.len()];
+        (0..clusters.len()).for_each(|place| starts[place + 1] += starts[place]);
+        let count = starts[clusters.len()];
         let (mut others, mut values, mut next) = (vec![0; count], vec![[0.0; MOTIONS]; count], starts.clone());
         for row in 0..self.count() {
             let range = self.starts[row]..self.starts[row + 1];
-            for (subdomain, block) in self.others[range.clone()].iter().zip(&self.values[range]) {
-                if let Some(place) = place(subdomain) {
+            for (cluster, block) in self.others[range.clone()].iter().zip(&self.values[range]) {
+                if let Some(place) = place(cluster) {
                     others[next[place]] = u32::try_from(row).expect("invariant: fewer than 2³² rows");
                     values[next[place]] = *block;
                     next[place] += 1;
@@ -78,8 +77,8 @@ impl RigidRows {
                 #[inline(always)]
                 || {
                     for (offset, jump) in result.iter_mut().enumerate() {
-                        for (subdomain, block) in self.blocks(chunk * LISTS_AT_ONCE + offset) {
-                            let own = &amplitudes[MOTIONS * subdomain..MOTIONS * (subdomain + 1)];
+                        for (cluster, block) in self.blocks(chunk * LISTS_AT_ONCE + offset) {
+                            let own = &amplitudes[MOTIONS * cluster..MOTIONS * (cluster + 1)];
                             block.iter().zip(own).for_each(|(&value, amplitude)| jump.accumulate(value, amplitude));
                         }
                     }
@@ -89,14 +88,14 @@ impl RigidRows {
         result
     }
 
-    /// G λ, six entries per subdomain, where the lists are subdomains.
+    /// G λ, six entries per cluster, where the lists are clusters.
     pub fn resultants<V: Entry>(&self, multipliers: &[V]) -> Vec<V> {
         let mut result = vec![V::ZERO; MOTIONS * self.count()];
-        result.par_chunks_exact_mut(MOTIONS).enumerate().for_each(|(subdomain, six)| {
+        result.par_chunks_exact_mut(MOTIONS).enumerate().for_each(|(cluster, six)| {
             vectorized(
                 #[inline(always)]
                 || {
-                    for (row, block) in self.blocks(subdomain) {
+                    for (row, block) in self.blocks(cluster) {
                         let multiplier = &multipliers[row];
                         six.iter_mut().zip(block).for_each(|(sum, &value)| sum.accumulate(value, multiplier));
                     }

@@ -34,7 +34,7 @@ pub struct InteriorClass {
     pub submatrix: Submatrix,
     /// Its symbolic factor; none if there are no interior dofs.
     pub symbolic: Option<Arc<SymbolicFactor>>,
-    /// Dofs with rows, ascending.
+    /// Dofs with rows of B or B_c, ascending.
     pub boundary: Vec<usize>,
     /// K_BB.
     pub boundary_block: SymmetricBlock,
