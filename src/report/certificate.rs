@@ -136,9 +136,13 @@ impl Certificate {
 
 impl fmt::Display for Certificate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.value {
+            0.0 => write!(f, "predicted decrease {:.1e}", self.predicted_decrease)?,
+            value => write!(f, "predicted decrease {:.1e} of the objective", self.predicted_decrease / value.abs())?,
+        }
         write!(
             f,
-            "|aggregate subgradient| {:.2e}, aggregate error {:.2e}, {} active cuts within {:.1e}, noise {:.1e}",
+            ", |aggregate subgradient| {:.2e}, aggregate error {:.2e}, {} active cuts within {:.1e}, noise {:.1e}",
             self.aggregate_norm,
             self.aggregate_error,
             self.active_cuts().count(),

@@ -12,7 +12,7 @@ pub use build_name::build_name;
 pub use world::World;
 
 use contact::communication::Communication;
-use ending::{end_all, end_with_panics, leave_signals_to_the_first};
+use ending::{FAILED, end_all, end_with_panics, leave_signals_to_the_first};
 use mpi::Threading;
 use problems::commands::processes::run_together;
 use problems::commands::{notice, print_failure, run_any_among};
@@ -48,7 +48,7 @@ pub fn run(binary: &'static str, connection: impl FnOnce(World) -> Arc<dyn Commu
         Ok(Some(status)) => status,
         Ok(None) => ExitCode::SUCCESS,
         Err(failure) if rank == 0 => print_failure(&failure),
-        Err(failure) => end_all(&failure.to_string()),
+        Err(failure) => end_all(&failure.to_string(), FAILED),
     };
     drop(universe);
     status

@@ -1,5 +1,6 @@
 //! The command and the options of the contact binaries, and the fields of the scene file that the options override.
 
+use crate::commands::ascii::shown;
 use crate::commands::failure::Failure;
 use crate::commands::processes::SharedSolver;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -203,7 +204,7 @@ impl Arguments {
 
     /// The result of a command for stdout, in the form that is asked for.
     pub fn printed(&self, text: String, json: String) -> String {
-        if self.json { json } else { text }
+        if self.json { json } else { shown(&text).into_owned() }
     }
 
     /// Refuses options beside --resume that are no limits: a run that is continued has its scene and its options in its folder.

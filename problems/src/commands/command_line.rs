@@ -7,6 +7,7 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
 use crate::commands::output::{finish, leave, left};
 use crate::commands::processes::Processes;
+use crate::commands::shell_files::{asked, examples};
 use crate::commands::{compare, evaluate, optimize, recheck, verify};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
 use contact::equilibrium::STAGE_TARGET;
@@ -33,7 +34,11 @@ struct AnyScene {
 /// Runs the binary of this name on its own scene, the text of a scene file.
 pub fn run(binary: &'static str, scene: &str) -> ExitCode {
     let scene = SceneFile::parse(scene, binary);
-    let command = Arguments::help_with_defaults(Arguments::command().name(binary), scene.as_ref().ok());
+    let command = Arguments::command().name(binary).after_help(examples(binary, ""));
+    let command = Arguments::help_with_defaults(command, scene.as_ref().ok());
+    if let Some(file) = asked(&command, &words()) {
+        return finish(file, None);
+    }
     let arguments = command.try_get_matches().and_then(|found| Arguments::from_arg_matches(&found));
     let arguments = arguments.unwrap_or_else(|error| leave(&error));
     finish(execute(|| Ok((scene?, None)), &arguments), arguments.kept())
@@ -46,7 +51,11 @@ pub fn run_any() -> ExitCode {
 
 /// Runs a binary of this name that takes any scene, in the first of its processes.
 pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
-    let command = Arguments::help_with_defaults(AnyScene::command().name(binary), None);
+    let command = AnyScene::command().name(binary).after_help(examples(binary, "SCENE.toml "));
+    let command = Arguments::help_with_defaults(command, None);
+    if let Some(file) = asked(&command, &words()) {
+        return finish(file, None);
+    }
     let parsed = command.try_get_matches().and_then(|found| AnyScene::from_arg_matches(&found));
     let AnyScene { scene, arguments } = match parsed {
         Ok(parsed) => parsed,
@@ -64,6 +73,11 @@ pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
         if command && !scene.exists() { Err(missing()) } else { Ok((SceneFile::read(&scene)?, Some(scene))) }
     };
     finish(execute_among(open, &arguments, processes), arguments.kept())
+}
+
+/// The arguments of the program that are Unicode.
+fn words() -> Vec<String> {
+    std::env::args_os().skip(1).filter_map(|word| word.into_string().ok()).collect()
 }
 
 /// Computes what the arguments ask for, on the scene that `open` reads unless a run is resumed. The text belongs on stdout.

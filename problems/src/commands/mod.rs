@@ -3,8 +3,10 @@
 //! Contract (kept stable): `NAME [optimize|compare|evaluate|verify|recheck DIR] [options]`, for `contact3d` with a scene file
 //! before the command. Exit status: 0 success; 1 the computation failed, its result could not be printed or written, or a
 //! certificate does not agree; 2 bad input; 130 interrupted, with a report. `--json` prints one JSON object on stdout and nothing else there.
+//! `NAME completions SHELL` and `NAME man` print files for shells and for `man`.
 
 mod arguments;
+mod ascii;
 mod command_line;
 mod compare;
 mod contact_objective;
@@ -20,6 +22,7 @@ pub mod processes;
 mod recheck;
 mod register;
 mod report;
+mod shell_files;
 mod verify;
 
 pub use arguments::Arguments;

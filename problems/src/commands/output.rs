@@ -1,5 +1,6 @@
 //! What a command prints: never lost without a word.
 
+use crate::commands::ascii::shown;
 use crate::commands::failure::Failure;
 use clap::{Error, Parser};
 use std::io::{self, Write};
@@ -54,7 +55,7 @@ pub fn print(text: &str) -> io::Result<()> {
 
 /// A line on stderr. Where nobody listens there is nothing to be done.
 pub fn notice(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let _ = writeln!(io::stderr(), "{}", shown(line));
 }
 
 /// Whether stdout was closed when the program began. What starts a program then opens /dev/null in its place, for reading and
@@ -99,7 +100,8 @@ pub fn left(error: &Error) -> ExitCode {
 /// Prints help, version or what is wrong with the arguments; the exit status.
 fn said(error: &Error) -> u8 {
     // What the parser prints itself is not flushed before the end.
-    let printed = if error.use_stderr() { error.print() } else { print(&error.render().to_string()) };
+    let text = error.render().to_string();
+    let printed = if error.use_stderr() { write!(io::stderr(), "{}", shown(&text)) } else { print(&shown(&text)) };
     let status = if error.exit_code() == 0 { 0 } else { BAD_INPUT };
     match printed {
         Ok(()) => status,

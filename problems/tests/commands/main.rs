@@ -31,4 +31,5 @@ mod processes;
 mod recheck;
 mod reports;
 mod stages;
+mod terminal;
 mod toy2d;

@@ -6,59 +6,33 @@ use problems::commands::processes::run_together;
 use problems::commands::{Arguments, execute, execute_among};
 use scene_file::SceneFile;
 use serde_json::Value;
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex};
-use testset::kit::{scratch, text};
+use std::sync::Arc;
+use testset::kit::{Mailbox, scratch, text};
 
-/// One of several processes, with a channel to and from each of the others.
+/// One of several processes, played by a thread.
 #[derive(Debug)]
-struct Rank {
-    rank: usize,
-    to: Vec<Mutex<Sender<Vec<f64>>>>,
-    from: Vec<Mutex<Receiver<Vec<f64>>>>,
-}
-
-impl Rank {
-    fn all(count: usize) -> Vec<Self> {
-        let mut ranks: Vec<Self> = (0..count).map(|rank| Self { rank, to: vec![], from: vec![] }).collect();
-        for sender in 0..count {
-            for receiver in 0..count {
-                let (to, from) = channel();
-                ranks[sender].to.push(Mutex::new(to));
-                ranks[receiver].from.push(Mutex::new(from));
-            }
-        }
-        ranks
-    }
-
-    fn send(&self, rank: usize, values: &[f64]) {
-        self.to[rank].lock().unwrap().send(values.to_vec()).unwrap();
-    }
-
-    fn receive(&self, rank: usize) -> Vec<f64> {
-        self.from[rank].lock().unwrap().recv().unwrap()
-    }
-}
+struct Rank(Mailbox);
 
 impl Communication for Rank {
     fn rank(&self) -> usize {
-        self.rank
+        self.0.rank
     }
 
     fn size(&self) -> usize {
-        self.to.len()
+        self.0.size()
     }
 
     fn gather(&self, own: &[f64], counts: &[usize]) -> Vec<f64> {
-        (0..self.size()).for_each(|rank| self.send(rank, own));
-        let received: Vec<Vec<f64>> = (0..self.size()).map(|rank| self.receive(rank)).collect();
-        assert!(received.iter().map(Vec::len).eq(counts.iter().copied()));
-        received.concat()
+        self.0.gather(own, counts)
     }
 
     fn exchange(&self, parcels: &mut [Parcel]) {
-        parcels.iter().for_each(|parcel| self.send(parcel.rank, &parcel.outgoing));
-        parcels.iter_mut().for_each(|parcel| parcel.incoming = self.receive(parcel.rank));
+        parcels.iter().for_each(|parcel| self.0.send(parcel.rank, &parcel.outgoing));
+        for parcel in parcels {
+            let incoming = self.0.receive(parcel.rank);
+            assert_eq!(incoming.len(), parcel.incoming.len());
+            parcel.incoming = incoming;
+        }
     }
 }
 
@@ -73,8 +47,9 @@ fn open() -> Result<(SceneFile, Option<std::path::PathBuf>), problems::commands:
 /// What the first of so many processes says: JSON, or the message and the exit status of its failure.
 fn together(count: usize, options: &[&str]) -> Result<Value, (String, u8)> {
     let arguments = arguments(options);
-    let handles: Vec<_> = Rank::all(count)
+    let handles: Vec<_> = Mailbox::all(count)
         .into_iter()
+        .map(Rank)
         .map(|rank| {
             let arguments = arguments.clone();
             std::thread::spawn(move || {
@@ -151,7 +126,7 @@ fn a_refusal_and_a_failure_are_those_of_a_single_process() {
 
 #[test]
 fn a_process_of_another_build_is_refused_by_the_first() {
-    let handles = Rank::all(3).into_iter().enumerate().map(|(number, rank)| {
+    let handles = Mailbox::all(3).into_iter().map(Rank).enumerate().map(|(number, rank)| {
         std::thread::spawn(move || {
             let communication: Arc<dyn Communication> = Arc::new(rank);
             let build = if number == 2 { "version 2" } else { "version 1" };

@@ -21,10 +21,15 @@ pub fn text(path: &Path) -> &str {
     path.to_str().expect("a path in Unicode")
 }
 
-/// A program with arguments, its output kept for the test, without the logging that the environment may ask for.
+/// A program with arguments, its output kept for the test, without the logging and the locale that the environment may ask for.
 pub fn command(program: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
-    command.args(arguments).env_remove("RUST_LOG").stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+        .args(arguments)
+        .env_remove("RUST_LOG")
+        .env("LC_ALL", "C.UTF-8")
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
     command
 }
 

@@ -6,61 +6,30 @@ use contact::equilibrium::{ContactProblem, ContactSolver, SolverState};
 use contact::error::ContactError;
 use contact::scene::{Scene, hertz, signorini};
 use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TornOptions, TornSolver, TotalFeti};
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
+use testset::kit::Mailbox;
 
-/// One of several ranks, with a channel to and from each of the others.
+/// One of several processes, played by a thread.
 #[derive(Debug)]
-struct Rank {
-    rank: usize,
-    to: Vec<Mutex<Sender<Vec<f64>>>>,
-    from: Vec<Mutex<Receiver<Vec<f64>>>>,
-}
-
-impl Rank {
-    fn all(count: usize) -> Vec<Self> {
-        let rank = |rank| Self { rank, to: vec![], from: vec![] };
-        let mut ranks: Vec<Self> = (0..count).map(rank).collect();
-        for sender in 0..count {
-            for receiver in 0..count {
-                let (to, from) = channel();
-                ranks[sender].to.push(Mutex::new(to));
-                ranks[receiver].from.push(Mutex::new(from));
-            }
-        }
-        ranks
-    }
-
-    fn send(&self, rank: usize, values: Vec<f64>) {
-        self.to[rank].lock().unwrap().send(values).unwrap();
-    }
-
-    fn receive(&self, rank: usize) -> Vec<f64> {
-        self.from[rank].lock().unwrap().recv().unwrap()
-    }
-}
+struct Rank(Mailbox);
 
 impl Communication for Rank {
     fn rank(&self) -> usize {
-        self.rank
+        self.0.rank
     }
 
     fn size(&self) -> usize {
-        self.to.len()
+        self.0.size()
     }
 
     fn gather(&self, own: &[f64], counts: &[usize]) -> Vec<f64> {
-        assert_eq!(own.len(), counts[self.rank]);
-        (0..self.size()).for_each(|rank| self.send(rank, own.to_vec()));
-        let received: Vec<Vec<f64>> = (0..self.size()).map(|rank| self.receive(rank)).collect();
-        assert!(received.iter().map(Vec::len).eq(counts.iter().copied()));
-        received.concat()
+        self.0.gather(own, counts)
     }
 
     fn exchange(&self, parcels: &mut [Parcel]) {
-        parcels.iter().for_each(|parcel| self.send(parcel.rank, parcel.outgoing.clone()));
+        parcels.iter().for_each(|parcel| self.0.send(parcel.rank, &parcel.outgoing));
         for parcel in parcels {
-            let incoming = self.receive(parcel.rank);
+            let incoming = self.0.receive(parcel.rank);
             assert_eq!(incoming.len(), parcel.incoming.len());
             parcel.incoming = incoming;
         }
@@ -138,7 +107,7 @@ fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
         let scene = Scene { mesh: [4; 3], subdomains, ..scene.unwrap() };
         let alone = solve(&scene, clusters, None, method);
         for (processes, threads) in [(1, 1), (2, 2), (3, 1), (4, 1)] {
-            let ranks = Rank::all(processes).into_iter().map(|rank| {
+            let ranks = Mailbox::all(processes).into_iter().map(Rank).map(|rank| {
                 let scene = scene.clone();
                 on_threads(threads, move || solve(&scene, clusters, Some(rank), method))
             });
@@ -151,7 +120,7 @@ fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
 
 #[test]
 fn a_failure_in_one_process_ends_the_others() {
-    let handles = Rank::all(3).into_iter().enumerate().map(|(number, rank)| {
+    let handles = Mailbox::all(3).into_iter().map(Rank).enumerate().map(|(number, rank)| {
         on_threads(1, move || {
             let scene = Scene { mesh: [4; 3], ..signorini().unwrap() };
             // The bodies of the second process are so flat that no factor of theirs has a digit.
@@ -173,7 +142,7 @@ fn a_failure_in_one_process_ends_the_others() {
 
 #[test]
 fn the_first_failure_is_known_to_all() {
-    let handles = Rank::all(3).into_iter().enumerate().map(|(number, rank)| {
+    let handles = Mailbox::all(3).into_iter().map(Rank).enumerate().map(|(number, rank)| {
         on_threads(1, move || {
             let communication: &dyn Communication = &rank;
             let failure = |fails: bool| fails.then(|| format!("rank {number}: too little memory, 5 \u{b0}C"));

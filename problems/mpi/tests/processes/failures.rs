@@ -8,7 +8,7 @@ use testset::kit::{Random, scratch, text};
 const FAILING: &str = env!("CARGO_BIN_EXE_contact3d-mpi-failing");
 
 /// Kinds of failures, each with the exit status that it leads to.
-const KINDS: [(&str, i32); 5] = [("panic", 1), ("kill", 137), ("exit", 3), ("memory", 134), ("flat", 1)];
+const KINDS: [(&str, i32); 5] = [("panic", 101), ("kill", 137), ("exit", 3), ("memory", 134), ("flat", 1)];
 
 const RUN: [&str; 10] =
     ["--mesh", "4", "--solver", "newton", "--threads", "1", "--max-evaluations", "3", "--json", "--out"];

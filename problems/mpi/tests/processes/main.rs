@@ -12,7 +12,7 @@ use problems::commands::{Arguments, Failure, execute};
 use scene_file::SceneFile;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_contact3d-mpi");
@@ -42,10 +42,19 @@ fn started(program: &str, processes: usize, arguments: &[&str]) -> Command {
     command
 }
 
-/// The output of a command that must not hang, and its time.
-fn ended(mut command: Command) -> Output {
+/// The output of a command that must not hang.
+fn ended(command: Command) -> Output {
+    end_of(begun(command))
+}
+
+/// A command that runs, and is heard.
+fn begun(mut command: Command) -> Child {
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// The output of a command that runs and must not hang.
+fn end_of(mut child: Child) -> Output {
     let clock = Instant::now();
-    let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let [stdout, stderr] = [drain(child.stdout.take().unwrap()), drain(child.stderr.take().unwrap())];
     let status = loop {
         if let Some(status) = child.try_wait().unwrap() {
@@ -53,7 +62,7 @@ fn ended(mut command: Command) -> Output {
         }
         if clock.elapsed() > PATIENCE {
             child.kill().unwrap();
-            panic!("{command:?} hangs");
+            panic!("{child:?} hangs");
         }
         std::thread::sleep(Duration::from_millis(5));
     };

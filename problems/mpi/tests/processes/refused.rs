@@ -1,7 +1,7 @@
 //! Bad input and interruptions: one message, by process 0, and the exit status of a single process.
 
-use super::{PATIENCE, PROGRAM, ended, errors, mpirun, scene, started};
-use std::process::{Command, Stdio};
+use super::{PATIENCE, PROGRAM, begun, end_of, ended, errors, mpirun, scene, started};
+use std::process::Command;
 use std::time::{Duration, Instant};
 use testset::kit::{scratch, text};
 
@@ -56,7 +56,7 @@ fn an_interruption_of_the_first_process_ends_the_run_with_its_report() {
     let run = ["--mesh", "6", "--solver", "newton", "--optimizer", "bundle", "--json", "--out", text(&out)];
     let mut command = mpirun();
     command.args(["-n", "2", "sh", "-c", &script, "sh", PROGRAM, text(&scene)]).args(run);
-    let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let child = begun(command);
     let journal = out.join("journal.jsonl");
     let clock = Instant::now();
     while std::fs::read_to_string(&journal).unwrap_or_default().lines().count() < 3 {
@@ -65,7 +65,7 @@ fn an_interruption_of_the_first_process_ends_the_run_with_its_report() {
     }
     let process = std::fs::read_to_string(&number).unwrap();
     assert!(Command::new("kill").args(["-INT", process.trim()]).status().unwrap().success());
-    let output = child.wait_with_output().unwrap();
+    let output = end_of(child);
     assert_eq!(output.status.code(), Some(130), "{}", errors(&output));
     assert!(errors(&output).contains("error: interrupted; continue with"), "{}", errors(&output));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

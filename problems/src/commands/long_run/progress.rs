@@ -37,23 +37,25 @@ impl Progress {
         }
     }
 
-    fn line(&self, record: &IterationRecord, elapsed: Duration) -> String {
+    /// The line of an evaluation, as much of it as so many columns hold.
+    fn line(&self, record: &IterationRecord, elapsed: Duration, columns: usize) -> String {
         let done = record.evaluation.saturating_sub(self.replayed).max(1);
         let left = self.limit.saturating_sub(record.evaluation);
         let elapsed = elapsed.as_secs_f64();
         let by_count = elapsed / done as f64 * left as f64;
         let remaining = self.time_limit.map_or(by_count, |limit| by_count.min((limit - elapsed).max(0.0)));
-        format!(
-            "{}evaluation {:>4}/{}  {:<10} best {:.6e}  predicted decrease {:.1e}  elapsed {}, at most {} to go",
-            self.label,
-            record.evaluation,
-            self.limit,
-            record.kind,
-            record.center_value,
-            record.predicted_decrease,
+        let Self { label, limit, .. } = self;
+        let IterationRecord { evaluation, kind, center_value: best, predicted_decrease, .. } = record;
+        let whole = format!(
+            "{label}evaluation {evaluation:>4}/{limit}  {kind:<10} best {best:.6e}  predicted decrease {predicted_decrease:.1e}  elapsed {}, at most {} to go",
             time(elapsed),
             time(remaining)
-        )
+        );
+        if whole.chars().count() <= columns {
+            return whole;
+        }
+        let short = format!("{label}{evaluation}/{limit} {kind} {best:.3e} {}", time(elapsed));
+        short.chars().take(columns).collect()
     }
 }
 
@@ -69,7 +71,8 @@ impl Observer for Progress {
                 "evaluation done"
             );
             if self.status.is_visible() {
-                self.status.print(&self.line(record, self.clock.elapsed()));
+                let columns = self.status.columns();
+                self.status.print(&self.line(record, self.clock.elapsed(), columns));
             }
             self.announce(record.evaluation + 1);
         }
@@ -117,14 +120,16 @@ mod tests {
         };
         // Ten evaluations after the resumption took 50 s: 120 more take ten minutes, the time limit leaves two.
         let mut progress = Progress::new("mesh 6: ", 150, None, 20, StatusLine::hidden());
-        let line = progress.line(&record, Duration::from_secs(50));
+        let line = progress.line(&record, Duration::from_secs(50), 200);
         for words in
             ["mesh 6: evaluation   30/150", "serious", "1.500000e16", "2.0e14", "elapsed 50.0 s", "at most 10 min 00 s"]
         {
             assert!(line.contains(words), "{line}");
         }
         progress.time_limit = Some(170.0);
-        assert!(progress.line(&record, Duration::from_secs(50)).contains("at most 2 min 00 s"));
+        assert!(progress.line(&record, Duration::from_secs(50), 200).contains("at most 2 min 00 s"));
+        assert_eq!(progress.line(&record, Duration::from_secs(50), 40), "mesh 6: 30/150 serious 1.500e16 50.0 s");
+        assert_eq!(progress.line(&record, Duration::from_secs(50), 20), "mesh 6: 30/150 serio");
         assert_eq!(time(7300.0), "2 h 01 min");
     }
 }

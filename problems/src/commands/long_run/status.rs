@@ -3,11 +3,13 @@
 //! The contact solvers tell their stages as `tracing` events ([`contact::equilibrium::Stage`]); [`StageLayer`] listens and
 //! [`StatusLine`] shows the last one. Where stderr is no terminal there is neither line nor listener.
 
+use crate::commands::ascii::shown;
 use contact::equilibrium::STAGE_TARGET;
 use std::fmt::{Debug, Write};
 use std::io::{IsTerminal, Write as _};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
+use terminal_size::{Width, terminal_size_of};
 use tracing::field::{Field, Visit};
 use tracing::{Event, Subscriber};
 use tracing_subscriber::Layer;
@@ -15,6 +17,8 @@ use tracing_subscriber::layer::Context;
 
 /// Time between two drawings of the line.
 const REDRAW_INTERVAL: Duration = Duration::from_millis(200);
+/// Columns of a terminal that does not tell.
+const USUAL_COLUMNS: usize = 80;
 /// Return to the beginning of the line, and the control sequence that erases it.
 const ERASE: &str = "\r\x1b[2K";
 
@@ -31,9 +35,10 @@ struct Shown {
 }
 
 impl StatusLine {
-    /// The line of stderr, hidden if that is no terminal. It is drawn while any handle of it is left.
+    /// The line of stderr, hidden if that is no terminal that can erase a line. It is drawn while any handle of it is left.
     pub fn of_stderr() -> Self {
-        if !std::io::stderr().is_terminal() {
+        let cannot_erase = std::env::var("TERM").is_ok_and(|name| name == "dumb");
+        if !std::io::stderr().is_terminal() || cannot_erase {
             return Self::hidden();
         }
         let shown = Arc::new(Mutex::new(Shown { task: String::new(), stage: String::new(), begun: Instant::now() }));
@@ -58,6 +63,11 @@ impl StatusLine {
         self.0.is_some()
     }
 
+    /// How many columns the terminal has.
+    pub fn columns(&self) -> usize {
+        terminal_size_of(std::io::stderr()).map_or(USUAL_COLUMNS, |(Width(columns), _)| columns.into())
+    }
+
     /// What is under way until further notice; its time begins now.
     pub fn begin(&self, task: String) {
         self.change(|shown| *shown = Shown { task, stage: String::new(), begun: Instant::now() });
@@ -70,7 +80,7 @@ impl StatusLine {
 
     /// A line that stays.
     pub fn print(&self, line: &str) {
-        self.change(|_| write_stderr(&format!("{ERASE}{line}\n")));
+        self.change(|_| write_stderr(&format!("{ERASE}{}\n", shown(line))));
     }
 
     /// Takes the line off the terminal, until something begins.

@@ -100,9 +100,12 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
     }
     let (mut rows, mut failures) = (Vec::new(), Vec::new());
     let plan = arguments.plan().into_iter();
-    for (case, variant, clusters) in
-        plan.flat_map(|(case, variant)| arguments.clusters_of(variant).map(move |c| (case, variant, c)))
-    {
+    let plan: Vec<(Case, Variant, usize)> =
+        plan.flat_map(|(case, variant)| arguments.clusters_of(variant).map(move |c| (case, variant, c))).collect();
+    if plan.is_empty() {
+        return Err(Failure::Input("--clusters is allowed with solvers on total FETI only".into()));
+    }
+    for (case, variant, clusters) in plan {
         match measure::row(arguments.scene, case, variant, clusters) {
             Ok(row) => {
                 notice(&table::progress(&row));

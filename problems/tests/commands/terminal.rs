@@ -1,0 +1,65 @@
+//! What the binaries say to people: help, completions, the manual page; terminals without UTF-8 or colours.
+
+use testset::kit::{self, command, errors, refused};
+
+const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
+const HERTZ: &str = env!("CARGO_BIN_EXE_hertz3d");
+
+fn printed(program: &str, arguments: &[&str]) -> String {
+    let output = kit::run(program, arguments);
+    assert!(output.status.success(), "{}", errors(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn the_help_has_defaults_and_ends_with_examples() {
+    for (program, example) in [(CONTACT, "contact3d SCENE.toml --out"), (HERTZ, "hertz3d --out")] {
+        let help = printed(program, &["--help"]);
+        let (options, examples) = help.split_once("Examples:").unwrap();
+        assert!(options.matches("[default: ").count() >= 17 && examples.contains(example), "{help}");
+    }
+    assert!(printed(HERTZ, &["--help"]).contains("Bricks per edge of each body [default: [12, 12, 12]]"));
+}
+
+#[test]
+fn shells_and_man_get_their_files() {
+    for (shell, words) in [("bash", "complete -F"), ("zsh", "#compdef hertz3d"), ("fish", "complete -c hertz3d")] {
+        let script = printed(HERTZ, &["completions", shell]);
+        assert!(script.contains(words) && script.contains("max-evaluations"), "{shell}: {script}");
+    }
+    for program in [CONTACT, HERTZ] {
+        let page = printed(program, &["man"]);
+        for words in [".TH ", "\\-\\-friction", "Examples:", "evaluate"] {
+            assert!(page.contains(words), "{words}: {page}");
+        }
+    }
+    refused(HERTZ, &["completions", "cmd"], &["name of a shell", "bash", "zsh"]);
+    refused(CONTACT, &["completions"], &["name of a shell"]);
+}
+
+#[test]
+fn a_locale_without_utf8_gets_ascii_and_the_same_numbers() {
+    let arguments = ["evaluate", "--mesh", "2", "--no-checks"];
+    let ascii = |arguments: &[&str]| {
+        let output = command(HERTZ, arguments).env("LC_ALL", "C").output().unwrap();
+        assert!(output.status.success(), "{}", errors(&output));
+        assert!(output.stdout.is_ascii() && output.stderr.is_ascii(), "{}", String::from_utf8_lossy(&output.stdout));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let objective = |text: &str| text.lines().find(|line| line.starts_with("objective")).map(str::to_owned);
+    assert_eq!(objective(&ascii(&arguments)), objective(&printed(HERTZ, &arguments)));
+    assert!(printed(HERTZ, &["--help"]).contains("Σσ^p") && ascii(&["--help"]).contains("sum sigma^p"));
+    let refusal = command(HERTZ, &["--friction", "-1"]).env("LC_ALL", "POSIX").output().unwrap();
+    assert!(refusal.status.code() == Some(2) && refusal.stderr.is_ascii(), "{}", errors(&refusal));
+}
+
+#[test]
+fn no_escape_sequence_is_written() {
+    for arguments in [&["--mesh", "2", "--max-evaluations", "2"][..], &["--help"], &["--friction", "x"]] {
+        for colours in ["1", ""] {
+            let output =
+                command(HERTZ, arguments).env("NO_COLOR", colours).env("CLICOLOR_FORCE", "1").output().unwrap();
+            assert!(!output.stdout.contains(&0x1b) && !output.stderr.contains(&0x1b), "{}", errors(&output));
+        }
+    }
+}
