@@ -2,7 +2,9 @@
 
 use crate::commands::ascii::shown;
 use crate::commands::failure::Failure;
+use crate::commands::folder::RunKind;
 use crate::commands::processes::SharedSolver;
+use crate::commands::study::Varied;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use contact::body::elasticity::Formulation;
@@ -19,12 +21,15 @@ use std::path::{Path, PathBuf};
 const LARGEST_TRACTION: f64 = 1e15;
 
 /// What to do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub enum Command {
     /// Optimize the shape.
+    #[default]
     Optimize,
     /// Optimize with and without friction, and solve both shapes with and without it (Example 5.3 of the paper).
     Compare,
+    /// A table over values of parameters (--vary), each evaluated, or optimized with --optimize.
+    Study,
     /// Objective, subgradient and certificates at one shape.
     Evaluate,
     /// Taylor test of the subgradient at one shape.
@@ -39,7 +44,7 @@ pub enum Command {
 #[command(version, allow_negative_numbers = true)]
 pub struct Arguments {
     /// What to do.
-    #[arg(value_enum, default_value_t = Command::Optimize)]
+    #[arg(value_enum, default_value_t)]
     pub command: Command,
     /// With recheck: the folder that an optimization of this scene has left.
     #[arg(value_name = "DIR")]
@@ -84,6 +89,12 @@ pub struct Arguments {
     /// Exponent p of the pressure norm.
     #[arg(long, value_name = "P", value_parser = real("objective.exponent"))]
     pub exponent: Option<f64>,
+    /// With study: an option and its values, a,b,c or FIRST:LAST:COUNT; several of them make all combinations.
+    #[arg(long, value_name = "OPTION=VALUES", value_parser = Varied::parse)]
+    pub vary: Vec<Varied>,
+    /// With study: optimize in every row, instead of evaluating the start.
+    #[arg(long)]
+    pub optimize: bool,
     /// Control heights to evaluate or verify at: a JSON array, row major, index i*n2 + j with i along x1 [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub controls: Option<PathBuf>,
@@ -137,6 +148,17 @@ pub struct Arguments {
     pub print_schema: bool,
 }
 
+impl Command {
+    /// The kind of run that it continues.
+    pub fn kind(self) -> RunKind {
+        match self {
+            Self::Compare => RunKind::Comparison,
+            Self::Study => RunKind::Study,
+            _ => RunKind::Optimization,
+        }
+    }
+}
+
 impl Arguments {
     /// The folder that holds what is printed too, if there is one.
     pub fn kept(&self) -> Option<&Path> {
@@ -173,28 +195,40 @@ impl Arguments {
 
     /// Refuses options that the command does not take.
     fn check_command(&self) -> Result<(), Failure> {
-        let evaluating = matches!(self.command, Command::Evaluate | Command::Verify);
-        let optimizing = matches!(self.command, Command::Optimize | Command::Compare);
+        let studying = self.command == Command::Study;
+        let optimizing_rows = studying && (self.optimize || self.resume.is_some());
+        let evaluating = matches!(self.command, Command::Evaluate | Command::Verify) || studying && !self.optimize;
+        let optimizing = matches!(self.command, Command::Optimize | Command::Compare) || optimizing_rows;
         let rechecking = self.command == Command::Recheck;
-        let takes_controls = "with evaluate and verify only (optimize and compare take --start-controls)";
-        let takes_start = "with optimize and compare only (evaluate and verify take --controls)";
-        let limits = "with optimize and compare only";
+        let takes_controls = "with evaluate, verify and study only (what optimizes takes --start-controls)";
+        let takes_start = "with optimize, compare and study --optimize only (what evaluates takes --controls)";
+        let limits = "with optimize, compare and study --optimize only";
         for (option, given, taken, allowed) in [
             ("--controls", self.controls.is_some(), evaluating, takes_controls),
             ("--start-controls", self.start_controls.is_some(), optimizing, takes_start),
             ("--optimizer", self.optimizer.is_some(), optimizing, limits),
             ("--max-evaluations", self.max_evaluations.is_some(), optimizing, limits),
             ("--diagnose", self.diagnose, self.command == Command::Evaluate, "with evaluate only"),
-            ("--time-limit", self.time_limit.is_some(), optimizing, limits),
+            (
+                "--time-limit",
+                self.time_limit.is_some(),
+                optimizing || studying,
+                "with optimize, compare and study only",
+            ),
+            ("--vary", !self.vary.is_empty(), studying, "with study only"),
+            ("--optimize", self.optimize, studying, "with study only"),
             ("--continuation", self.continuation.is_some(), optimizing, limits),
             ("--starts", self.starts.is_some(), self.command == Command::Optimize, "with optimize only"),
-            ("--resume", self.resume.is_some(), optimizing, limits),
+            ("--resume", self.resume.is_some(), optimizing || studying, "with optimize, compare and study only"),
             ("--out", self.out.is_some(), !rechecking, "without recheck, which writes no file"),
             ("DIR", self.certified.is_some(), rechecking, "with recheck only"),
         ] {
             if given && !taken {
                 return refused(option, allowed);
             }
+        }
+        if studying && self.vary.is_empty() && self.resume.is_none() {
+            return Err(Failure::Input("study needs --vary OPTION=VALUES, for example --vary friction=0:0.8:5".into()));
         }
         if rechecking && self.certified.is_none() {
             return Err(Failure::Input("recheck needs DIR, the folder that an optimization has left".into()));

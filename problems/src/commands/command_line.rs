@@ -8,7 +8,7 @@ use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
 use crate::commands::output::{finish, leave, left};
 use crate::commands::processes::Processes;
 use crate::commands::shell_files::{asked, examples};
-use crate::commands::{compare, evaluate, optimize, recheck, verify};
+use crate::commands::{compare, evaluate, optimize, recheck, study, verify};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
 use contact::equilibrium::STAGE_TARGET;
 use scene_file::{SceneFile, schema};
@@ -57,20 +57,26 @@ pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
         return finish(file, None);
     }
     let parsed = command.try_get_matches().and_then(|found| AnyScene::from_arg_matches(&found));
-    let AnyScene { scene, arguments } = match parsed {
+    let AnyScene { mut scene, mut arguments } = match parsed {
         Ok(parsed) => parsed,
         Err(error) => return left(&error),
     };
     let missing = || Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into());
-    if arguments.resume.is_some() && scene.is_some() {
-        let words = "SCENE.toml and --resume together: a resumed run has its scene in its folder";
-        return finish(Err(Failure::Input(words.into())), None);
+    // A command in the place of the scene.
+    let word = scene.as_ref().filter(|scene| !scene.exists()).and_then(|scene| scene.to_str());
+    let first = word.and_then(|word| Command::from_str(word, true).ok());
+    if arguments.resume.is_some() {
+        if let Some(command) = first.filter(|_| arguments.command == Command::default()) {
+            (scene, arguments.command) = (None, command);
+        }
+        if scene.is_some() {
+            let words = "SCENE.toml and --resume together: a resumed run has its scene in its folder";
+            return finish(Err(Failure::Input(words.into())), None);
+        }
     }
     let open = || {
-        let scene = scene.ok_or_else(missing)?;
-        // A command in the place of the scene means that the scene was forgotten.
-        let command = scene.to_str().is_some_and(|word| Command::from_str(word, true).is_ok());
-        if command && !scene.exists() { Err(missing()) } else { Ok((SceneFile::read(&scene)?, Some(scene))) }
+        let scene = scene.filter(|_| first.is_none()).ok_or_else(missing)?;
+        Ok((SceneFile::read(&scene)?, Some(scene)))
     };
     finish(execute_among(open, &arguments, processes), arguments.kept())
 }
@@ -106,7 +112,7 @@ pub fn execute_among(
     arguments.check()?;
     let status = listen()?;
     let (file, path) = match &arguments.resume {
-        Some(folder) => RunFolder::scene(folder, arguments.command == Command::Compare)?,
+        Some(folder) => RunFolder::scene(folder, arguments.command.kind())?,
         None => open()?,
     };
     let loaded = LoadedScene::new(arguments.apply(file)?, path).map_err(|error| arguments.blame(error))?;
@@ -120,6 +126,7 @@ pub fn execute_among(
     let result = match arguments.command {
         Command::Optimize => optimize::run(&loaded, &session),
         Command::Compare => compare::run(&loaded, &session),
+        Command::Study => study::run(&loaded, &session),
         Command::Evaluate => evaluate::run(&loaded, &session),
         Command::Verify => verify::run(&loaded.case, &session),
         Command::Recheck => recheck::run(&loaded.case, arguments),

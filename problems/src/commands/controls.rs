@@ -48,9 +48,7 @@ pub fn parse(text: &str, name: &str, expected: usize) -> Result<Vector, SceneErr
     let values: Vec<Option<f64>> = serde_json::from_str(text).map_err(|error| {
         file_error(Path::new(name), format!("{error}; expected a JSON array of {expected} numbers"))
     })?;
-    if values.len() != expected {
-        return Err(SceneError::WrongCount { what: format!("controls in {name}"), expected, found: values.len() });
-    }
+    check_count(values.len(), expected, name)?;
     let mut controls = Vector::zeros(expected);
     for (index, value) in values.into_iter().enumerate() {
         controls[index] = value.filter(|value| value.is_finite()).ok_or_else(|| {
@@ -58,4 +56,15 @@ pub fn parse(text: &str, name: &str, expected: usize) -> Result<Vector, SceneErr
         })?;
     }
     Ok(controls)
+}
+
+/// Refuses a wrong number of controls; `name` says where they stand.
+///
+/// # Errors
+/// [`SceneError::WrongCount`].
+pub fn check_count(found: usize, expected: usize, name: &str) -> Result<(), SceneError> {
+    match found == expected {
+        true => Ok(()),
+        false => Err(SceneError::WrongCount { what: format!("controls in {name}"), expected, found }),
+    }
 }

@@ -31,6 +31,8 @@ pub const REPORT: &str = "report.json";
 pub const GRIDS: [&str; 2] = ["counter_surface.csv", "start.csv"];
 /// Folders of the two runs of a comparison.
 pub const COMPARED: [&str; 2] = ["with_friction", "without_friction"];
+/// What a study varies; its rows lie beside it.
+pub const STUDY: &str = "study.json";
 /// Bytes that stand for those of a run, while it is tried out whether they fit.
 const PROBE: &str = "room";
 
@@ -242,27 +244,59 @@ fn what_it_holds(path: &Path, names: &BTreeSet<String>) -> String {
     if !path.join(SCENE).exists() {
         return format!("holds results ({beside})");
     }
-    let command = resume_command(path, is_comparison(names));
+    let command = resume_command(path, RunKind::of(names));
     match path.join(REPORT).exists() {
         true => format!("holds results of a run; `{command}` continues it with larger limits ({beside})"),
         false => format!("holds a run that has not ended; continue it with `{command}` ({beside})"),
     }
 }
 
-/// Whether a list is that of a comparison.
-pub fn is_comparison(names: &BTreeSet<String>) -> bool {
-    names.contains(&format!("{}/{REGISTER}", COMPARED[0]))
+/// What the run in a folder is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RunKind {
+    /// One optimization.
+    Optimization,
+    /// Two optimizations, with and without friction.
+    Comparison,
+    /// A study of parameters.
+    Study,
+}
+
+impl RunKind {
+    /// The kind of the run that has written these files.
+    pub fn of(names: &BTreeSet<String>) -> Self {
+        if names.contains(STUDY) {
+            Self::Study
+        } else if names.contains(&format!("{}/{REGISTER}", COMPARED[0])) {
+            Self::Comparison
+        } else {
+            Self::Optimization
+        }
+    }
+
+    /// What it is, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Optimization => "an optimization",
+            Self::Comparison => "a comparison",
+            Self::Study => "a study",
+        }
+    }
 }
 
 /// The command that continues a run, as it is typed in a shell.
-pub fn resume_command(folder: &Path, comparison: bool) -> String {
+pub fn resume_command(folder: &Path, kind: RunKind) -> String {
     let plain = |c: char| c.is_alphanumeric() || "/._-+,:@%".contains(c);
     let quoted = |word: String| match word.chars().all(plain) && !word.is_empty() {
         true => word,
         false => format!("'{}'", word.replace('\'', r"'\''")),
     };
     let program = std::env::args().next().map_or_else(String::new, |program| quoted(program) + " ");
-    let command = if comparison { "compare " } else { "" };
+    let command = match kind {
+        RunKind::Optimization => "",
+        RunKind::Comparison => "compare ",
+        RunKind::Study => "study ",
+    };
     format!("{program}{command}--resume {}", quoted(folder.display().to_string()))
 }
 

@@ -31,5 +31,6 @@ mod processes;
 mod recheck;
 mod reports;
 mod stages;
+mod study;
 mod terminal;
 mod toy2d;

@@ -2,7 +2,7 @@
 
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, GRIDS, REPORT, SCENE, START, file_error, is_comparison, json, resume_command};
+use crate::commands::folder::{Folder, GRIDS, REPORT, RunKind, SCENE, START, file_error, json, resume_command};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::stages;
 use crate::commands::register::{JOURNAL, REGISTER, names};
@@ -67,20 +67,20 @@ fn hash(bytes: &[u8]) -> String {
 }
 
 impl RunFolder {
-    /// The scene file of a run that is to be continued, with its path; `comparison` says that the run is a comparison, which
-    /// keeps its optimizations in folders of their own.
+    /// The scene file of a run that is to be continued, with its path. Comparisons and studies keep their optimizations in folders of
+    /// their own.
     ///
     /// # Errors
     /// [`SceneError::File`] if the folder holds no run of this kind.
-    pub fn scene(folder: &Path, comparison: bool) -> Result<(SceneFile, Option<PathBuf>), SceneError> {
+    pub fn scene(folder: &Path, kind: RunKind) -> Result<(SceneFile, Option<PathBuf>), SceneError> {
         if !Self::is_one(folder) {
             let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
             return Err(file_error(folder, reason));
         }
-        if is_comparison(&names(folder)) != comparison {
-            let found = if comparison { "an optimization" } else { "a comparison" };
-            let command = resume_command(folder, !comparison);
-            return Err(file_error(folder, format!("holds {found}: continue it with `{command}`")));
+        let found = RunKind::of(&names(folder));
+        if found != kind {
+            let command = resume_command(folder, found);
+            return Err(file_error(folder, format!("holds {}: continue it with `{command}`", found.words())));
         }
         let file = folder.join(SCENE);
         let mut scene = SceneFile::read(&file)?;
@@ -93,7 +93,7 @@ impl RunFolder {
         folder.join(START).exists() && folder.join(SCENE).exists()
     }
 
-    /// Begins a run in a folder, with its scene and its initial controls. `parts` are the folders of the runs of a comparison.
+    /// Begins a run in a folder, with its scene and its initial controls. `parts` are the folders of the runs of a comparison or of a study.
     ///
     /// # Errors
     /// As [`Folder::create`].

@@ -7,7 +7,7 @@ pub mod summary;
 
 use crate::commands::contact_objective::{SolvedShape, checks};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, REPORT, json, printed_with_files, resume_command};
+use crate::commands::folder::{Folder, REPORT, RunKind, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS, interrupted};
 use crate::commands::optimize::run::{OptimizationRun, optimize};
@@ -18,7 +18,7 @@ use crate::commands::report::files;
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let optimization = optimize(loaded, None, session)?;
     let folder = optimization.folder.as_ref();
-    let continued = folder.map(|folder| resume_command(folder.folder().path(), false));
+    let continued = folder.map(|folder| resume_command(folder.folder().path(), RunKind::Optimization));
     let (text, _shapes) = report(&optimization, loaded, session, continued.as_deref())?;
     match (interruption(continued.as_deref()), optimization.failure()) {
         (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),

@@ -122,7 +122,7 @@ fn random_start(objective: &ContactObjective, start: &Vector, step: f64, seed: u
 
 /// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is continued,
 /// else those given, else those that the command line or the scene names. Everything is checked before the folder is touched.
-/// `parts` are the folders of the runs of a comparison.
+/// `parts` are the folders of the runs of a comparison or of a study.
 ///
 /// # Errors
 /// [`Failure::Input`] for controls outside the admissible set; any [`Failure`] of the folder.

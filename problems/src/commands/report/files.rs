@@ -10,6 +10,7 @@ use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::all_warnings;
 use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::{gallery, pages, sections, tables};
+use crate::commands::study::StudyJson;
 use contact::fields::{FieldState, vtk_files};
 use contact::plausibility::Warning;
 use figures::page::Page;
@@ -146,6 +147,11 @@ pub fn write_evaluation(
     out.write("evaluation.json", json, "everything that evaluate knows, as one JSON object")?;
     out.show(&[("shape", "", shape)])?;
     out.finish(|figures| pages::evaluation(figures, objective, shape), checks)
+}
+
+/// The files of a study.
+pub fn write_study(folder: &Folder, _loaded: &LoadedScene, study: &StudyJson) -> Result<(), Failure> {
+    folder.write("study.csv", study.csv())
 }
 
 /// The files of a comparison.

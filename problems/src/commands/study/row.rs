@@ -1,0 +1,192 @@
+//! One row of a study.
+
+use crate::commands::contact_objective::{SolvedShape, objective_among};
+use crate::commands::controls;
+use crate::commands::failure::Failure;
+use crate::commands::loaded_scene::{LoadedScene, Session};
+use crate::commands::optimize::report;
+use crate::commands::optimize::run::optimize;
+use crate::commands::study::varied::options;
+use contact::equilibrium::{ContactStatus, StatusCounts};
+use nonsmooth::{StateSolver, Vector};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::time::Instant;
+
+/// One row of a study.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The options that it has beside those of the study.
+    pub options: Vec<String>,
+    /// What came out.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+    /// Seconds that it took.
+    pub seconds: f64,
+}
+
+/// What came out of a row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Outcome {
+    /// The state, at the optimum if the row was optimized.
+    Solved(Box<Solved>),
+    /// Why there is none.
+    Failed(String),
+}
+
+/// A solved row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Solved {
+    /// Θ.
+    pub objective: f64,
+    /// Largest contact pressure, MPa.
+    pub peak_pressure: f64,
+    /// Tributary area of the closed contact nodes, mm².
+    pub contact_area: f64,
+    /// Σλ_N, N.
+    pub total_normal_force: f64,
+    /// Numbers of nodes per status.
+    pub status: StatusCounts,
+    /// Control heights, mm.
+    pub controls: Vec<f64>,
+    /// Where the row was optimized, how.
+    pub optimization: Option<Optimized>,
+    /// What the pictures show.
+    pub picture: Picture,
+}
+
+/// The optimization of a row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Optimized {
+    /// Θ at the start.
+    pub objective_start: f64,
+    /// Largest contact pressure at the start, MPa.
+    pub peak_pressure_start: f64,
+    /// Evaluations.
+    pub evaluations: usize,
+    /// How it ended.
+    pub termination: String,
+    /// Whether the shape is proved stationary.
+    pub confirmed: bool,
+    /// Whether more evaluations may improve it.
+    pub can_continue: bool,
+}
+
+/// Contact nodes of a row for pictures.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Picture {
+    /// Contact nodes along x₁ and x₂.
+    pub counts: [usize; 2],
+    /// Sides of the contact surface, mm.
+    pub size: [f64; 2],
+    /// Contact pressure per node, MPa.
+    pub pressures: Vec<f64>,
+    /// Height of the surface per node, mm.
+    pub heights: Vec<f64>,
+}
+
+impl Row {
+    /// Whether an optimization ended at a limit.
+    pub fn ended_at_a_limit(&self) -> bool {
+        matches!(&self.outcome, Outcome::Solved(solved) if solved.optimization.as_ref().is_some_and(|run| run.can_continue))
+    }
+}
+
+/// Computes a row: the scene with some options, at controls that are given or at its own start; optimized if asked for, in a folder
+/// if there is one. The inner error says why the row was cut short.
+///
+/// # Errors
+/// [`Failure`] of a folder; failures of the scene and of its solver are the row's outcome.
+pub fn computed(
+    loaded: &LoadedScene,
+    words: &[String],
+    (optimized, start, out): (bool, Option<&Vector>, Option<&Path>),
+    session: &Session<'_>,
+) -> Result<Result<Row, String>, Failure> {
+    let clock = Instant::now();
+    let part = options(words).map_err(Failure::Input).and_then(|options| {
+        let mut file = options.apply(loaded.file.clone())?;
+        file.output.folder = out.map(|path| path.display().to_string());
+        Ok(loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?)
+    });
+    let outcome = match part {
+        Ok(part) if optimized => optimum(&part, start, session),
+        Ok(part) => evaluated(&part, start, session).map(Ok),
+        Err(failure) => Err(failure),
+    };
+    let outcome = match outcome {
+        Ok(Ok(solved)) => Outcome::Solved(Box::new(solved)),
+        Ok(Err(reason)) => return Ok(Err(reason)),
+        Err(failure) => Outcome::Failed(failure.to_string()),
+    };
+    Ok(Ok(Row { options: words.to_vec(), outcome, seconds: clock.elapsed().as_secs_f64() }))
+}
+
+/// The state at one shape.
+fn evaluated(part: &LoadedScene, start: Option<&Vector>, session: &Session<'_>) -> Result<Solved, Failure> {
+    let objective = objective_among(&part.case, &session.processes)?;
+    let controls = match start {
+        Some(start) => {
+            let expected = objective.solver().control_dimension();
+            controls::check_count(start.len(), expected, "--controls")?;
+            objective.solver().problem().admissible.check(start)?;
+            start.clone()
+        }
+        None => controls::load(objective.solver(), &part.case, ("--controls", None))?,
+    };
+    solved(&objective, &SolvedShape::at(&objective, &controls)?)
+}
+
+/// The optimum, or why the run was cut short.
+fn optimum(
+    part: &LoadedScene,
+    start: Option<&Vector>,
+    session: &Session<'_>,
+) -> Result<Result<Solved, String>, Failure> {
+    let run = optimize(part, start, session)?;
+    if run.was_cut_short() {
+        return Ok(Err("a limit of time or an interruption ended a row".into()));
+    }
+    if let Some(reason) = run.failure() {
+        return Err(Failure::Computation(reason));
+    }
+    let (_, [first, last]) = report(&run, part, session, None)?;
+    let chosen = run.chosen().ok_or_else(|| Failure::computation("no mesh was begun"))?;
+    let optimization = Optimized {
+        objective_start: first.value,
+        peak_pressure_start: first.peak_pressure,
+        evaluations: run.mesh_runs.iter().map(|run| run.report.counts.evaluations).sum(),
+        termination: chosen.report.termination.to_string(),
+        confirmed: chosen.report.termination.is_confirmed(),
+        can_continue: run.can_continue(),
+    };
+    let objective = chosen.report.value;
+    Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved(&chosen.objective, &last)? }))
+}
+
+/// What a row keeps of a solved shape.
+fn solved(
+    objective: &crate::commands::contact_objective::ContactObjective,
+    shape: &SolvedShape,
+) -> Result<Solved, Failure> {
+    let (problem, forces) = (objective.solver().problem(), &shape.state.forces);
+    let closed = problem.boundary.points.iter().zip(&forces.status).filter(|(_, s)| **s != ContactStatus::Open);
+    let [n1, n2, _] = problem.grid.nodes();
+    let block = problem.lower_block(shape.controls.as_slice()).map_err(Failure::computation)?;
+    Ok(Solved {
+        objective: shape.value,
+        peak_pressure: shape.peak_pressure,
+        contact_area: closed.map(|(point, _)| point.area).sum(),
+        total_normal_force: forces.total_normal_force(),
+        status: forces.counts(),
+        controls: shape.controls.as_slice().to_vec(),
+        optimization: None,
+        picture: Picture {
+            counts: [n1, n2],
+            size: problem.grid.size,
+            pressures: objective.cost().pressures(&shape.state),
+            heights: block.upper,
+        },
+    })
+}

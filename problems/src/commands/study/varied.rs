@@ -1,0 +1,148 @@
+//! What a study varies: options and their values.
+
+use crate::commands::arguments::Arguments;
+use clap::Parser;
+use serde::{Deserialize, Serialize};
+
+/// The options that a study may vary: those of the scene, of its objective and of the contact solver.
+const ALLOWED: [&str; 13] = [
+    "mesh",
+    "subdomains",
+    "friction",
+    "surface",
+    "control-points",
+    "poisson-ratio",
+    "young-modulus",
+    "formulation",
+    "load-factor",
+    "solver",
+    "preconditioner",
+    "objective",
+    "exponent",
+];
+/// Most values of an option.
+const MAX_VALUES: usize = 1000;
+/// Digits of the values between both ends of a range: 0.6 instead of 0.6000000000000001.
+const DIGITS: usize = 12;
+
+/// An option with its values, as they are typed.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Varied {
+    name: String,
+    values: Vec<String>,
+}
+
+impl Varied {
+    /// From `OPTION=a,b,c` or `OPTION=FIRST:LAST:COUNT`.
+    ///
+    /// # Errors
+    /// In words, for an option that cannot be varied, and for values that it does not take.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let shape = "allowed: OPTION=a,b,c or OPTION=FIRST:LAST:COUNT, such as friction=0:0.8:5";
+        let (name, values) = text.split_once('=').ok_or(shape)?;
+        let name = name.trim_start_matches("--");
+        if !ALLOWED.contains(&name) {
+            return Err(format!("option {name:?} cannot be varied; allowed: {}", ALLOWED.join(", ")));
+        }
+        let values = match range(values) {
+            Some(values) => values?,
+            None => values.split(',').map(str::to_owned).collect(),
+        };
+        for value in &values {
+            options(&[assignment(name, value)])?;
+        }
+        Ok(Self { name: name.to_owned(), values })
+    }
+
+    /// The option.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its values, as they are typed.
+    pub fn values(&self) -> &[String] {
+        &self.values
+    }
+}
+
+/// Numbers from first to last in equal steps; none for a text that is no range.
+fn range(text: &str) -> Option<Result<Vec<String>, String>> {
+    let parts: Vec<&str> = text.split(':').collect();
+    let [first, last, count] = parts[..] else { return None };
+    let (first, last, count) = (first.parse::<f64>().ok()?, last.parse::<f64>().ok()?, count.parse::<usize>());
+    let Ok(count @ 2..=MAX_VALUES) = count else {
+        return Some(Err(format!("COUNT of a range is a number from 2 to {MAX_VALUES}")));
+    };
+    if !(first.is_finite() && last.is_finite()) {
+        return Some(Err("a range has finite ends".into()));
+    }
+    let rounded = |value: f64| format!("{value:.DIGITS$e}").parse().unwrap_or(value);
+    let value = |step: usize| first + (last - first) * (step as f64 / (count - 1) as f64);
+    Some(Ok((0..count).map(|step| rounded(value(step)).to_string()).collect()))
+}
+
+fn assignment(name: &str, value: &str) -> String {
+    format!("--{name}={value}")
+}
+
+/// The options of a row as arguments of a command.
+///
+/// # Errors
+/// In words, for a value that the option does not take.
+pub fn options(words: &[String]) -> Result<Arguments, String> {
+    let words = std::iter::once("study").chain(words.iter().map(String::as_str));
+    Arguments::try_parse_from(words).map_err(|error| {
+        let text = error.to_string();
+        let first = text.lines().next().unwrap_or_default();
+        first.trim_start_matches("error: ").to_owned()
+    })
+}
+
+/// The options of all rows; the last option changes fastest.
+pub fn combinations(varied: &[Varied]) -> Vec<Vec<String>> {
+    varied.iter().fold(vec![vec![]], |rows, varied| {
+        let longer = |row: &Vec<String>, value: &String| {
+            let mut row = row.clone();
+            row.push(assignment(&varied.name, value));
+            row
+        };
+        rows.iter().flat_map(|row| varied.values.iter().map(move |value| longer(row, value))).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_and_lists_become_all_combinations() {
+        let friction = Varied::parse("friction=0:0.8:5").expect("a range");
+        assert_eq!(friction.values(), ["0", "0.2", "0.4", "0.6", "0.8"]);
+        let mesh = Varied::parse("--mesh=4:12:3").expect("numbers of bricks");
+        assert_eq!(mesh.values(), ["4", "8", "12"]);
+        let surface = Varied::parse("surface=bspline:2,bezier").expect("splines");
+        let rows = combinations(&[surface, Varied::parse("friction=0,0.3").expect("numbers")]);
+        let expected = [
+            ["--surface=bspline:2", "--friction=0"],
+            ["--surface=bspline:2", "--friction=0.3"],
+            ["--surface=bezier", "--friction=0"],
+            ["--surface=bezier", "--friction=0.3"],
+        ];
+        assert_eq!(rows, expected);
+    }
+
+    #[test]
+    fn what_cannot_be_varied_is_refused_in_words() {
+        for (text, words) in [
+            ("friction", "OPTION=a,b,c"),
+            ("threads=1,2", "cannot be varied"),
+            ("friction=0:1:1", "COUNT"),
+            ("friction=0,x", "invalid value 'x'"),
+            ("mesh=4:6:4", "invalid value"),
+            ("friction=", "friction"),
+        ] {
+            let refusal = Varied::parse(text).expect_err(text);
+            assert!(refusal.contains(words), "{text}: {refusal}");
+        }
+    }
+}

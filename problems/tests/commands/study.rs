@@ -1,0 +1,111 @@
+//! `study`: rows are what separate commands find, failures are rows, a study that was cut short goes on.
+
+use serde_json::Value;
+use testset::kit::{self, errors, json, refused, text};
+
+const SIGNORINI: &str = env!("CARGO_BIN_EXE_signorini3d");
+const CONTACT: &str = env!("CARGO_BIN_EXE_contact3d");
+
+fn rows(study: &Value) -> &Vec<Value> {
+    study["rows"].as_array().unwrap()
+}
+
+/// A row without its time.
+fn outcomes(study: &Value) -> Vec<(Value, Value)> {
+    rows(study).iter().map(|row| (row["options"].clone(), row["solved"].clone())).collect()
+}
+
+#[test]
+fn every_row_is_what_evaluate_finds() {
+    let study =
+        json(SIGNORINI, &["study", "--mesh", "4", "--vary", "friction=0:0.6:3", "--vary", "load-factor=1,2", "--json"]);
+    assert_eq!((&study["rows_in_all"], &study["failures"], rows(&study).len()), (&6.into(), &0.into(), 6));
+    for row in rows(&study) {
+        let options: Vec<&str> = row["options"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+        let single = json(SIGNORINI, &[&["evaluate", "--mesh", "4", "--json"], &options[..]].concat());
+        let solved = &row["solved"];
+        for key in ["objective", "peak_pressure", "total_normal_force", "status"] {
+            assert_eq!(solved[key], single[key], "{key} of {options:?}");
+        }
+        let closed = solved["status"]["open"].as_u64().unwrap() < 25;
+        let area = solved["contact_area"].as_f64().unwrap();
+        assert!(closed && area > 0.0 && area <= 1e4 * (1.0 + 1e-12), "{area}");
+    }
+}
+
+#[test]
+fn a_row_that_fails_is_a_row_with_its_reason() {
+    let arguments = ["study", "--mesh", "4", "--vary", "subdomains=3,2", "--vary", "load-factor=-1,1"];
+    let output = kit::run(SIGNORINI, &arguments);
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{}", errors(&output));
+    assert!(
+        table.contains("--subdomains = 3 is not allowed") && table.contains("rows:        4 of 4, 3 failed"),
+        "{table}"
+    );
+    let reason = json(SIGNORINI, &[&arguments[..], &["--json"]].concat())["rows"][2]["failed"].clone();
+    assert!(reason.as_str().unwrap().contains("equilibrium"), "{reason}");
+    let output = kit::run(SIGNORINI, &["study", "--mesh", "4", "--vary", "subdomains=3"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(errors(&output).contains("every row has failed") && !output.stdout.is_empty());
+}
+
+#[test]
+fn an_optimized_study_goes_on_where_it_was_cut_short() {
+    let scratch = kit::scratch();
+    let [whole, cut] = ["whole", "cut"].map(|name| scratch.path().join(name));
+    let study = ["study", "--mesh", "3", "--vary", "friction=0,0.3", "--optimize", "--max-evaluations", "4", "--json"];
+    let expected = json(SIGNORINI, &[&study[..], &["--out", text(&whole)]].concat());
+    let output = kit::run(SIGNORINI, &[&study[..], &["--out", text(&cut), "--time-limit", "1e-9"]].concat());
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        errors(&output).contains("time limit") && errors(&output).contains("study --resume"),
+        "{}",
+        errors(&output)
+    );
+    let resumed = json(SIGNORINI, &["study", "--resume", text(&cut), "--time-limit", "1000", "--json"]);
+    assert_eq!(outcomes(&resumed), outcomes(&expected));
+    for (number, row) in (1..).zip(rows(&expected)) {
+        let own = kit::read_json(&whole.join(format!("row_{number:03}/report.json")));
+        assert_eq!(row["solved"]["objective"], own["objective"]);
+        assert_eq!(row["solved"]["controls"], own["controls"]);
+        assert_eq!(row["solved"]["optimization"]["evaluations"], 4);
+    }
+    let table = std::fs::read_to_string(whole.join("study.csv")).unwrap();
+    assert_eq!((table.lines().count(), table.lines().next().unwrap().split(',').count()), (3, 14));
+    // More evaluations than the limit that ended the rows.
+    let longer = json(CONTACT, &["study", "--resume", text(&whole), "--max-evaluations", "6", "--json"]);
+    let at_once =
+        ["study", "--mesh", "3", "--vary", "friction=0,0.3", "--optimize", "--max-evaluations", "6", "--json"];
+    assert_eq!(outcomes(&longer), outcomes(&json(SIGNORINI, &at_once)));
+    refused(SIGNORINI, &["--resume", text(&whole)], &["holds a study", "study --resume"]);
+}
+
+#[test]
+fn what_makes_no_study_is_refused() {
+    refused(SIGNORINI, &["study"], &["--vary", "friction=0:0.8:5"]);
+    refused(SIGNORINI, &["study", "--vary", "threads=1,2"], &["cannot be varied", "load-factor"]);
+    refused(SIGNORINI, &["study", "--vary", "friction=-1"], &["--friction", "≥ 0"]);
+    refused(SIGNORINI, &["study", "--vary", "friction=0", "--vary", "friction=1"], &["friction", "once"]);
+    refused(SIGNORINI, &["--vary", "friction=0"], &["--vary", "with study only"]);
+    refused(
+        SIGNORINI,
+        &["study", "--vary", "friction=0", "--max-evaluations", "3"],
+        &["--max-evaluations", "study --optimize"],
+    );
+    let many = ["study", "--vary", "friction=0:1:100", "--vary", "load-factor=1:2:100"];
+    refused(SIGNORINI, &many, &["--vary", "10000 rows", "at most 1000"]);
+}
+
+/// What the program says when a run has not ended can be typed as it stands, without a scene.
+#[test]
+fn a_comparison_is_continued_without_its_scene() {
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let small = ["compare", "--mesh", "3", "--max-evaluations", "2", "--json"];
+    let first = json(SIGNORINI, &[&small[..], &["--out", text(&folder)]].concat());
+    let again = json(CONTACT, &["compare", "--resume", text(&folder), "--json"]);
+    assert_eq!(again["shapes"], first["shapes"]);
+    refused(CONTACT, &["evaluate", "--resume", text(&folder)], &["--resume"]);
+    refused(CONTACT, &["none.toml", "compare", "--resume", text(&folder)], &["SCENE.toml and --resume"]);
+}
