@@ -98,6 +98,12 @@ pub struct Arguments {
     /// Control heights to evaluate or verify at: a JSON array, row major, index i*n2 + j with i along x1 [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub controls: Option<PathBuf>,
+    /// With evaluate, and as a value of --vary: every control height is off by so much, mm, up or down at random.
+    #[arg(long, value_name = "MM", value_parser = size)]
+    pub height_error: Option<f64>,
+    /// With --height-error: another number, other signs [default: 1].
+    #[arg(long, value_name = "K", requires = "height_error")]
+    pub seed: Option<u64>,
     /// Control heights to start the optimization from [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
@@ -206,6 +212,12 @@ impl Arguments {
         for (option, given, taken, allowed) in [
             ("--controls", self.controls.is_some(), evaluating, takes_controls),
             ("--start-controls", self.start_controls.is_some(), optimizing, takes_start),
+            (
+                "--height-error",
+                self.height_error.is_some(),
+                self.command == Command::Evaluate,
+                "with evaluate, and within --vary",
+            ),
             ("--optimizer", self.optimizer.is_some(), optimizing, limits),
             ("--max-evaluations", self.max_evaluations.is_some(), optimizing, limits),
             ("--diagnose", self.diagnose, self.command == Command::Evaluate, "with evaluate only"),
@@ -407,6 +419,10 @@ fn count(field: &'static str) -> impl Fn(&str) -> Result<usize, String> + Clone 
 
 fn finite(text: &str) -> Result<f64, &'static str> {
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or("allowed: a finite number")
+}
+
+fn size(text: &str) -> Result<f64, &'static str> {
+    finite(text).ok().filter(|size| *size >= 0.0).ok_or("allowed: a finite number ≥ 0")
 }
 
 /// A choice by its name in scene files; the error lists all names.

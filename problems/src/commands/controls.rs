@@ -1,9 +1,11 @@
 //! Control files: a JSON array of numbers.
 
+use crate::commands::arguments::Arguments;
 use crate::commands::folder::file_error;
 use crate::commands::processes::SharedSolver;
 use contact::contact_shape::ContactShape;
 use contact::error::SceneError;
+use nonsmooth::verify::seeded_direction;
 use nonsmooth::{StateSolver, Vector};
 use scene_file::{Case, read_text};
 use std::path::Path;
@@ -67,4 +69,12 @@ pub fn check_count(found: usize, expected: usize, name: &str) -> Result<(), Scen
         true => Ok(()),
         false => Err(SceneError::WrongCount { what: format!("controls in {name}"), expected, found }),
     }
+}
+
+/// Controls with the error of a workshop, if the arguments ask for one: every height is off by the same amount, with signs that depend
+/// on the seed alone. The admissible set binds what is designed, not what is made of it.
+pub fn as_made(controls: Vector, arguments: &Arguments) -> Vector {
+    let Some(error) = arguments.height_error else { return controls };
+    let signs = seeded_direction(controls.len(), arguments.seed.unwrap_or(1));
+    controls.zip_map(&signs, |height, sign| height + error.copysign(sign))
 }

@@ -81,6 +81,30 @@ fn an_optimized_study_goes_on_where_it_was_cut_short() {
     refused(SIGNORINI, &["--resume", text(&whole)], &["holds a study", "study --resume"]);
 }
 
+/// What the error of a workshop does: none at 0; with a seed, the same as of `evaluate`.
+#[test]
+fn heights_that_are_off_change_the_pressure() {
+    let errors = ["--vary", "height-error=0,0.1", "--vary", "seed=1:3:3"];
+    let study = json(SIGNORINI, &[&["study", "--mesh", "4", "--json"], &errors[..]].concat());
+    let value = |row: usize| rows(&study)[row]["solved"]["objective"].as_f64().unwrap();
+    let exact = json(SIGNORINI, &["evaluate", "--mesh", "4", "--json"]);
+    assert!((0..3).all(|row| exact["objective"] == value(row)));
+    for (row, seed) in [(3, "1"), (4, "2"), (5, "3")] {
+        let off = ["evaluate", "--mesh", "4", "--height-error", "0.1", "--seed", seed, "--json"];
+        assert_eq!(json(SIGNORINI, &off)["objective"], value(row));
+        assert!((value(row) / value(0) - 1.0).abs() > 1e-6);
+    }
+    assert!(value(3) != value(4) && value(4) != value(5));
+    for (arguments, words) in [
+        (&["study", "--vary", "height-error=0,1", "--optimize"][..], "without --optimize"),
+        (&["study", "--vary", "seed=1,2"], "height-error"),
+        (&["evaluate", "--height-error", "-1"], "≥ 0"),
+        (&["--height-error", "1"], "with evaluate"),
+    ] {
+        refused(SIGNORINI, arguments, &[words]);
+    }
+}
+
 #[test]
 fn what_makes_no_study_is_refused() {
     refused(SIGNORINI, &["study"], &["--vary", "friction=0:0.8:5"]);

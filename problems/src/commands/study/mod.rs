@@ -11,6 +11,7 @@ mod table;
 mod varied;
 
 pub use varied::Varied;
+use varied::{HEIGHT_ERROR, SEED};
 
 use crate::commands::contact_objective::objective_among;
 use crate::commands::failure::Failure;
@@ -87,6 +88,13 @@ fn stated(session: &Session<'_>) -> Result<Plan, Failure> {
     names.sort_unstable();
     if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
         return Err(Failure::Input(format!("--vary {} is allowed once", pair[0])));
+    }
+    let varies = |name: &str| names.contains(&name);
+    if varies(HEIGHT_ERROR) && arguments.optimize {
+        return Err(Failure::Input(format!("--vary {HEIGHT_ERROR} is allowed without --optimize")));
+    }
+    if varies(SEED) && !varies(HEIGHT_ERROR) {
+        return Err(Failure::Input(format!("--vary {SEED} is allowed with --vary {HEIGHT_ERROR}=VALUES")));
     }
     let count = arguments.vary.iter().fold(1_usize, |count, varied| count.saturating_mul(varied.values().len()));
     if count > MAX_ROWS {

@@ -1,6 +1,7 @@
 //! One row of a study.
 
-use crate::commands::contact_objective::{SolvedShape, objective_among};
+use crate::commands::arguments::Arguments;
+use crate::commands::contact_objective::{ContactObjective, SolvedShape, objective_among};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
@@ -108,11 +109,12 @@ pub fn computed(
     let part = options(words).map_err(Failure::Input).and_then(|options| {
         let mut file = options.apply(loaded.file.clone())?;
         file.output.folder = out.map(|path| path.display().to_string());
-        Ok(loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?)
+        let part = loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?;
+        Ok((part, options))
     });
     let outcome = match part {
-        Ok(part) if optimized => optimum(&part, start, session),
-        Ok(part) => evaluated(&part, start, session).map(Ok),
+        Ok((part, _)) if optimized => optimum(&part, start, session),
+        Ok((part, options)) => evaluated(&part, start, &options, session).map(Ok),
         Err(failure) => Err(failure),
     };
     let outcome = match outcome {
@@ -124,7 +126,12 @@ pub fn computed(
 }
 
 /// The state at one shape.
-fn evaluated(part: &LoadedScene, start: Option<&Vector>, session: &Session<'_>) -> Result<Solved, Failure> {
+fn evaluated(
+    part: &LoadedScene,
+    start: Option<&Vector>,
+    options: &Arguments,
+    session: &Session<'_>,
+) -> Result<Solved, Failure> {
     let objective = objective_among(&part.case, &session.processes)?;
     let controls = match start {
         Some(start) => {
@@ -135,7 +142,7 @@ fn evaluated(part: &LoadedScene, start: Option<&Vector>, session: &Session<'_>) 
         }
         None => controls::load(objective.solver(), &part.case, ("--controls", None))?,
     };
-    solved(&objective, &SolvedShape::at(&objective, &controls)?)
+    solved(&objective, &SolvedShape::at(&objective, &controls::as_made(controls, options))?)
 }
 
 /// The optimum, or why the run was cut short.
@@ -166,10 +173,7 @@ fn optimum(
 }
 
 /// What a row keeps of a solved shape.
-fn solved(
-    objective: &crate::commands::contact_objective::ContactObjective,
-    shape: &SolvedShape,
-) -> Result<Solved, Failure> {
+fn solved(objective: &ContactObjective, shape: &SolvedShape) -> Result<Solved, Failure> {
     let (problem, forces) = (objective.solver().problem(), &shape.state.forces);
     let closed = problem.boundary.points.iter().zip(&forces.status).filter(|(_, s)| **s != ContactStatus::Open);
     let [n1, n2, _] = problem.grid.nodes();

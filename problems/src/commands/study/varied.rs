@@ -4,8 +4,8 @@ use crate::commands::arguments::Arguments;
 use clap::Parser;
 use serde::{Deserialize, Serialize};
 
-/// The options that a study may vary: those of the scene, of its objective and of the contact solver.
-const ALLOWED: [&str; 13] = [
+/// The options that a study may vary: those of the scene, of its objective, of the contact solver, and of the error of a workshop.
+const ALLOWED: [&str; 15] = [
     "mesh",
     "subdomains",
     "friction",
@@ -19,7 +19,13 @@ const ALLOWED: [&str; 13] = [
     "preconditioner",
     "objective",
     "exponent",
+    HEIGHT_ERROR,
+    SEED,
 ];
+/// The option that says how far heights are off.
+pub const HEIGHT_ERROR: &str = "height-error";
+/// The option that says in which directions.
+pub const SEED: &str = "seed";
 /// Most values of an option.
 const MAX_VALUES: usize = 1000;
 /// Digits of the values between both ends of a range: 0.6 instead of 0.6000000000000001.
@@ -49,7 +55,9 @@ impl Varied {
             None => values.split(',').map(str::to_owned).collect(),
         };
         for value in &values {
-            options(&[assignment(name, value)])?;
+            // An option that another one needs is tried out together with it.
+            let with = (name == SEED).then(|| assignment(HEIGHT_ERROR, "0"));
+            options(&with.into_iter().chain([assignment(name, value)]).collect::<Vec<_>>())?;
         }
         Ok(Self { name: name.to_owned(), values })
     }
