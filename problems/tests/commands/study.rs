@@ -94,6 +94,15 @@ fn heights_that_are_off_change_the_pressure() {
         assert_eq!(json(SIGNORINI, &off)["objective"], value(row));
         assert!((value(row) / value(0) - 1.0).abs() > 1e-6);
     }
+    let folder = kit::scratch();
+    let file = folder.path().join("half.json");
+    let heights: Vec<f64> = (0..36).map(|control| if control < 18 { 80.0 } else { 81.0 }).collect();
+    std::fs::write(&file, format!("{heights:?}")).unwrap();
+    let half =
+        json(SIGNORINI, &[&["study", "--mesh", "4", "--json", "--controls", text(&file)], &errors[..]].concat());
+    let single = json(SIGNORINI, &["evaluate", "--mesh", "4", "--json", "--controls", text(&file)]);
+    assert_eq!(rows(&half)[0]["solved"]["objective"], single["objective"]);
+    assert_eq!(rows(&half)[0]["solved"]["controls"], serde_json::to_value(&heights).unwrap());
     assert!(value(3) != value(4) && value(4) != value(5));
     for (arguments, words) in [
         (&["study", "--vary", "height-error=0,1", "--optimize"][..], "without --optimize"),

@@ -14,6 +14,7 @@ pub use varied::Varied;
 use varied::{HEIGHT_ERROR, SEED};
 
 use crate::commands::contact_objective::objective_among;
+use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, RunKind, STUDY, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
@@ -113,7 +114,9 @@ fn started(
 ) -> Result<(Option<RunFolder>, Vector), Failure> {
     let parts: Vec<&str> = if plan.optimize { parts.iter().map(String::as_str).collect() } else { vec![] };
     let objective = objective_among(&loaded.case, &session.processes)?;
-    let (folder, controls) = begin(&objective, loaded, None, &parts, session)?;
+    let load = |file| controls::load(objective.solver(), &loaded.case, ("--controls", Some(file)));
+    let given = session.arguments.controls.as_deref().map(load).transpose()?;
+    let (folder, controls) = begin(&objective, loaded, given.as_ref(), &parts, session)?;
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
         folder.folder().write(STUDY, json(plan)?)?;
