@@ -85,9 +85,44 @@ impl Canvas {
         );
     }
 
+    /// A line of text in the middle of a place, with a rim that makes it readable on every colour.
+    pub fn rimmed(&mut self, [x, y]: Place, size: f64, text: &str) {
+        let _ = writeln!(
+            self.body,
+            "<text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"{size}\" fill=\"{INK}\" text-anchor=\"middle\" stroke=\"#ffffff\" \
+             stroke-width=\"3\" stroke-linejoin=\"round\" paint-order=\"stroke\">{}</text>",
+            y + 0.35 * size,
+            raised(&escaped(text), size)
+        );
+    }
+
+    /// An arrow from a tail to a tip, its head filled.
+    pub fn arrow(&mut self, [tail, tip]: [Place; 2], stroke: Stroke) {
+        let along = [tip[0] - tail[0], tip[1] - tail[1]];
+        let length = along[0].hypot(along[1]);
+        if length > 0.0 {
+            let head = (2.5 + 2.0 * stroke.width).min(0.6 * length);
+            let along = along.map(|part| part / length);
+            let wing = |side: f64| {
+                let side = side * head;
+                [tip[0] - head * along[0] - side * along[1], tip[1] - head * along[1] + side * along[0]]
+            };
+            self.line(&[tail, [tip[0] - 0.5 * head * along[0], tip[1] - 0.5 * head * along[1]]], stroke);
+            self.area(stroke.colour, [[tip, wing(0.45), wing(-0.45)].as_slice()]);
+        }
+    }
+
     /// A line through places.
     pub fn line(&mut self, places: &[Place], stroke: Stroke) {
         let _ = writeln!(self.body, "<path d=\"{}\" {}/>", path(places, false), stroke.attributes());
+    }
+
+    /// Pieces of lines as one path.
+    pub fn pieces(&mut self, pieces: &[[Place; 2]], colour: &str) {
+        let paths: String = pieces.iter().map(|piece| path(piece, false)).collect();
+        if !paths.is_empty() {
+            let _ = writeln!(self.body, "<path d=\"{paths}\" {}/>", Stroke::solid(colour, 0.9).attributes());
+        }
     }
 
     /// A closed outline.

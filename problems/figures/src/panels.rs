@@ -91,25 +91,19 @@ impl Row<'_> {
         }
         self.scale.bar(&mut canvas, [left, top], height);
         let foot = top + height;
-        self.arrows(&mut canvas, [MARGIN + 8.0, foot + 58.0]);
+        directions(&mut canvas, self.axes, [MARGIN + 8.0, foot + 58.0]);
         canvas.text([note, foot + 62.0], LABEL, self.note);
         Ok(Figure::new(self.name, self.title, canvas))
     }
+}
 
-    fn arrows(&self, canvas: &mut Canvas, origin: Place) {
-        let view = View { origin, scale: ARROW };
-        let stroke = Stroke::solid(INK, 1.0);
-        for (axis, label) in self.axes.iter().enumerate() {
-            let end = view.place(std::array::from_fn(|other| f64::from(u8::from(other == axis))));
-            let along = [end[0] - origin[0], end[1] - origin[1]];
-            let length = along[0].hypot(along[1]);
-            let along = along.map(|part| part / length);
-            canvas.line(&[origin, end], stroke);
-            let wing =
-                |side: f64| [end[0] - 5.0 * along[0] - side * along[1], end[1] - 5.0 * along[1] + side * along[0]];
-            canvas.area(INK, [[end, wing(2.2), wing(-2.2)].as_slice()]);
-            let gap = if axis == 2 { [6.0, 2.0] } else { [5.0, 0.34 * LABEL] };
-            canvas.text([end[0] + gap[0], end[1] + gap[1]], LABEL, label);
-        }
+/// The directions of the three axes as arrows with labels.
+pub(super) fn directions(canvas: &mut Canvas, axes: &[String; 3], origin: Place) {
+    let view = View { origin, scale: ARROW };
+    for (axis, label) in axes.iter().enumerate() {
+        let end = view.place(std::array::from_fn(|other| f64::from(u8::from(other == axis))));
+        canvas.arrow([origin, end], Stroke::solid(INK, 1.0));
+        let gap = if axis == 2 { [6.0, 2.0] } else { [5.0, 0.34 * LABEL] };
+        canvas.text([end[0] + gap[0], end[1] + gap[1]], LABEL, label);
     }
 }

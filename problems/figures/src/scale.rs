@@ -100,6 +100,11 @@ impl Axis {
         share.is_finite().then_some(share)
     }
 
+    /// Labels of both ends, in the unit of the ticks.
+    pub fn end_labels(&self) -> [String; 2] {
+        [self.low, self.high].map(|end| number(if self.logarithmic { 10.0_f64.powf(end) } else { end }))
+    }
+
     /// The values at both ends.
     pub fn ends(&self) -> [f64; 2] {
         let value = |position: f64| if self.logarithmic { 10.0_f64.powf(position) } else { position * self.unit };
