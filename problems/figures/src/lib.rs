@@ -43,7 +43,7 @@ pub use landscape::{Landscape, Visit};
 pub use lines::{Curve, LinePanel, Lines};
 pub use log_plot::{LogPlot, Series};
 pub use map::{ColourScales, Map, MapPanel};
-pub use scale::nice_below;
+pub use scale::{nice_below, number};
 pub use sketch::{Sign, Sketch, SketchBody, SketchMark};
 pub use solid::{SolidBlock, SolidPanel, Solids};
 pub use surfaces::{SurfacePanel, Surfaces};
