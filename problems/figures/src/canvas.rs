@@ -10,6 +10,8 @@ pub(super) const FAMILY: &str = "Ubuntu";
 pub(super) const TITLE: f64 = 14.0;
 /// Size of labels and notes, points.
 pub(super) const LABEL: f64 = 12.0;
+/// Upper side of what stands below the title of a figure, points.
+pub(super) const TITLE_ROOM: f64 = 30.0;
 /// Colour of text and frames.
 pub(super) const INK: &str = "#222222";
 /// Average width of a letter relative to its size; only decides about distances.
@@ -56,13 +58,15 @@ impl<'a> Stroke<'a> {
 pub(super) struct Canvas {
     pub width: f64,
     pub height: f64,
+    /// Left, top, width and height of what may stand one below the other, in whole points.
+    pub parts: Vec<[u32; 4]>,
     body: String,
 }
 
 // Writing to a string cannot fail: the results of `write!` are dropped below.
 impl Canvas {
     pub fn new(width: f64, height: f64) -> Self {
-        Self { width: width.ceil(), height: height.ceil(), body: String::new() }
+        Self { width: width.ceil(), height: height.ceil(), parts: Vec::new(), body: String::new() }
     }
 
     /// One line of text of some size that begins at a place.
@@ -180,18 +184,26 @@ impl Canvas {
         self.body += "</g>\n";
     }
 
+    /// Says that a rectangle is a part that may stand alone; it is cut at the sides of the drawing.
+    pub fn part(&mut self, [left, top]: Place, [right, foot]: Place) {
+        let [left, top] = [left, top].map(|side| side.max(0.0).floor() as u32);
+        let [right, foot] = [right.min(self.width), foot.min(self.height)].map(|side| side.ceil() as u32);
+        self.parts.push([left, top, right.saturating_sub(left), foot.saturating_sub(top)]);
+    }
+
     /// SVG elements as they are.
     pub fn raw(&mut self, elements: &str) {
         self.body += elements;
     }
 
-    /// The whole text.
-    pub fn finish(self, title: &str) -> String {
-        let Self { width, height, body } = self;
+    /// The whole text; all that is drawn has one name, so that a page can show its parts.
+    pub fn finish(self, name: &str, title: &str) -> String {
+        let Self { width, height, body, .. } = self;
+        let name = escaped(name).replace('"', "&quot;");
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
              {height}\" font-family=\"{FAMILY}, sans-serif\">\n<title>{}</title>\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</svg>\n",
+             <g id=\"{name}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</g>\n</svg>\n",
             escaped(title)
         )
     }

@@ -8,7 +8,7 @@ use super::nodes::PlaneGrid;
 use super::plan::Plan;
 use super::scale::{Axis, behind, nice_below, number};
 
-/// Every node is in one of a few classes, which have a colour each. Where there are arrows, they begin at the nodes, all on one scale;
+/// Every node is in one of a few classes, which have a colour each. Where there are arrows, their middles are at the nodes, all on one scale;
 /// on fine grids only some are drawn.
 ///
 /// ```
@@ -172,7 +172,8 @@ impl Classes {
             let [dx, dy] = [points * a, -points * b];
             // Shorter ones are no arrows any more.
             if drawn && dx.hypot(dy) > 0.7 {
-                canvas.arrow([[x, y], [x + dx, y + dy]], Stroke::solid(INK, 0.9));
+                let [dx, dy] = [0.5 * dx, 0.5 * dy];
+                canvas.arrow([[x - dx, y - dy], [x + dx, y + dy]], Stroke::solid(INK, 0.9));
             }
         }
         let text = |node: usize| {

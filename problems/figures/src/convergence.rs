@@ -1,6 +1,6 @@
 //! The course of an optimization: every value, the best one so far, and what kind of step each evaluation was.
 
-use super::canvas::{Canvas, INK, Place, Stroke, TITLE, text_width};
+use super::canvas::{Canvas, INK, Place, Stroke, TITLE, TITLE_ROOM, text_width};
 use super::chart::{Frame, Parts, ROOM_BELOW};
 use super::colours::CURVES;
 use super::error::{FigureError, finite, some};
@@ -57,7 +57,7 @@ pub struct Step {
 }
 
 /// Size of the frame, points.
-const SIZE: [f64; 2] = [520.0, 300.0];
+const SIZE: [f64; 2] = [460.0, 300.0];
 /// Ratio of the largest to the smallest value from which the axis is logarithmic.
 const LOGARITHMIC_FROM: f64 = 8.0;
 /// Size of the values at the upper side of the frame, points.
@@ -107,6 +107,8 @@ impl Convergence {
         for (number, step) in numbered().filter(|(_, step)| is_best(step)) {
             self.mark(&mut canvas, (number, step), place(f64::from(number), step.best));
         }
+        canvas.part([0.0, TITLE_ROOM], [right, canvas.height]);
+        canvas.part([right, TITLE_ROOM], [canvas.width, frame.top + 8.0 + 21.0 * legend.len() as f64]);
         marks::legend(&mut canvas, [right, frame.top + 8.0], &legend);
         Ok(Figure::new(&self.name, &self.title, canvas))
     }
@@ -131,8 +133,9 @@ impl Convergence {
         let shapes = self.kinds().into_iter().enumerate();
         legend.extend(shapes.map(|(index, kind)| (Sign::Shape(kind.0, index), named(&kind))));
         let colours = origins.iter().enumerate();
-        legend
-            .extend(colours.map(|(index, origin)| (Sign::Swatch(mark_colour(index)), format!("by {}", named(origin)))));
+        legend.extend(
+            colours.map(|(index, origin)| (Sign::Swatch(mark_colour(index)), format!("origin: {}", named(origin)))),
+        );
         legend
     }
 
@@ -259,7 +262,9 @@ mod tests {
             step.origin = origin.into();
         }
         let svg = bad.figure().expect("numbers").svg;
-        assert!(svg.contains("by cuts (2)") && svg.contains("<title>evaluation 2: null, cuts, Θ = 4.0000e9</title>"));
+        assert!(
+            svg.contains("origin: cuts (2)") && svg.contains("<title>evaluation 2: null, cuts, Θ = 4.0000e9</title>")
+        );
     }
 
     #[test]

@@ -107,8 +107,10 @@ impl Lines {
             let left = 8.0 + ROOM_LEFT + (index % columns) as f64 * wide;
             let top = 62.0 + (index / columns) as f64 * tall;
             canvas.text([left, top - 9.0], LABEL, &panel.caption);
+            canvas.part([left - ROOM_LEFT, top - 26.0], [left - ROOM_LEFT + wide, top - 26.0 + tall]);
             panel.draw(&mut canvas, Frame { left, top, width: SIZE[0], height: SIZE[1] }, &up, &names);
         }
+        canvas.part([right, 50.0], [canvas.width, 60.0 + 21.0 * legend.len() as f64]);
         marks::legend(&mut canvas, [right, 70.0], &legend);
         Ok(Figure::new(&self.name, &self.title, canvas))
     }

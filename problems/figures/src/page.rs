@@ -178,9 +178,22 @@ impl Block {
     }
 }
 
-/// A figure on its light ground.
+/// A figure on its light ground; on a narrow page its parts, which show the same drawing, stand in its place.
 fn card(figure: &Figure) -> Markup {
-    html! { div.card { (PreEscaped(&figure.svg)) } }
+    html! {
+        div class=(if figure.parts.len() > 1 { "card parted" } else { "card" }) {
+            (PreEscaped(&figure.svg))
+            @if figure.parts.len() > 1 {
+                div.parts {
+                    p { (figure.title) }
+                    @for [left, top, width, height] in &figure.parts {
+                        svg width=(width) height=(height) viewBox={ (left) " " (top) " " (width) " " (height) }
+                            font-family="Ubuntu, sans-serif" { use href={ "#" (figure.name) } {} }
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// Where the script writes the title of what the pointer is on; nothing for figures without such titles.
@@ -213,6 +226,7 @@ mod tests {
             name: name.into(),
             title: "t".into(),
             svg: format!("<svg><title>t</title><path><title>{name}</title></path></svg>"),
+            parts: if name == "one" { vec![[0, 30, 100, 50], [100, 30, 20, 50]] } else { vec![] },
         };
         let blocks = vec![
             Block::Text("a < b & \"c\"".into()),
@@ -239,6 +253,7 @@ mod tests {
             html.contains("Θ &lt;script&gt;") && html.matches("<script").count() == 1 && html.contains("&lt;/pre&gt;")
         );
         assert!(["one", "two", "three"].iter().all(|name| html.contains(&figure(name).svg)));
+        assert!(html.matches("<use href=\"#one\">").count() == 2 && html.contains("viewBox=\"100 30 20 50\""));
         assert!(html.matches("type=\"radio\"").count() == 2 && html.matches("<output").count() == 2);
         assert!(html.contains("<a href=\"a/b%20c.svg\">a/b c.svg</a>") && html.contains("large &lt;strain&gt;"));
         assert!(!html.contains("http:") && !html.contains("https:") && !html.contains("<link"));

@@ -1,7 +1,7 @@
 //! Where the panels of plane grids stand: side by side, each to scale, two lines of text above.
 
-use super::canvas::{Canvas, LABEL, text_width};
-use super::chart::Frame;
+use super::canvas::{Canvas, LABEL, TITLE_ROOM, text_width};
+use super::chart::{Frame, ROOM_BELOW};
 use super::nodes::PlaneGrid;
 
 /// Longer side of a panel, points.
@@ -46,8 +46,21 @@ impl Plan {
         Self { frames, labelled, right: left, foot }
     }
 
-    /// The captions above the panels.
+    /// The captions above the panels. Every panel is a part of the figure, and so is what stands right of all panels.
     pub fn write(&self, canvas: &mut Canvas, captions: &[[String; 2]]) {
+        let foot = self.foot + ROOM_BELOW + 8.0;
+        let lefts: Vec<f64> = self
+            .frames
+            .iter()
+            .zip(&self.labelled)
+            .map(|(frame, room)| frame.left - room.map_or(16.0, |room| room + 8.0))
+            .collect();
+        for (index, left) in lefts.iter().enumerate() {
+            canvas.part([*left, TITLE_ROOM], [lefts.get(index + 1).copied().unwrap_or(self.right - 4.0), foot]);
+        }
+        if self.right < canvas.width - 1.0 {
+            canvas.part([self.right - 4.0, TITLE_ROOM], [canvas.width, foot]);
+        }
         for (frame, [first, second]) in self.frames.iter().zip(captions) {
             canvas.text([frame.left, frame.top - 26.0], LABEL, first);
             canvas.text([frame.left, frame.top - 10.0], LABEL, second);

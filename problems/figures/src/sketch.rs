@@ -1,6 +1,6 @@
 //! Bodies in space with arrows and supports at them, and a legend with what these stand for.
 
-use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, text_width};
+use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, TITLE_ROOM, text_width};
 use super::colours::CURVES;
 use super::error::{FigureError, cells, count, finite, some};
 use super::figure::Figure;
@@ -23,7 +23,6 @@ use super::solid::faces;
 ///         sign: Sign::Arrow,
 ///         text: "traction (0, 0, −5) MPa".into(),
 ///         lines: vec![[[0.5, 0.5, 1.4], [0.5, 0.5, 1.0]]],
-///         is_hidden: false,
 ///     }],
 ///     notes: vec!["E = 7·10^{4} MPa".into()],
 /// };
@@ -71,10 +70,8 @@ pub struct SketchMark {
     pub sign: Sign,
     /// What it stands for.
     pub text: String,
-    /// Where it is: pairs of points.
+    /// Where it is: pairs of points. It is drawn before the bodies.
     pub lines: Vec<[[f64; 3]; 2]>,
-    /// Whether the bodies stand before it.
-    pub is_hidden: bool,
 }
 
 /// Larger side of the drawing of the bodies, points.
@@ -115,11 +112,12 @@ impl Sketch {
         let mut canvas = Canvas::new(width, (foot + 74.0).max(TOP + room + rows * ROW + MARGIN));
         canvas.text([MARGIN, 22.0], TITLE, &self.title);
         let marks = || self.marks.iter().enumerate();
-        marks().filter(|(_, mark)| mark.is_hidden).for_each(|(index, mark)| mark.draw(&mut canvas, &view, index));
         let sheets: Vec<Vec<Sheet>> = self.bodies.iter().map(SketchBody::sheets).collect();
         paint(&mut canvas, &view, &sheets, &ColourScale::new("", "", []));
-        marks().filter(|(_, mark)| !mark.is_hidden).for_each(|(index, mark)| mark.draw(&mut canvas, &view, index));
+        marks().for_each(|(index, mark)| mark.draw(&mut canvas, &view, index));
         marks().for_each(|(index, mark)| mark.write_letter(&mut canvas, &view, index));
+        canvas.part([0.0, TITLE_ROOM], [right - 4.0, canvas.height]);
+        canvas.part([right - 4.0, TITLE_ROOM], [canvas.width, TOP + room + (rows + 0.5) * ROW]);
         directions(&mut canvas, &self.axes, [MARGIN + 8.0, foot + 52.0]);
         self.legend(&mut canvas, [right, TOP + room]);
         Ok(Figure::new(&self.name, &self.title, canvas))
@@ -205,18 +203,16 @@ mod tests {
         let points = (0..nodes.iter().product::<usize>()).map(|node| {
             [node / (nodes[1] * nodes[2]), node / nodes[2] % nodes[1], node % nodes[2]].map(|index| index as f64)
         });
-        let mark = |sign, is_hidden| SketchMark {
-            sign,
-            text: "u₁ = 0 & more".into(),
-            lines: vec![[[-0.4, 0.5, 0.5], [0.0, 0.5, 0.5]]],
-            is_hidden,
-        };
+        let mark =
+            |sign| SketchMark {
+                sign, text: "u₁ = 0 & more".into(), lines: vec![[[-0.4, 0.5, 0.5], [0.0, 0.5, 0.5]]]
+            };
         Sketch {
             name: "s".into(),
             title: "t".into(),
             axes: ["x".into(), "y".into(), "z".into()],
             bodies: vec![SketchBody { nodes, points: points.collect() }],
-            marks: vec![mark(Sign::Support, true), mark(Sign::Arrow, false)],
+            marks: vec![mark(Sign::Support), mark(Sign::Arrow)],
             notes: vec!["note".into()],
         }
     }

@@ -122,18 +122,14 @@ fn bodies() -> [Figure; 3] {
         unit: "mm".into(),
         panels: vec![SurfacePanel { caption: "c".into(), counts: [3, 2], size: [100.0, 50.0], heights }],
     };
-    let mark = |sign, is_hidden| SketchMark {
-        sign,
-        text: "u₁ = 0 & <more>".into(),
-        lines: vec![[[-0.4, 0.5, 0.5], [0.0, 0.5, 0.5]]],
-        is_hidden,
-    };
+    let mark =
+        |sign| SketchMark { sign, text: "u₁ = 0 & <more>".into(), lines: vec![[[-0.4, 0.5, 0.5], [0.0, 0.5, 0.5]]] };
     let sketch = Sketch {
         name: "sketch".into(),
         title: title(),
         axes: ["x₁".into(), "x₂".into(), "x₃".into()],
         bodies: vec![SketchBody { nodes: [2; 3], points: (0..8).map(corner).collect() }],
-        marks: vec![mark(Sign::Support, true), mark(Sign::Arrow, false)],
+        marks: vec![mark(Sign::Support), mark(Sign::Arrow)],
         notes: vec!["E = 7·10^{4} MPa".into()],
     };
     [sketch.figure(), solids.figure(), surfaces.figure()].map(|figure| figure.expect("numbers"))

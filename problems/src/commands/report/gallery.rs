@@ -108,7 +108,7 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
                     .collect(),
             };
             panels.push(LinePanel {
-                caption: format!("{other} = {across} mm, through the peak of: {}", shape.label),
+                caption: format!("{other} = {across} mm, through the peak ({})", shape.label),
                 across: format!("{along} (mm)"),
                 curves: shapes.iter().zip(&pressures).map(curve).collect(),
             });

@@ -87,14 +87,12 @@ impl KeyNumbers {
     /// The table of the page.
     pub fn section(&self) -> Section {
         let compared = self.columns.len() == 2;
-        let head = ["", "unit"].into_iter().chain(self.columns.iter().copied()).chain(compared.then_some("change"));
+        let head = [""].into_iter().chain(self.columns.iter().copied()).chain(compared.then_some("change"));
         let rows = self.rows.iter().map(|row| {
-            let values = row.values.iter().map(|value| written(row.key, *value));
-            let change = || {
-                row.change_percent.map_or_else(|| "–".to_owned(), |change| format!("{change:+.1} %").replace('-', "−"))
-            };
-            let cells = [row.quantity.to_owned(), row.unit.clone()].into_iter().chain(values);
-            cells.chain(compared.then(change)).collect::<Vec<String>>()
+            let name = format!("{}, {}", row.quantity, row.unit);
+            let values = row.values.iter().map(|value| written(*value));
+            let change = || row.change_percent.map_or_else(|| "–".to_owned(), changed);
+            std::iter::once(name).chain(values).chain(compared.then(change)).collect::<Vec<String>>()
         });
         let words = "Stresses at brick centres converge with the square of the mesh size; averages at nodes show the surface, where they \
                      are of first order only.";
@@ -112,17 +110,19 @@ fn deformation(fields: &Fields) -> Deformation {
     bodies.fold(Deformation::NONE, Deformation::and)
 }
 
-/// A value as the table shows it: the objective with all its digits, others with six.
-fn written(key: &str, value: f64) -> String {
-    let size = value.abs();
-    match () {
-        () if key == "objective" => format!("{value:.10e}"),
-        () if value == 0.0 => "0".into(),
-        () if (1e-3..1e6).contains(&size) => {
-            let decimals = (5 - size.log10().floor() as i32).max(0) as usize;
-            format!("{value:.decimals$}")
-        }
-        () => format!("{value:.5e}"),
+/// A change in per cent with its sign, none before zero.
+fn changed(percent: f64) -> String {
+    let text = format!("{percent:+.1}");
+    if text.ends_with("0.0") && text.len() == 4 { "0.0 %".into() } else { format!("{} %", text.replace('-', "−")) }
+}
+
+/// A value with six digits.
+fn written(value: f64) -> String {
+    let text = format!("{value:.5e}");
+    let power = text.rsplit('e').next().and_then(|power| power.parse::<i32>().ok());
+    match power {
+        Some(power @ -3..6) => format!("{value:.*}", (5 - power) as usize),
+        _ => text,
     }
 }
 
@@ -132,9 +132,9 @@ mod tests {
 
     #[test]
     fn six_digits_are_shown() {
-        let texts = [12_082.04, 0.012_345_678, 800_000.0, 2.5e-9, 0.0].map(|value| written("peak_pressure", value));
-        assert_eq!(texts, ["12082.0", "0.0123457", "800000", "2.50000e-9", "0"]);
-        assert_eq!(written("objective", 1.5e16), "1.5000000000e16");
+        let texts = [12_082.04, 0.012_345_678, 800_000.0, 99.999_999_99, 2.5e-9, 1.8e16, 0.0].map(written);
+        assert_eq!(texts, ["12082.0", "0.0123457", "800000", "100.000", "2.50000e-9", "1.80000e16", "0.00000"]);
+        assert_eq!([-0.04, 0.0, -10.04, 156.0].map(changed), ["0.0 %", "0.0 %", "−10.0 %", "+156.0 %"]);
     }
 
     #[test]
@@ -150,8 +150,8 @@ mod tests {
         let two = table(vec!["a", "b"], vec![row(vec![2.0, 1.0], Some(-50.0)), row(vec![0.0, 1.0], None)]);
         let Block::Table { head, rows } = two else { panic!("a table") };
         assert_eq!(head.last().map(String::as_str), Some("change"));
-        assert_eq!(rows.iter().map(|row| row[4].as_str()).collect::<Vec<_>>(), ["−50.0 %", "–"]);
+        assert_eq!(rows.iter().map(|row| row[3].as_str()).collect::<Vec<_>>(), ["−50.0 %", "–"]);
         let Block::Table { head, rows } = table(vec!["value"], vec![row(vec![2.0], None)]) else { panic!("a table") };
-        assert_eq!((head.len(), rows[0].len()), (3, 3));
+        assert_eq!((head.len(), rows[0].len()), (2, 2));
     }
 }

@@ -17,6 +17,7 @@ pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> 
     let force = |shape: &SolvedShape| shape.state.forces.total_normal_force();
     let bound = |shape: &SolvedShape| objective.cost().lower_bound(force(shape));
     let rows = vec![
+        row("objective Θ", &|shape| format!("{:.10e}", shape.value)),
         row("least value for this total force", &|shape| format!("{:.4e}", bound(shape))),
         row("Θ over that", &|shape| format!("{:.3}", shape.value / bound(shape))),
         row("total normal force, N", &|shape| format!("{:.8e}", force(shape))),

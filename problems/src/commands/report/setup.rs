@@ -10,7 +10,7 @@ use figures::{Figure, Sign, Sketch, SketchBody, SketchMark, nice_below, number};
 const PLACES: [f64; 3] = [0.17, 0.5, 0.83];
 /// Length of the arrows of loads, and of the triangles of supports, as shares of the largest side.
 const ARROW: f64 = 0.17;
-const TRIANGLE: f64 = 0.07;
+const TRIANGLE: f64 = 0.08;
 /// Largest lift of what is above the contact surface, as a share of the largest side.
 const MAX_LIFT: f64 = 0.25;
 
@@ -91,19 +91,26 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Some nodes on a face.
-    fn nodes(&self, face: Face) -> impl Iterator<Item = [f64; 3]> {
+    /// Some nodes on a face; of a face that is turned away from the viewer, on those of its edges that are seen.
+    fn nodes(&self, face: Face) -> Vec<[f64; 3]> {
         let grid = self.block.grid;
         let (normal, level) = grid.side(face);
-        let along = move |axis: usize, share: f64| (share * grid.cells[axis] as f64).round() as usize;
-        let axes: Vec<usize> = (0..3).filter(|axis| *axis != normal).collect();
-        PLACES.into_iter().flat_map(|s| PLACES.map(|t| (s, t))).map(move |(s, t)| {
+        let [first, second] = [[1, 2], [0, 2], [0, 1]][normal];
+        let shares: Vec<[f64; 2]> = match face {
+            Face::X1Min => PLACES.map(|t| [0.0, t]).into(),
+            Face::X2Max => PLACES.map(|t| [1.0, t]).into(),
+            Face::Bottom => PLACES.map(|s| [s, 0.0]).into_iter().chain(PLACES.map(|t| [1.0, t])).collect(),
+            Face::X1Max | Face::X2Min | Face::Top => PLACES.into_iter().flat_map(|s| PLACES.map(|t| [s, t])).collect(),
+        };
+        let along = |axis: usize, share: f64| (share * grid.cells[axis] as f64).round() as usize;
+        let node = |[s, t]: [f64; 2]| {
             let mut node = [level; 3];
-            node[axes[0]] = along(axes[0], s);
-            node[axes[1]] = along(axes[1], t);
+            node[first] = along(first, s);
+            node[second] = along(second, t);
             let [x1, x2, x3] = self.block.coordinates(node);
             [x1, x2, x3 + self.lift]
-        })
+        };
+        shares.into_iter().map(node).collect()
     }
 
     /// The outward normal of a face, roughly for curved ones.
@@ -135,8 +142,7 @@ impl Place<'_> {
         SketchMark {
             sign: Sign::Support,
             text: format!("{}: {} = 0", self.words(support.face), held.join(" = ")),
-            lines: self.nodes(support.face).map(|node| [sum(node, outward), node]).collect(),
-            is_hidden: is_hidden(support.face),
+            lines: self.nodes(support.face).into_iter().map(|node| [sum(node, outward), node]).collect(),
         }
     }
 
@@ -153,9 +159,9 @@ impl Place<'_> {
             text: format!("{}: ({t1}, {t2}, {t3}) MPa, in all {force} N", self.words(load.face)),
             lines: self
                 .nodes(load.face)
+                .into_iter()
                 .map(|node| if inward { [sum(node, arrow.map(|part| -part)), node] } else { [node, sum(node, arrow)] })
                 .collect(),
-            is_hidden: is_hidden(load.face),
         })
     }
 
@@ -177,11 +183,6 @@ impl Place<'_> {
         });
         step * heights.sum::<f64>()
     }
-}
-
-/// Whether a face is turned away from the viewer.
-fn is_hidden(face: Face) -> bool {
-    matches!(face, Face::X1Min | Face::X2Max | Face::Bottom)
 }
 
 fn sum(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
