@@ -94,7 +94,8 @@ impl Classes {
         let width = (plan.right + legend).max(text_width(&self.title, TITLE) + 32.0);
         let mut canvas = Canvas::new(width, plan.foot + ROOM_BELOW + 8.0);
         canvas.text([16.0, 22.0], TITLE, &self.title);
-        plan.write(&mut canvas, &captions);
+        let end = plan.frames[0].top + 22.0 * self.classes.len() as f64 + 50.0;
+        plan.write(&mut canvas, &captions, end);
         for (index, panel) in self.panels.iter().enumerate() {
             let points = arrows.as_ref().map_or(0.0, |(points, ..)| *points);
             self.draw(&mut canvas, plan.frames[index], panel, points, plan.labelled[index]);

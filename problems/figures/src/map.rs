@@ -112,7 +112,7 @@ impl Map {
         let width = (plan.right + if behind > 0.0 { 0.0 } else { bar }).max(text_width(&self.title, TITLE) + 32.0);
         let mut canvas = Canvas::new(width, plan.foot + ROOM_BELOW + 8.0);
         canvas.text([16.0, 22.0], TITLE, &self.title);
-        plan.write(&mut canvas, &captions);
+        plan.write(&mut canvas, &captions, plan.foot + 14.0);
         for (index, panel) in self.panels.iter().enumerate() {
             let (frame, scale) = (plan.frames[index], &scales[index.min(scales.len() - 1)]);
             panel.draw(&mut canvas, frame, scale, self, plan.labelled[index]);

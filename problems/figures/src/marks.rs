@@ -4,7 +4,7 @@ use super::canvas::{Canvas, INK, LABEL, Place, Stroke, escaped, text_width};
 use super::colours::CURVES;
 
 /// Half the size of a mark, points.
-const MARK: f64 = 3.2;
+const MARK: f64 = 3.8;
 /// Length of the lines in a legend, points.
 const LINE: f64 = 22.0;
 /// Distance of the names in a legend from its left side, points.

@@ -46,8 +46,9 @@ impl Plan {
         Self { frames, labelled, right: left, foot }
     }
 
-    /// The captions above the panels. Every panel is a part of the figure, and so is what stands right of all panels.
-    pub fn write(&self, canvas: &mut Canvas, captions: &[[String; 2]]) {
+    /// The captions above the panels. Every panel is a part of the figure, and so is what stands right of all panels
+    /// and ends at some height.
+    pub fn write(&self, canvas: &mut Canvas, captions: &[[String; 2]], end: f64) {
         let foot = self.foot + ROOM_BELOW + 8.0;
         let lefts: Vec<f64> = self
             .frames
@@ -59,7 +60,7 @@ impl Plan {
             canvas.part([*left, TITLE_ROOM], [lefts.get(index + 1).copied().unwrap_or(self.right - 4.0), foot]);
         }
         if self.right < canvas.width - 1.0 {
-            canvas.part([self.right - 4.0, TITLE_ROOM], [canvas.width, foot]);
+            canvas.part([self.right - 4.0, TITLE_ROOM], [canvas.width, end]);
         }
         for (frame, [first, second]) in self.frames.iter().zip(captions) {
             canvas.text([frame.left, frame.top - 26.0], LABEL, first);
