@@ -47,6 +47,7 @@
 //! | [`fields`], [`vtk`] | displacements, stresses and contact fields of a solved shape; their files |
 //! | [`communication`] | what passes between the processes of a run |
 //! | [`memory`] | memory estimated before any work |
+//! | [`deformation`] | the largest displacement, rotation and strain of bodies |
 //! | [`plausibility`] | what linear elasticity, the mesh and uniqueness say about a state |
 //! | [`error`] | what can be wrong with a scene, and why a contact problem has no answer |
 
@@ -55,6 +56,7 @@ pub mod body;
 pub mod communication;
 pub mod contact_shape;
 pub mod cost;
+pub mod deformation;
 pub mod direct;
 pub mod equilibrium;
 pub mod error;

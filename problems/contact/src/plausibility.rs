@@ -3,9 +3,8 @@
 //! A warning does not say that the state is wrong: the state solves the discrete problem to its accuracy. It says that the
 //! discrete problem may be far from the body it stands for. Every warning has a code that does not change.
 
-use crate::body::elasticity::brick::{self, DOFS, Nodes};
+use crate::deformation::Deformation;
 use crate::equilibrium::{ContactForces, ContactProblem, ContactStatus, SolvedBody};
-use nalgebra::{Matrix3, SymmetricEigen};
 use serde::Serialize;
 use std::fmt;
 
@@ -72,23 +71,9 @@ pub fn warnings(
 
 /// Displacement, rotation, strain and the shape of the bricks.
 fn deformation(bodies: &[SolvedBody], found: &mut Vec<Warning>) {
-    let mut displacement = 0.0_f64;
-    let (mut rotation, mut strain, mut jacobian, mut edge) = (0.0_f64, 0.0_f64, f64::INFINITY, f64::INFINITY);
-    for SolvedBody { block, displacement: u, .. } in bodies {
-        displacement = u.iter().map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(displacement, f64::max);
-        let heights = block.upper.iter().zip(&block.lower).map(|(upper, lower)| upper - lower);
-        edge = heights.fold(edge.min(block.grid.size[0]).min(block.grid.size[1]), f64::min);
-        for position in block.grid.bricks() {
-            let (nodes, corners) = (block.brick(position), block.grid.brick_nodes(position));
-            jacobian = jacobian.min(scaled_jacobian(&nodes));
-            let u: [f64; DOFS] = std::array::from_fn(|dof| u[corners[dof / 3]][dof % 3]);
-            let gradient = brick::displacement_gradient(&brick::sample(&nodes, [0.0; 3]), &u);
-            let gradient = Matrix3::from_fn(|i, j| gradient[i][j]);
-            let skew = (gradient - gradient.transpose()) * 0.5;
-            rotation = rotation.max(skew[(2, 1)].hypot(skew[(0, 2)]).hypot(skew[(1, 0)]));
-            strain = strain.max(SymmetricEigen::new((gradient + gradient.transpose()) * 0.5).eigenvalues.amax());
-        }
-    }
+    let all = bodies.iter().map(|body| Deformation::of(&body.block, &body.displacement));
+    let Deformation { displacement, rotation, strain, scaled_jacobian, edge } =
+        all.fold(Deformation::NONE, Deformation::and);
     warn(found, displacement > MAX_DISPLACEMENT * edge, "large-displacement", || {
         format!(
             "the largest displacement is {displacement:.3} mm, {:.1} % of the smallest edge of the bodies (linear elasticity: \
@@ -104,23 +89,11 @@ fn deformation(bodies: &[SolvedBody], found: &mut Vec<Warning>) {
         let (strain, allowed) = (100.0 * strain, 100.0 * MAX_STRAIN);
         format!("the largest principal strain is {strain:.1} % (linear elasticity: at most {allowed:.0} %)")
     });
-    warn(found, jacobian < MIN_SCALED_JACOBIAN, "distorted-bricks", || {
+    warn(found, scaled_jacobian < MIN_SCALED_JACOBIAN, "distorted-bricks", || {
         format!(
-            "the smallest scaled Jacobian of a brick is {jacobian:.3} (stresses need at least {MIN_SCALED_JACOBIAN})"
+            "the smallest scaled Jacobian of a brick is {scaled_jacobian:.3} (stresses need at least {MIN_SCALED_JACOBIAN})"
         )
     });
-}
-
-/// Smallest over the corners of a brick of det(edges)/Π|edges|: 1 for a box, 0 for a flat corner.
-fn scaled_jacobian(nodes: &Nodes<f64>) -> f64 {
-    let corner = |a: usize| {
-        let edges = [4, 2, 1].map(|bit| {
-            let (from, to) = (nodes[a & !bit], nodes[a | bit]);
-            nalgebra::Vector3::from_fn(|i, _| to[i] - from[i])
-        });
-        Matrix3::from_columns(&edges).determinant() / edges.iter().map(|edge| edge.norm()).product::<f64>()
-    };
-    (0..8).map(corner).fold(f64::INFINITY, f64::min)
 }
 
 /// Waves and curvature of the obstacle against the bricks of the contact zone.
@@ -195,21 +168,4 @@ fn zone(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Warnin
             "the pressure peaks at the {where_it_is}, at ({x1:.2}, {x2:.2}) mm: it may grow with every refinement of the mesh"
         )
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_scaled_jacobian_is_one_for_a_box_and_falls_with_shear() {
-        let box_at = |shear: f64| -> Nodes<f64> {
-            std::array::from_fn(|a| {
-                let [x, y, z] = [a >> 2 & 1, a >> 1 & 1, a & 1].map(|bit| bit as f64);
-                [3.0 * x + shear * z, 2.0 * y, z]
-            })
-        };
-        assert!((scaled_jacobian(&box_at(0.0)) - 1.0).abs() < 1e-15);
-        assert!((scaled_jacobian(&box_at(1.0)) - 0.5_f64.sqrt()).abs() < 1e-15);
-    }
 }

@@ -10,6 +10,8 @@ pub(super) const FAMILY: &str = "Ubuntu";
 pub(super) const TITLE: f64 = 14.0;
 /// Size of labels and notes, points.
 pub(super) const LABEL: f64 = 12.0;
+/// Upper side of what stands below the title of a figure, points.
+pub(super) const TITLE_ROOM: f64 = 30.0;
 /// Colour of text and frames.
 pub(super) const INK: &str = "#222222";
 /// Average width of a letter relative to its size; only decides about distances.
@@ -56,13 +58,15 @@ impl<'a> Stroke<'a> {
 pub(super) struct Canvas {
     pub width: f64,
     pub height: f64,
+    /// Left, top, width and height of what may stand one below the other, in whole points.
+    pub parts: Vec<[u32; 4]>,
     body: String,
 }
 
 // Writing to a string cannot fail: the results of `write!` are dropped below.
 impl Canvas {
     pub fn new(width: f64, height: f64) -> Self {
-        Self { width: width.ceil(), height: height.ceil(), body: String::new() }
+        Self { width: width.ceil(), height: height.ceil(), parts: Vec::new(), body: String::new() }
     }
 
     /// One line of text of some size that begins at a place.
@@ -85,9 +89,44 @@ impl Canvas {
         );
     }
 
+    /// A line of text in the middle of a place, with a rim that makes it readable on every colour.
+    pub fn rimmed(&mut self, [x, y]: Place, size: f64, text: &str) {
+        let _ = writeln!(
+            self.body,
+            "<text x=\"{x:.1}\" y=\"{:.1}\" font-size=\"{size}\" fill=\"{INK}\" text-anchor=\"middle\" stroke=\"#ffffff\" \
+             stroke-width=\"3\" stroke-linejoin=\"round\" paint-order=\"stroke\">{}</text>",
+            y + 0.35 * size,
+            raised(&escaped(text), size)
+        );
+    }
+
+    /// An arrow from a tail to a tip, its head filled.
+    pub fn arrow(&mut self, [tail, tip]: [Place; 2], stroke: Stroke) {
+        let along = [tip[0] - tail[0], tip[1] - tail[1]];
+        let length = along[0].hypot(along[1]);
+        if length > 0.0 {
+            let head = (2.5 + 2.0 * stroke.width).min(0.6 * length);
+            let along = along.map(|part| part / length);
+            let wing = |side: f64| {
+                let side = side * head;
+                [tip[0] - head * along[0] - side * along[1], tip[1] - head * along[1] + side * along[0]]
+            };
+            self.line(&[tail, [tip[0] - 0.5 * head * along[0], tip[1] - 0.5 * head * along[1]]], stroke);
+            self.area(stroke.colour, [[tip, wing(0.45), wing(-0.45)].as_slice()]);
+        }
+    }
+
     /// A line through places.
     pub fn line(&mut self, places: &[Place], stroke: Stroke) {
         let _ = writeln!(self.body, "<path d=\"{}\" {}/>", path(places, false), stroke.attributes());
+    }
+
+    /// Pieces of lines as one path.
+    pub fn pieces(&mut self, pieces: &[[Place; 2]], colour: &str) {
+        let paths: String = pieces.iter().map(|piece| path(piece, false)).collect();
+        if !paths.is_empty() {
+            let _ = writeln!(self.body, "<path d=\"{paths}\" {}/>", Stroke::solid(colour, 0.9).attributes());
+        }
     }
 
     /// A closed outline.
@@ -145,18 +184,26 @@ impl Canvas {
         self.body += "</g>\n";
     }
 
+    /// Says that a rectangle is a part that may stand alone; it is cut at the sides of the drawing.
+    pub fn part(&mut self, [left, top]: Place, [right, foot]: Place) {
+        let [left, top] = [left, top].map(|side| side.max(0.0).floor() as u32);
+        let [right, foot] = [right.min(self.width), foot.min(self.height)].map(|side| side.ceil() as u32);
+        self.parts.push([left, top, right.saturating_sub(left), foot.saturating_sub(top)]);
+    }
+
     /// SVG elements as they are.
     pub fn raw(&mut self, elements: &str) {
         self.body += elements;
     }
 
-    /// The whole text.
-    pub fn finish(self, title: &str) -> String {
-        let Self { width, height, body } = self;
+    /// The whole text; all that is drawn has one name, so that a page can show its parts.
+    pub fn finish(self, name: &str, title: &str) -> String {
+        let Self { width, height, body, .. } = self;
+        let name = escaped(name).replace('"', "&quot;");
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
              {height}\" font-family=\"{FAMILY}, sans-serif\">\n<title>{}</title>\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</svg>\n",
+             <g id=\"{name}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{body}</g>\n</svg>\n",
             escaped(title)
         )
     }

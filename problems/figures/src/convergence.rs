@@ -1,18 +1,20 @@
 //! The course of an optimization: every value, the best one so far, and what kind of step each evaluation was.
 
-use super::canvas::{Canvas, Place, Stroke, TITLE, text_width};
+use super::canvas::{Canvas, INK, Place, Stroke, TITLE, TITLE_ROOM, text_width};
 use super::chart::{Frame, Parts, ROOM_BELOW};
 use super::colours::CURVES;
 use super::error::{FigureError, finite, some};
 use super::figure::Figure;
-use super::marks::{self, Sign, kinds, legend_width, rows};
-use super::scale::{Axis, extent};
+use super::marks::{self, Sign, kinds, legend_width, mark_colour, rows};
+use super::scale::{Axis, extent, number as number_text};
 
 /// Values over the number of the evaluation.
 ///
 /// ```
 /// use figures::{Convergence, Step};
-/// let step = |kind: &str, value: f64, best: f64| Step { kind: kind.into(), value: Some(value), best };
+/// let step = |kind: &str, value: f64, best: f64| {
+///     Step { kind: kind.into(), origin: "cuts".into(), value: Some(value), best }
+/// };
 /// let course = Convergence {
 ///     name: "convergence".into(),
 ///     title: "Course of the optimization".into(),
@@ -46,6 +48,8 @@ pub struct Convergence {
 pub struct Step {
     /// What it was; every kind gets a mark of its own.
     pub kind: String,
+    /// Who proposed the point; every proposer gets a colour of its own. Empty where nobody is to be told apart.
+    pub origin: String,
     /// The value; none for a failed evaluation, whose mark stands at the foot of the frame.
     pub value: Option<f64>,
     /// The best value after it.
@@ -53,12 +57,17 @@ pub struct Step {
 }
 
 /// Size of the frame, points.
-const SIZE: [f64; 2] = [520.0, 300.0];
+const SIZE: [f64; 2] = [460.0, 300.0];
 /// Ratio of the largest to the smallest value from which the axis is logarithmic.
 const LOGARITHMIC_FROM: f64 = 8.0;
+/// Size of the values at the upper side of the frame, points.
+const SMALL: f64 = 10.0;
+/// Rows for the values of marks at the upper side of the frame.
+const MAX_ROWS: usize = 3;
 
 impl Convergence {
-    /// Draws it.
+    /// Draws it. The axis holds the best values and all values below the first of them: larger ones have a mark at the upper side of the
+    /// frame, and their values are written there as long as there is room.
     ///
     /// # Errors
     /// [`FigureError`] without evaluations, or for numbers that are not finite.
@@ -72,11 +81,9 @@ impl Convergence {
         // Half an evaluation of room at both ends keeps the marks inside.
         let across = Axis::linear("evaluation", "", [0.5, last + 0.5], 0.0, 8);
         let frame = Frame { left: 76.0, top: 40.0, width: SIZE[0], height: SIZE[1] };
-        let kinds = kinds(self.steps.iter().map(|step| step.kind.as_str()));
-        let (course, level) = (Stroke::solid(CURVES[0], 1.6), Stroke::dashed(CURVES[5], 1.2));
-        let mut legend = rows(&kinds);
-        legend.push((Sign::Line(course), "best so far".to_owned()));
-        legend.extend(self.reference.iter().map(|(name, _)| (Sign::Line(level), name.clone())));
+        let course = Stroke::solid(CURVES[0], 2.0);
+        let level = Stroke::dashed(CURVES[5], 1.2);
+        let legend = self.legend(course, level);
         let right = frame.left + SIZE[0] + 14.0;
         let width = (right + legend_width(&legend)).max(text_width(&self.title, TITLE) + 32.0);
         let mut canvas = Canvas::new(width, frame.top + SIZE[1] + ROOM_BELOW + 8.0);
@@ -89,24 +96,96 @@ impl Convergence {
         if let Some((_, value)) = self.reference {
             canvas.line(&[place(0.5, value), place(last + 0.5, value)], level);
         }
-        canvas.line(&self.stairs(place), course);
-        for (number, step) in (1..).zip(&self.steps) {
-            let at = place(f64::from(number), step.value.unwrap_or(up.ends()[0]));
-            marks::step(&mut canvas, &kinds, &step.kind, at);
+        // The best values stand before everything else.
+        let is_best = |step: &Step| step.value == Some(step.best);
+        let numbered = || (1_u32..).zip(&self.steps);
+        for (number, step) in numbered().filter(|(_, step)| !is_best(step) && !self.is_clipped(step)) {
+            self.mark(&mut canvas, (number, step), place(f64::from(number), step.value.unwrap_or(up.ends()[0])));
         }
+        self.clipped(&mut canvas, frame, |number| place(number, up.ends()[1])[0]);
+        canvas.line(&self.stairs(place), course);
+        for (number, step) in numbered().filter(|(_, step)| is_best(step)) {
+            self.mark(&mut canvas, (number, step), place(f64::from(number), step.best));
+        }
+        canvas.part([0.0, TITLE_ROOM], [right, canvas.height]);
+        canvas.part([right, TITLE_ROOM], [canvas.width, frame.top + 8.0 + 21.0 * legend.len() as f64]);
         marks::legend(&mut canvas, [right, frame.top + 8.0], &legend);
         Ok(Figure::new(&self.name, &self.title, canvas))
     }
 
+    fn kinds(&self) -> Vec<(&str, usize)> {
+        kinds(self.steps.iter().map(|step| step.kind.as_str()))
+    }
+
+    fn origins(&self) -> Vec<(&str, usize)> {
+        kinds(self.steps.iter().map(|step| step.origin.as_str()).filter(|origin| !origin.is_empty()))
+    }
+
+    fn legend<'a>(&'a self, course: Stroke<'a>, level: Stroke<'a>) -> Vec<(Sign<'a>, String)> {
+        let mut legend = vec![(Sign::Line(course), "best so far".to_owned())];
+        legend.extend(self.reference.iter().map(|(name, _)| (Sign::Line(level), name.clone())));
+        let origins = self.origins();
+        if origins.is_empty() {
+            legend.extend(rows(&self.kinds()));
+            return legend;
+        }
+        let named = |(name, count): &(&str, usize)| format!("{name} ({count})");
+        let shapes = self.kinds().into_iter().enumerate();
+        legend.extend(shapes.map(|(index, kind)| (Sign::Shape(kind.0, index), named(&kind))));
+        let colours = origins.iter().enumerate();
+        legend.extend(
+            colours.map(|(index, origin)| (Sign::Swatch(mark_colour(index)), format!("origin: {}", named(origin)))),
+        );
+        legend
+    }
+
+    /// The mark of an evaluation: shape by kind, colour by proposer.
+    fn mark(&self, canvas: &mut Canvas, (number, step): (u32, &Step), at: Place) {
+        let (kinds, origins) = (self.kinds(), self.origins());
+        let shape = marks::number(&kinds, &step.kind);
+        let colour = if origins.is_empty() { shape } else { marks::number(&origins, &step.origin) };
+        let value =
+            step.value.map_or_else(|| "no value".to_owned(), |value| format!("{} = {value:.4e}", self.quantity));
+        let by = if step.origin.is_empty() { String::new() } else { format!(", {}", step.origin) };
+        let text = format!("evaluation {number}: {}{by}, {value}", step.kind);
+        marks::mark(canvas, &step.kind, shape, mark_colour(colour), at, &text);
+    }
+
+    /// Whether a value lies above the first, and so the largest, of the best values.
+    fn is_clipped(&self, step: &Step) -> bool {
+        let largest = self.steps.iter().map(|step| step.best).fold(f64::NEG_INFINITY, f64::max);
+        step.value.is_some_and(|value| value > largest)
+    }
+
+    /// Marks with arrows at the upper side of the frame, with the values beside them.
+    fn clipped(&self, canvas: &mut Canvas, frame: Frame, across: impl Fn(f64) -> f64) {
+        let mut ends = [f64::NEG_INFINITY; MAX_ROWS];
+        for (number, step) in (1_u32..).zip(&self.steps).filter(|(_, step)| self.is_clipped(step)) {
+            let x = across(f64::from(number));
+            canvas.arrow([[x, frame.top + 14.0], [x, frame.top + 1.0]], Stroke::solid(INK, 0.9));
+            self.mark(canvas, (number, step), [x, frame.top + 15.0]);
+            let words = number_text(step.value.unwrap_or(f64::NAN));
+            let room = text_width(&words, SMALL);
+            // Beside the frame's right side, the value stands at the left of its mark.
+            let left = if x + 7.0 + room > frame.left + frame.width { x - 7.0 - room } else { x + 7.0 };
+            if let Some(row) = (0..MAX_ROWS).find(|row| ends[*row] < left) {
+                ends[row] = left + room + 6.0;
+                canvas.text([left, frame.top + 19.0 + 13.0 * row as f64], SMALL, &words);
+            }
+        }
+    }
+
     fn axis(&self) -> Axis {
         let reference = self.reference.iter().map(|(_, value)| *value);
-        let values: Vec<f64> =
-            self.steps.iter().flat_map(|step| step.value.into_iter().chain([step.best])).chain(reference).collect();
+        let shown = self.steps.iter().filter(|step| !self.is_clipped(step)).filter_map(|step| step.value);
+        let values: Vec<f64> = shown.chain(self.steps.iter().map(|step| step.best)).chain(reference).collect();
+        // Room for the marks of what lies above.
+        let room = if self.steps.iter().any(|step| self.is_clipped(step)) { 0.2 } else { 0.05 };
         let logarithmic = |(low, high): (f64, f64)| low > 0.0 && high / low >= LOGARITHMIC_FROM;
         if extent(values.iter().copied()).is_some_and(logarithmic) {
-            Axis::logarithmic(&self.quantity, &self.unit, values, 0.05, 8)
+            Axis::logarithmic(&self.quantity, &self.unit, values, room, 8)
         } else {
-            Axis::linear(&self.quantity, &self.unit, values, 0.05, 8)
+            Axis::linear(&self.quantity, &self.unit, values, room, 8)
         }
     }
 
@@ -134,7 +213,8 @@ mod tests {
     use super::*;
 
     fn course(values: &[(&str, Option<f64>, f64)]) -> Convergence {
-        let steps = values.iter().map(|&(kind, value, best)| Step { kind: kind.into(), value, best });
+        let steps =
+            values.iter().map(|&(kind, value, best)| Step { kind: kind.into(), origin: String::new(), value, best });
         Convergence {
             name: "c".into(),
             title: "t".into(),
@@ -170,6 +250,21 @@ mod tests {
         assert!(middle(1e16, 1e18, 1e17) && middle(-100.0, -1.0, -50.5) && middle(1.0, 2.0, 1.5));
         let stairs = course(&[("a", None, 3.0), ("b", None, 3.0), ("c", None, 1.0)]).stairs(|x, y| [x, y]);
         assert_eq!(stairs, [[1.0, 3.0], [2.0, 3.0], [3.0, 3.0], [3.0, 1.0], [3.5, 1.0]]);
+    }
+
+    #[test]
+    fn one_bad_step_does_not_stretch_the_axis_and_its_value_is_said() {
+        let mut bad = course(&[("start", Some(9.0), 9.0), ("null", Some(4e9), 9.0), ("serious", Some(5.0), 5.0)]);
+        let good = course(&[("start", Some(9.0), 9.0), ("serious", Some(5.0), 5.0)]);
+        assert!(bad.axis().ends()[1] < 11.0 && good.axis().ends()[1] < bad.axis().ends()[1]);
+        assert!(bad.figure().expect("numbers").svg.contains(">4.000·10<tspan"));
+        for (step, origin) in bad.steps.iter_mut().zip(["given", "cuts", "cuts"]) {
+            step.origin = origin.into();
+        }
+        let svg = bad.figure().expect("numbers").svg;
+        assert!(
+            svg.contains("origin: cuts (2)") && svg.contains("<title>evaluation 2: null, cuts, Θ = 4.0000e9</title>")
+        );
     }
 
     #[test]

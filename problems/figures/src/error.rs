@@ -113,6 +113,17 @@ pub(super) fn grid(
     cells(figure, &counts)?;
     count(figure, what[1], counts[0].saturating_mul(counts[1]), values.len())?;
     finite(figure, what[0], values.iter().copied())?;
-    finite(figure, "side", size)?;
-    all(figure, "side", size, "numbers > 0", |side| side > 0.0)
+    positive(figure, "side", size)
+}
+
+/// Checks that every length is a finite number > 0.
+pub(super) fn positive(figure: &str, what: &'static str, lengths: [f64; 2]) -> Result<(), FigureError> {
+    finite(figure, what, lengths)?;
+    all(figure, what, lengths, "numbers > 0", |length| length > 0.0)
+}
+
+/// Checks that every index is one of a list of so many entries.
+pub(super) fn below(figure: &str, what: &'static str, indices: &[usize], entries: usize) -> Result<(), FigureError> {
+    let indices = indices.iter().map(|index| *index as f64);
+    all(figure, what, indices, "places in the list, counted from 0", |index| index < entries as f64)
 }

@@ -11,11 +11,15 @@ pub struct Figure {
     pub title: String,
     /// The figure as SVG text.
     pub svg: String,
+    /// Left, top, width and height of its parts, in points: on a narrow page they stand one below the other. Without parts, the figure is
+    /// shown as a whole.
+    pub parts: Vec<[u32; 4]>,
 }
 
 impl Figure {
-    pub(super) fn new(name: &str, title: &str, canvas: Canvas) -> Self {
-        Self { name: name.to_owned(), title: title.to_owned(), svg: canvas.finish(title) }
+    pub(super) fn new(name: &str, title: &str, mut canvas: Canvas) -> Self {
+        let parts = std::mem::take(&mut canvas.parts);
+        Self { name: name.to_owned(), title: title.to_owned(), svg: canvas.finish(name, title), parts }
     }
 
     /// The figure as a PNG file with `scale` pixels per point of the SVG; 2 suits screens, 4 suits print.

@@ -6,7 +6,7 @@
 use super::canvas::INK;
 use super::canvas::{Canvas, LABEL, Place, Stroke};
 use super::colours;
-use super::scale::{Axis, extent};
+use super::scale::{Axis, Tick, extent};
 
 /// About the number of colours of a scale.
 const STEPS: usize = 24;
@@ -60,6 +60,7 @@ impl ColourScale {
     pub fn bar(&self, canvas: &mut Canvas, [left, top]: Place, height: f64) {
         const WIDTH: f64 = 15.0;
         let foot = |share: f64| top + (1.0 - share) * height;
+        canvas.raw("<g class=\"bar\">\n");
         for step in 0..=self.levels.len() {
             let low = if step == 0 { 0.0 } else { self.levels[step - 1] };
             let high = self.levels.get(step).copied().unwrap_or(1.0);
@@ -69,11 +70,15 @@ impl ColourScale {
         }
         let corners = [[left, top], [left + WIDTH, top], [left + WIDTH, top + height], [left, top + height]];
         canvas.outline(&corners, Stroke::solid(INK, 0.8));
-        for tick in &self.axis.ticks {
-            let y = foot(tick.share);
+        // Both ends have a label; ticks give way to them.
+        let apart = |tick: &&Tick| (1.1 * LABEL..=height - 1.1 * LABEL).contains(&(tick.share * height));
+        let between = self.axis.ticks.iter().filter(apart).map(|tick| (tick.share, tick.label.clone()));
+        for (share, label) in [0.0, 1.0].into_iter().zip(self.axis.end_labels()).chain(between) {
+            let y = foot(share);
             canvas.line(&[[left + WIDTH, y], [left + WIDTH + 4.0, y]], Stroke::solid(INK, 0.8));
-            canvas.text([left + WIDTH + 7.0, y + 0.34 * LABEL], LABEL, &tick.label);
+            canvas.text([left + WIDTH + 7.0, y + 0.34 * LABEL], LABEL, &label);
         }
+        canvas.raw("</g>\n");
         canvas.text([left, top - 10.0], LABEL, &self.axis.title);
     }
 }

@@ -1,16 +1,19 @@
-//! Values on the nodes of plane grids as panels side by side, on one colour scale.
+//! Values on the nodes of plane grids as panels side by side, on one colour scale or on one each.
 
 use super::canvas::{Canvas, LABEL, TITLE, text_width};
 use super::chart::{Frame, Parts, ROOM_BELOW};
 use super::error::{FigureError, finite, grid, some};
 use super::figure::Figure;
-use super::levels::{ColourScale, Lattice, fill};
+use super::levels::{ColourScale, Lattice, contour, fill};
+use super::nodes::PlaneGrid;
+use super::plan::Plan;
 use super::scale::{Axis, behind, number};
 
-/// Values over the plane: one or more panels with one colour scale; the largest value of every panel is marked.
+/// Values over the plane: one or more panels; the largest value of every panel is marked. Up to 5000 nodes of a panel, a browser
+/// shows number, place and value of the node under the pointer.
 ///
 /// ```
-/// use figures::{Map, MapPanel};
+/// use figures::{ColourScales, Map, MapPanel};
 /// let panel = |caption: &str, peak: f64| MapPanel {
 ///     caption: caption.into(),
 ///     counts: [3, 2],
@@ -24,10 +27,13 @@ use super::scale::{Axis, behind, number};
 ///     quantity: "pressure".into(),
 ///     unit: "MPa".into(),
 ///     axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
+///     scales: ColourScales::Common,
+///     contours: false,
 ///     panels: vec![panel("initial", 14_809.0), panel("optimal", 4082.0)],
 /// };
 /// let figure = map.figure()?;
 /// assert!(figure.svg.contains("largest 4082 MPa at (50, 0)"));
+/// assert!(figure.svg.contains("<title>node (1, 0) at (50, 0): 4082 MPa</title>"));
 /// # Ok::<(), figures::FigureError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
@@ -42,8 +48,21 @@ pub struct Map {
     pub unit: String,
     /// Names and units of both axes.
     pub axes: [String; 2],
+    /// Which values have the same colour.
+    pub scales: ColourScales,
+    /// Lines with labels at the ticks of the colour scale.
+    pub contours: bool,
     /// The panels, from left to right.
     pub panels: Vec<MapPanel>,
+}
+
+/// Which values of the panels of a figure have the same colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColourScales {
+    /// Equal values have equal colours in all panels.
+    Common,
+    /// Every panel uses all colours.
+    Own,
 }
 
 /// One grid of values.
@@ -61,12 +80,8 @@ pub struct MapPanel {
     pub values: Vec<f64>,
 }
 
-/// Longer side of a panel, points.
-const SIDE: f64 = 280.0;
-/// Room at the left for labels and title of the vertical axis, points.
-const ROOM_LEFT: f64 = 52.0;
-/// Least ratio of the sides of a panel; slimmer ones are not drawn to scale.
-const MIN_SIDE_RATIO: f64 = 0.25;
+/// Room of a colour bar with its labels, points.
+const ROOM_OF_BAR: f64 = 85.0;
 
 impl Map {
     /// Draws it.
@@ -77,52 +92,45 @@ impl Map {
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         for panel in &self.panels {
-            panel.check(&self.name)?;
+            grid(&self.name, panel.counts, panel.size, ["value", "values of a panel"], &panel.values)?;
+            finite(&self.name, "origin", panel.origin)?;
         }
-        let values = self.panels.iter().flat_map(|panel| panel.values.iter().copied());
-        let scale = ColourScale::new(&self.quantity, &self.unit, values);
-        let sizes: Vec<[f64; 2]> = self.panels.iter().map(|panel| sides(panel.size)).collect();
-        let height = sizes.iter().fold(0.0_f64, |height, size| height.max(size[1]));
-        let same = self.panels.windows(2).all(|two| two[0].origin == two[1].origin && two[0].size == two[1].size);
-        let (mut left, top) = (16.0, 72.0);
-        let lefts: Vec<f64> = (0..sizes.len())
-            .map(|index| {
-                let labelled = index == 0 || !same;
-                left += if labelled { ROOM_LEFT } else { 0.0 };
-                let here = left;
-                left += sizes[index][0].max(self.caption_width(index)) + 36.0;
-                here
-            })
-            .collect();
-        let bar_title = text_width(&scale.axis.title, LABEL);
-        let width = (left + bar_title.max(75.0) + 10.0).max(text_width(&self.title, TITLE) + 32.0);
-        let mut canvas = Canvas::new(width, top + height + ROOM_BELOW + 8.0);
+        let scale = |panels: &[MapPanel]| {
+            let values = panels.iter().flat_map(|panel| panel.values.iter().copied());
+            ColourScale::new(&self.quantity, &self.unit, values)
+        };
+        let scales: Vec<ColourScale> = match self.scales {
+            ColourScales::Common => vec![scale(&self.panels)],
+            ColourScales::Own => self.panels.chunks(1).map(scale).collect(),
+        };
+        let bar = ROOM_OF_BAR.max(text_width(&scales[0].axis.title, LABEL) + 10.0);
+        let captions: Vec<[String; 2]> =
+            self.panels.iter().map(|panel| [panel.caption.clone(), panel.largest(&self.unit).1]).collect();
+        let grids: Vec<PlaneGrid> = self.panels.iter().map(MapPanel::grid).collect();
+        let behind = if self.scales == ColourScales::Own { bar } else { 0.0 };
+        let plan = Plan::new(&grids, &captions, behind);
+        let width = (plan.right + if behind > 0.0 { 0.0 } else { bar }).max(text_width(&self.title, TITLE) + 32.0);
+        let mut canvas = Canvas::new(width, plan.foot + ROOM_BELOW + 8.0);
         canvas.text([16.0, 22.0], TITLE, &self.title);
+        plan.write(&mut canvas, &captions, plan.foot + 14.0);
         for (index, panel) in self.panels.iter().enumerate() {
-            let labelled = index == 0 || !same;
-            let frame = Frame { left: lefts[index], top, width: sizes[index][0], height: sizes[index][1] };
-            panel.draw(&mut canvas, frame, &scale, self, labelled);
+            let (frame, scale) = (plan.frames[index], &scales[index.min(scales.len() - 1)]);
+            panel.draw(&mut canvas, frame, scale, self, plan.labelled[index]);
+            if self.scales == ColourScales::Own {
+                scale.bar(&mut canvas, [frame.left + frame.width + 16.0, frame.top], frame.height);
+            }
         }
-        scale.bar(&mut canvas, [left, top], height);
+        if self.scales == ColourScales::Common {
+            let top = plan.frames[0].top;
+            scales[0].bar(&mut canvas, [plan.right, top], plan.foot - top);
+        }
         Ok(Figure::new(&self.name, &self.title, canvas))
     }
-
-    fn caption_width(&self, index: usize) -> f64 {
-        let panel = &self.panels[index];
-        text_width(&panel.caption, LABEL).max(text_width(&panel.largest(&self.unit).1, LABEL))
-    }
-}
-
-/// Sides in points.
-fn sides([first, second]: [f64; 2]) -> [f64; 2] {
-    let ratio = (second / first).clamp(MIN_SIDE_RATIO, 1.0 / MIN_SIDE_RATIO);
-    if ratio > 1.0 { [SIDE / ratio, SIDE] } else { [SIDE, SIDE * ratio] }
 }
 
 impl MapPanel {
-    fn check(&self, figure: &str) -> Result<(), FigureError> {
-        grid(figure, self.counts, self.size, ["value", "values of a panel"], &self.values)?;
-        finite(figure, "origin", self.origin)
+    fn grid(&self) -> PlaneGrid {
+        PlaneGrid { counts: self.counts, origin: self.origin, size: self.size }
     }
 
     /// Indices of the first node with the largest value, and a text about it.
@@ -130,25 +138,48 @@ impl MapPanel {
         let larger = |best, node| if self.values[node] > self.values[best] { node } else { best };
         let best = (0..self.values.len()).fold(0, larger);
         let place = [best / self.counts[1], best % self.counts[1]];
-        let [x, y] = std::array::from_fn(|axis| {
-            number(self.origin[axis] + self.size[axis] * place[axis] as f64 / (self.counts[axis] - 1) as f64)
-        });
-        (place, format!("largest {}{} at ({x}, {y})", number(self.values[best]), behind(unit)))
+        (place, format!("largest {}{} at {}", number(self.values[best]), behind(unit), self.grid().position(place)))
     }
 
-    fn draw(&self, canvas: &mut Canvas, frame: Frame, scale: &ColourScale, map: &Map, labelled: bool) {
+    fn draw(&self, canvas: &mut Canvas, frame: Frame, scale: &ColourScale, map: &Map, room: Option<f64>) {
         let last = self.counts.map(|nodes| (nodes - 1) as f64);
         let place = |[i, j]: [f64; 2]| frame.place([i / last[0], j / last[1]]);
         fill(canvas, Lattice { counts: self.counts, values: &self.values }, scale, place);
+        if map.contours {
+            self.contours(canvas, frame, scale);
+        }
         let axis = |index: usize| {
             let ends = [self.origin[index], self.origin[index] + self.size[index]];
             Axis::linear(&map.axes[index], "", ends, 0.0, 5)
         };
-        frame.axes(canvas, &axis(0), &axis(1), Parts { left: labelled.then_some(ROOM_LEFT), grid: false });
-        let ([i, j], text) = self.largest(&map.unit);
+        frame.axes(canvas, &axis(0), &axis(1), Parts { left: room, grid: false });
+        let ([i, j], _) = self.largest(&map.unit);
         ring(canvas, place([i as f64, j as f64]));
-        canvas.text([frame.left, frame.top - 26.0], LABEL, &self.caption);
-        canvas.text([frame.left, frame.top - 10.0], LABEL, &text);
+        let text = |node: usize| format!("{}{}", number(self.values[node]), behind(&map.unit));
+        self.grid().name_nodes(canvas, frame, text);
+    }
+
+    /// Lines at the ticks of the scale, each with one label, far from the others.
+    fn contours(&self, canvas: &mut Canvas, frame: Frame, scale: &ColourScale) {
+        let shares: Vec<f64> = self.values.iter().map(|value| scale.axis.share(*value).unwrap_or(0.0)).collect();
+        let last = self.counts.map(|nodes| (nodes - 1) as f64);
+        let mut labels: Vec<([f64; 2], &str)> = Vec::new();
+        for tick in &scale.axis.ticks {
+            let pieces = contour(Lattice { counts: self.counts, values: &shares }, tick.share);
+            let ends = pieces.iter().map(|piece| piece.map(|[i, j]| frame.place([i / last[0], j / last[1]])));
+            let ends: Vec<[[f64; 2]; 2]> = ends.collect();
+            canvas.pieces(&ends, "#ffffff");
+            let middles = ends.iter().map(|[a, b]| [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]);
+            let room = |at: &[f64; 2]| {
+                let inside = [at[0] - frame.left, frame.left + frame.width - at[0]].into_iter();
+                let edge = inside.chain([at[1] - frame.top, frame.top + frame.height - at[1]]).fold(40.0, f64::min);
+                labels.iter().map(|(other, _)| (at[0] - other[0]).hypot(at[1] - other[1])).fold(2.0 * edge, f64::min)
+            };
+            // A line too short or too near to others keeps no label: its colour says its value.
+            let best = middles.max_by(|a, b| room(a).total_cmp(&room(b))).filter(|at| room(at) > 1.5 * LABEL);
+            labels.extend(best.map(|at| (at, tick.label.as_str())));
+        }
+        labels.into_iter().for_each(|(at, label)| canvas.rimmed(at, LABEL, label));
     }
 }
 

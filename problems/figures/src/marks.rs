@@ -1,10 +1,10 @@
 //! Marks of curves and paths, and the legend that explains them.
 
-use super::canvas::{Canvas, LABEL, Place, Stroke, escaped, text_width};
+use super::canvas::{Canvas, INK, LABEL, Place, Stroke, escaped, text_width};
 use super::colours::CURVES;
 
 /// Half the size of a mark, points.
-const MARK: f64 = 3.2;
+const MARK: f64 = 3.8;
 /// Length of the lines in a legend, points.
 const LINE: f64 = 22.0;
 /// Distance of the names in a legend from its left side, points.
@@ -17,6 +17,10 @@ const ROW: f64 = 20.0;
 pub(super) enum Sign<'a> {
     /// The mark of a kind, with the kind's number.
     Mark(&'a str, usize),
+    /// The shape of a kind without its colour.
+    Shape(&'a str, usize),
+    /// A square of a colour.
+    Swatch(&'a str),
     /// The point of a series, with the number of the series.
     Point(usize),
     Cross,
@@ -52,7 +56,9 @@ pub(super) fn legend(canvas: &mut Canvas, [x, mut y]: Place, rows: &[(Sign, Stri
     for (sign, name) in rows {
         let middle = [x + 0.5 * LINE, y];
         match sign {
-            Sign::Mark(kind, index) => mark(canvas, &format!("legend {kind}"), *index, middle),
+            Sign::Mark(kind, index) => mark(canvas, &format!("legend {kind}"), *index, mark_colour(*index), middle, ""),
+            Sign::Shape(kind, index) => mark(canvas, &format!("legend {kind}"), *index, INK, middle, ""),
+            Sign::Swatch(colour) => canvas.rectangle([middle[0] - 5.0, y - 5.0], [10.0, 10.0], colour),
             Sign::Point(index) => point(canvas, "legend", *index, middle),
             Sign::Cross => cross(canvas, middle),
             Sign::Line(stroke) => canvas.line(&[[x, y], [x + LINE, y]], *stroke),
@@ -64,12 +70,22 @@ pub(super) fn legend(canvas: &mut Canvas, [x, mut y]: Place, rows: &[(Sign, Stri
 
 /// The mark of a step; shape and colour are those of its kind.
 pub(super) fn step(canvas: &mut Canvas, kinds: &[(&str, usize)], kind: &str, at: Place) {
-    mark(canvas, kind, kinds.iter().position(|(known, _)| *known == kind).unwrap_or(0), at);
+    let index = number(kinds, kind);
+    mark(canvas, kind, index, mark_colour(index), at, "");
 }
 
-fn mark(canvas: &mut Canvas, class: &str, index: usize, [x, y]: Place) {
-    // Blue is the line's colour.
-    let colour = CURVES[1 + index % (CURVES.len() - 1)];
+/// The number of a kind.
+pub(super) fn number(kinds: &[(&str, usize)], kind: &str) -> usize {
+    kinds.iter().position(|(known, _)| *known == kind).unwrap_or(0)
+}
+
+/// The colour of a number. Blue is the line's colour.
+pub(super) fn mark_colour(index: usize) -> &'static str {
+    CURVES[1 + index % (CURVES.len() - 1)]
+}
+
+/// A mark with the shape of a number; a browser shows the text, if there is one, over it.
+pub(super) fn mark(canvas: &mut Canvas, class: &str, index: usize, colour: &str, [x, y]: Place, text: &str) {
     let r = MARK;
     let shape = match index % 4 {
         0 => format!("M{x:.1} {:.1}l{r} {r} -{r} {r} -{r} -{r}z", y - r),
@@ -78,8 +94,9 @@ fn mark(canvas: &mut Canvas, class: &str, index: usize, [x, y]: Place) {
         _ => format!("M{x:.1} {:.1}l{r} {d} -{d} 0z", y - r, d = 2.0 * r),
     };
     let class = escaped(class).replace('"', "&quot;");
+    let title = if text.is_empty() { String::new() } else { format!("<title>{}</title>", escaped(text)) };
     canvas.raw(&format!(
-        "<path class=\"{class}\" d=\"{shape}\" fill=\"{colour}\" stroke=\"#ffffff\" stroke-width=\"0.6\"/>\n"
+        "<path class=\"{class}\" d=\"{shape}\" fill=\"{colour}\" stroke=\"#ffffff\" stroke-width=\"0.6\">{title}</path>\n"
     ));
 }
 

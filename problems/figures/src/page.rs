@@ -1,7 +1,9 @@
 //! A self-contained HTML page: text, tables, figures and listings; nothing is loaded from elsewhere, so that it opens offline.
+//!
+//! Figures stand in the page as SVG on a light ground, so that they look the same in a dark page. The page holds everything without its
+//! script, which only repeats the title of what the pointer is on below the figure, where it can be read at once and without a mouse.
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
+use crate::figure::Figure;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// A page.
@@ -11,6 +13,10 @@ pub struct Page {
     pub title: String,
     /// What the page says, in a sentence or two.
     pub lead: String,
+    /// When, where and by what it was made; one line.
+    pub origin: String,
+    /// What a reader has to know before everything else.
+    pub warnings: Vec<String>,
     /// Its parts, in order.
     pub sections: Vec<Section>,
 }
@@ -40,12 +46,21 @@ pub enum Block {
         rows: Vec<Vec<String>>,
     },
     /// A picture.
-    Figure {
-        /// The picture as SVG.
-        svg: String,
-        /// What is seen.
+    Picture {
+        /// The picture.
+        figure: Figure,
+        /// What is to be seen in it.
         caption: String,
     },
+    /// Two pictures of the same things, of which one is shown at a time; both are printed.
+    Choice {
+        /// What each of them is called, and the picture.
+        figures: Box<[(String, Figure); 2]>,
+        /// What is to be seen in them.
+        caption: String,
+    },
+    /// Files beside the page, with what they hold.
+    Files(Vec<File>),
     /// Text of fixed width behind a line that opens it.
     Listing {
         /// What it is.
@@ -53,6 +68,15 @@ pub enum Block {
         /// The text.
         text: String,
     },
+}
+
+/// A file beside the page.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct File {
+    /// Its path from the page on; the parts are joined by `/`.
+    pub path: String,
+    /// What it holds.
+    pub what: String,
 }
 
 impl Section {
@@ -90,6 +114,13 @@ impl Page {
                 body {
                     h1 { (self.title) }
                     p.lead { (self.lead) }
+                    @if !self.origin.is_empty() { p.origin { (self.origin) } }
+                    @if !self.warnings.is_empty() {
+                        div.warnings role="note" {
+                            strong { "Warnings" }
+                            ul { @for warning in &self.warnings { li { (warning) } } }
+                        }
+                    }
                     nav { @for (index, section) in self.sections.iter().enumerate() { a href={ "#part" (index) } { (section.title) } " " } }
                     @for (index, section) in self.sections.iter().enumerate() {
                         section id={ "part" (index) } {
@@ -97,6 +128,7 @@ impl Page {
                             @for block in &section.blocks { (block.markup()) }
                         }
                     }
+                    script { (PreEscaped(SCRIPT)) }
                 }
             }
         };
@@ -110,34 +142,79 @@ impl Block {
             Self::Text(text) => html! { p { (text) } },
             Self::List(items) => html! { ul { @for item in items { li { (item) } } } },
             Self::Table { head, rows } => html! {
-                table {
+                div.wide { table {
                     thead { tr { @for cell in head { th { (cell) } } } }
                     tbody { @for row in rows { tr { @for cell in row { td { (cell) } } } } }
-                }
+                } }
             },
-            // As an image of its own: names inside one picture cannot meet those of another.
-            Self::Figure { svg, caption } => html! {
-                figure {
-                    img alt=(caption) src={ "data:image/svg+xml;base64," (STANDARD.encode(svg)) };
-                    figcaption { (caption) }
+            Self::Picture { figure, caption } => html! {
+                figure { (card(figure)) (told(&[figure])) figcaption { (caption) } }
+            },
+            Self::Choice { figures, caption } => {
+                let name = &figures[0].1.name;
+                let id = |index: usize| format!("{name}-choice-{index}");
+                html! {
+                    figure.choice {
+                        @for (index, (label, _)) in figures.iter().enumerate() {
+                            input type="radio" name={ (name) "-choice" } id=(id(index)) checked[index == 0];
+                            label for=(id(index)) { (label) }
+                        }
+                        @for (_, figure) in figures.iter() { (card(figure)) }
+                        (told(&[&figures[0].1, &figures[1].1]))
+                        figcaption { (caption) }
+                    }
                 }
+            }
+            Self::Files(files) => html! {
+                div.wide { table.files {
+                    thead { tr { th { "file" } th { "holds" } } }
+                    tbody { @for File { path, what } in files {
+                        tr { td { a href=(address(path)) { (path) } } td { (what) } }
+                    } }
+                } }
             },
             Self::Listing { title, text } => html! { details { summary { (title) } pre { (text) } } },
         }
     }
 }
 
-const STYLE: &str = "
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; background: #fff }
-h1 { font-size: 1.6rem } h2 { font-size: 1.2rem; margin-top: 2.2rem; border-bottom: 1px solid #ccc }
-.lead { font-size: 1.1rem } nav a { margin-right: 1rem }
-table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums }
-th, td { border-bottom: 1px solid #ddd; padding: .25rem .8rem; text-align: right; vertical-align: top }
-th:first-child, td:first-child { text-align: left; padding-left: 0 }
-figure { margin: 1rem 0 } figure img { max-width: 100%; height: auto } figcaption { color: #555; font-size: .9rem }
-pre { background: #f6f6f6; padding: .8rem; overflow-x: auto; font-size: .85rem } summary { cursor: pointer }
-@media print { nav { display: none } details { display: block } }
-";
+/// A figure on its light ground; on a narrow page its parts, which show the same drawing, stand in its place.
+fn card(figure: &Figure) -> Markup {
+    html! {
+        div class=(if figure.parts.len() > 1 { "card parted" } else { "card" }) {
+            (PreEscaped(&figure.svg))
+            @if figure.parts.len() > 1 {
+                div.parts {
+                    p { (figure.title) }
+                    @for [left, top, width, height] in &figure.parts {
+                        svg width=(width) height=(height) viewBox={ (left) " " (top) " " (width) " " (height) }
+                            font-family="Ubuntu, sans-serif" { use href={ "#" (figure.name) } {} }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Where the script writes the title of what the pointer is on; nothing for figures without such titles.
+fn told(figures: &[&Figure]) -> Markup {
+    // Every figure has one title of its own.
+    let any = figures.iter().any(|figure| figure.svg.matches("<title>").count() > 1);
+    html! { @if any { output.told {} } }
+}
+
+/// A relative address: what is no letter, digit or one of `/._-` is written as bytes.
+fn address(path: &str) -> String {
+    let byte = |byte: u8| match byte {
+        b'/' | b'.' | b'_' | b'-' => char::from(byte).to_string(),
+        byte if byte.is_ascii_alphanumeric() => char::from(byte).to_string(),
+        byte => format!("%{byte:02X}"),
+    };
+    path.bytes().map(byte).collect()
+}
+
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
 
 #[cfg(test)]
 mod tests {
@@ -145,18 +222,40 @@ mod tests {
 
     #[test]
     fn texts_are_escaped_and_nothing_is_loaded_from_elsewhere() {
+        let figure = |name: &str| Figure {
+            name: name.into(),
+            title: "t".into(),
+            svg: format!("<svg><title>t</title><path><title>{name}</title></path></svg>"),
+            parts: if name == "one" { vec![[0, 30, 100, 50], [100, 30, 20, 50]] } else { vec![] },
+        };
         let blocks = vec![
             Block::Text("a < b & \"c\"".into()),
             Block::List(vec!["<i>".into()]),
             Block::table(["quantity", "value"], [vec!["Θ <script>", "1"]]),
-            Block::Figure { svg: "<svg/>".into(), caption: "pressure > 0".into() },
+            Block::Picture { figure: figure("one"), caption: "pressure > 0".into() },
+            Block::Choice {
+                figures: Box::new([("left".into(), figure("two")), ("right".into(), figure("three"))]),
+                caption: String::new(),
+            },
+            Block::Files(vec![File { path: "a/b c.svg".into(), what: "<what>".into() }]),
             Block::Listing { title: "scene".into(), text: "</pre>".into() },
         ];
-        let page = Page { title: "T & U".into(), lead: "l".into(), sections: vec![Section::new("Part", blocks)] };
+        let page = Page {
+            title: "T & U".into(),
+            lead: "l".into(),
+            origin: "today".into(),
+            warnings: vec!["large <strain>".into()],
+            sections: vec![Section::new("Part", blocks)],
+        };
         let html = page.html();
         assert!(html.starts_with("<!DOCTYPE html>") && html.contains("T &amp; U") && html.contains("a &lt; b &amp;"));
-        assert!(html.contains("Θ &lt;script&gt;") && !html.contains("<script") && html.contains("&lt;/pre&gt;"));
-        assert!(html.contains(&format!("data:image/svg+xml;base64,{}", STANDARD.encode("<svg/>"))));
+        assert!(
+            html.contains("Θ &lt;script&gt;") && html.matches("<script").count() == 1 && html.contains("&lt;/pre&gt;")
+        );
+        assert!(["one", "two", "three"].iter().all(|name| html.contains(&figure(name).svg)));
+        assert!(html.matches("<use href=\"#one\">").count() == 2 && html.contains("viewBox=\"100 30 20 50\""));
+        assert!(html.matches("type=\"radio\"").count() == 2 && html.matches("<output").count() == 2);
+        assert!(html.contains("<a href=\"a/b%20c.svg\">a/b c.svg</a>") && html.contains("large &lt;strain&gt;"));
         assert!(!html.contains("http:") && !html.contains("https:") && !html.contains("<link"));
     }
 }

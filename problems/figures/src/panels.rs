@@ -1,6 +1,6 @@
 //! Panels with bodies in space side by side: title, captions, arrows of the axes, note and colour bar around them.
 
-use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, text_width};
+use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, TITLE_ROOM, text_width};
 use super::error::FigureError;
 use super::figure::Figure;
 use super::levels::ColourScale;
@@ -77,7 +77,7 @@ impl Row<'_> {
         let width = width.into_iter().fold(0.0, f64::max) + MARGIN;
         let mut canvas = Canvas::new(width, top + height + 84.0);
         canvas.text([MARGIN, 22.0], TITLE, self.title);
-        for (panel, left) in self.panels.iter().zip(lefts) {
+        for (panel, &left) in self.panels.iter().zip(&lefts) {
             let origin = [left - points * across[0], top + 0.5 * (height - size[1]) - points * up[0]];
             let view = View { origin, scale: points };
             canvas.raw("<g class=\"panel\">\n");
@@ -91,25 +91,25 @@ impl Row<'_> {
         }
         self.scale.bar(&mut canvas, [left, top], height);
         let foot = top + height;
-        self.arrows(&mut canvas, [MARGIN + 8.0, foot + 58.0]);
+        for (index, start) in lefts.iter().enumerate() {
+            let end = lefts.get(index + 1).map_or(left - 8.0, |next| next - 8.0);
+            canvas.part([start - 8.0, TITLE_ROOM], [end, foot + 10.0]);
+        }
+        canvas.part([left - 8.0, TITLE_ROOM], [canvas.width, foot + 10.0]);
+        canvas.part([0.0, foot + 10.0], [note + text_width(self.note, LABEL) + MARGIN, canvas.height]);
+        directions(&mut canvas, self.axes, [MARGIN + 8.0, foot + 58.0]);
         canvas.text([note, foot + 62.0], LABEL, self.note);
         Ok(Figure::new(self.name, self.title, canvas))
     }
+}
 
-    fn arrows(&self, canvas: &mut Canvas, origin: Place) {
-        let view = View { origin, scale: ARROW };
-        let stroke = Stroke::solid(INK, 1.0);
-        for (axis, label) in self.axes.iter().enumerate() {
-            let end = view.place(std::array::from_fn(|other| f64::from(u8::from(other == axis))));
-            let along = [end[0] - origin[0], end[1] - origin[1]];
-            let length = along[0].hypot(along[1]);
-            let along = along.map(|part| part / length);
-            canvas.line(&[origin, end], stroke);
-            let wing =
-                |side: f64| [end[0] - 5.0 * along[0] - side * along[1], end[1] - 5.0 * along[1] + side * along[0]];
-            canvas.area(INK, [[end, wing(2.2), wing(-2.2)].as_slice()]);
-            let gap = if axis == 2 { [6.0, 2.0] } else { [5.0, 0.34 * LABEL] };
-            canvas.text([end[0] + gap[0], end[1] + gap[1]], LABEL, label);
-        }
+/// The directions of the three axes as arrows with labels.
+pub(super) fn directions(canvas: &mut Canvas, axes: &[String; 3], origin: Place) {
+    let view = View { origin, scale: ARROW };
+    for (axis, label) in axes.iter().enumerate() {
+        let end = view.place(std::array::from_fn(|other| f64::from(u8::from(other == axis))));
+        canvas.arrow([origin, end], Stroke::solid(INK, 1.0));
+        let gap = if axis == 2 { [6.0, 2.0] } else { [5.0, 0.34 * LABEL] };
+        canvas.text([end[0] + gap[0], end[1] + gap[1]], LABEL, label);
     }
 }

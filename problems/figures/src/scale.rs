@@ -100,6 +100,11 @@ impl Axis {
         share.is_finite().then_some(share)
     }
 
+    /// Labels of both ends, in the unit of the ticks.
+    pub fn end_labels(&self) -> [String; 2] {
+        [self.low, self.high].map(|end| number(if self.logarithmic { 10.0_f64.powf(end) } else { end }))
+    }
+
     /// The values at both ends.
     pub fn ends(&self) -> [f64; 2] {
         let value = |position: f64| if self.logarithmic { 10.0_f64.powf(position) } else { position * self.unit };
@@ -116,8 +121,12 @@ pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)
     })
 }
 
-/// A number with four digits, as text.
-pub(super) fn number(value: f64) -> String {
+/// A number with four digits, as figures write it: with the minus sign of print, large and small ones with a power of ten.
+///
+/// ```
+/// assert_eq!([14_809.3, -0.5, 2.1e7].map(figures::number), ["14809", "−0.5", "2.100·10^{7}"]);
+/// ```
+pub fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return signed(value.to_string());
     }

@@ -91,7 +91,11 @@ impl Solids {
             let largest = number(values.fold(f64::NEG_INFINITY, f64::max));
             Panel {
                 captions: [panel.caption.clone(), format!("largest {largest}{}", behind(&self.unit))],
-                bodies: panel.blocks.iter().map(SolidBlock::sheets).collect(),
+                bodies: panel
+                    .blocks
+                    .iter()
+                    .map(|block| faces(block.nodes, &block.points, Some(&block.values)))
+                    .collect(),
                 front: Vec::new(),
             }
         });
@@ -117,36 +121,36 @@ impl SolidBlock {
         finite(figure, "coordinate", self.points.iter().flatten().copied())?;
         finite(figure, "value", self.values.iter().copied())
     }
+}
 
-    /// The six faces, turned outwards.
-    fn sheets(&self) -> Vec<Sheet> {
-        let last = self.nodes.map(|count| count - 1);
-        // Axis a face is normal to, at its end or beginning; first × second axis of the face points outwards.
-        let faces = [
-            (2, true, [0, 1]),
-            (2, false, [1, 0]),
-            (0, true, [1, 2]),
-            (0, false, [2, 1]),
-            (1, true, [2, 0]),
-            (1, false, [0, 2]),
-        ];
-        let sheet = |(normal, end, axes): (usize, bool, [usize; 2])| {
-            let counts = axes.map(|axis| self.nodes[axis]);
-            let nodes = (0..counts[0] * counts[1]).map(|index| {
-                let mut node = [0; 3];
-                node[normal] = if end { last[normal] } else { 0 };
-                node[axes[0]] = index / counts[1];
-                node[axes[1]] = index % counts[1];
-                (node[0] * self.nodes[1] + node[1]) * self.nodes[2] + node[2]
-            });
-            Sheet {
-                counts,
-                points: nodes.clone().map(|node| self.points[node]).collect(),
-                values: Some(nodes.map(|node| self.values[node]).collect()),
-            }
-        };
-        faces.into_iter().map(sheet).collect()
-    }
+/// The six faces of a block of nodes, turned outwards.
+pub(super) fn faces(nodes: [usize; 3], points: &[[f64; 3]], values: Option<&[f64]>) -> Vec<Sheet> {
+    let last = nodes.map(|count| count - 1);
+    // Axis a face is normal to, at its end or beginning; first × second axis of the face points outwards.
+    let faces = [
+        (2, true, [0, 1]),
+        (2, false, [1, 0]),
+        (0, true, [1, 2]),
+        (0, false, [2, 1]),
+        (1, true, [2, 0]),
+        (1, false, [0, 2]),
+    ];
+    let sheet = |(normal, end, axes): (usize, bool, [usize; 2])| {
+        let counts = axes.map(|axis| nodes[axis]);
+        let places = (0..counts[0] * counts[1]).map(|index| {
+            let mut node = [0; 3];
+            node[normal] = if end { last[normal] } else { 0 };
+            node[axes[0]] = index / counts[1];
+            node[axes[1]] = index % counts[1];
+            (node[0] * nodes[1] + node[1]) * nodes[2] + node[2]
+        });
+        Sheet {
+            counts,
+            points: places.clone().map(|node| points[node]).collect(),
+            values: values.map(|values| places.map(|node| values[node]).collect()),
+        }
+    };
+    faces.into_iter().map(sheet).collect()
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Every kind of figure as SVG and, with the feature `png`, as PNG: titles hold signs that XML reserves, and superscripts.
 
 use figures::{
-    Convergence, Figure, Landscape, LogPlot, Map, MapPanel, Series, SolidBlock, SolidPanel, Solids, Step, SurfacePanel,
-    Surfaces, Visit,
+    ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, Landscape, LinePanel, Lines, LogPlot, Map, MapPanel,
+    Series, Sign, Sketch, SketchBody, SketchMark, SolidBlock, SolidPanel, Solids, Step, SurfacePanel, Surfaces, Visit,
 };
 
 fn title() -> String {
@@ -14,7 +14,8 @@ fn axes() -> [String; 2] {
 }
 
 fn plots() -> [Figure; 3] {
-    let step = |kind: &str, value: f64| Step { kind: kind.into(), value: Some(value), best: value };
+    let step =
+        |kind: &str, value: f64| Step { kind: kind.into(), origin: "<cuts>".into(), value: Some(value), best: value };
     let convergence = Convergence {
         name: "convergence".into(),
         title: title(),
@@ -49,13 +50,13 @@ fn plots() -> [Figure; 3] {
     [convergence.figure(), plot.figure(), landscape.figure()].map(|figure| figure.expect("numbers"))
 }
 
-fn maps() -> [Figure; 3] {
+fn map(scales: ColourScales, contours: bool) -> Figure {
     let panel = |caption: &str, origin: f64| MapPanel {
         caption: caption.into(),
         counts: [3, 2],
         origin: [origin; 2],
         size: [100.0, 50.0],
-        values: vec![0.0, 1.0, 2.0, -3.0, 5.0, 8.0],
+        values: vec![0.0, 1.0, 2.0, -3.0, 5.0, 8.0 + origin],
     };
     let map = Map {
         name: "pressure".into(),
@@ -63,8 +64,44 @@ fn maps() -> [Figure; 3] {
         quantity: "pressure".into(),
         unit: "MPa".into(),
         axes: axes(),
+        scales,
+        contours,
         panels: vec![panel("a > b", 0.0), panel("c", 7.0)],
     };
+    map.figure().expect("numbers")
+}
+
+fn lines_and_classes() -> [Figure; 2] {
+    let curve = Curve { name: "a < b".into(), points: vec![(0.0, 1.0), (1.0, 1e18)] };
+    let panel = LinePanel { caption: "x₂ > 3".into(), across: axes()[0].clone(), curves: vec![curve] };
+    let lines = Lines {
+        name: "cuts".into(),
+        title: title(),
+        quantity: "q".into(),
+        unit: "MPa".into(),
+        columns: 2,
+        panels: vec![panel.clone(), panel.clone(), panel],
+    };
+    let panel = ClassPanel {
+        caption: "c".into(),
+        counts: [3, 2],
+        origin: [0.0; 2],
+        size: [100.0, 50.0],
+        classes: vec![0, 1, 1, 1, 0, 0],
+        arrows: vec![[1.0, -2.0]; 6],
+    };
+    let classes = Classes {
+        name: "status".into(),
+        title: title(),
+        axes: axes(),
+        classes: vec!["open".into(), "<closed>".into()],
+        arrows: Some(("traction".into(), "MPa".into())),
+        panels: vec![panel.clone(), panel],
+    };
+    [lines.figure(), classes.figure()].map(|figure| figure.expect("numbers"))
+}
+
+fn bodies() -> [Figure; 3] {
     let corner = |node: u8| [f64::from(node >> 2 & 1), f64::from(node >> 1 & 1), f64::from(node & 1)];
     let block =
         SolidBlock { nodes: [2; 3], points: (0..8).map(corner).collect(), values: (0..8).map(f64::from).collect() };
@@ -85,12 +122,27 @@ fn maps() -> [Figure; 3] {
         unit: "mm".into(),
         panels: vec![SurfacePanel { caption: "c".into(), counts: [3, 2], size: [100.0, 50.0], heights }],
     };
-    [map.figure(), solids.figure(), surfaces.figure()].map(|figure| figure.expect("numbers"))
+    let mark =
+        |sign| SketchMark { sign, text: "u₁ = 0 & <more>".into(), lines: vec![[[-0.4, 0.5, 0.5], [0.0, 0.5, 0.5]]] };
+    let sketch = Sketch {
+        name: "sketch".into(),
+        title: title(),
+        axes: ["x₁".into(), "x₂".into(), "x₃".into()],
+        bodies: vec![SketchBody { nodes: [2; 3], points: (0..8).map(corner).collect() }],
+        marks: vec![mark(Sign::Support), mark(Sign::Arrow)],
+        notes: vec!["E = 7·10^{4} MPa".into()],
+    };
+    [sketch.figure(), solids.figure(), surfaces.figure()].map(|figure| figure.expect("numbers"))
+}
+
+fn all() -> Vec<Figure> {
+    let maps = [map(ColourScales::Common, false), map(ColourScales::Own, true)];
+    plots().into_iter().chain(maps).chain(lines_and_classes()).chain(bodies()).collect()
 }
 
 #[test]
 fn every_figure_is_well_formed_and_all_of_its_text_lies_inside() {
-    for figure in plots().into_iter().chain(maps()) {
+    for figure in all() {
         let document =
             roxmltree::Document::parse(&figure.svg).unwrap_or_else(|error| panic!("{}: {error}", figure.name));
         let number =
@@ -98,6 +150,18 @@ fn every_figure_is_well_formed_and_all_of_its_text_lies_inside() {
         let root = document.root_element();
         let size = ["width", "height"].map(|side| number(&root, side).expect("a size"));
         let texts: Vec<_> = document.descendants().filter(|node| node.has_tag_name("text")).collect();
+        for bar in document.descendants().filter(|node| node.attribute("class") == Some("bar")) {
+            // Both ends of a colour bar have a label at their height.
+            let inside = |tag: &'static str| bar.descendants().filter(move |node| node.has_tag_name(tag));
+            let sides = |node: roxmltree::Node| ["y", "height"].map(|name| number(&node, name).expect("a number"));
+            let steps: Vec<[f64; 2]> = inside("rect").map(sides).collect();
+            let ends = steps
+                .iter()
+                .fold([f64::INFINITY, 0.0], |[top, foot], [y, height]| [top.min(*y), f64::max(foot, y + height)]);
+            let labelled =
+                |end: f64| inside("text").filter_map(|text| number(&text, "y")).any(|y| (y - end - 4.1).abs() < 0.2);
+            assert!(ends.into_iter().all(labelled), "{}: {ends:?}", figure.name);
+        }
         assert!(texts.len() > 5, "{}", figure.name);
         for text in texts {
             let place = ["x", "y"].map(|axis| number(&text, axis).expect("a place"));
@@ -131,7 +195,7 @@ fn axes_have_their_ticks_where_the_numbers_are() {
 #[cfg(feature = "png")]
 #[test]
 fn png_files_have_the_size_asked_for() {
-    for figure in plots().into_iter().chain(maps()) {
+    for figure in all() {
         let picture = figure.png(2.0).expect("a picture");
         assert!(picture.starts_with(b"\x89PNG\r\n\x1a\n") && picture.len() > 5000, "{}", figure.name);
         let document = roxmltree::Document::parse(&figure.svg).expect("XML");

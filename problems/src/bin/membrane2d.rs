@@ -1,7 +1,7 @@
 //! Minimises the membrane over an obstacle with the bundle-trust engine.
 
 use clap::Parser;
-use figures::{Map, MapPanel};
+use figures::{ColourScales, Map, MapPanel};
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, NonsmoothObjective, Report, Request, StateSolver, TablePrinter, Vector,
 };
@@ -123,6 +123,8 @@ fn pictures(folder: &Folder, theta: &MembraneObjective, states: &[MembraneState;
             quantity: name.to_owned(),
             unit: unit.to_owned(),
             axes: ["x".into(), "y".into()],
+            scales: ColourScales::Common,
+            contours: false,
             panels: states.iter().zip(["start", "optimum"]).map(panel).collect(),
         };
         folder.draw(&map.figure().map_err(Failure::computation)?)?;

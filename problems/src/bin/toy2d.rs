@@ -81,6 +81,7 @@ fn pictures(folder: &Folder, start: [f64; 2], cells: usize) -> Result<(), Failur
     };
     let step = |record: &IterationRecord| Step {
         kind: record.kind.to_string(),
+        origin: record.origin.to_string(),
         value: record.value.map(|value| value - toy::MINIMUM),
         best: record.center_value - toy::MINIMUM,
     };

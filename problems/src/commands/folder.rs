@@ -20,8 +20,8 @@ const PNG_SCALE: f64 = 2.0;
 #[cfg(not(feature = "png"))]
 const HOW_TO_GET_PNG: &str = "pictures are written as SVG; built with --features png, the program writes PNG as well";
 
-/// Endings of the files of a picture, as the report names them.
-pub const PICTURE_ENDINGS: &str = if cfg!(feature = "png") { ".svg, .png" } else { ".svg" };
+/// Endings of the files of a picture.
+pub const PICTURE_ENDINGS: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
 
 /// Files of a run: what was asked for, where it started, and, when it has ended, its report.
 pub const SCENE: &str = "scene.toml";
@@ -161,6 +161,12 @@ impl Folder {
     pub fn page(&self) -> PathBuf {
         let page = self.path.join("report.html");
         if page.exists() { page } else { self.path.clone() }
+    }
+
+    /// The files that the program wrote here and in folders below, by their paths; some may have been taken away again.
+    pub fn names(&self) -> BTreeSet<String> {
+        let all = self.register.names();
+        all.iter().filter_map(|name| name.strip_prefix(&self.prefix)).map(str::to_owned).collect()
     }
 
     /// A folder inside this one, made if it does not exist.

@@ -26,34 +26,74 @@ fn names(folder: &Path) -> BTreeSet<String> {
     entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }
 
-/// Every figure exists as SVG (and as PNG, if the program can), is well-formed, and stands in the page, which loads nothing else.
+/// Every figure exists as SVG (and as PNG, if the program can), is well-formed, and stands in the page, which loads nothing else; every
+/// file that the page names exists, and so does every name inside it, once.
 fn check_page(scratch: &Path, folder: &str, figures: &[&str]) -> String {
     let found = names(&scratch.join(folder).join("figures"));
     let endings: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
     let expected =
         figures.iter().flat_map(|name| endings.iter().map(move |ending| format!("{name}.{ending}"))).collect();
     assert_eq!(found, expected, "{folder}");
+    let page = read(scratch, &format!("{folder}/report.html"));
     for name in figures {
         let svg = read(scratch, &format!("{folder}/figures/{name}.svg"));
         assert!(roxmltree::Document::parse(&svg).is_ok(), "{name}");
+        assert!(page.contains(&svg), "{folder}: {name}");
     }
-    let page = read(scratch, &format!("{folder}/report.html"));
-    assert_eq!(page.matches("data:image/svg+xml;base64,").count(), figures.len());
     assert!(page.starts_with("<!DOCTYPE html>") && page.trim_end().ends_with("</html>"));
-    for loaded in ["http://", "https://", "<link", "<script", "src=\"figures"] {
-        assert!(!page.contains(loaded), "{folder}: {loaded}");
+    // The name of the SVG language is an address that nothing is loaded from.
+    let addresses = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+    for loaded in ["http://", "https://", "<link", "src=", "@import", "url("] {
+        assert!(!addresses.contains(loaded), "{folder}: {loaded}");
+    }
+    let attributes = |name: &str| -> Vec<String> {
+        let start = format!(" {name}=\"");
+        page.split(&start).skip(1).map(|rest| rest.split('"').next().unwrap().to_owned()).collect()
+    };
+    let ids = attributes("id");
+    assert_eq!(ids.iter().collect::<BTreeSet<_>>().len(), ids.len(), "{folder}: {ids:?}");
+    let links = attributes("href");
+    assert!(links.iter().any(|link| link == "nonsmooth-files.txt"), "{folder}: {links:?}");
+    for link in links {
+        match link.strip_prefix('#') {
+            Some(name) => assert!(ids.iter().any(|id| id == name), "{folder}: {link}"),
+            None => assert!(scratch.join(folder).join(&link).exists(), "{folder}: {link}"),
+        }
     }
     page
 }
 
-const OPTIMIZATION: [&str; 4] = ["pressure", "von_mises", "surface", "convergence"];
+/// The cells of a row of a table, by the beginning of the row's name.
+fn cells(page: &str, name: &str) -> Vec<String> {
+    let row = page.split(&format!("<tr><td>{name}")).nth(1).unwrap_or_else(|| panic!("{name}"));
+    let row = row.split("</tr>").next().unwrap();
+    row.split("<td>").skip(1).map(|cell| cell.split("</td>").next().unwrap().to_owned()).collect()
+}
+
+/// A cell as a number; it may have the minus sign of print and a unit behind it.
+fn number(cell: &str) -> f64 {
+    let text = cell.replace('−', "-").replace(" %", "");
+    text.parse().unwrap_or_else(|_| panic!("{cell}"))
+}
+
+const SHAPES: [&str; 8] =
+    ["pressure", "pressure_own_scales", "pressure_cuts", "status", "von_mises", "surface", "surface_map", "sketch"];
+
+/// Of a single shape: one scale is its own.
+fn alone() -> Vec<&'static str> {
+    SHAPES.into_iter().filter(|name| *name != "pressure_own_scales").collect()
+}
+
+fn optimization() -> Vec<&'static str> {
+    SHAPES.into_iter().chain(["convergence"]).collect()
+}
 
 #[test]
 fn an_optimization_delivers_page_pictures_and_fields() {
     let folder = kit::scratch();
     let scratch = folder.path();
     let result = run(scratch, "signorini3d", &["--mesh", "4", "--max-evaluations", "6", "--out", "run"]);
-    let page = check_page(scratch, "run", &OPTIMIZATION);
+    let page = check_page(scratch, "run", &optimization());
     // Numbers of the page are those of the JSON.
     for (key, digits) in [("objective_start", 10), ("objective", 10)] {
         let value = format!("{:.digits$e}", result[key].as_f64().unwrap());
@@ -68,17 +108,139 @@ fn an_optimization_delivers_page_pictures_and_fields() {
         .flat_map(|name| [format!("{name}_bodies.vtu"), format!("{name}_contact.vtu")]);
     let expected: BTreeSet<String> = expected.chain(["fields.pvd".to_owned()]).collect();
     assert_eq!(names(&scratch.join("run/vtk")), expected);
-    // Every file that the page names exists.
-    let table = page.split("<th>holds</th>").nth(1).unwrap();
-    let rows: Vec<&str> = table.split("<tr><td>").skip(1).map(|row| row.split("</td>").next().unwrap()).collect();
-    assert!(rows.len() >= 10, "{rows:?}");
-    for row in rows {
-        // "figures/pressure.svg, .png" and "vtk/fields.pvd, *.vtu" name a kind of files after the first.
-        let named = row.split(", ").filter(|name| !name.starts_with(['.', '*', '…']));
-        for file in named {
-            assert!(scratch.join("run").join(file).exists(), "{file}");
-        }
+    // Warnings stand before everything else.
+    let first = page.find("<nav>").unwrap();
+    for warning in result["warnings"].as_array().unwrap() {
+        let text = warning["text"].as_str().unwrap();
+        assert!(page[..first].contains(text), "{text}");
     }
+    assert!(!result["warnings"].as_array().unwrap().is_empty());
+    // The date, as ISO 8601, the versions and the machine.
+    let origin = page.split("<p class=\"origin\">").nth(1).unwrap().split("</p>").next().unwrap();
+    assert!(origin.contains("Written 20") && origin.contains("Z by problems"), "{origin}");
+    assert!(origin.contains(std::env::consts::ARCH) && origin.contains("threads"), "{origin}");
+}
+
+#[test]
+fn the_table_of_the_result_says_what_the_files_say() {
+    let folder = kit::scratch();
+    let scratch = folder.path();
+    let result = run(scratch, "hertz3d", &["--mesh", "4", "--max-evaluations", "3", "--out", "run"]);
+    let page = read(scratch, "run/report.html");
+    let table = kit::read_json(&scratch.join("run/key_numbers.json"));
+    let rows = table["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), &table["columns"][1]), (11, &Value::from("optimum")));
+    for row in rows {
+        let values: Vec<f64> = row["values"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
+        let shown = cells(&page, row["quantity"].as_str().unwrap());
+        for (value, cell) in values.iter().zip(&shown) {
+            // Six digits.
+            assert!((number(cell) - value).abs() <= 1e-5 * value.abs(), "{row}: {cell}");
+        }
+        let change = 100.0 * (values[1] / values[0] - 1.0);
+        assert!((row["change_percent"].as_f64().unwrap() - change).abs() < 1e-9 * change.abs().max(1.0), "{row}");
+        assert!((number(&shown[2]) - change).abs() < 0.051, "{row}: {}", shown[2]);
+    }
+    let values = |key: &str| &rows.iter().find(|row| row["key"] == key).unwrap()["values"];
+    assert_eq!((&values("objective")[0], &values("objective")[1]), (&result["objective_start"], &result["objective"]));
+    assert_eq!(values("peak_pressure"), &result["peak_pressure"]);
+    // Closed nodes of the table of nodes carry the contact area; the upper body does not change.
+    assert_eq!(values("volume_upper")[0], values("volume_upper")[1]);
+    let nodes = read(scratch, "run/pressure_optimal.csv");
+    let closed = nodes.lines().skip(1).filter(|line| !line.ends_with("Open"));
+    // Tributary areas of 4 × 4 bricks on 10 mm × 10 mm: halves on edges.
+    let share = |x: &str| if ["0", "10"].contains(&x) { 0.5 } else { 1.0 };
+    let area = |line: &str| line.split(',').take(2).map(share).product::<f64>() * 2.5 * 2.5;
+    let area: f64 = closed.map(area).sum();
+    assert!((values("contact_area")[1].as_f64().unwrap() - area).abs() < 1e-9 * area);
+    assert!(values("friction_work")[0].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn the_text_over_the_node_of_the_peak_is_its_pressure() {
+    let folder = kit::scratch();
+    let scratch = folder.path();
+    run(scratch, "hertz3d", &["evaluate", "--mesh", "4", "--out", "state"]);
+    let table = read(scratch, "state/pressure_shape.csv");
+    let lines = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+    let nodes: Vec<(f64, f64, f64)> =
+        lines.map(|line| (line[0].parse().unwrap(), line[1].parse().unwrap(), line[2].parse().unwrap())).collect();
+    let svg = read(scratch, "state/figures/pressure.svg");
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let titles: Vec<&str> = document
+        .descendants()
+        .filter(|node| node.attribute("class") == Some("nodes"))
+        .flat_map(|group| group.descendants().filter(|node| node.has_tag_name("title")).filter_map(|node| node.text()))
+        .collect();
+    assert_eq!(titles.len(), nodes.len());
+    for (index, ((x1, x2, pressure), title)) in nodes.iter().zip(&titles).enumerate() {
+        let words = format!("node ({}, {}) at ({x1}, {x2}): ", index / 5, index % 5);
+        let value = title.strip_prefix(&words).unwrap_or_else(|| panic!("{title}, not {words}"));
+        let value = value.strip_suffix(" MPa").unwrap();
+        // Four digits; large and small numbers as a power of ten, which a text without superscripts writes with ^.
+        let value = value.replace('−', "-").replace("·10^", "e");
+        assert!((value.parse::<f64>().unwrap() - pressure).abs() <= 5e-4 * pressure.abs(), "{title}: {pressure}");
+    }
+    let peak = nodes.iter().max_by(|a, b| a.2.total_cmp(&b.2)).unwrap();
+    let marked = format!("largest {:.0} MPa at ({}, {})", peak.2, peak.0, peak.1);
+    assert!(svg.contains(&marked), "{marked}");
+}
+
+#[test]
+fn a_scene_without_friction_shows_none() {
+    let folder = kit::scratch();
+    let scratch = folder.path();
+    let arguments = ["evaluate", "--mesh", "4", "--friction", "0", "--out", "state"];
+    run(scratch, "signorini3d", &arguments);
+    let page = check_page(scratch, "state", &alone());
+    let svg = read(scratch, "state/figures/status.svg");
+    assert!(svg.contains(">closed<") && !svg.contains("slip") && !svg.contains("traction"));
+    assert!(!page.contains("friction work"));
+    assert!(read(scratch, "state/figures/sketch.svg").contains("no friction"));
+}
+
+#[test]
+fn the_sketch_says_what_the_scene_says() {
+    let folder = kit::scratch();
+    let scratch = folder.path();
+    run(scratch, "hertz3d", &["evaluate", "--mesh", "2", "--out", "state"]);
+    let svg = read(scratch, "state/figures/sketch.svg");
+    // Supports and loads of problems/scenes/hertz.toml; the top has 100 mm².
+    for words in [
+        "lower body, x₁ = 0: u₁ = 0",
+        "lower body, bottom: u₃ = 0",
+        "upper body, x₂ = 0: u₂ = 0",
+        "upper body, top: (0, 0, −2000) MPa, in all 200000 N",
+        "upper body, x₁ = 10 mm: (500, 0, −2000) MPa",
+        "upper body: E = 210000 MPa, ν = 0.29",
+        "friction coefficient 0.3",
+    ] {
+        assert!(svg.contains(words), "{words}");
+    }
+    // Five supports: seven marks, each with its letter at the bodies and in the list.
+    for letter in ["A", "G"] {
+        assert_eq!(svg.matches(&format!(">{letter}<")).count(), 2, "{letter}");
+    }
+}
+
+#[test]
+fn the_page_says_everything_without_its_script_and_stays_small() {
+    let folder = kit::scratch();
+    let scratch = folder.path();
+    run(scratch, "signorini3d", &["--max-evaluations", "2", "--out", "run"]);
+    let page = check_page(scratch, "run", &optimization());
+    // 3 MB are promised at 12³ bricks, 0.7 are needed.
+    assert!(page.len() < 1_000_000, "{}", page.len());
+    let script = page.split("<script>").nth(1).unwrap().split("</script>").next().unwrap();
+    assert_eq!(page.matches("<script").count(), 1);
+    // What it shows are titles that stand in the page: it holds no numbers, makes nothing, and hides nothing.
+    for word in ["innerHTML", "createElement", "hidden", "display", "fetch"] {
+        assert!(!script.contains(word), "{word}");
+    }
+    assert!(page.matches("<title>node (").count() > 4 * 13 * 13);
+    // The choice between two scales is made by the style alone.
+    assert_eq!(page.matches("type=\"radio\"").count(), 2);
+    assert!(page.contains("prefers-color-scheme: dark") && page.contains("@media print"));
 }
 
 #[test]
@@ -86,7 +248,7 @@ fn an_evaluation_of_two_bodies_delivers_them_too() {
     let folder = kit::scratch();
     let scratch = folder.path();
     let result = run(scratch, "hertz3d", &["evaluate", "--mesh", "4", "--out", "state"]);
-    let page = check_page(scratch, "state", &["pressure", "von_mises", "surface"]);
+    let page = check_page(scratch, "state", &alone());
     assert!(page.contains(&format!("{:.10e}", result["objective"].as_f64().unwrap())));
     let written = kit::read_json(&scratch.join("state/evaluation.json"));
     assert_eq!(written["subgradient"], result["subgradient"]);
@@ -100,12 +262,12 @@ fn a_comparison_delivers_its_own_page_and_those_of_both_runs() {
     let scratch = folder.path();
     let arguments = ["compare", "--mesh", "4", "--max-evaluations", "5", "--out", "both"];
     let result = run(scratch, "signorini3d", &arguments);
-    let page = check_page(scratch, "both", &["pressure", "von_mises", "surface"]);
+    let page = check_page(scratch, "both", &SHAPES);
     for sentence in result["conclusion"].as_array().unwrap() {
         assert!(page.contains(sentence.as_str().unwrap()), "{sentence}");
     }
     for part in ["with_friction", "without_friction"] {
-        check_page(scratch, &format!("both/{part}"), &OPTIMIZATION);
+        check_page(scratch, &format!("both/{part}"), &optimization());
     }
 }
 
@@ -164,7 +326,7 @@ fn growing_meshes_stand_in_the_page_with_their_own_numbers() {
     let scratch = folder.path();
     let arguments = ["--continuation", "2,4", "--max-evaluations", "3", "--out", "run"];
     let result = run(scratch, "signorini3d", &arguments);
-    let page = check_page(scratch, "run", &OPTIMIZATION);
+    let page = check_page(scratch, "run", &optimization());
     assert!(page.contains("3 + 3 evaluations in several runs") && page.contains("Runs"));
     for stage in result["stages"].as_array().unwrap() {
         assert!(page.contains(&format!("{:.4e}", stage["objective"].as_f64().unwrap())), "{stage}");

@@ -98,8 +98,7 @@ fn heights_that_are_off_change_the_pressure() {
     let file = folder.path().join("half.json");
     let heights: Vec<f64> = (0..36).map(|control| if control < 18 { 80.0 } else { 81.0 }).collect();
     std::fs::write(&file, format!("{heights:?}")).unwrap();
-    let half =
-        json(SIGNORINI, &[&["study", "--mesh", "4", "--json", "--controls", text(&file)], &errors[..]].concat());
+    let half = json(SIGNORINI, &[&["study", "--mesh", "4", "--json", "--controls", text(&file)], &errors[..]].concat());
     let single = json(SIGNORINI, &["evaluate", "--mesh", "4", "--json", "--controls", text(&file)]);
     assert_eq!(rows(&half)[0]["solved"]["objective"], single["objective"]);
     assert_eq!(rows(&half)[0]["solved"]["controls"], serde_json::to_value(&heights).unwrap());

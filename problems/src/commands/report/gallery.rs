@@ -1,56 +1,61 @@
-//! The figures of solved shapes and of a run; solved shapes as figures and files show them.
+//! The figures of contact and of a run; solved shapes as figures and files show them.
 
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::failure::Failure;
-use contact::body::mesh::Block;
-use contact::fields::{BodyFields, Fields};
+use contact::equilibrium::ContactStatus;
+use contact::fields::Fields;
 use figures::{
-    Convergence, Figure, FigureError, Map, MapPanel, SolidBlock, SolidPanel, Solids, Step, SurfacePanel, Surfaces,
-    nice_below,
+    ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, Step,
+    number,
 };
 use nonsmooth::{Cost, Report};
 use scene_file::OutputSection;
 
 /// A solved shape with its fields and its names.
 pub struct ShownShape<'a> {
-    /// The words below its picture.
+    /// What it is called beside others.
+    pub label: &'static str,
+    /// The words above its picture.
     pub caption: String,
     /// The beginning of the names of its files.
     pub name: &'static str,
     /// The shape.
     pub solved: &'a SolvedShape,
-    /// Its displacements and stresses, if a picture or a file shows them.
+    /// Its displacements and stresses, if a picture, a file or the page shows them.
     pub fields: Option<Fields>,
 }
 
 impl<'a> ShownShape<'a> {
-    /// A solved shape with a caption that begins with `words`, and with as many fields as the outputs show. Files for ParaView
-    /// hold the sensitivity of the objective to the height of every contact node as well, which takes an adjoint.
+    /// A solved shape with the beginning of its files' names and what it is called, and with as many fields as the outputs show. Files for
+    /// ParaView hold the sensitivity of the objective to the height of every contact node as well, which takes an adjoint.
     ///
     /// # Errors
     /// [`Failure`] of the adjoint.
     pub fn new(
         objective: &ContactObjective,
-        name: &'static str,
-        words: &str,
+        (name, label): (&'static str, &'static str),
         solved: &'a SolvedShape,
         wanted: &OutputSection,
     ) -> Result<Self, Failure> {
         let shape = objective.solver();
         let mut fields = None;
-        if wanted.pictures || wanted.vtk {
+        if wanted.pictures || wanted.vtk || wanted.report {
             fields = Some(shape.fields(&solved.state)?);
         }
         if let Some(fields) = fields.as_mut().filter(|_| wanted.vtk) {
             let gradient = objective.cost().gradient(&solved.controls, &solved.state);
             fields.contact.sensitivity = Some(shape.height_sensitivity(&solved.state, &gradient.state)?.0);
         }
-        Ok(Self { caption: format!("{words}Θ = {:.4e}", solved.value), name, solved, fields })
+        Ok(Self { label, caption: format!("{label}, Θ = {:.4e}", solved.value), name, solved, fields })
     }
 }
 
-/// Contact pressures side by side on one scale.
-pub fn pressure(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
+/// Contact pressures side by side, on one scale or on one each.
+pub fn pressure(
+    objective: &ContactObjective,
+    shapes: &[ShownShape<'_>],
+    scales: ColourScales,
+) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let [n1, n2, _] = problem.grid.nodes();
     let panel = |shape: &ShownShape<'_>| MapPanel {
@@ -60,12 +65,97 @@ pub fn pressure(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Resu
         size: problem.grid.size,
         values: objective.cost().pressures(&shape.solved.state),
     };
+    let (name, words) = match scales {
+        ColourScales::Common => ("pressure", ""),
+        ColourScales::Own => ("pressure_own_scales", ", each on its own scale"),
+    };
     Map {
-        name: "pressure".into(),
-        title: format!("{}: contact pressure", problem.scene.name),
+        name: name.into(),
+        title: format!("{}: contact pressure{words}", problem.scene.name),
         quantity: "pressure".into(),
         unit: "MPa".into(),
         axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
+        scales,
+        contours: false,
+        panels: shapes.iter().map(panel).collect(),
+    }
+    .figure()
+}
+
+/// Pressures of all shapes along x₁ and x₂ through the peak of each of them: one row per peak.
+pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
+    let problem = objective.solver().problem();
+    let grid = &problem.grid;
+    let pressures: Vec<Vec<f64>> = shapes.iter().map(|shape| objective.cost().pressures(&shape.solved.state)).collect();
+    let mut panels = Vec::new();
+    let mut seen = Vec::new();
+    for (shape, values) in shapes.iter().zip(&pressures) {
+        let larger = |best: usize, node: usize| if values[node] > values[best] { node } else { best };
+        let peak = problem.boundary.points[(0..values.len()).fold(0, larger)].position;
+        if seen.contains(&peak) {
+            continue;
+        }
+        seen.push(peak);
+        for axis in 0..2 {
+            let across = number(grid.position(peak[0], peak[1])[1 - axis]);
+            let (along, other) = (["x₁", "x₂"][axis], ["x₂", "x₁"][axis]);
+            let node = |index: usize| if axis == 0 { [index, peak[1]] } else { [peak[0], index] };
+            let curve = |(shape, values): (&ShownShape<'_>, &Vec<f64>)| Curve {
+                name: shape.label.to_owned(),
+                points: (0..=grid.cells[axis])
+                    .map(node)
+                    .map(|[i, j]| (grid.position(i, j)[axis], values[grid.column(i, j)]))
+                    .collect(),
+            };
+            panels.push(LinePanel {
+                caption: format!("{other} = {across} mm, through the peak ({})", shape.label),
+                across: format!("{along} (mm)"),
+                curves: shapes.iter().zip(&pressures).map(curve).collect(),
+            });
+        }
+    }
+    Lines {
+        name: "pressure_cuts".into(),
+        title: format!("{}: contact pressure along lines through the peaks", problem.scene.name),
+        quantity: "pressure".into(),
+        unit: "MPa".into(),
+        columns: 2,
+        panels,
+    }
+    .figure()
+}
+
+/// The status of every contact node; with friction, the traction as arrows.
+pub fn status(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
+    let problem = objective.solver().problem();
+    let [n1, n2, _] = problem.grid.nodes();
+    let friction = problem.boundary.has_friction();
+    // Without friction, nothing says whether a closed node slides.
+    let names: &[&str] = if friction { &["open", "stick", "slip"] } else { &["open", "closed"] };
+    let class = |status: &ContactStatus| match status {
+        ContactStatus::Open => 0,
+        ContactStatus::Slip if friction => 2,
+        ContactStatus::Stick | ContactStatus::Slip => 1,
+    };
+    let panel = |shape: &ShownShape<'_>| {
+        let forces = &shape.solved.state.forces;
+        let tractions = forces.tangential.iter().zip(&problem.boundary.points);
+        ClassPanel {
+            caption: shape.caption.clone(),
+            counts: [n1, n2],
+            origin: [0.0; 2],
+            size: problem.grid.size,
+            classes: forces.status.iter().map(class).collect(),
+            arrows: tractions.map(|(force, point)| force.map(|force| force / point.area)).collect(),
+        }
+    };
+    let words = if friction { " and friction traction" } else { "" };
+    Classes {
+        name: "status".into(),
+        title: format!("{}: contact status{words}", problem.scene.name),
+        axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
+        classes: names.iter().map(|name| (*name).to_owned()).collect(),
+        arrows: friction.then(|| ("traction".into(), "MPa".into())),
         panels: shapes.iter().map(panel).collect(),
     }
     .figure()
@@ -79,6 +169,7 @@ pub fn convergence(
 ) -> Result<Figure, FigureError> {
     let steps = report.history.iter().map(|record| Step {
         kind: record.kind.to_string(),
+        origin: record.origin.to_string(),
         value: record.value,
         best: record.center_value,
     });
@@ -92,80 +183,4 @@ pub fn convergence(
         reference: (bound > 0.0 && bound.is_finite()).then(|| ("least for this force".into(), bound)),
     }
     .figure()
-}
-
-/// Largest displacement that is drawn, as a share of the largest side of the bodies.
-const MAX_SHOWN_DISPLACEMENT: f64 = 0.08;
-/// Largest lift of an upper body, as a share of its largest height.
-const MAX_LIFT: f64 = 0.25;
-
-/// Von Mises stresses on the deformed bodies side by side on one scale; shapes without fields are left out.
-pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
-    let problem = objective.solver().problem();
-    let seen = || shapes.iter().filter_map(|shape| shape.fields.as_ref().map(|fields| (shape, fields)));
-    let bodies = || seen().flat_map(|(_, fields)| &fields.bodies);
-    let [a, b] = problem.grid.size;
-    let tallest = bodies().map(height).fold(0.0, f64::max);
-    let largest =
-        bodies().flat_map(|body| &body.displacement).map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
-    let times =
-        if largest > 0.0 { nice_below(MAX_SHOWN_DISPLACEMENT * a.max(b).max(tallest) / largest).max(1.0) } else { 1.0 };
-    let upper = seen().filter_map(|(_, fields)| fields.bodies.get(1)).map(height).fold(0.0, f64::max);
-    let lift = if upper > 0.0 { nice_below(MAX_LIFT * upper) } else { 0.0 };
-    let panel = |(shape, fields): (&ShownShape<'_>, &Fields)| SolidPanel {
-        caption: shape.caption.clone(),
-        blocks: fields.bodies.iter().zip([0.0, lift]).map(|(body, lift)| block(body, times, lift)).collect(),
-    };
-    let lifted = if lift > 0.0 { format!(", upper body lifted by {lift} mm") } else { String::new() };
-    Solids {
-        name: "von_mises".into(),
-        title: format!("{}: von Mises stress", problem.scene.name),
-        quantity: "stress".into(),
-        unit: "MPa".into(),
-        axes: [format!("x₁ ({a} mm)"), format!("x₂ ({b} mm)"), "x₃".into()],
-        note: format!("displacements × {times}{lifted}"),
-        panels: seen().map(panel).collect(),
-    }
-    .figure()
-}
-
-/// Heights of the contact surface of the lower body side by side on one scale; shapes without fields are left out.
-pub fn surfaces(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
-    let problem = objective.solver().problem();
-    let [n1, n2, _] = problem.grid.nodes();
-    let panel = |shape: &ShownShape<'_>| {
-        let heights = &shape.fields.as_ref()?.bodies.first()?.block.upper;
-        // The mean height says little, and would hide the shape: contact holds the bodies.
-        let mean = heights.iter().sum::<f64>() / heights.len() as f64;
-        let rounding = f64::EPSILON * heights.len() as f64 * mean.abs();
-        let above = |height: &f64| if (height - mean).abs() <= rounding { 0.0 } else { height - mean };
-        let (counts, size) = ([n1, n2], problem.grid.size);
-        let caption = format!("{}, mean height {mean:.2} mm", shape.caption);
-        Some(SurfacePanel { caption, counts, size, heights: heights.iter().map(above).collect() })
-    };
-    Surfaces {
-        name: "surface".into(),
-        title: format!("{}: contact surface of the lower body, without load", problem.scene.name),
-        quantity: "height less mean".into(),
-        unit: "mm".into(),
-        panels: shapes.iter().filter_map(panel).collect(),
-    }
-    .figure()
-}
-
-/// Largest height of a column of a body, mm.
-fn height(body: &BodyFields) -> f64 {
-    let Block { lower, upper, .. } = &body.block;
-    lower.iter().zip(upper).map(|(lower, upper)| upper - lower).fold(0.0, f64::max)
-}
-
-/// A body with its displacements magnified, lifted by some mm.
-fn block(body: &BodyFields, times: f64, lift: f64) -> SolidBlock {
-    let [n1, n2, n3] = body.block.grid.nodes();
-    let nodes = (0..n1 * n2 * n3).map(|node| [node / (n2 * n3), node / n3 % n2, node % n3]);
-    let points = nodes.zip(&body.displacement).map(|(node, u)| {
-        let [x1, x2, x3] = body.block.coordinates(node);
-        [x1 + times * u[0], x2 + times * u[1], x3 + times * u[2] + lift]
-    });
-    SolidBlock { nodes: [n1, n2, n3], points: points.collect(), values: body.nodal_von_mises.clone() }
 }

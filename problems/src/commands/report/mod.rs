@@ -1,7 +1,14 @@
-//! The files of a command with `--out`: tables, figures, meshes for ParaView and a report page.
+//! Reports: the files that `--out` asks for. Figures and pages are drawn by the package `figures`, from numbers.
 
+mod bodies;
+mod captions;
 pub mod files;
+mod folder;
 mod gallery;
+mod key_numbers;
 mod pages;
 mod sections;
+mod setup;
+mod stamp;
+pub mod study;
 mod tables;

@@ -3,13 +3,13 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::report::folder::Parts;
 use crate::commands::report::sections::{certificate, course, pictures, states};
 use contact::equilibrium::StageSeconds;
-use figures::Figure;
 use figures::page::{Block, Page, Section};
 
 /// The report of an optimization.
-pub fn optimization(figures: &[Figure], runs: &[MeshRun], last: &MeshRun, shapes: &[SolvedShape; 2]) -> Page {
+pub fn optimization(parts: Parts, runs: &[MeshRun], last: &MeshRun, shapes: &[SolvedShape; 2]) -> Page {
     let MeshRun { objective, report, .. } = last;
     let confirmed = if report.termination.is_confirmed() {
         "The optimum is confirmed by its certificate."
@@ -28,7 +28,8 @@ pub fn optimization(figures: &[Figure], runs: &[MeshRun], last: &MeshRun, shapes
         evaluations(runs)
     );
     let sections = vec![
-        pictures(figures),
+        parts.numbers,
+        pictures(parts.pictures),
         states(objective, &[("start", &shapes[0]), ("optimum", &shapes[1])]),
         stages(runs),
         course(report, &last.active_constraints()),
@@ -40,14 +41,15 @@ pub fn optimization(figures: &[Figure], runs: &[MeshRun], last: &MeshRun, shapes
 }
 
 /// The report of an evaluation.
-pub fn evaluation(figures: &[Figure], objective: &ContactObjective, shape: &SolvedShape) -> Page {
+pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShape) -> Page {
     let counts = shape.state.forces.counts();
     let lead = format!(
         "Θ = {:.10e}, peak pressure {:.2} MPa; {} contact nodes open, {} stick, {} slip.",
         shape.value, shape.peak_pressure, counts.open, counts.stick, counts.slip
     );
     let sections = vec![
-        pictures(figures),
+        parts.numbers,
+        pictures(parts.pictures),
         states(objective, &[("value", shape)]),
         controls(objective, shape.controls.as_slice()),
         seconds(shape),
@@ -56,7 +58,7 @@ pub fn evaluation(figures: &[Figure], objective: &ContactObjective, shape: &Solv
 }
 
 /// The report of a comparison with and without friction.
-pub fn comparison(figures: &[Figure], comparison: &Comparison<'_>) -> Page {
+pub fn comparison(parts: Parts, comparison: &Comparison<'_>) -> Page {
     let objective = &comparison.runs[0].objective;
     let sentences = comparison.conclusion();
     let confirmed = comparison.runs.iter().all(|run| run.report.termination.is_confirmed());
@@ -84,7 +86,7 @@ pub fn comparison(figures: &[Figure], comparison: &Comparison<'_>) -> Page {
         [("optimized with friction", &comparison.own[0][1]), ("optimized without friction", &comparison.crossed[0])];
     let mut with_friction = states(objective, &both);
     with_friction.title = format!("Both shapes with friction {friction}");
-    let sections = vec![table, pictures(figures), with_friction];
+    let sections = vec![table, parts.numbers, pictures(parts.pictures), with_friction];
     page(objective, "with and without friction", lead, sections)
 }
 
@@ -93,7 +95,7 @@ fn page(objective: &ContactObjective, what: &str, lead: String, sections: Vec<Se
     let [n1, n2, n3] = scene.mesh;
     let bodies = if scene.upper.is_some() { 2 } else { 1 };
     let title = format!("{}: {what} ({bodies} × {n1}×{n2}×{n3} bricks, friction {})", scene.name, scene.friction);
-    Page { title, lead, sections }
+    Page { title, lead, sections, ..Page::default() }
 }
 
 /// "20 evaluations", on growing meshes or from several starts "150 + 37 evaluations in several runs".

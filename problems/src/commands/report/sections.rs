@@ -1,20 +1,16 @@
 //! Sections that the report pages of several commands share.
 
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
-use contact::plausibility::Warning;
-use figures::Figure;
 use figures::page::{Block, Section};
 use nonsmooth::{Certificate, Report};
 
 /// The pictures of a page.
-pub fn pictures(figures: &[Figure]) -> Section {
-    let block = |figure: &Figure| Block::Figure { svg: figure.svg.clone(), caption: figure.title.clone() };
-    Section::new("Pictures", figures.iter().map(block).collect())
+pub fn pictures(blocks: Vec<Block>) -> Section {
+    Section::new("Pictures", blocks)
 }
 
-/// Contact states side by side: the parts of the objective, and residuals that say how far the numbers can be trusted.
+/// Contact states side by side: the bound of the objective, and residuals that say how far the numbers can be trusted.
 pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> Section {
-    let areas: f64 = objective.solver().problem().boundary.points.iter().map(|point| point.area).sum();
     let row = |name: &str, cell: &dyn Fn(&SolvedShape) -> String| -> Vec<String> {
         std::iter::once(name.to_owned()).chain(shapes.iter().map(|(_, shape)| cell(shape))).collect()
     };
@@ -24,8 +20,6 @@ pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> 
         row("objective Θ", &|shape| format!("{:.10e}", shape.value)),
         row("least value for this total force", &|shape| format!("{:.4e}", bound(shape))),
         row("Θ over that", &|shape| format!("{:.3}", shape.value / bound(shape))),
-        row("peak pressure, MPa", &|shape| format!("{:.2}", shape.peak_pressure)),
-        row("mean pressure, MPa", &|shape| format!("{:.2}", force(shape) / areas)),
         row("total normal force, N", &|shape| format!("{:.8e}", force(shape))),
         row("nodes open / stick / slip", &|shape| {
             let counts = shape.state.forces.counts();
@@ -98,36 +92,16 @@ pub fn certificate(certificate: Option<&Certificate>) -> Section {
     Section::new("Certificate", vec![Block::table(["quantity", "value"], rows), Block::Text(words.into())])
 }
 
-/// The scene, the versions of the program, and what the scene did not need.
-pub fn origin(scene: &str, left_out: &[&str], warnings: &[Warning]) -> Section {
-    let build = if cfg!(debug_assertions) { "with debug assertions" } else { "optimized" };
-    let versions = vec![
-        vec!["nonsmooth".to_owned(), nonsmooth::VERSION.to_owned()],
-        vec!["problems".into(), env!("CARGO_PKG_VERSION").to_owned()],
-        vec!["build".into(), format!("{build}, {} {}", std::env::consts::ARCH, std::env::consts::OS)],
-        vec!["threads".into(), rayon::current_num_threads().to_string()],
-        vec![
-            "command".into(),
-            std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" "),
-        ],
-    ];
-    let mut blocks = vec![Block::table(["", ""], versions)];
+/// The command, the scene and what it did not need.
+pub fn origin(scene: &str, left_out: &[&str]) -> Section {
+    let words: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    let mut blocks = vec![Block::Listing { title: "The command".into(), text: words.join(" ") }];
     if !left_out.is_empty() {
         blocks.push(Block::Text(format!("Left out, because this scene does not need it: {}.", left_out.join("; "))));
     }
-    if !warnings.is_empty() {
-        blocks.push(Block::Text("Warnings:".into()));
-        blocks.push(Block::List(warnings.iter().map(Warning::to_string).collect()));
-    }
     blocks
         .push(Block::Listing { title: "The scene, complete, with all options put in".into(), text: scene.to_owned() });
-    Section::new("Scene and versions", blocks)
-}
-
-/// The files beside the page.
-pub fn files(files: &[(String, &str)]) -> Section {
-    let rows = files.iter().map(|(name, what)| vec![name.clone(), (*what).to_owned()]);
-    Section::new("Files", vec![Block::table(["file", "holds"], rows)])
+    Section::new("Scene", blocks)
 }
 
 /// A text that begins with a capital letter.

@@ -10,6 +10,7 @@ mod row;
 mod table;
 mod varied;
 
+pub use row::{Outcome, Picture, Row, Solved};
 pub use varied::Varied;
 use varied::{HEIGHT_ERROR, SEED};
 
@@ -20,13 +21,12 @@ use crate::commands::folder::{Folder, REPORT, RunKind, STUDY, json, printed_with
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS, interrupted, watch_interrupts};
 use crate::commands::optimize::run::begin;
-use crate::commands::report::files::write_study;
+use crate::commands::report::study::write_study;
 use contact::error::SceneError;
 use nonsmooth::Vector;
-use row::Row;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-pub use table::StudyJson;
+pub use table::{StudyJson, values};
 
 /// The rows of a study.
 const ROWS: &str = "rows.json";

@@ -37,6 +37,11 @@ impl StudyJson {
         &self.vary
     }
 
+    /// Number of rows of the whole study.
+    pub fn rows_in_all(&self) -> usize {
+        self.rows_in_all
+    }
+
     /// The rows so far.
     pub fn rows(&self) -> &[Row] {
         &self.rows

@@ -67,6 +67,11 @@ impl Varied {
         &self.name
     }
 
+    /// Whether rows that differ in it have different shapes, though they are not optimized.
+    pub fn changes_shapes(&self) -> bool {
+        ["surface", "control-points", HEIGHT_ERROR].contains(&self.name.as_str())
+    }
+
     /// Its values, as they are typed.
     pub fn values(&self) -> &[String] {
         &self.values

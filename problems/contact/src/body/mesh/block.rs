@@ -144,6 +144,12 @@ impl Block {
         lattice::corners(brick).map(|node| self.coordinates(node))
     }
 
+    /// Volume of its bricks, mm³: they interpolate the heights of the columns bilinearly, so that it is Σ A · height.
+    pub fn volume(&self) -> f64 {
+        let height = |(i, j): (usize, usize)| self.upper[self.grid.column(i, j)] - self.lower[self.grid.column(i, j)];
+        self.grid.columns().map(|column| self.grid.tributary_area(column.0, column.1) * height(column)).sum()
+    }
+
     /// Refuses a block with an inverted or flat brick. `body` is its number in messages (1 lower, 2 upper).
     ///
     /// Columns are vertical over a uniform grid, so det(∂x/∂ξ) of a brick interpolates h₁h₂·(height of the column)/n₃ between

@@ -1,0 +1,76 @@
+//! Where the panels of plane grids stand: side by side, each to scale, two lines of text above.
+
+use super::canvas::{Canvas, LABEL, TITLE_ROOM, text_width};
+use super::chart::{Frame, ROOM_BELOW};
+use super::nodes::PlaneGrid;
+
+/// Longer side of a panel, points.
+const SIDE: f64 = 280.0;
+/// Room at the left for labels and title of the vertical axis, points.
+const ROOM_LEFT: f64 = 52.0;
+/// Least ratio of the sides of a panel; slimmer ones are not drawn to scale.
+const MIN_SIDE_RATIO: f64 = 0.25;
+/// Upper side of the panels, points.
+const TOP: f64 = 72.0;
+
+/// Panels side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Plan {
+    pub frames: Vec<Frame>,
+    /// Room for the labels of the vertical axis; none where the panel before has the same axis.
+    pub labelled: Vec<Option<f64>>,
+    /// Where the panels end, with a distance.
+    pub right: f64,
+    /// Lower side of the tallest panel.
+    pub foot: f64,
+}
+
+impl Plan {
+    /// Panels over some grids, each with room for its captions and for something behind it.
+    pub fn new(grids: &[PlaneGrid], captions: &[[String; 2]], behind: f64) -> Self {
+        let same =
+            behind == 0.0 && grids.windows(2).all(|two| two[0].origin == two[1].origin && two[0].size == two[1].size);
+        let (mut left, mut foot) = (16.0, TOP);
+        let mut frames = Vec::new();
+        let mut labelled = Vec::new();
+        for (index, (grid, captions)) in grids.iter().zip(captions).enumerate() {
+            let room = (index == 0 || !same).then_some(ROOM_LEFT);
+            left += room.unwrap_or(0.0);
+            let [width, height] = sides(grid.size);
+            frames.push(Frame { left, top: TOP, width, height });
+            labelled.push(room);
+            let text = captions.iter().fold(0.0_f64, |width, text| width.max(text_width(text, LABEL)));
+            left += (width + behind).max(text) + if behind > 0.0 { 20.0 } else { 36.0 };
+            foot = foot.max(TOP + height);
+        }
+        Self { frames, labelled, right: left, foot }
+    }
+
+    /// The captions above the panels. Every panel is a part of the figure, and so is what stands right of all panels
+    /// and ends at some height.
+    pub fn write(&self, canvas: &mut Canvas, captions: &[[String; 2]], end: f64) {
+        let foot = self.foot + ROOM_BELOW + 8.0;
+        let lefts: Vec<f64> = self
+            .frames
+            .iter()
+            .zip(&self.labelled)
+            .map(|(frame, room)| frame.left - room.map_or(16.0, |room| room + 8.0))
+            .collect();
+        for (index, left) in lefts.iter().enumerate() {
+            canvas.part([*left, TITLE_ROOM], [lefts.get(index + 1).copied().unwrap_or(self.right - 4.0), foot]);
+        }
+        if self.right < canvas.width - 1.0 {
+            canvas.part([self.right - 4.0, TITLE_ROOM], [canvas.width, end]);
+        }
+        for (frame, [first, second]) in self.frames.iter().zip(captions) {
+            canvas.text([frame.left, frame.top - 26.0], LABEL, first);
+            canvas.text([frame.left, frame.top - 10.0], LABEL, second);
+        }
+    }
+}
+
+/// Sides in points.
+fn sides([first, second]: [f64; 2]) -> [f64; 2] {
+    let ratio = (second / first).clamp(MIN_SIDE_RATIO, 1.0 / MIN_SIDE_RATIO);
+    if ratio > 1.0 { [SIDE / ratio, SIDE] } else { [SIDE, SIDE * ratio] }
+}

@@ -1,0 +1,193 @@
+//! The folder of a report while it is filled: its files with what they hold, and the parts of the page so far.
+
+use crate::commands::contact_objective::{ContactObjective, SolvedShape};
+use crate::commands::failure::Failure;
+use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, json};
+use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::long_run::RunFolder;
+use crate::commands::register::{JOURNAL, REGISTER};
+use crate::commands::report::gallery::ShownShape;
+use crate::commands::report::key_numbers::KeyNumbers;
+use crate::commands::report::stamp::stamp;
+use crate::commands::report::{bodies, captions, gallery, sections, setup, tables};
+use contact::fields::{FieldState, vtk_files};
+use contact::plausibility::Warning;
+use figures::page::{Block, File, Page, Section};
+use figures::{ColourScales, Figure};
+use scene_file::OutputSection;
+
+/// Folder of the figures.
+const FIGURES: &str = "figures";
+/// Folder of the files for ParaView.
+const VTK: &str = "vtk";
+
+/// The folder of a report.
+pub struct ReportFolder<'a> {
+    folder: &'a Folder,
+    loaded: &'a LoadedScene,
+    objective: &'a ContactObjective,
+    files: Vec<File>,
+    parts: Parts,
+}
+
+/// Parts of the page that are made with the files.
+#[derive(Debug, Default)]
+pub struct Parts {
+    /// The numbers by which shapes are judged.
+    pub numbers: Section,
+    /// The pictures with their captions.
+    pub pictures: Vec<Block>,
+}
+
+impl<'a> ReportFolder<'a> {
+    /// A folder in which nothing of the report is written yet.
+    pub fn new(folder: &'a Folder, loaded: &'a LoadedScene, objective: &'a ContactObjective) -> Self {
+        Self { folder, loaded, objective, files: vec![], parts: Parts::default() }
+    }
+
+    /// What is to be written.
+    pub fn wanted(&self) -> &'a OutputSection {
+        &self.loaded.case.output
+    }
+
+    /// Says that the folder holds a file at the end, by its path.
+    pub fn announce(&mut self, path: &str, what: &str) {
+        self.files.push(File { path: path.to_owned(), what: what.to_owned() });
+    }
+
+    /// Writes a file.
+    ///
+    /// # Errors
+    /// As [`Folder::write`].
+    pub fn write(&mut self, name: &str, text: &str, what: &'static str) -> Result<(), Failure> {
+        self.announce(name, what);
+        self.folder.write(name, text)
+    }
+
+    /// Writes a figure; the page will show it.
+    ///
+    /// # Errors
+    /// As [`Folder::draw`].
+    pub fn draw(&mut self, figure: Figure, what: &str, caption: &str) -> Result<(), Failure> {
+        self.keep(&figure, what)?;
+        self.parts.pictures.push(Block::Picture { figure, caption: caption.into() });
+        Ok(())
+    }
+
+    fn keep(&mut self, figure: &Figure, what: &str) -> Result<(), Failure> {
+        for ending in PICTURE_ENDINGS {
+            self.announce(&format!("{FIGURES}/{}.{ending}", figure.name), what);
+        }
+        self.folder.within(FIGURES)?.draw(figure)
+    }
+
+    /// Solved shapes, each with the beginning of its files' names and what it is called: the contact boundary as tables, fields for
+    /// ParaView, figures, and the numbers by which they are judged.
+    ///
+    /// # Errors
+    /// [`Failure`] of the fields and of the files.
+    pub fn show(&mut self, solved: &[(&'static str, &'static str, &SolvedShape)]) -> Result<(), Failure> {
+        let shown = |&(name, label, shape)| ShownShape::new(self.objective, (name, label), shape, self.wanted());
+        let shapes = solved.iter().map(shown).collect::<Result<Vec<_>, _>>()?;
+        if self.wanted().report {
+            let numbers = KeyNumbers::new(self.objective, &shapes);
+            self.write("key_numbers.json", &json(&numbers)?, "the table of the result")?;
+            self.parts.numbers = numbers.section();
+        }
+        for shape in &shapes {
+            let what = "pressure, traction, remaining gap and status of every contact node";
+            let table = tables::contact_nodes(self.objective, &shape.solved.state);
+            self.write(&format!("pressure_{}.csv", shape.name), &table, what)?;
+        }
+        if self.wanted().vtk {
+            self.write_fields(&shapes)?;
+        }
+        if self.wanted().pictures { self.draw_shapes(&shapes) } else { Ok(()) }
+    }
+
+    /// The figures of some shapes.
+    fn draw_shapes(&mut self, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
+        let objective = self.objective;
+        if let Some(first) = shapes.first() {
+            let sketch = setup::sketch(objective, first.solved.controls.as_slice())?;
+            self.draw(sketch, "bodies, supports and loads", captions::SKETCH)?;
+        }
+        let common = gallery::pressure(objective, shapes, ColourScales::Common).map_err(Failure::computation)?;
+        if shapes.len() == 1 {
+            self.draw(common, "contact pressure", captions::PRESSURE_ALONE)?;
+        } else {
+            let own = gallery::pressure(objective, shapes, ColourScales::Own).map_err(Failure::computation)?;
+            self.keep(&common, "contact pressure on one scale")?;
+            self.keep(&own, "contact pressure, each on its own scale")?;
+            let figures = [("one scale".to_owned(), common), ("each on its own scale".to_owned(), own)];
+            let caption = captions::PRESSURE.into();
+            self.parts.pictures.push(Block::Choice { figures: Box::new(figures), caption });
+        }
+        let friction = objective.solver().problem().boundary.has_friction();
+        let (what, status) = match friction {
+            true => ("open, stick and slip, with the friction traction", captions::STATUS),
+            false => ("open and closed contact nodes", captions::STATUS_WITHOUT_FRICTION),
+        };
+        let figures = [
+            (gallery::cuts(objective, shapes), "contact pressure along lines through the peaks", captions::CUTS),
+            (gallery::status(objective, shapes), what, status),
+            (bodies::von_mises(objective, shapes), "von Mises stress on the deformed bodies", captions::STRESS),
+            (bodies::surfaces(objective, shapes), "heights of the contact surface in space", captions::SURFACE),
+            (
+                bodies::surface_map(objective, shapes),
+                "heights of the contact surface from above",
+                captions::SURFACE_MAP,
+            ),
+        ];
+        figures
+            .into_iter()
+            .try_for_each(|(figure, what, caption)| self.draw(figure.map_err(Failure::computation)?, what, caption))
+    }
+
+    /// Fields of shapes for ParaView.
+    fn write_fields(&mut self, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
+        let mut states = Vec::new();
+        for (index, shape) in shapes.iter().enumerate() {
+            let fields = shape.fields.iter();
+            states.extend(fields.map(|fields| FieldState { time: index as f64, name: shape.name, fields }));
+        }
+        let folder = self.folder.within(VTK)?;
+        for (name, text) in vtk_files(&states).map_err(Failure::computation)? {
+            let what = match name.ends_with(".pvd") {
+                true => "all fields in time: open it with ParaView",
+                false => "displacements, stresses or contact fields of one shape",
+            };
+            folder.write(&name, &text)?;
+            self.announce(&format!("{VTK}/{name}"), what);
+        }
+        Ok(())
+    }
+
+    /// Writes the page if it is wanted; sections on the scene, the versions and all files are added to it.
+    ///
+    /// # Errors
+    /// As [`Folder::write`].
+    pub fn finish(mut self, page: impl FnOnce(Parts) -> Page, warnings: &[Warning]) -> Result<(), Failure> {
+        if !self.wanted().report {
+            return Ok(());
+        }
+        if RunFolder::is_one(self.folder.path()) {
+            self.announce("report.txt", "the page of text");
+            self.announce(REPORT, "the same as one JSON object");
+        }
+        for name in self.folder.names() {
+            if [SCENE, START].contains(&name.as_str()) || name.ends_with(JOURNAL) {
+                self.announce(&name, "the run itself, for --resume; restart data lie beside it");
+            }
+        }
+        self.announce(REGISTER, "the list of all files that the program wrote here");
+        let (scene, left_out) = (self.loaded.file.print()?, self.objective.solver().left_out());
+        let mut page = page(self.parts);
+        page.origin = stamp();
+        page.warnings = warnings.iter().map(Warning::to_string).collect();
+        page.sections.push(sections::origin(&scene, &left_out));
+        page.sections.push(Section::new("Files", vec![Block::Files(self.files)]));
+        page.sections.retain(|section| !section.blocks.is_empty());
+        self.folder.write("report.html", page.html())
+    }
+}

@@ -1,0 +1,199 @@
+//! The files of a study: its table, curves over the values, pressures and surfaces of its rows, and the page.
+
+use crate::commands::failure::Failure;
+use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, STUDY};
+use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::report::sections;
+use crate::commands::report::stamp::stamp;
+use crate::commands::study::{Outcome, Picture, Row, Solved, StudyJson, values};
+use figures::page::{Block, File, Page, Section};
+use figures::{ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces};
+
+/// Folder of the figures.
+const FIGURES: &str = "figures";
+/// Most rows whose pressures and surfaces are drawn.
+const MAX_SHOWN: usize = 12;
+/// Rows in one figure.
+const PER_FIGURE: usize = 3;
+
+const CURVES: &str = "Every mark is a row that has a result. The axis begins at zero.";
+const PRESSURES: &str = "Contact pressure of each row over the plan of the contact surface; a ring marks the peak. The panels of one picture \
+    have one scale.";
+const SURFACES: &str = "The contact surface of each row without load, its heights counted from their mean. The panels of one picture have one \
+    scale.";
+
+/// Writes table, figures and page of a study.
+///
+/// # Errors
+/// [`Failure`] of the figures and of the folder.
+pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> Result<(), Failure> {
+    let mut files = vec![File { path: "study.csv".into(), what: "the table with all digits".into() }];
+    folder.write("study.csv", study.csv())?;
+    let mut pictures = Vec::new();
+    if loaded.case.output.pictures {
+        for (figure, caption) in drawn(loaded, study).map_err(Failure::computation)? {
+            folder.within(FIGURES)?.draw(&figure)?;
+            for ending in PICTURE_ENDINGS {
+                let path = format!("{FIGURES}/{}.{ending}", figure.name);
+                files.push(File { path, what: figure.title.clone() });
+            }
+            pictures.push(Block::Picture { figure, caption: caption.into() });
+        }
+    }
+    if !loaded.case.output.report {
+        return Ok(());
+    }
+    for (path, what) in [
+        ("report.txt", "the table as text"),
+        (REPORT, "everything as one JSON object, once all rows are there"),
+        (SCENE, "the scene"),
+        (START, "the control heights at which rows begin, if they were given"),
+        (STUDY, "what is varied, for --resume"),
+        ("rows.json", "the rows so far, with controls, pressures and heights"),
+    ] {
+        files.push(File { path: path.into(), what: what.into() });
+    }
+    for name in folder.names().iter().filter(|name| name.ends_with("/report.html")) {
+        files.push(File { path: name.clone(), what: "the optimization of a row".into() });
+    }
+    let failed = study.rows().iter().filter(|row| matches!(row.outcome, Outcome::Failed(_))).count();
+    let varied: Vec<&str> = study.vary().iter().map(|varied| varied.name()).collect();
+    let page = Page {
+        title: format!("{}: study of {}", loaded.case.scene.name, varied.join(", ")),
+        lead: format!("{} rows of {}, {failed} without a result.", study.rows().len(), study.rows_in_all()),
+        origin: stamp(),
+        warnings: vec![],
+        sections: vec![
+            Section::new("Rows", vec![table(study)]),
+            Section::new("Pictures", pictures),
+            sections::origin(&loaded.file.print()?, &[]),
+            Section::new("Files", vec![Block::Files(files)]),
+        ],
+    };
+    folder.write("report.html", page.html())
+}
+
+/// The table; the reason of a failed row stands in its first cell after the values.
+fn table(study: &StudyJson) -> Block {
+    let head = study.head();
+    let rows = study.rows().iter().map(|row| {
+        let mut cells = study.cells(row);
+        cells.resize(head.len(), String::new());
+        cells
+    });
+    Block::table(head.clone(), rows.collect::<Vec<_>>())
+}
+
+/// A row that has a result.
+struct Shown<'a> {
+    row: &'a Row,
+    solved: &'a Solved,
+}
+
+impl<'a> Shown<'a> {
+    fn of(row: &'a Row) -> Option<Self> {
+        match &row.outcome {
+            Outcome::Solved(solved) => Some(Self { row, solved }),
+            Outcome::Failed(_) => None,
+        }
+    }
+}
+
+fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'static str)>, FigureError> {
+    let shown: Vec<Shown<'_>> = study.rows().iter().filter_map(Shown::of).collect();
+    let mut figures = Vec::new();
+    for figure in curves(study, &shown) {
+        figures.push((figure?, CURVES));
+    }
+    let title = |what: &str| format!("{}: {what}", loaded.case.scene.name);
+    for (number, rows) in (1..).zip(shown.chunks(PER_FIGURE)).take(MAX_SHOWN / PER_FIGURE) {
+        figures.push((pressures(format!("pressures_{number}"), title("contact pressure"), rows)?, PRESSURES));
+        if study.vary().iter().any(|varied| varied.changes_shapes()) || rows[0].solved.optimization.is_some() {
+            figures.push((surfaces(format!("surfaces_{number}"), title("contact surface"), rows)?, SURFACES));
+        }
+    }
+    Ok(figures)
+}
+
+/// Objective, peak pressure and contact area over the first option whose values are numbers, one curve for all rows that agree in the
+/// others.
+fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureError>> {
+    let numbers = |values: &[String]| values.len() > 1 && values.iter().all(|value| value.parse::<f64>().is_ok());
+    let Some(across) = study.vary().iter().position(|varied| numbers(varied.values())) else { return vec![] };
+    let figure = |name: &str, quantity: &str, unit: &str, value: fn(&Solved) -> f64| {
+        let mut curves: Vec<Curve> = Vec::new();
+        for Shown { row, solved } in shown {
+            let mut others = values(row);
+            let Ok(place) = others.remove(across).parse() else { continue };
+            let others = others.iter().zip(study.vary().iter().enumerate().filter(|(index, _)| *index != across));
+            let name: Vec<String> = others.map(|(value, (_, varied))| format!("{} {value}", varied.name())).collect();
+            let name = if name.is_empty() { "rows".to_owned() } else { name.join(", ") };
+            let point = (place, value(solved));
+            match curves.iter_mut().find(|curve| curve.name == name) {
+                Some(curve) => curve.points.push(point),
+                None => curves.push(Curve { name, points: vec![point] }),
+            }
+        }
+        let across = study.vary()[across].name();
+        Lines {
+            name: name.to_owned(),
+            title: format!("{quantity} over {across}"),
+            quantity: quantity.to_owned(),
+            unit: unit.to_owned(),
+            columns: 1,
+            panels: vec![LinePanel { caption: String::new(), across: across.to_owned(), curves }],
+        }
+        .figure()
+    };
+    if shown.is_empty() {
+        return vec![];
+    }
+    vec![
+        figure("objective", "Θ", "", |solved| solved.objective),
+        figure("peak_pressure", "peak pressure", "MPa", |solved| solved.peak_pressure),
+        figure("contact_area", "contact area", "mm²", |solved| solved.contact_area),
+    ]
+}
+
+fn caption(row: &Row) -> String {
+    row.options.iter().map(|option| option.trim_start_matches("--").replace('=', " ")).collect::<Vec<_>>().join(", ")
+}
+
+fn pressures(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
+    let panel = |Shown { row, solved }: &Shown<'_>| {
+        let Picture { counts, size, pressures, .. } = &solved.picture;
+        MapPanel { caption: caption(row), counts: *counts, origin: [0.0; 2], size: *size, values: pressures.clone() }
+    };
+    Map {
+        name,
+        title,
+        quantity: "pressure".into(),
+        unit: "MPa".into(),
+        axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
+        scales: ColourScales::Common,
+        contours: false,
+        panels: rows.iter().map(panel).collect(),
+    }
+    .figure()
+}
+
+fn surfaces(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
+    let panel = |Shown { row, solved }: &Shown<'_>| {
+        let Picture { counts, size, heights, .. } = &solved.picture;
+        let mean = heights.iter().sum::<f64>() / heights.len() as f64;
+        SurfacePanel {
+            caption: format!("{}, mean height {mean:.2} mm", caption(row)),
+            counts: *counts,
+            size: *size,
+            heights: heights.iter().map(|height| height - mean).collect(),
+        }
+    };
+    Surfaces {
+        name,
+        title: format!("{title} of the lower body, without load"),
+        quantity: "height less mean".into(),
+        unit: "mm".into(),
+        panels: rows.iter().map(panel).collect(),
+    }
+    .figure()
+}
