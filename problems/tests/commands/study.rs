@@ -73,6 +73,10 @@ fn an_optimized_study_goes_on_where_it_was_cut_short() {
     }
     let table = std::fs::read_to_string(whole.join("study.csv")).unwrap();
     assert_eq!((table.lines().count(), table.lines().next().unwrap().split(',').count()), (3, 14));
+    let page = std::fs::read_to_string(whole.join("report.html")).unwrap();
+    for part in ["figures/objective.svg", "figures/surfaces_1.svg", "row_002/report.html", "study.csv", "rows.json"] {
+        assert!(page.contains(&format!("href=\"{part}\"")) && whole.join(part).exists(), "{part}");
+    }
     // More evaluations than the limit that ended the rows.
     let longer = json(CONTACT, &["study", "--resume", text(&whole), "--max-evaluations", "6", "--json"]);
     let at_once =

@@ -58,6 +58,11 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     }
     let failed = study.rows().iter().filter(|row| matches!(row.outcome, Outcome::Failed(_))).count();
     let varied: Vec<&str> = study.vary().iter().map(|varied| varied.name()).collect();
+    let solved = study.rows().len() - failed;
+    if solved > MAX_SHOWN && !pictures.is_empty() {
+        pictures
+            .push(Block::Text(format!("Pressures and surfaces are drawn for the first {MAX_SHOWN} of {solved} rows.")));
+    }
     let page = Page {
         title: format!("{}: study of {}", loaded.case.scene.name, varied.join(", ")),
         lead: format!("{} rows of {}, {failed} without a result.", study.rows().len(), study.rows_in_all()),
