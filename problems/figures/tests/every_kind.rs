@@ -173,6 +173,38 @@ fn every_figure_is_well_formed_and_all_of_its_text_lies_inside() {
 }
 
 #[test]
+fn the_parts_of_a_figure_hold_all_of_its_text_but_the_title() {
+    let mut parted = 0;
+    for figure in all().into_iter().filter(|figure| !figure.parts.is_empty()) {
+        parted += 1;
+        let document = roxmltree::Document::parse(&figure.svg).expect("XML");
+        let number = |node: &roxmltree::Node, name: &str| {
+            node.attribute(name).and_then(|text| text.parse::<f64>().ok()).expect("a number")
+        };
+        let size = ["width", "height"].map(|side| number(&document.root_element(), side));
+        for part in &figure.parts {
+            let [left, top, width, height] = part.map(f64::from);
+            assert!(
+                width > 0.0 && height > 0.0 && left + width <= size[0] && top + height <= size[1],
+                "{}: {part:?}",
+                figure.name
+            );
+        }
+        for text in document.descendants().filter(|node| node.has_tag_name("text")).skip(1) {
+            let [x, y] = ["x", "y"].map(|axis| number(&text, axis));
+            let holds = |[left, top, width, height]: [f64; 4]| {
+                (left..=left + width).contains(&x) && (top..=top + height).contains(&y)
+            };
+            assert!(figure.parts.iter().any(|part| holds(part.map(f64::from))), "{}: ({x}, {y})", figure.name);
+        }
+        // What the parts refer to.
+        let named = document.descendants().filter(|node| node.attribute("id") == Some(figure.name.as_str()));
+        assert_eq!(named.count(), 1, "{}", figure.name);
+    }
+    assert_eq!(parted, 8);
+}
+
+#[test]
 fn axes_have_their_ticks_where_the_numbers_are() {
     let [_, plot, _] = plots();
     let document = roxmltree::Document::parse(&plot.svg).expect("XML");

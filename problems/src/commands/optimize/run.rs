@@ -154,10 +154,13 @@ const NUMBER_BYTES: u64 = 24;
 /// Bytes per torn node of the fields of one state (some 260 bytes per brick were written at 35³).
 const FIELD_BYTES: u64 = 300;
 
+/// Bytes per contact node of the figures, as files and in the page (some 2500 were written at 35³).
+const REPORT_BYTES: u64 = 3000;
+
 /// Jacobians that a run may keep, with the restart data behind each: twice as many as runs of the paper's examples need.
 const JACOBIANS: u64 = 40;
 
-/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states,
+/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states, figures,
 /// Jacobians of pressures and gaps, and the rest.
 fn room(stages: &[MeshStage]) -> u64 {
     let bytes = stages.iter().map(|stage| {
@@ -172,7 +175,7 @@ fn room(stages: &[MeshStage]) -> u64 {
             MethodName::Composite => JACOBIANS * (restart_data + jacobian),
             MethodName::Bundle => 0,
         };
-        3 * restart_data + 2 * FIELD_BYTES * nodes + kept
+        3 * restart_data + 2 * FIELD_BYTES * nodes + REPORT_BYTES * contact + kept
     });
     bytes.max().unwrap_or(0) + (4 << 20)
 }

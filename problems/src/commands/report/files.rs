@@ -46,7 +46,7 @@ pub fn write_evaluation(
 ) -> Result<(), Failure> {
     let mut out = ReportFolder::new(folder, loaded, objective);
     out.write("evaluation.json", json, "everything that evaluate knows, as one JSON object")?;
-    out.show(&[("shape", "value", shape)])?;
+    out.show(&[("shape", "this shape", shape)])?;
     out.finish(|parts| pages::evaluation(parts, objective, shape), checks)
 }
 

@@ -82,23 +82,27 @@ pub fn pressure(
     .figure()
 }
 
-/// Pressures of all shapes along x₁ and x₂ through the peak of each of them: one row per peak.
+/// Pressures of all shapes along x₁ and x₂ through the peak of each of them.
 pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let grid = &problem.grid;
     let pressures: Vec<Vec<f64>> = shapes.iter().map(|shape| objective.cost().pressures(&shape.solved.state)).collect();
-    let mut panels = Vec::new();
-    let mut seen = Vec::new();
-    for (shape, values) in shapes.iter().zip(&pressures) {
+    let peak = |values: &Vec<f64>| {
         let larger = |best: usize, node: usize| if values[node] > values[best] { node } else { best };
-        let peak = problem.boundary.points[(0..values.len()).fold(0, larger)].position;
-        if seen.contains(&peak) {
-            continue;
-        }
-        seen.push(peak);
-        for axis in 0..2 {
+        problem.boundary.points[(0..values.len()).fold(0, larger)].position
+    };
+    let peaks: Vec<[usize; 2]> = pressures.iter().map(peak).collect();
+    let mut panels: Vec<LinePanel> = Vec::new();
+    for (index, peak) in peaks.iter().enumerate() {
+        for (axis, [along, other]) in [["x₁", "x₂"], ["x₂", "x₁"]].into_iter().enumerate() {
+            let same = |place: &[usize; 2]| place[1 - axis] == peak[1 - axis];
+            // One line may run through several peaks.
+            if peaks[..index].iter().any(same) {
+                continue;
+            }
+            let labels = shapes.iter().zip(&peaks).filter(|(_, place)| same(place)).map(|(shape, _)| shape.label);
+            let labels = labels.collect::<Vec<_>>().join(", ");
             let across = number(grid.position(peak[0], peak[1])[1 - axis]);
-            let (along, other) = (["x₁", "x₂"][axis], ["x₂", "x₁"][axis]);
             let node = |index: usize| if axis == 0 { [index, peak[1]] } else { [peak[0], index] };
             let curve = |(shape, values): (&ShownShape<'_>, &Vec<f64>)| Curve {
                 name: shape.label.to_owned(),
@@ -108,7 +112,7 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
                     .collect(),
             };
             panels.push(LinePanel {
-                caption: format!("{other} = {across} mm, through the peak ({})", shape.label),
+                caption: format!("{other} = {across} mm, through the peak ({labels})"),
                 across: format!("{along} (mm)"),
                 curves: shapes.iter().zip(&pressures).map(curve).collect(),
             });
