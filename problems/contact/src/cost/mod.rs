@@ -12,3 +12,12 @@ mod region;
 pub use field::{FieldCost, FieldMeasure};
 pub use pressure::{ContactAreas, PressureCost, PressureMeasure};
 pub use region::Region;
+
+/// What is minimised.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Measure {
+    /// A function of the contact pressures.
+    Pressure(PressureMeasure),
+    /// A function of the displacements.
+    Field(FieldMeasure),
+}

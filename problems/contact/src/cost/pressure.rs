@@ -10,6 +10,7 @@ use crate::scene::Scene;
 use nonsmooth::composite::{OuterFunction, weighted_gram};
 use nonsmooth::{Cost, CostGradient, Matrix, Vector};
 use serde::Serialize;
+use std::fmt;
 
 /// A function of the contact pressures.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,6 +44,12 @@ pub struct ContactAreas {
     pub smoothed: f64,
     /// The area of all contact nodes.
     pub whole: f64,
+}
+
+impl fmt::Display for ContactAreas {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "closed nodes {:.6}, smoothed {:.6}, of {:.6} mm²", self.closed, self.smoothed, self.whole)
+    }
 }
 
 /// J(α, y) as a measure of the contact pressure.

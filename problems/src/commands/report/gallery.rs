@@ -8,7 +8,7 @@ use figures::{
     Convergence, Figure, FigureError, Map, MapPanel, SolidBlock, SolidPanel, Solids, Step, SurfacePanel, Surfaces,
     nice_below,
 };
-use nonsmooth::{Cost, Report};
+use nonsmooth::Report;
 use scene_file::OutputSection;
 
 /// A solved shape with its fields and its names.
@@ -42,8 +42,7 @@ impl<'a> ShownShape<'a> {
             fields = Some(shape.fields(&solved.state)?);
         }
         if let Some(fields) = fields.as_mut().filter(|_| wanted.vtk) {
-            let gradient = objective.cost().gradient(&solved.controls, &solved.state);
-            fields.contact.sensitivity = Some(shape.height_sensitivity(&solved.state, &gradient.state)?.0);
+            fields.contact.sensitivity = Some(objective.height_sensitivity(solved)?);
         }
         Ok(Self { caption: format!("{words}Θ = {:.4e}", solved.value), name, solved, fields })
     }
@@ -58,7 +57,7 @@ pub fn pressure(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Resu
         counts: [n1, n2],
         origin: [0.0; 2],
         size: problem.grid.size,
-        values: objective.cost().pressures(&shape.solved.state),
+        values: objective.pressures(&shape.solved.state),
     };
     Map {
         name: "pressure".into(),
@@ -82,14 +81,16 @@ pub fn convergence(
         value: record.value,
         best: record.center_value,
     });
-    let bound = objective.cost().lower_bound(optimum.state.forces.total_normal_force());
+    let bound = objective.lower_bound(optimum.state.forces.total_normal_force());
     Convergence {
         name: "convergence".into(),
         title: format!("{}: course of the optimization", objective.solver().problem().scene.name),
         quantity: "Θ".into(),
-        unit: objective.cost().unit(),
+        unit: objective.unit(),
         steps: steps.collect(),
-        reference: (bound > 0.0 && bound.is_finite()).then(|| ("least for this force".into(), bound)),
+        reference: bound
+            .filter(|bound| *bound > 0.0 && bound.is_finite())
+            .map(|bound| ("least for this force".into(), bound)),
     }
     .figure()
 }
