@@ -3,7 +3,13 @@
 use contact::body::mesh::Grid;
 use contact::error::SceneError;
 use contact::scene::HeightGrid;
-use exmex::{Express, FlatEx};
+use exmex::prelude::*;
+use exmex::{FloatOpsFactory, MatchLiteral, literal_matcher_from_pattern};
+
+literal_matcher_from_pattern!(DecimalNumber, r"^(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?");
+
+/// A parsed formula, with numbers such as 2.5e-3.
+type Expression = FlatEx<f64, FloatOpsFactory<f64>, DecimalNumber>;
 
 /// The names that a formula may use, in the order in which exmex lists them.
 const NAMES: [&str; 2] = ["x1", "x2"];
@@ -45,7 +51,7 @@ impl WantedPressure {
 }
 
 /// Refuses everything that is no formula in x1 and x2.
-fn parse(text: &str) -> Result<FlatEx<f64>, SceneError> {
+fn parse(text: &str) -> Result<Expression, SceneError> {
     let refused = |value: &str, allowed: String| Err(SceneError::out_of_range(FIELD, value, allowed));
     if text.chars().count() > LONGEST {
         return refused("a long text", format!("at most {LONGEST} characters"));
@@ -56,7 +62,7 @@ fn parse(text: &str) -> Result<FlatEx<f64>, SceneError> {
             "parentheses around a sign that follows an operator, as in 2*(-x1)".into(),
         );
     };
-    let expression = match exmex::parse::<f64>(&explicit) {
+    let expression = match Expression::parse(&explicit) {
         Ok(expression) => expression,
         Err(error) => return refused(&format!("{text:?}"), format!("a formula in x1, x2; here: {error}")),
     };
@@ -84,7 +90,7 @@ fn explicit_signs(text: &str) -> Option<String> {
     Some(explicit)
 }
 
-fn evaluate(expression: &FlatEx<f64>, [x1, x2]: [f64; 2]) -> Result<f64, SceneError> {
+fn evaluate(expression: &Expression, [x1, x2]: [f64; 2]) -> Result<f64, SceneError> {
     let values: Vec<f64> = expression.var_names().iter().map(|name| if name == NAMES[0] { x1 } else { x2 }).collect();
     let refused = |value: String| {
         SceneError::out_of_range(FIELD, format!("{value} at x1 = {x1}, x2 = {x2} mm"), "finite at every contact node")

@@ -81,3 +81,74 @@ fn compliance() {
         });
     }
 }
+
+/// Σλ_N/ΣA of a state at the start, MPa.
+fn mean_pressure(shape: &ContactShape) -> f64 {
+    let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+    let areas: f64 = shape.problem().boundary.points.iter().map(|point| point.area).sum();
+    state.forces.total_normal_force() / areas
+}
+
+#[test]
+fn measures_of_the_pressures() {
+    for scene in scenes() {
+        differentiated("deviation from a wanted pressure", &scene, |shape| {
+            let mean = mean_pressure(shape);
+            let grid = shape.problem().grid;
+            let places = grid.columns().map(|(i, j)| grid.position(i, j));
+            let wanted = places.map(|[x1, x2]| mean * (1.0 + x1 / grid.size[0] - x2 / grid.size[1])).collect();
+            PressureCost::new(PressureMeasure::Deviation { wanted }, &shape.problem().boundary).unwrap()
+        });
+        differentiated("open area", &scene, |shape| {
+            let measure = PressureMeasure::OpenArea { pressure: 1.7 * mean_pressure(shape) };
+            PressureCost::new(measure, &shape.problem().boundary).unwrap()
+        });
+    }
+}
+
+#[test]
+fn successive_approximations_share_the_adjoint() {
+    let scene = Scene { friction: 0.3, mesh: [4; 3], ..signorini().unwrap() };
+    let subgradient = |kind| {
+        let shape = ContactShape::new(scene.clone(), kind).unwrap().with_displacements();
+        let cost = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
+        let at = controls(&shape, 3);
+        ReducedObjective::new(shape, cost).evaluate(&Request::tight(&at)).unwrap().into_evaluation().subgradient
+    };
+    let [paper, direct] = [SolverKind::AugmentedLagrangian, SolverKind::Direct].map(subgradient);
+    // Their states are accurate to 1e-9 or so.
+    assert!((&paper - &direct).norm() < 1e-6 * direct.norm(), "{:e}", (&paper - &direct).norm() / direct.norm());
+}
+
+#[test]
+fn a_dual_of_another_size_and_a_state_without_displacements_are_refused() {
+    let scene = Scene { mesh: [4; 3], ..signorini().unwrap() };
+    for kind in KINDS {
+        let shape = ContactShape::new(scene.clone(), kind).unwrap();
+        let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+        let sizes = [shape.problem().boundary.dual_dimension(), shape.problem().displacement_count()];
+        for wrong in [sizes[0] - 1, sizes[0] + 1, sizes[0] + sizes[1] - 1] {
+            let refusal = shape.height_sensitivity(&state, &Vector::zeros(wrong)).unwrap_err().to_string();
+            assert!(refusal.contains("dual of the contact state"), "{refusal}");
+        }
+        assert!(shape.height_sensitivity(&state, &Vector::zeros(sizes[0] + sizes[1])).is_ok());
+        let cost = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
+        let objective = ReducedObjective::new(shape, cost);
+        let refusal = objective.evaluate(&Request::tight(&objective.solver().start())).unwrap_err().to_string();
+        assert!(refusal.contains("value"), "{refusal}");
+    }
+}
+
+#[test]
+fn regions_without_a_brick_or_a_body_are_refused() {
+    let shape = ContactShape::new(Scene { mesh: [4; 3], ..signorini().unwrap() }, SolverKind::Direct).unwrap();
+    let refused = |region: Region| {
+        let measure = FieldMeasure::StressNorm { region, exponent: 4.0 };
+        FieldCost::new(measure, shape.problem()).unwrap_err().to_string()
+    };
+    let all = Region { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None };
+    let outside = refused(Region { lower: [0.0, 0.0, 200.0], ..all.clone() });
+    assert!(outside.contains("objective.region") && outside.contains("centre of a brick"), "{outside}");
+    let upper = refused(Region { body: Some(1), ..all });
+    assert!(upper.contains("objective.body = upper"), "{upper}");
+}

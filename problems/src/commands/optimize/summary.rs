@@ -249,12 +249,15 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], argum
     let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
+    // A compliance may change its sign.
+    let ratio = Some(shapes[0].value / report.value).filter(|ratio| *ratio > 0.0);
+    let reduction = ratio.map_or_else(|| "no ratio".into(), |ratio| format!("{ratio:.4} times"));
     let areas = contact_areas(last, shapes).map_or_else(String::new, |[start, end]| {
         format!("contact:     at the start {start}\n             at the end   {end}\n")
     });
     format!(
         "{}: {} of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}; objective in {}\n\
-         reduction:   {:.4} times, peak pressure {:.1} -> {:.1} MPa\n{areas}{report}\
+         reduction:   {reduction}, peak pressure {:.1} -> {:.1} MPa\n{areas}{report}\
          state:       relative residuals at the solution: {}\n\
          \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
          solver:      {}\n\
@@ -270,7 +273,6 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], argum
         scene.subdomains[2],
         scene.friction,
         objective.unit().replace(['{', '}'], ""),
-        shapes[0].value / report.value,
         shapes[0].peak_pressure,
         shapes[1].peak_pressure,
         at_solution.residuals,
