@@ -238,7 +238,7 @@ fn objectives_are_read_or_refused_with_the_field() {
         ("measure = \"stress-norm\"\npressure = 3.0", ["objective.pressure = 3", "open area"]),
         ("measure = \"peak-pressure\"\nregion = { x1 = [0.0, 1.0] }", ["objective.region", "stress norm"]),
         ("measure = \"stress-norm\"\nregion = { x2 = [3.0, 1.0] }", ["objective.region.x2 = [3, 1]", "smaller"]),
-        ("measure = \"stress-norm\"\nregion = { x4 = [3.0, 1.0] }", ["objective.region.x4", "did you mean"]),
+        ("measure = \"stress-norm\"\nregion = { x4 = [3.0, 1.0] }", ["objective.region.x4", "allowed: body, x1"]),
         ("measure = \"stress-norm\"\nregion = { body = \"both\" }", ["objective.region.body = \"both\"", "\"lower\""]),
         (
             "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"1/(x1 - 5)\" }",
