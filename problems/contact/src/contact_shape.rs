@@ -1,14 +1,17 @@
 //! [`ContactShape`]: control heights ↦ contact forces, as a state problem of the framework.
 //!
 //! ```text
-//! S: α ↦ y = (λ_N; λ_T),    D*S(α)(y*):  one adjoint solve + one pass over the elements             method.md (5.1)
+//! S: α ↦ y = (λ_N; λ_T; u),    D*S(α)(y*):  one adjoint solve + one pass over the elements          method.md (5.1)
 //! ```
 //! Contact solvers use no trait of the framework: this module and [`crate::cost`] implement them. A dual of the state has one
 //! entry per normal force, then, with friction, two per node for the tangential forces
-//! ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries).
+//! ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries). A cost of the displacements adds three entries per node of
+//! every body, lower first ([`ContactProblem::displacement_count`]); other costs leave them out, and nothing is computed for them.
 
 use crate::communication::{Communication, InProcess};
-use crate::equilibrium::{ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolverState, ValueError};
+use crate::equilibrium::{
+    ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, ValueError,
+};
 use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
 use crate::memory;
@@ -31,6 +34,8 @@ pub type ContactState<S = AnyState> = crate::equilibrium::ContactState<S>;
 #[derive(Debug)]
 pub struct ContactShape<S: ContactSolver = AnySolver> {
     solver: S,
+    /// Whether states hold the displacements of all bodies.
+    displacements: bool,
 }
 
 /// Share of a state's products that its checks may take.
@@ -75,7 +80,7 @@ impl ContactShape {
         let problem = Arc::new(ContactProblem::new(scene)?);
         let solver = AnySolver::new(problem, kind, preconditioner, wanted, communication)
             .map_err(|error| SceneError::out_of_range("mesh.bricks", error, "a size that can be factored"))?;
-        Ok(Self { solver })
+        Ok(Self::by(solver))
     }
 }
 
@@ -93,7 +98,13 @@ fn check_processes(scene: &Scene, kind: SolverKind, processes: usize) -> Result<
 impl<S: ContactSolver> ContactShape<S> {
     /// The map by a given solver.
     pub fn by(solver: S) -> Self {
-        Self { solver }
+        Self { solver, displacements: false }
+    }
+
+    /// The same map, whose states hold the displacements of all bodies as well: for costs of the displacements.
+    #[must_use]
+    pub fn with_displacements(self) -> Self {
+        Self { displacements: true, ..self }
     }
 
     /// The contact solver.
@@ -133,7 +144,7 @@ impl<S: ContactSolver> ContactShape<S> {
         let friction = self.problem().boundary.has_friction();
         // An estimate that fails says nothing.
         let contraction = friction.then(|| self.solver.estimate_contraction(&state.solution, products).ok()).flatten();
-        let bodies = self.solver.bodies(&state.solution).map_err(oracle)?;
+        let bodies = self.bodies(state)?;
         Ok(plausibility::warnings(self.problem(), &bodies, &state.forces, contraction))
     }
 
@@ -183,12 +194,14 @@ impl<S: ContactSolver> ContactShape<S> {
         state: &ContactState<S::State>,
         direction: &Vector,
     ) -> Result<(Vec<f64>, ValueError), OracleError> {
-        let boundary = &self.problem().boundary;
+        let (boundary, displacements) = (&self.problem().boundary, self.problem().displacement_count());
         let (expected, found) = (boundary.dual_dimension(), direction.len());
-        if expected != found {
+        if found != expected && found != expected + displacements {
             return Err(InputError::Dimension { what: "dual of the contact state", expected, found }.into());
         }
-        let packed = boundary.pack(direction.as_slice());
+        let (forces, displacements) = direction.as_slice().split_at(expected);
+        let mut packed = boundary.pack(forces);
+        packed.extend_from_slice(displacements);
         let tolerance = (ADJOINT_SHARE * state.forces.residuals.newton).clamp(TIGHTEST_ADJOINT, 1e-3);
         let result = self.solver.sensitivities(&state.solution, &packed, tolerance).map_err(oracle)?;
         state.adjoint_applications.fetch_add(result.applications, Ordering::Relaxed);
@@ -200,8 +213,12 @@ impl<S: ContactSolver> ContactShape<S> {
     /// # Errors
     /// [`OracleError::Failed`] for a state of another mesh.
     pub fn fields(&self, state: &ContactState<S::State>) -> Result<Fields, OracleError> {
-        let bodies = self.solver.bodies(&state.solution).map_err(oracle)?;
-        Ok(Fields::new(self.problem(), bodies, &state.forces))
+        Ok(Fields::new(self.problem(), self.bodies(state)?, &state.forces))
+    }
+
+    /// All bodies of a solved shape: those that the state holds, else recovered now.
+    fn bodies(&self, state: &ContactState<S::State>) -> Result<Vec<SolvedBody>, OracleError> {
+        state.bodies.clone().map_or_else(|| self.solver.bodies(&state.solution).map_err(oracle), Ok)
     }
 
     fn check_dimension(&self, control: &Vector) -> Result<(), OracleError> {
@@ -232,7 +249,10 @@ impl<S: ContactSolver> StateSolver for ContactShape<S> {
     ) -> Result<Self::State, OracleError> {
         self.check_dimension(control)?;
         let tolerance = RESIDUAL_SHARE * accuracy.tolerance();
-        let state = self.solver.solve(control.as_slice(), start, tolerance).map_err(oracle)?;
+        let mut state = self.solver.solve(control.as_slice(), start, tolerance).map_err(oracle)?;
+        if self.displacements {
+            state.bodies = Some(self.solver.bodies(&state.solution).map_err(oracle)?);
+        }
         tracing::debug!(
             newton_steps = state.work.newton_steps,
             products = state.work.dual_operator_applications,

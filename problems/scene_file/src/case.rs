@@ -3,19 +3,16 @@
 use crate::bodies::body;
 use crate::grid_file;
 use crate::{
-    CounterSection, MeasureName, ObjectiveSection, OptimizerSection, OutputSection, SceneFile, SplineName,
-    StartSection, SurfaceSection,
+    CounterSection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile, SplineName, StartSection,
+    SurfaceSection,
 };
 use contact::contact_shape::SolverKind;
-use contact::cost::PressureMeasure;
 use contact::error::SceneError;
 use contact::scene::{CounterSurface, Scene, UpperBody};
 use contact::shape::{ShapeBounds, SplineKind};
 use contact::tfeti::PreconditionerKind;
 use std::path::Path;
 
-/// Exponent of the paper's norm.
-const DEFAULT_EXPONENT: f64 = 4.0;
 /// Degree of the paper's B-splines.
 const DEFAULT_DEGREE: usize = 3;
 
@@ -27,7 +24,9 @@ pub struct Case {
     /// Control heights at the start, mm, where they are not all the scene's start height.
     pub start: Option<Vec<f64>>,
     /// What is minimised.
-    pub measure: PressureMeasure,
+    pub objective: Objective,
+    /// What proposes trial points.
+    pub method: MethodName,
     /// The contact solver.
     pub solver: SolverKind,
     /// Its preconditioner.
@@ -68,10 +67,16 @@ impl Case {
         };
         scene.validate()?;
         check_continuation(&file.optimizer)?;
+        let objective = Objective::new(&file.objective, file.size, folder)?;
+        if let Objective::Deviation(wanted) = &objective {
+            wanted.at(&scene.grid())?;
+        }
+        let method = method(&objective, file.optimizer.method)?;
         Ok(Self {
             scene,
             start,
-            measure: measure(&file.objective)?,
+            objective,
+            method,
             solver: file.solver.kind,
             preconditioner: file.solver.preconditioner,
             optimizer: file.optimizer.clone(),
@@ -103,25 +108,12 @@ fn spline(section: &SurfaceSection) -> Result<SplineKind, SceneError> {
     }
 }
 
-fn measure(section: &ObjectiveSection) -> Result<PressureMeasure, SceneError> {
-    match (section.measure, section.exponent) {
-        (MeasureName::PressureNorm, exponent) => {
-            Ok(PressureMeasure::Norm { exponent: exponent.unwrap_or(DEFAULT_EXPONENT) })
-        }
-        (MeasureName::PeakPressure, None) => Ok(PressureMeasure::Peak),
-        (MeasureName::PeakPressure, Some(exponent)) => {
-            let allowed = "no exponent with the peak pressure, only with the pressure norm";
-            Err(SceneError::out_of_range("objective.exponent", exponent, allowed))
-        }
-    }
-}
-
 fn counter_surface(section: &CounterSection, size: [f64; 2], folder: &Path) -> Result<CounterSurface, SceneError> {
     Ok(match section {
         &CounterSection::Plane { height } => CounterSurface::Plane { height },
         &CounterSection::Waves { base, first, second, period } => CounterSurface::Waves { base, first, second, period },
         &CounterSection::Sphere { apex, radius } => CounterSurface::Sphere { apex, radius },
-        CounterSection::Grid { file } => CounterSurface::Grid(grid_file::read(&folder.join(file), size)?),
+        CounterSection::Grid { file } => CounterSurface::Grid(grid_file::read(&folder.join(file), size, "mm")?),
     })
 }
 
@@ -142,7 +134,7 @@ fn start(
         &StartSection::Waves { base, first, second, period } => {
             sampled(CounterSurface::Waves { base, first, second, period })
         }
-        StartSection::Grid { file } => sampled(CounterSurface::Grid(grid_file::read(&folder.join(file), size)?)),
+        StartSection::Grid { file } => sampled(CounterSurface::Grid(grid_file::read(&folder.join(file), size, "mm")?)),
         StartSection::Controls { heights } => heights.clone(),
     };
     let expected = counts[0] * counts[1];
@@ -151,6 +143,20 @@ fn start(
     }
     let mean = controls.iter().sum::<f64>() / expected as f64;
     Ok((mean, Some(controls)))
+}
+
+/// The method asked for, or the one that suits the objective.
+fn method(objective: &Objective, asked: Option<MethodName>) -> Result<MethodName, SceneError> {
+    match (objective.is_of_pressures(), asked) {
+        (true, None) => Ok(MethodName::Composite),
+        (false, None) => Ok(MethodName::Bundle),
+        (false, Some(MethodName::Composite)) => {
+            let allowed =
+                "\"bundle\" with this objective: the composite model takes functions of the contact pressures alone";
+            Err(SceneError::out_of_range("optimizer.method", "composite", allowed))
+        }
+        (_, Some(method)) => Ok(method),
+    }
 }
 
 fn check_continuation(optimizer: &OptimizerSection) -> Result<(), SceneError> {

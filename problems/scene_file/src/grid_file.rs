@@ -1,11 +1,11 @@
-//! Grids of heights from CSV files.
+//! Grids of heights or pressures from CSV files.
 
 use crate::text::read_text;
 use contact::error::SceneError;
 use contact::scene::HeightGrid;
 use std::path::Path;
 
-/// Most heights along an edge of a grid.
+/// Most numbers along an edge of a grid.
 const LARGEST: usize = 2000;
 
 /// Largest file of a grid, bytes.
@@ -19,8 +19,8 @@ pub fn read_grid(file: &Path) -> Result<String, SceneError> {
     read_text(file, LARGEST_FILE)
 }
 
-/// Heights of a file over a base of the given size: one line per x₁, one column per x₂.
-pub(super) fn read(file: &Path, size: [f64; 2]) -> Result<HeightGrid, SceneError> {
+/// Numbers of a file, in a unit for messages, over a base of the given size: one line per x₁, one column per x₂.
+pub(super) fn read(file: &Path, size: [f64; 2], unit: &str) -> Result<HeightGrid, SceneError> {
     let failed = |reason: String| SceneError::File { path: file.display().to_string(), reason };
     let text = read_grid(file)?;
     let mut heights = Vec::new();
@@ -30,7 +30,7 @@ pub(super) fn read(file: &Path, size: [f64; 2]) -> Result<HeightGrid, SceneError
         let numbers = line.split(',').map(|entry| entry.trim().parse::<f64>().ok().filter(|height| height.is_finite()));
         let numbers: Option<Vec<f64>> = numbers.collect();
         let Some(numbers) = numbers else {
-            return Err(failed(format!("line {}: expected finite numbers (mm) separated by commas", number + 1)));
+            return Err(failed(format!("line {}: expected finite numbers ({unit}) separated by commas", number + 1)));
         };
         if counts[0] > 0 && numbers.len() != counts[1] {
             let (found, expected) = (numbers.len(), counts[1]);

@@ -11,25 +11,26 @@ mod bodies;
 mod case;
 mod check;
 mod grid_file;
+mod objective;
 mod print;
 mod schema;
 mod settings;
 mod surfaces;
 mod table;
 mod text;
+mod wanted_pressure;
 
 pub use allowed::number;
 pub use bodies::{BodySection, Component, LoadSection, MaterialSection, SupportSection, UpperSection};
 pub use case::{Case, default_subdomains};
 pub use grid_file::read_grid;
+pub use objective::{BodyName, MeasureName, Objective, ObjectiveSection, RegionSection, WantedSection};
 pub use schema::schema;
-pub use settings::{
-    AccuracyName, MeasureName, MeshSection, MethodName, ObjectiveSection, OptimizerSection, OutputSection,
-    SolverSection,
-};
+pub use settings::{AccuracyName, MeshSection, MethodName, OptimizerSection, OutputSection, SolverSection};
 pub use surfaces::{AdmissibleSection, CounterSection, SplineName, StartSection, SurfaceSection};
 pub use table::field_table;
 pub use text::read_text;
+pub use wanted_pressure::WantedPressure;
 
 use contact::error::SceneError;
 use schemars::JsonSchema;

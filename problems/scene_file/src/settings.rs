@@ -1,4 +1,4 @@
-//! Mesh, objective, solver, optimizer and outputs of a scene file.
+//! Mesh, solver, optimizer and outputs of a scene file.
 
 use contact::contact_shape::SolverKind;
 use contact::tfeti::PreconditionerKind;
@@ -24,30 +24,6 @@ impl Default for MeshSection {
     }
 }
 
-/// The objective.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct ObjectiveSection {
-    /// Sum of pressures to a power, or the largest pressure.
-    pub measure: MeasureName,
-    /// Exponent p of the pressure norm. Default 4.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(max = 64.0), extend("x-unit" = "1", "exclusiveMinimum" = 1.0))]
-    pub exponent: Option<f64>,
-}
-
-/// Which function of the contact pressure is minimised.
-// The tag of `PressureMeasure`, whose exponent is a field of its own in a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum MeasureName {
-    /// Σσ^p.
-    #[default]
-    PressureNorm,
-    /// max σ.
-    PeakPressure,
-}
-
 /// The contact solver.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -62,8 +38,9 @@ pub struct SolverSection {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OptimizerSection {
-    /// With the composite model of pressure measure and pressures, or by cuts alone.
-    pub method: MethodName,
+    /// With the composite model of pressure measure and pressures, or by cuts alone. Default composite for measures of the pressures, bundle for the others, which have no composite model.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub method: Option<MethodName>,
     /// Largest number of evaluations of objective and subgradient, on every mesh.
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub max_evaluations: usize,
@@ -95,7 +72,7 @@ pub struct OptimizerSection {
 impl Default for OptimizerSection {
     fn default() -> Self {
         Self {
-            method: MethodName::default(),
+            method: None,
             max_evaluations: 150,
             tolerance: 1e-7,
             time_limit: None,
@@ -110,11 +87,10 @@ impl Default for OptimizerSection {
 
 /// What proposes trial points.
 // The one name of two switches: `composite_model` of the engine, and what the contact solver will be asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MethodName {
     /// The composite model, with the Jacobian of all pressures, beside those of the bundle.
-    #[default]
     Composite,
     /// The bundle alone, with one subgradient per shape.
     Bundle,

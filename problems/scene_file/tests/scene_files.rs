@@ -1,17 +1,26 @@
-//! Scene files: the six examples, their printed form, and what is refused with which words.
+//! Scene files: the examples, their printed form, and what is refused with which words.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::scene;
 use nonsmooth::{Accuracy, StateSolver, Vector};
-use scene_file::{Case, SceneFile, field_table, schema};
+use scene_file::{Case, MethodName, SceneFile, field_table, schema};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use testset::kit;
 
-const SCENES: [&str; 7] =
-    ["signorini", "hertz", "signorini_frictionless", "flat_punch", "tangential", "thin_layer", "just_touching"];
+const SCENES: [&str; 9] = [
+    "signorini",
+    "hertz",
+    "signorini_frictionless",
+    "flat_punch",
+    "tangential",
+    "thin_layer",
+    "just_touching",
+    "seal",
+    "support",
+];
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes")
@@ -195,4 +204,60 @@ fn every_field_is_documented_with_unit_and_range() {
 fn the_documented_table_is_that_of_the_fields() {
     let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenes.md")).unwrap();
     assert!(page.contains(&field_table()), "docs/scenes.md must hold this table:\n{}", field_table());
+}
+
+/// A scene with another section `[objective]`.
+fn with_objective(section: &str) -> Result<Case, String> {
+    let text = format!("{}\n[objective]\n{section}\n", text("hertz").split("[objective]").next().unwrap());
+    let file = SceneFile::parse(&text, "my.toml").map_err(|error| error.to_string())?;
+    assert_eq!(SceneFile::parse(&file.print().unwrap(), "printed").unwrap(), file);
+    Case::new(&file, &folder()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn objectives_are_read_or_refused_with_the_field() {
+    for section in [
+        "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"100 + x1*x2\" }",
+        "measure = \"pressure-deviation\"\nwanted = { form = \"grid\", file = \"flat_punch.csv\" }",
+        "measure = \"open-area\"\npressure = 3.0",
+        "measure = \"stress-norm\"",
+        "measure = \"stress-norm\"\nexponent = 3.0\nregion = { body = \"upper\", x1 = [0.0, 5.0] }",
+        "measure = \"compliance\"",
+    ] {
+        let case = with_objective(section).expect(section);
+        let is_of_displacements = section.contains("stress") || section.contains("compliance");
+        assert_eq!(case.objective.is_of_pressures(), !is_of_displacements);
+        let expected = if is_of_displacements { MethodName::Bundle } else { MethodName::Composite };
+        assert_eq!(case.method, expected, "{section}");
+    }
+    for (section, words) in [
+        ("measure = \"pressure-deviation\"", ["objective.wanted = missing", "form = \"formula\""]),
+        ("measure = \"open-area\"", ["objective.pressure = missing", "MPa"]),
+        ("measure = \"open-area\"\npressure = 0.0", ["objective.pressure = 0.0", "> 0"]),
+        ("measure = \"compliance\"\nexponent = 3.0", ["objective.exponent = 3", "stress norm"]),
+        ("measure = \"stress-norm\"\npressure = 3.0", ["objective.pressure = 3", "open area"]),
+        ("measure = \"peak-pressure\"\nregion = { x1 = [0.0, 1.0] }", ["objective.region", "stress norm"]),
+        ("measure = \"stress-norm\"\nregion = { x2 = [3.0, 1.0] }", ["objective.region.x2 = [3, 1]", "smaller"]),
+        ("measure = \"stress-norm\"\nregion = { x4 = [3.0, 1.0] }", ["objective.region.x4", "allowed: body, x1"]),
+        ("measure = \"stress-norm\"\nregion = { body = \"both\" }", ["objective.region.body = \"both\"", "\"lower\""]),
+        (
+            "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"1/(x1 - 5)\" }",
+            ["inf at x1 = 5, x2 = 0 mm", "objective.wanted.pressure"],
+        ),
+        (
+            "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"x1 + y\" }",
+            ["objective.wanted.pressure = y", "names x1, x2"],
+        ),
+        (
+            "measure = \"pressure-deviation\"\nwanted = { form = \"grid\", file = \"none.csv\" }",
+            ["none.csv", "No such file"],
+        ),
+        (
+            "measure = \"compliance\"\n[optimizer]\nmethod = \"composite\"",
+            ["optimizer.method = composite", "contact pressures alone"],
+        ),
+    ] {
+        let refusal = with_objective(section).expect_err(section);
+        assert!(words.iter().all(|word| refusal.contains(word)), "{section}: {refusal}");
+    }
 }

@@ -12,7 +12,7 @@ use contact::contact_shape::{ContactShape, SolverKind};
 use contact::error::SceneError;
 use contact::shape::SplineKind;
 use contact::tfeti::PreconditionerKind;
-use scene_file::{MeasureName, MethodName, SceneFile, SplineName, default_subdomains};
+use scene_file::{MeasureName, MethodName, ObjectiveSection, SceneFile, SplineName, default_subdomains};
 use serde::de::value::Error as NameError;
 use serde::de::{DeserializeOwned, IntoDeserializer};
 use std::path::{Path, PathBuf};
@@ -83,10 +83,10 @@ pub struct Arguments {
     /// Preconditioner of the dual operator.
     #[arg(long, value_parser = named::<PreconditionerKind>, value_name = "dirichlet|lumped|none")]
     pub preconditioner: Option<PreconditionerKind>,
-    /// What is minimised.
+    /// What is minimised; two names need fields of the scene file.
     #[arg(long, value_parser = measures())]
     pub objective: Option<MeasureName>,
-    /// Exponent p of the pressure norm.
+    /// Exponent p of the pressure norm or of the stress norm.
     #[arg(long, value_name = "P", value_parser = real("objective.exponent"))]
     pub exponent: Option<f64>,
     /// With study: an option and its values, a,b,c or FIRST:LAST:COUNT; several of them make all combinations.
@@ -193,8 +193,9 @@ impl Arguments {
             }
         }
         self.check_resume()?;
-        if self.exponent.is_some() && self.objective == Some(MeasureName::PeakPressure) {
-            return refused("--exponent", "with --objective pressure-norm only");
+        let has_exponent = |measure| matches!(measure, MeasureName::PressureNorm | MeasureName::StressNorm);
+        if self.exponent.is_some() && self.objective.is_some_and(|measure| !has_exponent(measure)) {
+            return refused("--exponent", "with --objective pressure-norm or stress-norm only");
         }
         Ok(())
     }
@@ -369,13 +370,12 @@ impl Arguments {
         }
         file.solver.kind = self.solver.unwrap_or(file.solver.kind);
         file.solver.preconditioner = self.preconditioner.unwrap_or(file.solver.preconditioner);
-        if let Some(measure) = self.objective {
-            file.objective.measure = measure;
-            // The file's exponent belongs to the file's measure.
-            file.objective.exponent = None;
+        if let Some(measure) = self.objective.filter(|measure| *measure != file.objective.measure) {
+            // Exponent, wanted pressure and region of the file belong to the file's measure.
+            file.objective = ObjectiveSection { measure, ..ObjectiveSection::default() };
         }
         file.objective.exponent = self.exponent.or(file.objective.exponent);
-        file.optimizer.method = self.optimizer.unwrap_or(file.optimizer.method);
+        file.optimizer.method = self.optimizer.or(file.optimizer.method);
         file.optimizer.max_evaluations = self.max_evaluations.unwrap_or(file.optimizer.max_evaluations);
         file.optimizer.time_limit = self.time_limit.or(file.optimizer.time_limit);
         if let Some(meshes) = &self.continuation {
@@ -432,8 +432,18 @@ fn named<T: DeserializeOwned>(text: &str) -> Result<T, NameError> {
 
 fn measures() -> impl TypedValueParser<Value = MeasureName> {
     let value = |name, meaning| PossibleValue::new(name).help(meaning);
-    PossibleValuesParser::new([value("pressure-norm", "Σσ^p"), value("peak-pressure", "max σ")])
-        .try_map(|name| named(&name))
+    PossibleValuesParser::new([
+        value("pressure-norm", "Σσ^p"),
+        value("peak-pressure", "max σ"),
+        value("pressure-deviation", "mean of (σ − wanted)²; needs objective.wanted of the scene file"),
+        value("open-area", "area that lacks contact pressure; needs objective.pressure of the scene file"),
+        value(
+            "stress-norm",
+            "p-norm of the von Mises stress, in the whole bodies or in objective.region of the scene file",
+        ),
+        value("compliance", "work of all loads"),
+    ])
+    .try_map(|name| named(&name))
 }
 
 #[cfg(test)]

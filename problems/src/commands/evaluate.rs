@@ -8,6 +8,7 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::processes::Usage;
 use crate::commands::report::files;
 use contact::contact_shape::SolverKind;
+use contact::cost::ContactAreas;
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
 use contact::plausibility::Warning;
 use serde::Serialize;
@@ -18,13 +19,16 @@ use std::time::Instant;
 #[derive(Debug, Serialize)]
 struct EvaluationJson {
     objective: f64,
-    /// log₁₀ of Σσ^p or of max σ.
+    /// log₁₀ of the objective, of Σσ^p where its root is given.
     log10_objective: f64,
     /// p where objective and subgradient are those of (Σσ^p)^{1/p}, since those of Σσ^p are no doubles; else 1.
     objective_root: f64,
     subgradient: Vec<f64>,
     peak_pressure: f64,
     total_normal_force: f64,
+    /// Contact areas, where the open area is the objective.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact_areas: Option<ContactAreas>,
     status: StatusCounts,
     kink: Kink,
     residuals: Residuals,
@@ -61,11 +65,10 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let shape = SolvedShape::at(objective, &controls).inspect_err(abandon)?;
     let state_seconds = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let evaluation =
-        objective.reduced().differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
+    let evaluation = objective.differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
     let (state, forces) = (&shape.state, &shape.state.forces);
-    let root = objective.cost().root();
+    let root = objective.root();
     // The root r as Θ = r^p, with ∂Θ = p r^{p−1} ∂r.
     let (power, slope) = (evaluation.value.powf(root), root * evaluation.value.powf(root - 1.0));
     let representable = power.is_normal() && (slope * evaluation.subgradient.amax()).is_finite();
@@ -78,6 +81,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         subgradient: (&evaluation.subgradient * slope).as_slice().to_vec(),
         peak_pressure: shape.peak_pressure,
         total_normal_force: forces.total_normal_force(),
+        contact_areas: objective.contact_areas(state),
         status: forces.counts(),
         kink: forces.kink,
         residuals: forces.residuals,
@@ -120,6 +124,9 @@ impl fmt::Display for EvaluationJson {
         writeln!(f, "|subgradient|        {norm:.6e} ({} controls)", self.subgradient.len())?;
         writeln!(f, "peak pressure        {:.6} MPa", self.peak_pressure)?;
         writeln!(f, "total normal force   {:.10e} N", self.total_normal_force)?;
+        if let Some(areas) = &self.contact_areas {
+            writeln!(f, "contact area         {areas}")?;
+        }
         let status = &self.status;
         writeln!(f, "contact nodes        {} open, {} stick, {} slip", status.open, status.stick, status.slip)?;
         writeln!(

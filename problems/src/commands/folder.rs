@@ -28,7 +28,7 @@ pub const SCENE: &str = "scene.toml";
 pub const START: &str = "start.json";
 pub const REPORT: &str = "report.json";
 /// Copies of the grids that a scene names.
-pub const GRIDS: [&str; 2] = ["counter_surface.csv", "start.csv"];
+pub const GRIDS: [&str; 3] = ["counter_surface.csv", "start.csv", "wanted_pressure.csv"];
 /// Folders of the two runs of a comparison.
 pub const COMPARED: [&str; 2] = ["with_friction", "without_friction"];
 /// What a study varies; its rows lie beside it.

@@ -5,7 +5,7 @@ use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{file_error, json};
 use crate::commands::optimize::stages::{MeshStage, stages};
-use contact::cost::PressureCost;
+use contact::cost::{Measure, PressureCost};
 use contact::equilibrium::ContactProblem;
 use nonsmooth::{Certificate, CertificateCheck, Journal, ProofCheck};
 use scene_file::{Case, read_text};
@@ -65,13 +65,22 @@ pub fn run(case: &Case, arguments: &Arguments) -> Result<String, Failure> {
     };
     let scene = case.scene.clone();
     let problem = ContactProblem::new(case.scene)?;
-    let cost = PressureCost::new(case.measure, &problem.boundary)?.normalised_for(&scene);
     let foreign = |error| {
         Failure::Computation(format!("{}: the certificate is not one of this scene: {error}", folder.display()))
     };
     let check = certificate.recheck(problem.admissible.polyhedron()).map_err(foreign)?;
-    let proof = certificate.composite.as_ref();
-    let proof = proof.map(|proof| proof.recheck(&certificate, &cost)).transpose().map_err(foreign)?;
+    // Functions of the displacements have no composite model, and their certificates no proof of this kind.
+    let proof = match (certificate.composite.as_ref(), case.objective.measure(&problem)?) {
+        (Some(proof), Measure::Pressure(measure)) => {
+            let cost = PressureCost::new(measure, &problem.boundary)?.normalised_for(&scene);
+            Some(proof.recheck(&certificate, &cost).map_err(foreign)?)
+        }
+        (Some(_), Measure::Field(_)) => {
+            let reason = "the certificate has a composite proof, and the objective of the scene has no composite model";
+            return Err(Failure::Computation(format!("{}: {reason}", folder.display())));
+        }
+        (None, _) => None,
+    };
     let mut result = RecheckJson::new(&certificate, &check, certificate.point == controls);
     result.agrees &= proof.is_none_or(|proof| proof.largest() <= MAX_ROUNDING);
     result.composite = proof;

@@ -5,7 +5,7 @@
 //! memory estimate, and for small scenes the discrete problem with its admissible set.
 
 use contact::communication::InProcess;
-use contact::cost::PressureCost;
+use contact::cost::{FieldCost, Measure, PressureCost};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::memory;
@@ -166,7 +166,11 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
         let start =
             case.start.unwrap_or_else(|| vec![case.scene.start_height; case.scene.control_points.iter().product()]);
         let problem = ContactProblem::new(case.scene)?;
-        PressureCost::new(case.measure, &problem.boundary)?;
+        match case.objective.measure(&problem)? {
+            Measure::Pressure(measure) => drop(PressureCost::new(measure, &problem.boundary)?),
+            Measure::Field(measure) if problem.scene.mesh[2] <= 40 => drop(FieldCost::new(measure, &problem)?),
+            Measure::Field(_) => {}
+        }
         problem.admissible.check(&nonsmooth::Vector::from_vec(start.clone()))?;
         if problem.scene.mesh[2] <= 40 {
             // Inverted elements are refused later, with an error of the contact problem.

@@ -24,6 +24,7 @@ mod long_runs;
 mod loosely_held;
 mod messages;
 mod nothing_lost;
+mod objectives;
 mod pages_run;
 mod pictures;
 mod pins;

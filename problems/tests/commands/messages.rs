@@ -133,9 +133,13 @@ fn help_has_the_defaults_and_results_name_their_files() {
         String::from_utf8(output.stdout).unwrap()
     };
     let help = printed(SIGNORINI, &["--help"]);
-    for default in
-        ["[default: [12, 12, 12]]", "[default: 0.3]", "[default: 150]", "[default: 4]", "[default: optimize]"]
-    {
+    for default in [
+        "[default: [12, 12, 12]]",
+        "[default: 0.3]",
+        "[default: 150]",
+        "[default: 4 for the pressure norm, 8 for the stress norm]",
+        "[default: optimize]",
+    ] {
         assert!(help.contains(default), "{default}: {help}");
     }
     assert!(printed(CONTACT, &["--help"]).contains("[default: friction of the scene]"));

@@ -22,7 +22,7 @@ fn heard(solver: SolverKind) -> Vec<String> {
     tracing::subscriber::with_default(tracing_subscriber::registry().with(layer), || {
         let start = theta.solver().start();
         let state = theta.solver().solve(&start, None, Accuracy::TIGHTEST).unwrap();
-        theta.reduced().differentiate(&start, &state).unwrap();
+        theta.differentiate(&start, &state).unwrap();
     });
     let words = words.lock().unwrap();
     words.clone()

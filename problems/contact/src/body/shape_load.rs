@@ -1,8 +1,10 @@
-//! Faces that carry a traction, for loads and for their derivative with respect to node heights.
+//! Faces that carry a traction: nodal loads, and their derivative with respect to node heights.
 
 use crate::body::elasticity::traction::face_weights;
 use crate::body::mesh::{Block, Face, Grid, Subdomain};
+use crate::lattice;
 use crate::scalar::Dual;
+use crate::scene::Load;
 
 /// Four block nodes of every brick face on a side of the block, optionally only those of one subdomain.
 pub fn loaded_faces(grid: &Grid, face: Face, place: Option<&Subdomain>) -> Vec<[[usize; 3]; 4]> {
@@ -26,6 +28,23 @@ pub fn loaded_faces(grid: &Grid, face: Face, place: Option<&Subdomain>) -> Vec<[
         }
     }
     faces
+}
+
+/// Consistent nodal loads of tractions over the dofs of a subdomain, N.
+pub fn nodal_loads(block: &Block, place: &Subdomain, loads: &[Load]) -> Vec<f64> {
+    let mut forces = vec![0.0; place.dof_count()];
+    for load in loads {
+        for face in loaded_faces(&block.grid, load.face, Some(place)) {
+            let weights = face_weights(&face.map(|node| block.coordinates(node)));
+            for (node, weight) in face.into_iter().zip(weights) {
+                let first = 3 * place.local_node(lattice::subtract(node, place.first_cell));
+                for (component, traction) in load.traction.iter().enumerate() {
+                    forces[first + component] += weight * traction;
+                }
+            }
+        }
+    }
+    forces
 }
 
 /// ∂(weight of corner b)/∂x₃ of corner a as `[a][b]`, for the four corners of a face, mm.

@@ -3,20 +3,24 @@
 //! ```text
 //! M = ∂(λ − Π(λ + w), Rᵀλ − e)/∂(λ, a):    Mᵀ (ψ; b) = (j; 0),    η = −Dᵀψ,    p_b = ∓C_b B_bᵀ η + N_b b
 //! dJ = −pᵀ (∂K u − ∂f) + ηᵀ ∂g,            J − J* = ψᵀ (λ − Π(λ + w)) + bᵀ (Rᵀλ − e) + O(|r|²)
+//! with l = ∂J/∂u (displacement_load.rs):   j − B C l̂ for j,   Rᵀ l̂ for 0,   p_b + C_b l̂_b for p_b
 //! ```
 //! Where the closed nodes leave a motion free, M is singular: a proximal spring regularises its factor, and refinement against
 //! M itself takes the spring off again wherever M determines the answer.
 
 use crate::direct::compliant_contact::CompliantContact;
+use crate::direct::displacement_load::CondensedLoad;
 use crate::direct::newton::SPRINGS;
 use crate::equilibrium::law::Linearization;
 use crate::linear::dense::{DenseLu, multiply};
+use crate::linear::vector::add_scaled;
+use nalgebra::DVector;
 
 /// The adjoint state.
 #[derive(Debug)]
 pub(super) struct CondensedAdjoint {
-    /// Contact displacements p per body, unit of J per N.
-    pub(super) displacements: Vec<Vec<f64>>,
+    /// Contact displacements p of the lower body, unit of J per N.
+    pub(super) displacement: Vec<f64>,
     /// Packed η, unit of J per mm.
     pub(super) multipliers: Vec<f64>,
     /// Terms of J − J*, per row, then per motion.
@@ -24,13 +28,15 @@ pub(super) struct CondensedAdjoint {
 }
 
 impl CompliantContact {
-    /// The adjoint at a state for packed j = ∂J/∂λ.
+    /// The adjoint at a state for packed j = ∂J/∂λ and for l = ∂J/∂u of all bodies; no loads if J does not depend on u.
     pub(super) fn adjoint(
         &self,
         unknowns: &[f64],
         linearizations: &[Linearization],
         direction: &[f64],
+        loads: &[CondensedLoad],
     ) -> CondensedAdjoint {
+        let (direction, resultant) = self.condensed_dual(direction, loads);
         let boundary = &self.problem.boundary;
         let (count, motions) = (self.row_count(), self.resultant.len());
         let active = self.active_system(linearizations, 0.0, boundary.friction);
@@ -41,7 +47,7 @@ impl CompliantContact {
             sprung[(motion, motion)] = SPRINGS[0];
         }
         let mut solution: Vec<f64> = active.rows.iter().map(|&row| direction[row] * self.load).collect();
-        solution.resize(size + motions, 0.0);
+        solution.extend(resultant);
         DenseLu::new(&sprung).solve_refined(&matrix, &mut solution);
         let mut psi = vec![0.0; count + motions];
         for (&row, value) in active.rows.iter().zip(&solution) {
@@ -67,8 +73,26 @@ impl CompliantContact {
         let error_terms = psi.iter().zip(&residual).map(|(psi, residual)| psi * residual).collect();
         eta.iter_mut().for_each(|eta| *eta /= self.unit * self.load);
         let own = self.own_amplitudes(&psi[count..], 1.0 / self.load);
-        let parts = self.bodies.iter().zip(&own);
-        let displacements = parts.map(|(body, own)| body.displacement(&eta, own, false)).collect();
-        CondensedAdjoint { displacements, multipliers: eta, error_terms }
+        let mut displacement = self.bodies[0].displacement(&eta, &own[0], false);
+        if let Some(load) = loads.first() {
+            add_scaled(&mut displacement, 1.0, &load.response);
+        }
+        CondensedAdjoint { displacement, multipliers: eta, error_terms }
+    }
+
+    /// ∂J/∂λ with the displacements eliminated, packed, unit of J per N, and ∂J/∂a, dimensionless amplitudes.
+    fn condensed_dual(&self, direction: &[f64], loads: &[CondensedLoad]) -> (Vec<f64>, Vec<f64>) {
+        let mut dual = direction.to_vec();
+        if loads.is_empty() {
+            return (dual, vec![0.0; self.resultant.len()]);
+        }
+        for (body, load) in self.bodies.iter().zip(loads) {
+            for &(row, dof) in &body.rows {
+                dual[row] -= body.sign * load.response[dof];
+            }
+        }
+        let own = loads.iter().flat_map(|load| &load.resultants).map(|resultant| resultant * self.unit * self.load);
+        let own: Vec<f64> = own.collect();
+        (dual, self.resultants_of(&DVector::from_vec(own)))
     }
 }

@@ -5,10 +5,9 @@
 //! ```
 //! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly.
 
-use crate::body::elasticity::traction::face_weights;
 use crate::body::local_pattern::LocalPattern;
-use crate::body::mesh::{Block, Grid, Subdomain};
-use crate::body::shape_load::loaded_faces;
+use crate::body::mesh::{Block, Grid};
+use crate::body::shape_load::nodal_loads;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::dense::{DenseLu, multiply};
@@ -68,7 +67,7 @@ impl CondensationPattern {
     /// [`ContactError::Factorization`] when the stiffness matrix is not positive definite.
     pub fn condense(&self, block: &Block, scene: &BodyScene) -> Result<CondensedBody, ContactError> {
         let mut values = self.pattern.assemble(&scene.material, |brick| block.brick(brick));
-        let mut full_load = body_load(block, scene, &self.pattern.shape);
+        let mut full_load = nodal_loads(block, &self.pattern.shape, &scene.loads);
         let shift = self.impose(&mut values, &mut full_load);
         let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();
@@ -144,9 +143,14 @@ impl CondensedBody {
         loads
     }
 
-    /// Extends contact displacements to the whole body; `forces` act on the contact dofs, `loaded` adds the loads.
-    pub fn extend(&self, contact_displacement: &[f64], forces: &[f64], loaded: bool) -> Vec<f64> {
-        let mut u = if loaded { self.full_load.clone() } else { vec![0.0; self.full_load.len()] };
+    /// The loads over the whole body, N; 0 at held dofs.
+    pub fn full_load(&self) -> &[f64] {
+        &self.full_load
+    }
+
+    /// Extends contact displacements to the whole body under `load` on its dofs (0 at held ones); `forces` act on the contact dofs.
+    pub fn extend(&self, contact_displacement: &[f64], forces: &[f64], load: &[f64]) -> Vec<f64> {
+        let mut u = load.to_vec();
         for (node, &first) in self.contact.iter().enumerate() {
             for component in 0..3 {
                 let dof = 3 * node + component;
@@ -160,20 +164,4 @@ impl CondensedBody {
 
 fn contact_part(contact: &[usize], values: &[f64]) -> Vec<f64> {
     contact.iter().flat_map(|&first| values[first..first + 3].iter().copied()).collect()
-}
-
-/// Consistent nodal loads of a whole body.
-fn body_load(block: &Block, scene: &BodyScene, shape: &Subdomain) -> Vec<f64> {
-    let mut load = vec![0.0; shape.dof_count()];
-    for part in &scene.loads {
-        for face in loaded_faces(&block.grid, part.face, None) {
-            let weights = face_weights(&face.map(|node| block.coordinates(node)));
-            for (node, weight) in face.into_iter().zip(weights) {
-                for (component, traction) in part.traction.iter().enumerate() {
-                    load[3 * shape.local_node(node) + component] += weight * traction;
-                }
-            }
-        }
-    }
-    load
 }

@@ -10,6 +10,7 @@ mod compliant_body;
 mod compliant_contact;
 mod condensation;
 mod diagnosis;
+mod displacement_load;
 mod newton;
 mod recovery;
 #[cfg(feature = "interior-point")]

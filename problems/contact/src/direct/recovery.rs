@@ -21,7 +21,7 @@ impl DirectSolver {
         let parts = blocks.into_iter().zip(solution.chunks_exact(size)).enumerate();
         Ok(parts
             .map(|(body, (block, contact))| {
-                let u = state.extend(body, contact, &state.solution.forces, true);
+                let u = state.extend(body, contact, &state.solution.forces);
                 SolvedBody {
                     displacement: u.chunks_exact(3).map(|u| [u[0], u[1], u[2]]).collect(),
                     gluing_defect: 0.0,
@@ -34,10 +34,15 @@ impl DirectSolver {
 }
 
 impl DirectState {
-    /// Displacements of a whole body from those of its contact nodes and packed multipliers, which push the lower body (0)
-    /// down and the upper one (1) up; with or without its loads.
-    pub(super) fn extend(&self, body: usize, contact: &[f64], multipliers: &[f64], loaded: bool) -> Vec<f64> {
+    /// Displacements of a whole body under its loads, from those of its contact nodes and packed multipliers, which push the lower
+    /// body (0) down and the upper one (1) up.
+    pub(super) fn extend(&self, body: usize, contact: &[f64], multipliers: &[f64]) -> Vec<f64> {
+        self.extend_under(body, contact, multipliers, self.contact.bodies[body].condensed.full_load())
+    }
+
+    /// The same under another load over the body.
+    pub(super) fn extend_under(&self, body: usize, contact: &[f64], multipliers: &[f64], load: &[f64]) -> Vec<f64> {
         let body = &self.contact.bodies[body];
-        body.condensed.extend(contact, &body.contact_forces(multipliers), loaded)
+        body.condensed.extend(contact, &body.contact_forces(multipliers), load)
     }
 }

@@ -6,6 +6,7 @@ use crate::body::shape_sensitivity::column_sensitivities;
 use crate::direct::compliant_body::CompliantBody;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
+use crate::direct::displacement_load::CondensedLoad;
 use crate::direct::newton::FLOOR_REACHED;
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
@@ -155,6 +156,7 @@ impl DirectSolver {
             work: Work { newton_steps, factorizations, ..Work::default() },
             adjoint_applications: AtomicUsize::new(0),
             solution: state,
+            bodies: None,
         })
     }
 
@@ -227,16 +229,21 @@ impl ContactSolver for DirectSolver {
         direction: &[f64],
         _tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
+        let (direction, displacements) = self.problem.parts_of(direction)?;
         if state.load == 0.0 {
             return Ok(Sensitivities::at_rest(self.problem.grid.column_count()));
         }
         let clock = Instant::now();
         Stage::Adjoint.enter();
         let solution = &state.solution;
-        let adjoint = state.contact.adjoint(&solution.unknowns, &solution.linearizations, direction);
+        let loads = displacements.map_or_else(Vec::new, |displacements| self.condensed_loads(state, displacements));
+        let adjoint = state.contact.adjoint(&solution.unknowns, &solution.linearizations, direction, &loads);
         let value_error = ValueError::from_terms(&adjoint.error_terms, direction, &solution.forces);
-        let u = state.extend(0, &solution.displacement[..adjoint.displacements[0].len()], &solution.forces, true);
-        let p = state.extend(0, &adjoint.displacements[0], &adjoint.multipliers, false);
+        let value_error = value_error.with_displacements(state.size_of(&loads));
+        let u = state.extend(0, &solution.displacement[..adjoint.displacement.len()], &solution.forces);
+        let none = || vec![0.0; u.len()];
+        let load = loads.into_iter().next().map_or_else(none, |load| load.full);
+        let p = state.extend_under(0, &adjoint.displacement, &adjoint.multipliers, &load);
         let adjoint_seconds = clock.elapsed().as_secs_f64();
         Stage::ShapeDerivative.enter();
         let heights = self.height_sensitivities(state, &u, &p, &adjoint.multipliers);
@@ -255,9 +262,9 @@ impl ContactSolver for DirectSolver {
         Stage::Adjoint.enter();
         let (solution, lower) = (&state.solution, &state.contact.bodies[0]);
         let size = lower.condensed.load.len();
-        let u = state.extend(0, &solution.displacement[..size], &solution.forces, true);
+        let u = state.extend(0, &solution.displacement[..size], &solution.forces);
         let (grid, scene) = (&self.problem.grid, &self.problem.scene.lower);
-        let whole = Subdomain { first_cell: [0; 3], cells: grid.cells };
+        let whole = Subdomain::whole(grid);
         let forces = shape_forces(&state.block, &whole, &scene.material, &scene.loads, &u, changes);
         let forces = Mat::from_fn(u.len(), changes.len(), |dof, column| forces[column][dof]);
         let loads = lower.condensed.condense_loads(forces, self.lower.held());
@@ -290,10 +297,17 @@ impl ContactSolver for DirectSolver {
 }
 
 impl DirectSolver {
+    /// ∂J/∂u of all bodies as loads on them.
+    fn condensed_loads(&self, state: &DirectState, displacements: &[f64]) -> Vec<CondensedLoad> {
+        let patterns = std::iter::once(&self.lower).chain(&self.upper).enumerate();
+        let loads = displacements.chunks_exact(3 * self.problem.grid.node_count());
+        patterns.zip(loads).map(|((body, pattern), load)| CondensedLoad::new(state, body, pattern, load)).collect()
+    }
+
     /// Element sums over the lower body, per contact node: displacements u, their adjoint p, packed multipliers η.
     fn height_sensitivities(&self, state: &DirectState, u: &[f64], p: &[f64], eta: &[f64]) -> Vec<f64> {
         let (grid, lower) = (&self.problem.grid, &self.problem.scene.lower);
-        let whole = Subdomain { first_cell: [0; 3], cells: grid.cells };
+        let whole = Subdomain::whole(grid);
         let mut heights = vec![0.0; grid.column_count()];
         for (column, value) in column_sensitivities(&state.block, &whole, &lower.material, &lower.loads, u, p) {
             heights[column] += value;
@@ -323,6 +337,16 @@ impl CompliantContact {
 }
 
 impl DirectState {
+    /// Σ|l_i u_i| of loads on all bodies.
+    fn size_of(&self, loads: &[CondensedLoad]) -> f64 {
+        let contact = self.solution.displacement.chunks_exact(3 * self.contact.problem.boundary.points.len());
+        let products = loads.iter().zip(contact).enumerate().map(|(body, (load, contact))| {
+            let u = self.extend(body, contact, &self.solution.forces);
+            load.full.iter().zip(&u).map(|(l, u)| (l * u).abs()).sum::<f64>()
+        });
+        products.sum()
+    }
+
     fn forces(&self) -> ContactForces {
         let (contact, solution) = (&self.contact, &self.solution);
         let boundary = &contact.problem.boundary;

@@ -53,6 +53,27 @@ impl ContactProblem {
         std::iter::once(&self.scene.lower).chain(self.scene.upper.as_ref().map(|upper| &upper.body))
     }
 
+    /// Number of entries of the displacements of all bodies: three per node, lower body first.
+    pub fn displacement_count(&self) -> usize {
+        3 * self.grid.node_count() * self.bodies().count()
+    }
+
+    /// The parts of ∂J/∂(state): ∂J/∂λ in packed rows, and ∂J/∂u over the displacements of all bodies, where J depends on them.
+    ///
+    /// # Errors
+    /// [`ContactError::ForeignState`] for entries of another mesh.
+    pub fn parts_of<'d>(&self, direction: &'d [f64]) -> Result<(&'d [f64], Option<&'d [f64]>), ContactError> {
+        let (rows, displacements) = (self.boundary.row_count, self.displacement_count());
+        match direction.len() {
+            found if found == rows => Ok((direction, None)),
+            found if found == rows + displacements => {
+                let (forces, loads) = direction.split_at(rows);
+                Ok((forces, Some(loads)))
+            }
+            found => Err(ContactError::ForeignState { what: "entries of a dual", expected: rows, found }),
+        }
+    }
+
     /// Edges of the bricks of the lower body at the start, mm.
     fn brick_edges(&self) -> [f64; 3] {
         let lengths = [self.scene.size[0], self.scene.size[1], self.scene.start_height];

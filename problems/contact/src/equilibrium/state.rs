@@ -1,6 +1,6 @@
 //! A solved shape: contact forces, status, certificates, work.
 
-use crate::equilibrium::{ContactBoundary, ContactStatus, Kink, Residuals, StatusCounts};
+use crate::equilibrium::{ContactBoundary, ContactStatus, Kink, Residuals, SolvedBody, StatusCounts};
 use crate::error::ContactError;
 use crate::solver_kind::SolverKind;
 use serde::{Deserialize, Serialize};
@@ -96,6 +96,9 @@ pub struct ContactState<S> {
     pub forces: ContactForces,
     /// What derivative, diagnosis and displacements are computed from.
     pub solution: S,
+    /// All bodies with their displacements, lower first, for a cost that depends on them; none otherwise
+    /// ([`ContactShape::with_displacements`](crate::contact_shape::ContactShape::with_displacements)).
+    pub bodies: Option<Vec<SolvedBody>>,
     /// Force that residuals are relative to, N; zero for bodies at rest.
     pub load: f64,
     /// The solver that found it.
@@ -123,9 +126,10 @@ impl<S> ContactState<S> {
 
     /// The same shape with another form of the solver's own part.
     pub fn map<T>(self, change: impl FnOnce(S) -> T) -> ContactState<T> {
-        let Self { forces, solution, load, solver, reason, contraction, stages, work, adjoint_applications } = self;
+        let Self { forces, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications } =
+            self;
         let solution = change(solution);
-        ContactState { forces, solution, load, solver, reason, contraction, stages, work, adjoint_applications }
+        ContactState { forces, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications }
     }
 }
 

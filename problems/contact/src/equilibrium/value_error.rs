@@ -1,8 +1,8 @@
-//! The error that the residual of a state brings into a function J of its contact forces.
+//! The error that the residual of a state brings into a function J of its contact forces and displacements.
 //!
 //! ```text
-//! J(λ) − J(λ*) = Σ t_i + remainder,    t_i = weight by the adjoint × residual, per node or row
-//! bound = |Σ t_i| + ¼ Σ|t_i| + 1e-14 Σ|∂J/∂λ_i λ_i|
+//! J − J* = Σ t_i + remainder,    t_i = weight by the adjoint × residual, per node or row
+//! bound = |Σ t_i| + ¼ Σ|t_i| + 1e-14 (Σ|∂J/∂λ_i λ_i| + Σ|∂J/∂u_i u_i|)
 //! ```
 //! The sum is the error to first order. The remainder is of second order: nodes whose status differs between λ and λ*, the
 //! curvature of J and of the slip circle. The bound holds whenever the remainder is at most a quarter of Σ|t_i|; the residual has
@@ -29,6 +29,12 @@ impl ValueError {
     /// From the terms t_i, and packed ∂J/∂λ and λ for the level of rounding.
     pub fn from_terms(terms: &[f64], direction: &[f64], forces: &[f64]) -> Self {
         Self::from_sums(terms.iter().sum(), terms.iter().map(|term| term.abs()).sum(), direction, forces)
+    }
+
+    /// With the rounding of ∂J/∂u as well, for a J that depends on displacements: `size` is Σ|∂J/∂u_i u_i|.
+    #[must_use]
+    pub fn with_displacements(self, size: f64) -> Self {
+        Self { bound: self.bound + ROUNDING * size, ..self }
     }
 
     /// From Σ t_i and Σ|t_i|.

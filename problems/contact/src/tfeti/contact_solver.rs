@@ -106,6 +106,7 @@ impl TotalFeti {
             work: counts.map_or(work, |counts| counts.added_to(work)),
             adjoint_applications: AtomicUsize::new(0),
             solution,
+            bodies: None,
         })
     }
 }

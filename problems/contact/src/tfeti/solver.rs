@@ -10,7 +10,7 @@ use crate::equilibrium::{
 };
 use crate::error::ContactError;
 use crate::linear::vector::{add_scaled, dot, norm};
-use crate::tfeti::derivative::{MovedSurface, height_sensitivities};
+use crate::tfeti::derivative::{DisplacementLoad, MovedSurface, height_sensitivities};
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::NewtonSettings;
 use crate::tfeti::torn::{
@@ -262,10 +262,11 @@ impl TornSolver {
         contact.estimate_contraction(&state.solution.linearizations, forces, max_products)
     }
 
-    /// Sensitivities of the column heights for a dual j = ∂J/∂λ in packed physical rows.
+    /// Sensitivities of the column heights for a dual: j = ∂J/∂λ in packed physical rows, then l = ∂J/∂u over the nodes of all bodies where
+    /// J depends on the displacements. Where there are several processes, all of them call it.
     ///
     /// # Errors
-    /// [`ContactError::NotConverged`] from the adjoint, [`ContactError::ForeignState`] for a state of another mesh.
+    /// [`ContactError::NotConverged`] from the adjoint, [`ContactError::ForeignState`] for a state or a dual of another mesh.
     pub fn sensitivities(
         &self,
         state: &TornState,
@@ -273,6 +274,7 @@ impl TornSolver {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
         let mut clock = Clock::start();
+        let (direction, loads) = self.problem().parts_of(direction)?;
         let Some(contact) = self.contact_of(state)? else {
             return Ok(Sensitivities::at_rest(self.problem().grid.column_count()));
         };
@@ -288,10 +290,12 @@ impl TornSolver {
         // this scale, no residual means anything.
         let heights = &state.blocks[0].upper;
         let height = heights.iter().sum::<f64>() / heights.len() as f64;
-        let natural =
-            dot(scaled.contact(), iterate.multipliers.contact()).abs() / (contact.stiffness * height + contact.load);
-        let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, tolerance, natural)?;
-        let value_error = contact.value_error(iterate, &adjoint, &scaled);
+        let load = loads.map(|loads| DisplacementLoad::new(&contact.operator, loads, &state.displacement));
+        let [work, size] = load.as_ref().map_or([0.0; 2], |load| load.products);
+        let natural = (dot(scaled.contact(), iterate.multipliers.contact()).abs() + work.abs())
+            / (contact.stiffness * height + contact.load);
+        let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, load.as_ref(), tolerance, natural)?;
+        let value_error = contact.value_error(iterate, &adjoint, &scaled).with_displacements(size);
         let adjoint_seconds = clock.lap();
         Stage::ShapeDerivative.enter();
         let heights = height_sensitivities(&self.model, &state.blocks[0], &state.displacement, &adjoint);

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 mod error_estimate;
+mod objectives;
 mod reference_cases;
 mod subgradient_properties;
 mod tangents;

@@ -40,6 +40,8 @@ impl Communication for Rank {
 struct Outcome {
     forces: [Vec<f64>; 2],
     heights: Vec<f64>,
+    /// Those of a function of the displacements.
+    heights_by_displacements: Vec<f64>,
     tangents: Vec<Vec<f64>>,
     displacement: Vec<f64>,
     gluing_defect: f64,
@@ -64,6 +66,9 @@ fn solve(scene: &Scene, clusters: [usize; 3], communication: Option<Rank>, metho
     let state = state.solution;
     let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.3 * row as f64).sin()).collect();
     let heights = solver.sensitivities(&state, &dual, 1e-11).unwrap().heights;
+    let loads = (0..problem.displacement_count()).map(|dof| (0.7 * dof as f64).cos());
+    let both: Vec<f64> = dual.iter().copied().chain(loads).collect();
+    let heights_by_displacements = solver.sensitivities(&state, &both, 1e-11).unwrap().heights;
     let changes: Vec<Vec<f64>> = (0..3)
         .map(|change| (0..problem.grid.column_count()).map(|node| f64::from(node % 3 == change)).collect())
         .collect();
@@ -73,6 +78,7 @@ fn solve(scene: &Scene, clusters: [usize; 3], communication: Option<Rank>, metho
     Outcome {
         forces: [forces.normal, forces.tangential.as_flattened().to_vec()],
         heights,
+        heights_by_displacements,
         tangents,
         displacement: bodies.iter().flat_map(|body| body.displacement.as_flattened().to_vec()).collect(),
         gluing_defect: bodies.iter().map(|body| body.gluing_defect).fold(0.0, f64::max),

@@ -112,7 +112,7 @@ impl Comparison<'_> {
             peaks[0]
         )];
         sentences.push(if !loss.is_finite() || loss <= 0.0 {
-            "There is no contact pressure to compare.".into()
+            "The objectives have no ratio to compare.".into()
         } else if (loss - 1.0).abs() <= MAX_EQUAL_DIFFERENCE {
             "In these runs, both shapes are as good as each other with friction.".into()
         } else if loss > 1.0 + MAX_NEGLIGIBLE_LOSS {

@@ -8,7 +8,7 @@ use crate::commands::optimize::stages::stages;
 use crate::commands::register::{JOURNAL, REGISTER, names};
 use contact::error::SceneError;
 use nonsmooth::{Journal, JournalError, Journaled, NonsmoothObjective, Vector};
-use scene_file::{CounterSection, OptimizerSection, OutputSection, SceneFile, StartSection};
+use scene_file::{CounterSection, OptimizerSection, OutputSection, SceneFile, StartSection, WantedSection};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -35,7 +35,7 @@ struct Identity {
     version: String,
     /// The mesh of a coarse-to-fine optimization.
     stage: Option<String>,
-    /// Hashes of the start and of the grid of the counter surface.
+    /// Hashes of the start and of the grids of counter surface and wanted pressure.
     contents: BTreeMap<String, String>,
     scene: SceneFile,
 }
@@ -48,6 +48,11 @@ impl Identity {
             let grid = scene_file::read_grid(&loaded.folder().join(&*file))?;
             contents.insert(GRIDS[0].to_owned(), hash(grid.as_bytes()));
             *file = GRIDS[0].to_owned();
+        }
+        if let Some(WantedSection::Grid { file }) = &mut scene.objective.wanted {
+            let grid = scene_file::read_grid(&loaded.folder().join(&*file))?;
+            contents.insert(GRIDS[2].to_owned(), hash(grid.as_bytes()));
+            *file = GRIDS[2].to_owned();
         }
         // The start is known by its controls.
         scene.surface.start = StartSection::Controls { heights: vec![] };
@@ -118,6 +123,9 @@ impl RunFolder {
         }
         if let StartSection::Grid { file } = &mut scene.surface.start {
             copy(file, GRIDS[1])?;
+        }
+        if let Some(WantedSection::Grid { file }) = &mut scene.objective.wanted {
+            copy(file, GRIDS[2])?;
         }
         folder.write(START, json(initial_controls.as_slice())?)?;
         // With its scene, the folder holds a run.

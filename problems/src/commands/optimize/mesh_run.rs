@@ -66,7 +66,7 @@ pub fn run_on_mesh(
         first_step: Some(first_step),
         bundle_size: optimizer.bundle_size,
         accuracy,
-        composite_model: optimizer.method == MethodName::Composite,
+        composite_model: stage.case.method == MethodName::Composite,
         scaling: VariableScaling::Linear(mean_height_coordinates(&initial_controls, first_step)),
         ..BundleTrustConfig::default()
     };

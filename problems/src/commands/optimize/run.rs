@@ -171,7 +171,7 @@ fn room(stages: &[MeshStage]) -> u64 {
         let controls = scene.control_points.iter().product::<usize>() as u64;
         let restart_data = 3 * NUMBER_BYTES * nodes;
         let jacobian = 2 * 8 * contact * controls;
-        let kept = match stage.case.optimizer.method {
+        let kept = match stage.case.method {
             MethodName::Composite => JACOBIANS * (restart_data + jacobian),
             MethodName::Bundle => 0,
         };

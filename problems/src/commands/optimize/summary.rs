@@ -6,6 +6,7 @@ use crate::commands::evaluate::said;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::processes::Usage;
 use contact::contact_shape::SolverKind;
+use contact::cost::ContactAreas;
 use contact::equilibrium::{Kink, Residuals};
 use contact::plausibility::Warning;
 use nonsmooth::{IterationRecord, Origin, Report, StepKind, Termination, Vector};
@@ -35,6 +36,9 @@ struct OptimizationJson<'a> {
     /// Number of evaluations of an earlier part of the run, which were answered from its journal.
     resumed_evaluations: usize,
     peak_pressure: [f64; 2],
+    /// Contact areas at the start and at the end, where the open area is the objective.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact_areas: Option<[ContactAreas; 2]>,
     /// Certificates of the contact states at the start and at the end.
     residuals: [Residuals; 2],
     /// Distances of these states to the nearest kink.
@@ -191,7 +195,7 @@ pub fn summary<'a>(
     OptimizationJson {
         objective_start: shapes[0].value,
         objective: report.value,
-        objective_root: objective.cost().root(),
+        objective_root: objective.root(),
         controls: report.solution.as_slice(),
         evaluations: report.counts.evaluations,
         states: report.counts.evaluations,
@@ -214,6 +218,7 @@ pub fn summary<'a>(
         seconds: report.seconds,
         resumed_evaluations: *replayed,
         peak_pressure: shapes.each_ref().map(|shape| shape.peak_pressure),
+        contact_areas: contact_areas(last, shapes),
         residuals: shapes.each_ref().map(|shape| shape.state.forces.residuals),
         kinks: shapes.each_ref().map(|shape| shape.state.forces.kink),
         optima: (runs.iter().filter(|run| run.name.is_some()).count() > 1).then(|| optima(runs)),
@@ -224,6 +229,12 @@ pub fn summary<'a>(
         left_out: arguments.left_out(objective.solver()),
         processes,
     }
+}
+
+/// The contact areas of both shapes, where the open area is the objective.
+fn contact_areas(last: &MeshRun, shapes: &[SolvedShape; 2]) -> Option<[ContactAreas; 2]> {
+    let [first, second] = shapes.each_ref().map(|shape| last.objective.contact_areas(&shape.state));
+    first.zip(second).map(|(first, second)| [first, second])
 }
 
 /// The warnings of the optimizer and those about the final state.
@@ -238,9 +249,15 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], argum
     let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
+    // A compliance may change its sign.
+    let ratio = Some(shapes[0].value / report.value).filter(|ratio| *ratio > 0.0);
+    let reduction = ratio.map_or_else(|| "no ratio".into(), |ratio| format!("{ratio:.4} times"));
+    let areas = contact_areas(last, shapes).map_or_else(String::new, |[start, end]| {
+        format!("contact:     at the start {start}\n             at the end   {end}\n")
+    });
     format!(
         "{}: {} of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}; objective in {}\n\
-         reduction:   {:.4} times, peak pressure {:.1} -> {:.1} MPa\n{report}\
+         reduction:   {reduction}, peak pressure {:.1} -> {:.1} MPa\n{areas}{report}\
          state:       relative residuals at the solution: {}\n\
          \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
          solver:      {}\n\
@@ -255,8 +272,7 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], argum
         scene.subdomains[1],
         scene.subdomains[2],
         scene.friction,
-        objective.cost().unit().replace(['{', '}'], ""),
-        shapes[0].value / report.value,
+        objective.unit().replace(['{', '}'], ""),
         shapes[0].peak_pressure,
         shapes[1].peak_pressure,
         at_solution.residuals,

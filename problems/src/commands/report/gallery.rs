@@ -8,7 +8,7 @@ use figures::{
     ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, Step,
     number,
 };
-use nonsmooth::{Cost, Report};
+use nonsmooth::Report;
 use scene_file::OutputSection;
 
 /// A solved shape with its fields and its names.
@@ -43,8 +43,7 @@ impl<'a> ShownShape<'a> {
             fields = Some(shape.fields(&solved.state)?);
         }
         if let Some(fields) = fields.as_mut().filter(|_| wanted.vtk) {
-            let gradient = objective.cost().gradient(&solved.controls, &solved.state);
-            fields.contact.sensitivity = Some(shape.height_sensitivity(&solved.state, &gradient.state)?.0);
+            fields.contact.sensitivity = Some(objective.height_sensitivity(solved)?);
         }
         Ok(Self { label, caption: format!("{label}, Θ = {:.4e}", solved.value), name, solved, fields })
     }
@@ -63,7 +62,7 @@ pub fn pressure(
         counts: [n1, n2],
         origin: [0.0; 2],
         size: problem.grid.size,
-        values: objective.cost().pressures(&shape.solved.state),
+        values: objective.pressures(&shape.solved.state),
     };
     let (name, words) = match scales {
         ColourScales::Common => ("pressure", ""),
@@ -86,7 +85,7 @@ pub fn pressure(
 pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let grid = &problem.grid;
-    let pressures: Vec<Vec<f64>> = shapes.iter().map(|shape| objective.cost().pressures(&shape.solved.state)).collect();
+    let pressures: Vec<Vec<f64>> = shapes.iter().map(|shape| objective.pressures(&shape.solved.state)).collect();
     let peak = |values: &Vec<f64>| {
         let larger = |best: usize, node: usize| if values[node] > values[best] { node } else { best };
         problem.boundary.points[(0..values.len()).fold(0, larger)].position
@@ -177,14 +176,16 @@ pub fn convergence(
         value: record.value,
         best: record.center_value,
     });
-    let bound = objective.cost().lower_bound(optimum.state.forces.total_normal_force());
+    let bound = objective.lower_bound(optimum.state.forces.total_normal_force());
     Convergence {
         name: "convergence".into(),
         title: format!("{}: course of the optimization", objective.solver().problem().scene.name),
         quantity: "Θ".into(),
-        unit: objective.cost().unit(),
+        unit: objective.unit(),
         steps: steps.collect(),
-        reference: (bound > 0.0 && bound.is_finite()).then(|| ("least for this force".into(), bound)),
+        reference: bound
+            .filter(|bound| *bound > 0.0 && bound.is_finite())
+            .map(|bound| ("least for this force".into(), bound)),
     }
     .figure()
 }

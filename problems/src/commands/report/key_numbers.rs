@@ -45,9 +45,7 @@ impl KeyNumbers {
         };
         let area = |fields: &Fields| fields.contact.area.iter().sum::<f64>();
         let mut rows = vec![
-            row("objective", "objective Θ", &objective.cost().unit().replace(['{', '}'], ""), &|shape, _| {
-                shape.solved.value
-            }),
+            row("objective", "objective Θ", &objective.unit().replace(['{', '}'], ""), &|shape, _| shape.solved.value),
             row("peak_pressure", "peak contact pressure", "MPa", &|shape, _| shape.solved.peak_pressure),
             row("mean_pressure", "mean pressure over the whole contact surface", "MPa", &|shape, fields| {
                 shape.solved.state.forces.total_normal_force() / area(fields)

@@ -15,11 +15,17 @@ pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> 
         std::iter::once(name.to_owned()).chain(shapes.iter().map(|(_, shape)| cell(shape))).collect()
     };
     let force = |shape: &SolvedShape| shape.state.forces.total_normal_force();
-    let bound = |shape: &SolvedShape| objective.cost().lower_bound(force(shape));
+    let bound = |shape: &SolvedShape| objective.lower_bound(force(shape));
+    let unknown = || "–".to_owned();
     let rows = vec![
         row("objective Θ", &|shape| format!("{:.10e}", shape.value)),
-        row("least value for this total force", &|shape| format!("{:.4e}", bound(shape))),
-        row("Θ over that", &|shape| format!("{:.3}", shape.value / bound(shape))),
+        row("least value for this total force", &|shape| {
+            bound(shape).map_or_else(unknown, |bound| format!("{bound:.4e}"))
+        }),
+        row("Θ over that", &|shape| {
+            let above_zero = bound(shape).filter(|bound| *bound > 0.0);
+            above_zero.map_or_else(unknown, |bound| format!("{:.3}", shape.value / bound))
+        }),
         row("total normal force, N", &|shape| format!("{:.8e}", force(shape))),
         row("nodes open / stick / slip", &|shape| {
             let counts = shape.state.forces.counts();

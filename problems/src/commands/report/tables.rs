@@ -10,7 +10,7 @@ use nonsmooth::Report;
 pub fn contact_nodes(objective: &ContactObjective, state: &ContactState<SharedState>) -> String {
     let problem = objective.solver().problem();
     let mut table = String::from("x1,x2,pressure,traction_1,traction_2,remaining_gap,status\n");
-    let pressures = objective.cost().pressures(state);
+    let pressures = objective.pressures(state);
     for (index, (point, pressure)) in problem.boundary.points.iter().zip(pressures).enumerate() {
         let [x1, x2] = problem.grid.position(point.position[0], point.position[1]);
         let traction = state.forces.tangential.get(index).map_or([0.0; 2], |force| force.map(|f| f / point.area));

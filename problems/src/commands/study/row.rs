@@ -189,7 +189,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape) -> Result<Solved, F
         picture: Picture {
             counts: [n1, n2],
             size: problem.grid.size,
-            pressures: objective.cost().pressures(&shape.state),
+            pressures: objective.pressures(&shape.state),
             heights: block.upper,
         },
     })

@@ -3,7 +3,7 @@
 use crate::accuracy::extent::case;
 use crate::accuracy::objective::{METHODS, norm, objective_by};
 use crate::scaling::{SceneName, Variant};
-use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
+use nonsmooth::{Accuracy, StateSolver, Vector};
 use problems::commands::{ContactObjective, Failure};
 use serde::Serialize;
 use std::time::Instant;
@@ -68,12 +68,9 @@ pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<Algeb
     let reference = objective(Variant::Direct)?;
     let control = bent(&reference);
     let state = reference.solver().solve(&control, None, Accuracy::TIGHTEST)?;
-    let evaluation = reference.reduced().differentiate(&control, &state)?;
-    let exact = Exact {
-        pressures: reference.cost().pressures(&state),
-        value: evaluation.value,
-        subgradient: evaluation.subgradient,
-    };
+    let evaluation = reference.differentiate(&control, &state)?;
+    let exact =
+        Exact { pressures: reference.pressures(&state), value: evaluation.value, subgradient: evaluation.subgradient };
     let mut rows = Vec::new();
     for (name, variant) in METHODS {
         let objective = objective(variant)?;
@@ -110,16 +107,16 @@ fn row(
     tolerance: f64,
     exact: &Exact,
 ) -> Result<AlgebraRow, Failure> {
-    let (shape, cost) = (objective.solver(), objective.cost());
+    let shape = objective.solver();
     let clock = Instant::now();
     let state = shape.solve(control, None, Accuracy::relative(tolerance)?)?;
-    let gradient = cost.gradient(control, &state);
+    let gradient = objective.gradient(control, &state);
     let (subgradient, error) = shape.pull_back(control, &state, &gradient.state)?;
     let seconds = clock.elapsed().as_secs_f64();
     let largest = exact.pressures.iter().copied().fold(0.0, f64::max);
-    let pressures = cost.pressures(&state);
+    let pressures = objective.pressures(&state);
     let worst = pressures.iter().zip(&exact.pressures).map(|(found, exact)| (found - exact).abs()).fold(0.0, f64::max);
-    let value = cost.value(control, &state);
+    let value = objective.value(control, &state);
     Ok(AlgebraRow {
         method,
         tolerance,

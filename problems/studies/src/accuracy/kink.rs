@@ -10,7 +10,7 @@ use crate::scaling::SceneName;
 use contact::contact_shape::ContactState;
 use contact::equilibrium::ContactStatus;
 use nonsmooth::verify::seeded_direction;
-use nonsmooth::{Accuracy, Cost, NonsmoothObjective, Request, StateSolver, Vector};
+use nonsmooth::{Accuracy, NonsmoothObjective, Request, StateSolver, Vector};
 use problems::commands::processes::SharedState;
 use problems::commands::{ContactObjective, Failure};
 use problems::toy::{self, ToyObjective};
@@ -99,7 +99,7 @@ impl Line<'_> {
     fn slope(&self, t: f64, sign: f64, status: &[ContactStatus], step: f64) -> Result<Option<f64>, Failure> {
         let value = |t: f64| -> Result<(f64, bool), Failure> {
             let state = self.state(t)?;
-            Ok((self.objective.cost().value(&self.at(t), &state), state.forces.status == status))
+            Ok((self.objective.value(&self.at(t), &state), state.forces.status == status))
         };
         let here = value(t)?.0;
         let mut step = step;
@@ -142,7 +142,7 @@ pub fn of_scene(scene: SceneName, count: usize) -> Result<Vec<KinkRow>, Failure>
         let after = line.slope(change.high, 1.0, &change.above, DIFFERENCE * height)?;
         let (Some(before), Some(after)) = (before, after) else { continue };
         let state = line.state(t)?;
-        let product = objective.reduced().differentiate(&line.at(t), &state)?.subgradient.dot(&line.direction);
+        let product = objective.differentiate(&line.at(t), &state)?.subgradient.dot(&line.direction);
         rows.push(KinkRow {
             scene: crate::scaling::word(&scene),
             change: words(&change),

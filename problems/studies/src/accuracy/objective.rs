@@ -38,7 +38,7 @@ pub fn objective_of(scene: SceneName, mesh: usize, measure: PressureMeasure) -> 
 pub fn objective_by(variant: Variant, scene: Scene, measure: PressureMeasure) -> Result<ContactObjective, Failure> {
     let solver = variant.solver(&Arc::new(ContactProblem::new(scene)?)).map_err(Failure::computation)?;
     let cost = PressureCost::new(measure, &solver.problem().boundary)?;
-    Ok(CompositeObjective::new(ContactShape::by(solver.into()), cost))
+    Ok(ContactObjective::Pressure(CompositeObjective::new(ContactShape::by(solver.into()), cost)))
 }
 
 /// Σσ⁴.

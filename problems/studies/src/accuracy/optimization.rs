@@ -113,7 +113,7 @@ impl NonsmoothObjective for Metered<'_> {
         // A failed evaluation has no count of its own.
         self.products.borrow_mut().push(before);
         let state = self.objective.solver().solve(request.point, request.warm_start, request.accuracy)?;
-        let evaluation = self.objective.reduced().differentiate(request.point, &state)?;
+        let evaluation = self.objective.differentiate(request.point, &state)?;
         if let Some(last) = self.products.borrow_mut().last_mut() {
             *last += state.work().dual_operator_applications;
         }

@@ -7,5 +7,6 @@ pub(crate) mod traction;
 
 mod material;
 mod mean_dilatation;
+pub(crate) mod von_mises;
 
 pub use material::{Formulation, Material};

@@ -13,6 +13,11 @@ pub struct Subdomain {
 }
 
 impl Subdomain {
+    /// A whole body as one subdomain.
+    pub fn whole(grid: &Grid) -> Self {
+        Self { first_cell: [0; 3], cells: grid.cells }
+    }
+
     /// Nodes along the three axes.
     pub fn nodes(&self) -> [usize; 3] {
         self.cells.map(|cells| cells + 1)

@@ -1,8 +1,9 @@
 //! The adjoint system of a TFETI state.
 //!
 //! ```text
-//! K p + Bᵀ Q q = 0,   Tᵀ B p − Δ q = Tᵀ j      ⇔      (Tᵀ F Q + Δ) q − G_Tᵀ b = −Tᵀ j,   Gq q = 0,   p = −K⁺ Bᵀ Q q + R b
-//! dJ = −pᵀ (∂K u − ∂f) + (Q q)ᵀ ∂g
+//! K p + Bᵀ Q q = l,   Tᵀ B p − Δ q = Tᵀ j
+//!     ⇔   (Tᵀ F Q + Δ) q − G_Tᵀ b = Tᵀ (B K⁺ l − j),   Gq q = Rᵀ l,   p = K⁺ (l − Bᵀ Q q) + R b
+//! dJ = ∂J − pᵀ (∂K u − ∂f) + (Q q)ᵀ ∂g
 //! ```
 //! The transpose of the Newton system (method.md section 5): GMRES with friction; without it the system is symmetric and
 //! conjugate gradients do. Cycles follow each other until the residual, computed afresh, is small; products with search
@@ -16,6 +17,7 @@ use crate::linear::vector::add_scaled;
 use crate::tfeti::derivative::cycles::{
     CYCLE_REDUCTION, MAX_CYCLES, NextCycle, SMALLEST_PROJECTED_SHARE, TIGHTEST_ACCEPTABLE, next_cycle,
 };
+use crate::tfeti::derivative::displacement_load::DisplacementLoad;
 use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
 use crate::tfeti::torn::{RowVector, TornVector};
 
@@ -35,10 +37,11 @@ const NATURAL_ACCEPTABLE: f64 = 1e-6;
 /// Share of the natural residual below which the whole right side is rounding for the sensitivity.
 const ROUNDING_SHARE: f64 = 1e-3;
 
-/// The system (Tᵀ F Q + Δ) q = −Tᵀ j, projected by Pᵀ.
+/// The system (Tᵀ F Q + Δ) q = Tᵀ (B K⁺ l − j), projected by Pᵀ.
 struct AdjointSystem<'a> {
     contact: &'a TornContact<'a>,
     active: ActiveSet<'a>,
+    load: Option<&'a DisplacementLoad>,
     right: Vec<f64>,
 }
 
@@ -51,8 +54,8 @@ struct AdjointIterate {
 }
 
 impl TornContact<'_> {
-    /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ. `natural`: a residual, in the unit of j, that
-    /// is rounding for the sensitivity however small that is.
+    /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ, `load` is l = ∂J/∂u where J depends on u.
+    /// `natural`: a residual, in the unit of j, that is rounding for the sensitivity however small that is.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] when the tolerance is not reached, [`ContactError::Unheld`].
@@ -60,13 +63,17 @@ impl TornContact<'_> {
         &self,
         linearizations: &[Linearization],
         direction: &RowVector,
+        load: Option<&DisplacementLoad>,
         tolerance: f64,
         natural: f64,
     ) -> Result<TornAdjoint, ContactError> {
         let active = self.active_set(linearizations.to_vec(), Friction::Coulomb)?;
-        let right = active.rows.trial_transposed(direction).into_iter().map(|entry| -entry).collect();
-        let system = AdjointSystem { contact: self, active, right };
-        let mut iterate = system.at_zero();
+        let mut right: Vec<f64> = active.rows.trial_transposed(direction).into_iter().map(|entry| -entry).collect();
+        if let Some(load) = load {
+            add_scaled(&mut right, 1.0, &active.rows.trial_transposed(&load.jumps));
+        }
+        let system = AdjointSystem { contact: self, active, load, right };
+        let mut iterate = system.at_start();
         // Where equilibrium alone determines the forces, all of the right side is rigid and only rounding is left of it.
         let size = iterate.residual.max(SMALLEST_PROJECTED_SHARE * self.norm(&system.right));
         let goal = if size < ROUNDING_SHARE * natural { TIGHTEST_ACCEPTABLE * natural } else { tolerance * size };
@@ -83,7 +90,7 @@ impl TornContact<'_> {
                 NextCycle::Double => precision = Precision::Double,
                 NextCycle::DoubleFromZero => {
                     precision = Precision::Double;
-                    iterate = system.at_zero();
+                    iterate = system.at_start();
                 }
                 NextCycle::Stop => break,
             }
@@ -112,9 +119,19 @@ impl AdjointSystem<'_> {
         product
     }
 
-    /// q = 0.
-    fn at_zero(&self) -> AdjointIterate {
-        self.with_residual(vec![0.0; self.right.len()], self.right.clone())
+    /// The smallest q with Gq q = Rᵀ l: 0 without a load.
+    fn at_start(&self) -> AdjointIterate {
+        match self.load {
+            None => self.with_residual(vec![0.0; self.right.len()], self.right.clone()),
+            Some(load) => self.evaluated(self.active.carrying(load.resultants.clone())),
+        }
+    }
+
+    /// Unknowns with their residual, by one product in double precision.
+    fn evaluated(&self, unknowns: Vec<f64>) -> AdjointIterate {
+        let mut rest = self.right.clone();
+        add_scaled(&mut rest, -1.0, &self.apply(&unknowns, Precision::Double));
+        self.with_residual(unknowns, rest)
     }
 
     fn with_residual(&self, unknowns: Vec<f64>, rest: Vec<f64>) -> AdjointIterate {
@@ -155,9 +172,7 @@ impl AdjointSystem<'_> {
             let krylov = pcg(&sums, &iterate.projected, target, MAX_KRYLOV, precondition, product);
             add_scaled(&mut iterate.unknowns, 1.0, &krylov.solution);
         }
-        let mut rest = self.right.clone();
-        add_scaled(&mut rest, -1.0, &self.apply(&iterate.unknowns, Precision::Double));
-        *iterate = self.with_residual(std::mem::take(&mut iterate.unknowns), rest);
+        *iterate = self.evaluated(std::mem::take(&mut iterate.unknowns));
     }
 
     /// The adjoint state of solved unknowns: amplitudes b, then Q q and p.
@@ -165,7 +180,8 @@ impl AdjointSystem<'_> {
         let operator = &self.contact.operator;
         let amplitudes = self.active.adjoint_amplitudes(&iterate.rest);
         let multipliers = self.active.rows.test(&iterate.unknowns);
-        let displacement = operator.displacement(operator.model.zeros(), &multipliers, &amplitudes);
+        let response = self.load.map_or_else(|| operator.model.zeros(), |load| load.response.clone());
+        let displacement = operator.displacement(response, &multipliers, &amplitudes);
         TornAdjoint { displacement, multipliers }
     }
 }

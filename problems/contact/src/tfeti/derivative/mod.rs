@@ -1,8 +1,8 @@
 //! What is asked of a solved shape: how its forces change, and what its residual does to a cost.
 //!
 //! ```text
-//! j = ∂J/∂λ ─ adjoint: q, p ─┬─ shape derivative: ∂J/∂(column heights)
-//!                            └─ error estimate: J(state) − J(exact)
+//! j = ∂J/∂λ ─┬─ adjoint: q, p ─┬─ shape derivative: ∂J/∂(column heights)
+//! l = ∂J/∂u ─┘                 └─ error estimate: J(state) − J(exact)
 //! changes of the column heights ─ shape loads: r, δe ─ tangents: δλ, changes of the openings, all columns in lockstep
 //! derivatives of the state ─ contraction: spectral radius of Φ′
 //! ```
@@ -10,11 +10,13 @@
 mod adjoint;
 mod contraction;
 mod cycles;
+mod displacement_load;
 mod error_estimate;
 mod shape_derivative;
 mod shape_loads;
 mod tangents;
 
+pub use displacement_load::DisplacementLoad;
 pub use shape_derivative::height_sensitivities;
 pub(crate) use tangents::MAX_COLUMNS;
 pub use tangents::MovedSurface;

@@ -110,6 +110,14 @@ impl<'a> ActiveSet<'a> {
         })
     }
 
+    /// The smallest q with Gq q = e for resultants e of all clusters.
+    pub fn carrying(&self, mut resultants: Vec<f64>) -> Vec<f64> {
+        self.space.timed(|| {
+            self.coarse.solve_transpose_in_place(&mut resultants);
+            self.rows.trial_transposed(&self.space.jumps(&resultants))
+        })
+    }
+
     /// v ← Pᵀ v.
     pub fn project_adjoint(&self, v: &mut [f64]) {
         let amplitudes = self.adjoint_amplitudes(v);

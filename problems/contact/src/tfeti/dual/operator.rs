@@ -160,6 +160,19 @@ impl<'a> DualOperator<'a> {
         self.model.rows_times(&self.model.constraints.rows, torn)
     }
 
+    /// K⁺ l over the subdomains of this process for torn forces l, and Rᵀ l of all clusters; counted like a product with F.
+    pub fn response(&self, forces: &TornVector) -> (TornVector, Vec<f64>) {
+        self.applications.fetch_add(1, Ordering::Relaxed);
+        let mut torn = self.model.zeros();
+        let load = |first: usize, part: &mut [f64]| part.copy_from_slice(&forces.0[first..first + part.len()]);
+        self.solve_loads(&mut torn.0, load, |factors, part| factors.solve(part));
+        let size = self.model.pattern.pattern.dimension();
+        let parts = self.system.parts.iter().zip(forces.0.chunks_exact(size));
+        let own = parts.flat_map(|(part, forces)| part.resultants_of(forces)).collect();
+        let resultants = self.model.clusters.gather(&self.system.cluster_resultants(own), MOTIONS);
+        (torn, resultants)
+    }
+
     /// K⁺ f.
     pub fn loaded_displacement(&self) -> TornVector {
         let mut torn = self.model.zeros();

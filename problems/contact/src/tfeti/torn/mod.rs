@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! scene ─ tearing ─ rows B, B_D (constraints), coarse pattern ─ TornModel ── shape ──▶ TornSystem: K⁺, R, K_II⁻¹ per subdomain
-//! torn displacement ─ recovery ──▶ whole bodies
+//! torn displacement ─ recovery ──▶ whole bodies;   loads of whole bodies ─ recovery, transposed ──▶ torn loads
 //! ```
 
 mod cluster_factors;
@@ -30,6 +30,6 @@ pub use factors::SubdomainFactors;
 pub use model::{TornModel, TornSubdomain};
 pub use options::TornOptions;
 pub use preconditioner_kind::PreconditionerKind;
-pub use recovery::whole_bodies;
+pub use recovery::{torn_loads, whole_bodies};
 pub use system::TornSystem;
 pub use vectors::{RowVector, TornVector};

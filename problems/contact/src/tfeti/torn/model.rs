@@ -1,9 +1,8 @@
 //! The torn scene: what is fixed for a run, and the factored system of one shape. A process holds its own subdomains only.
 
-use crate::body::elasticity::traction::face_weights;
 use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::body::mesh::{Block, Subdomain, Tearing};
-use crate::body::shape_load::loaded_faces;
+use crate::body::shape_load::nodal_loads;
 use crate::communication::Communication;
 use crate::equilibrium::modes::motions;
 use crate::equilibrium::{Configuration, ContactProblem};
@@ -187,7 +186,7 @@ impl TornModel {
                 &scene.material,
                 &coordinates,
                 |local| block.brick(lattice::add(local, place.first_cell)),
-                &loads(scene, place, block),
+                &nodal_loads(block, place, &scene.loads),
                 subdomain.interior.as_deref(),
             )?;
             Ok(Arc::new(factors))
@@ -344,23 +343,6 @@ fn check_motions(
 /// Coordinates of the nodes of a subdomain.
 fn coordinates(place: &Subdomain, block: &Block) -> Vec<[f64; 3]> {
     (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect()
-}
-
-/// Consistent nodal loads of a subdomain.
-fn loads(body: &BodyScene, place: &Subdomain, block: &Block) -> Vec<f64> {
-    let mut load = vec![0.0; place.dof_count()];
-    for scene_load in &body.loads {
-        for face in loaded_faces(&block.grid, scene_load.face, Some(place)) {
-            let weights = face_weights(&face.map(|node| block.coordinates(node)));
-            for (node, weight) in face.into_iter().zip(weights) {
-                let first = 3 * place.local_node(lattice::subtract(node, place.first_cell));
-                for (component, traction) in scene_load.traction.iter().enumerate() {
-                    load[first + component] += weight * traction;
-                }
-            }
-        }
-    }
-    load
 }
 
 /// The interior class of one subdomain, shared among subdomains with the same interior dofs: those without rows of B and B_c.

@@ -1,4 +1,4 @@
-//! Displacements of whole bodies from those of their torn pieces.
+//! Displacements of whole bodies from those of their torn pieces, and the transposed map.
 
 use crate::body::mesh::Block;
 use crate::equilibrium::SolvedBody;
@@ -12,6 +12,30 @@ pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> V
     let own = &torn.0[..model.interface.owned_count()];
     let pieces = model.distribution.complete(own.chunks_exact(size).map(<[f64]>::to_vec).collect());
     blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, &pieces)).collect()
+}
+
+/// The transposed map: from three entries per node of every body, lower first, to the torn dofs of this process. Each of the c copies of
+/// a node carries 1/c of its entries.
+pub fn torn_loads(model: &TornModel, loads: &[f64]) -> TornVector {
+    let grid = &model.problem.grid;
+    let count = grid.node_count();
+    // All bodies are torn alike.
+    let mut copies = vec![0.0; count];
+    for (_, place) in model.numbering.of_body(0) {
+        (0..place.node_count()).for_each(|local| copies[grid.node(place.block_position(local))] += 1.0);
+    }
+    let mut torn = model.zeros();
+    for subdomain in &model.subdomains {
+        let place = &subdomain.place;
+        for local in 0..place.node_count() {
+            let node = grid.node(place.block_position(local));
+            let (from, to) = (3 * (subdomain.body * count + node), subdomain.first_dof + 3 * local);
+            for component in 0..3 {
+                torn.0[to + component] = loads[from + component] / copies[node];
+            }
+        }
+    }
+    torn
 }
 
 fn whole_body(model: &TornModel, body: usize, block: &Block, torn: &[Vec<f64>]) -> SolvedBody {

@@ -8,9 +8,11 @@
 use super::setting::{SECOND, block, load, solve, support};
 use contact::body::elasticity::Material;
 use contact::body::mesh::Face;
-use contact::contact_shape::SolverKind;
+use contact::contact_shape::{ContactShape, SolverKind};
+use contact::cost::{FieldCost, FieldMeasure};
 use contact::equilibrium::ContactStatus;
 use contact::scene::{CounterSurface, Scene};
+use nonsmooth::{Accuracy, Cost, StateSolver};
 
 const LENGTH: f64 = 100.0;
 const WIDTH: f64 = 2.0;
@@ -64,4 +66,19 @@ fn slip_length_and_displacement() {
     let rate = (errors[0] / errors[1]).log2() / 2.0;
     println!("rate of the slip error {rate:.2}");
     assert!(errors[1] < 2e-4 && rate > 1.5, "{errors:?} {rate}");
+}
+
+/// f·u = Q u(L) + p b L · p h/E: the pull moves its end by u(L), the pressure shortens the bar by p h/E.
+#[test]
+fn compliance_is_the_work_of_pull_and_pressure() {
+    let shape = ContactShape::new(bar(80), SolverKind::Direct).unwrap().with_displacements();
+    let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+    let compliance = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
+    let found = compliance.value(&shape.start(), &state);
+    let pull = FRICTION * PRESSURE * WIDTH * SLIP_LENGTH;
+    let end = FRICTION * PRESSURE * WIDTH * SLIP_LENGTH.powi(2) / (2.0 * MODULUS * WIDTH * HEIGHT);
+    let exact = pull * end + PRESSURE * WIDTH * LENGTH * PRESSURE * HEIGHT / MODULUS;
+    println!("compliance of the bar {found:.6} (exact {exact:.6})");
+    // The error of the displacement at the end.
+    assert!((found / exact - 1.0).abs() < 2e-4, "{found} {exact}");
 }

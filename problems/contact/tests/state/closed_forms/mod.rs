@@ -6,6 +6,7 @@ mod boussinesq;
 mod hertz;
 mod invariance;
 mod mindlin;
+mod objectives;
 mod patch;
 mod punch;
 mod setting;

@@ -1,0 +1,23 @@
+//! What a shape is rated by: functions of the contact pressures, and functions of the displacements.
+//!
+//! ```text
+//! pressures:      h(σ) with a convex h, an outer function of the composite model               method.md (3.4), (3.5), (3.6)
+//! displacements:  J(α, u), whose gradient ∂J/∂u is a load in the adjoint problem               method.md (3.7), (3.8), (5.5)
+//! ```
+
+mod field;
+mod pressure;
+mod region;
+
+pub use field::{FieldCost, FieldMeasure};
+pub use pressure::{ContactAreas, PressureCost, PressureMeasure};
+pub use region::Region;
+
+/// What is minimised.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Measure {
+    /// A function of the contact pressures.
+    Pressure(PressureMeasure),
+    /// A function of the displacements.
+    Field(FieldMeasure),
+}

@@ -1,0 +1,291 @@
+//! Costs of the contact pressure σ_i = λ_N,i / A_i; method.md (3.4) to (3.6).
+//!
+//! ```text
+//! Σσ^p,    max σ,    Σ A_i (σ_i − w_i)² / Σ A_i,    Σ A_i max(1 − σ_i/σ₀, 0)
+//! ```
+
+use crate::equilibrium::{ContactBoundary, ContactState, ContactStatus};
+use crate::error::SceneError;
+use crate::scene::Scene;
+use nonsmooth::composite::{OuterFunction, weighted_gram};
+use nonsmooth::{Cost, CostGradient, Matrix, Vector};
+use serde::Serialize;
+use std::fmt;
+
+/// A function of the contact pressures.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PressureMeasure {
+    /// Σσ^p, MPa^p.
+    Norm {
+        /// The exponent p > 1.
+        exponent: f64,
+    },
+    /// max σ, MPa; nonsmooth on its own, with one subgradient at the first node of largest pressure.
+    Peak,
+    /// Σ A (σ − w)² / Σ A, MPa²: the mean squared deviation from a wanted pressure.
+    Deviation {
+        /// w per contact node, MPa, in the order of [`ContactBoundary::points`].
+        wanted: Vec<f64>,
+    },
+    /// Σ A max(1 − σ/σ₀, 0), mm²: the area that lacks contact pressure. A node counts with its whole area where it is open, with none of it
+    /// from σ = σ₀ on. The least open area is the largest smoothed contact area Σ A min(σ/σ₀, 1).
+    OpenArea {
+        /// σ₀ > 0, MPa.
+        pressure: f64,
+    },
+}
+
+/// Contact areas of a state, mm².
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ContactAreas {
+    /// The area of the closed nodes: Σ A over nodes that stick or slip.
+    pub closed: f64,
+    /// The smoothed contact area Σ A min(σ/σ₀, 1).
+    pub smoothed: f64,
+    /// The area of all contact nodes.
+    pub whole: f64,
+}
+
+impl fmt::Display for ContactAreas {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "closed nodes {:.6}, smoothed {:.6}, of {:.6} mm²", self.closed, self.smoothed, self.whole)
+    }
+}
+
+/// J(α, y) as a measure of the contact pressure.
+#[derive(Debug, Clone)]
+pub struct PressureCost {
+    measure: PressureMeasure,
+    /// Whether the value is the p-th root of Σσ^p.
+    is_root: bool,
+    areas: Vec<f64>,
+    dual_dimension: usize,
+}
+
+/// Decades of Σσ^p at the typical pressure of a scene beyond which its root is taken. Squares of subgradients at pressures far
+/// above that must still be doubles, which end at 308 decades.
+const MAX_DECADES: f64 = 100.0;
+/// Largest pressure over the mean pressure, roughly: those of the paper's scenes are at 4 to 10.
+const TYPICAL_PEAK: f64 = 10.0;
+
+impl PressureCost {
+    /// The cost on a contact boundary.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, wanted pressures are finite, and σ₀ is finite and > 0;
+    /// [`SceneError::WrongCount`] unless there is one wanted pressure per contact node.
+    pub fn new(measure: PressureMeasure, boundary: &ContactBoundary) -> Result<Self, SceneError> {
+        match &measure {
+            PressureMeasure::Peak => {}
+            PressureMeasure::Norm { exponent } => {
+                let valid = *exponent > 1.0 && exponent.is_finite();
+                SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
+            }
+            PressureMeasure::Deviation { wanted } => {
+                let (expected, found) = (boundary.points.len(), wanted.len());
+                if expected != found {
+                    return Err(SceneError::WrongCount { what: "wanted pressures".into(), expected, found });
+                }
+                if let Some((index, value)) = wanted.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+                    return Err(SceneError::out_of_range(
+                        format!("wanted pressure {index}"),
+                        value,
+                        "finite numbers (MPa)",
+                    ));
+                }
+            }
+            PressureMeasure::OpenArea { pressure } => {
+                let valid = *pressure > 0.0 && pressure.is_finite();
+                SceneError::require(valid, "objective.pressure", pressure, "a finite number > 0 (MPa)")?;
+            }
+        }
+        let areas = boundary.points.iter().map(|point| point.area).collect();
+        Ok(Self { measure, is_root: false, areas, dual_dimension: boundary.dual_dimension() })
+    }
+
+    /// The same cost in a form that can be computed for the pressures of a scene: where Σσ^p may leave the range of doubles, its
+    /// root (Σσ^p)^{1/p}, which has the same minimisers. The choice depends neither on the mesh nor on the shape.
+    #[must_use]
+    pub fn normalised_for(self, scene: &Scene) -> Self {
+        let PressureMeasure::Norm { exponent } = self.measure else { return self };
+        let typical = TYPICAL_PEAK * scene.load() / (scene.size[0] * scene.size[1]);
+        Self { is_root: typical > 0.0 && exponent * typical.log10().abs() > MAX_DECADES, ..self }
+    }
+
+    /// p where the value is (Σσ^p)^{1/p}, else 1.
+    pub fn root(&self) -> f64 {
+        match self.measure {
+            PressureMeasure::Norm { exponent } if self.is_root => exponent,
+            _ => 1.0,
+        }
+    }
+
+    /// The unit of the value, such as `MPa^{4}`.
+    pub fn unit(&self) -> String {
+        match &self.measure {
+            PressureMeasure::Norm { exponent } if !self.is_root => format!("MPa^{{{exponent}}}"),
+            PressureMeasure::Norm { .. } | PressureMeasure::Peak => "MPa".into(),
+            PressureMeasure::Deviation { .. } => "MPa^{2}".into(),
+            PressureMeasure::OpenArea { .. } => "mm^{2}".into(),
+        }
+    }
+
+    /// The contact areas of a state, where the open area is what is minimised.
+    pub fn contact_areas<S>(&self, state: &ContactState<S>) -> Option<ContactAreas> {
+        let PressureMeasure::OpenArea { .. } = self.measure else { return None };
+        let whole = self.areas.iter().sum::<f64>();
+        let nodes = self.areas.iter().zip(&state.forces.status);
+        let closed = nodes.filter(|(_, status)| **status != ContactStatus::Open).map(|(area, _)| area).sum();
+        let open = OuterFunction::value(self, &Vector::from_vec(self.pressures(state)));
+        Some(ContactAreas { closed, smoothed: whole - open, whole })
+    }
+
+    /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that carries
+    /// this force is below it.
+    ///
+    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1}, max σ ≥ Λ/ΣA, Σ A max(1 − σ/σ₀, 0) ≥ max(ΣA − Λ/σ₀, 0), with Λ = Σλ_N ≥ 0 in N; method.md
+    /// (9.1) to (9.4).
+    pub fn lower_bound(&self, total_force: f64) -> f64 {
+        let whole = || self.areas.iter().sum::<f64>();
+        match &self.measure {
+            &PressureMeasure::Norm { exponent: p } => {
+                // Relative to the largest area, so that the sum is at least 1 for every p.
+                let largest = self.areas.iter().copied().fold(0.0, f64::max);
+                let weights: f64 = self.areas.iter().map(|area| (area / largest).powf(p / (p - 1.0))).sum();
+                match self.is_root {
+                    false => (total_force / largest).powf(p) / weights.powf(p - 1.0),
+                    true => total_force / largest / weights.powf((p - 1.0) / p),
+                }
+            }
+            PressureMeasure::Peak => total_force / whole(),
+            PressureMeasure::Deviation { wanted } => least_deviation(&self.areas, wanted, total_force),
+            PressureMeasure::OpenArea { pressure } => (whole() - total_force / pressure).max(0.0),
+        }
+    }
+
+    /// σ per contact node, MPa.
+    pub fn pressures<S>(&self, state: &ContactState<S>) -> Vec<f64> {
+        state.forces.normal.iter().zip(&self.areas).map(|(force, area)| force / area).collect()
+    }
+}
+
+/// As a function of the pressures.
+impl OuterFunction for PressureCost {
+    fn value(&self, pressures: &Vector) -> f64 {
+        let nodes = || pressures.iter().zip(&self.areas);
+        match &self.measure {
+            &PressureMeasure::Norm { exponent } if self.is_root => {
+                let (largest, sum) = relative_sum(pressures, exponent);
+                largest * sum.powf(1.0 / exponent)
+            }
+            &PressureMeasure::Norm { exponent } => pressures.iter().map(|p| p.max(0.0).powf(exponent)).sum(),
+            PressureMeasure::Deviation { wanted } => {
+                let terms = nodes().zip(wanted).map(|((pressure, area), wanted)| area * (pressure - wanted).powi(2));
+                terms.sum::<f64>() / self.areas.iter().sum::<f64>()
+            }
+            PressureMeasure::OpenArea { pressure } => {
+                nodes().map(|(found, area)| area * (1.0 - found / pressure).max(0.0)).sum()
+            }
+            PressureMeasure::Peak => pressures.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+
+    fn subgradient(&self, pressures: &Vector) -> Vector {
+        match &self.measure {
+            &PressureMeasure::Norm { exponent } => {
+                let (largest, factor) = match self.is_root {
+                    false => (1.0, exponent),
+                    true => {
+                        let (largest, sum) = relative_sum(pressures, exponent);
+                        (largest, sum.powf(1.0 / exponent - 1.0))
+                    }
+                };
+                pressures.map(|pressure| factor * (pressure.max(0.0) / largest).powf(exponent - 1.0))
+            }
+            PressureMeasure::Peak => {
+                let larger = |peak: usize, index: usize| if pressures[index] > pressures[peak] { index } else { peak };
+                let peak = (0..pressures.len()).fold(0, larger);
+                Vector::from_fn(pressures.len(), |index, _| f64::from(u8::from(index == peak)))
+            }
+            PressureMeasure::Deviation { wanted } => {
+                let whole = self.areas.iter().sum::<f64>();
+                let slope = |index: usize| 2.0 * self.areas[index] / whole * (pressures[index] - wanted[index]);
+                Vector::from_fn(pressures.len(), |index, _| slope(index))
+            }
+            PressureMeasure::OpenArea { pressure } => {
+                let slope =
+                    |index: usize| if pressures[index] < *pressure { -self.areas[index] / pressure } else { 0.0 };
+                Vector::from_fn(pressures.len(), |index, _| slope(index))
+            }
+        }
+    }
+
+    /// Σσ^p has the curvature p(p−1)σ^{p−2} per node; its root N has (p−1)/N ((σ/N)^{p−2} − g gᵀ) with g = (σ/N)^{p−1}. The deviation
+    /// has 2A/ΣA. None for the peak and the open area, which have kinks, and for p < 2, where the curvature grows without bound as a
+    /// node opens.
+    fn curvature(&self, pressures: &Vector, jacobian: &Matrix) -> Option<Matrix> {
+        let exponent = match self.measure {
+            PressureMeasure::Norm { exponent } if exponent >= 2.0 => exponent,
+            PressureMeasure::Deviation { .. } => {
+                let whole = self.areas.iter().sum::<f64>();
+                let weights = Vector::from_fn(self.areas.len(), |index, _| 2.0 * self.areas[index] / whole);
+                return Some(weighted_gram(jacobian, &weights));
+            }
+            _ => return None,
+        };
+        let size = if self.is_root { OuterFunction::value(self, pressures) } else { 1.0 };
+        let relative = pressures.map(|pressure| pressure.max(0.0) / size);
+        let factor = if self.is_root { (exponent - 1.0) / size } else { exponent * (exponent - 1.0) };
+        let weights = relative.map(|p| factor * p.powf(exponent - 2.0));
+        let mut curvature = weighted_gram(jacobian, &weights);
+        if self.is_root {
+            let gradient = jacobian.tr_mul(&relative.map(|p| p.powf(exponent - 1.0)));
+            curvature.ger(-factor, &gradient, &gradient, 1.0);
+        }
+        Some(curvature)
+    }
+}
+
+impl<S> Cost<ContactState<S>> for PressureCost {
+    fn value(&self, _control: &Vector, state: &ContactState<S>) -> f64 {
+        OuterFunction::value(self, &Vector::from_vec(self.pressures(state)))
+    }
+
+    fn gradient(&self, control: &Vector, state: &ContactState<S>) -> CostGradient {
+        let weights = self.subgradient(&Vector::from_vec(self.pressures(state)));
+        let mut dual = Vector::zeros(self.dual_dimension);
+        for (index, (weight, area)) in weights.iter().zip(&self.areas).enumerate() {
+            dual[index] = weight / area;
+        }
+        CostGradient { control: Vector::zeros(control.len()), state: dual }
+    }
+}
+
+/// The least Σ A (σ − w)² / Σ A of pressures σ ≥ 0 with Σ A σ = Λ: σ = max(w + t, 0) with the t that gives this force; method.md (9.3).
+fn least_deviation(areas: &[f64], wanted: &[f64], total_force: f64) -> f64 {
+    let mut order: Vec<usize> = (0..wanted.len()).collect();
+    order.sort_by(|a, b| wanted[*b].total_cmp(&wanted[*a]));
+    // With the first nodes of this order under pressure, t follows from the force; the next node is added while w + t is positive there.
+    let (mut area, mut force, mut shift) = (0.0, 0.0, f64::INFINITY);
+    for index in order {
+        if area > 0.0 && wanted[index] + shift <= 0.0 {
+            break;
+        }
+        area += areas[index];
+        force += areas[index] * wanted[index];
+        shift = (total_force - force) / area;
+    }
+    let deviation = |wanted: f64| (wanted + shift).max(0.0) - wanted;
+    let sum = areas.iter().zip(wanted).map(|(area, wanted)| area * deviation(*wanted).powi(2)).sum::<f64>();
+    sum / areas.iter().sum::<f64>()
+}
+
+/// The largest pressure m, and Σ(σ/m)^p; m is positive, also where no pressure is.
+fn relative_sum(pressures: &Vector, exponent: f64) -> (f64, f64) {
+    let largest = pressures.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    // At least 1, which it is unless there is no pressure at all.
+    (largest, pressures.iter().map(|p| (p.max(0.0) / largest).powf(exponent)).sum::<f64>().max(1.0))
+}
+
+#[cfg(test)]
+mod tests;

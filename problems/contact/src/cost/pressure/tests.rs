@@ -1,0 +1,111 @@
+//! Bounds, derivatives and convexity of the costs of the pressure.
+
+use super::*;
+use proptest::prelude::*;
+
+/// Σσ^p of forces over areas.
+fn norm(forces: &[f64], areas: &[f64], p: f64) -> f64 {
+    forces.iter().zip(areas).map(|(force, area)| (force / area).powf(p)).sum()
+}
+
+#[test]
+fn the_lower_bound_is_attained_and_never_undercut() {
+    let areas = vec![1.0, 2.0, 4.0, 0.5];
+    for p in [1.02, 1.5, 4.0, 12.0] {
+        let measure = PressureMeasure::Norm { exponent: p };
+        let cost = PressureCost { is_root: false, measure, areas: areas.clone(), dual_dimension: 4 };
+        let weights: Vec<f64> = areas.iter().map(|area: &f64| area.powf(p / (p - 1.0))).collect();
+        let forces: Vec<f64> = weights.iter().map(|w| 30.0 * w / weights.iter().sum::<f64>()).collect();
+        let bound = cost.lower_bound(30.0);
+        assert!((norm(&forces, &areas, p) / bound - 1.0).abs() < 1e-12);
+        for other in [[30.0, 0.0, 0.0, 0.0], [7.5; 4], [4.0, 8.0, 16.0, 2.0]] {
+            assert!(norm(&other, &areas, p) >= bound * (1.0 - 1e-12));
+        }
+    }
+    // Near p = 1 everything goes to the largest area: (30/4)^p.
+    let nearly = PressureMeasure::Norm { exponent: 1.001 };
+    let cost = PressureCost { is_root: false, measure: nearly, areas: areas.clone(), dual_dimension: 4 };
+    assert!((cost.lower_bound(30.0) / 7.5_f64.powf(1.001) - 1.0).abs() < 1e-12);
+    let cost = PressureCost { is_root: false, measure: PressureMeasure::Peak, areas, dual_dimension: 4 };
+    assert!((cost.lower_bound(30.0) - 4.0).abs() < 1e-14);
+}
+
+#[test]
+fn the_lower_bound_of_the_paper_s_example() {
+    // method.md (9.1): (3e7)⁴/(Σ A^{4/3})³ = 1.294e16 on 12 × 12 bricks of a 100 mm square.
+    let grid = crate::body::mesh::Grid { cells: [12, 12, 12], size: [100.0, 100.0] };
+    let areas = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
+    let cost =
+        PressureCost { is_root: false, measure: PressureMeasure::Norm { exponent: 4.0 }, areas, dual_dimension: 169 };
+    assert!((cost.lower_bound(3e7) / 1.294e16 - 1.0).abs() < 5e-4);
+}
+
+/// A cost over four nodes.
+fn cost(measure: PressureMeasure) -> PressureCost {
+    PressureCost { measure, is_root: false, areas: vec![1.0, 2.0, 4.0, 0.5], dual_dimension: 4 }
+}
+
+#[test]
+fn the_least_deviation_is_attained_and_never_undercut() {
+    let areas = [1.0, 2.0, 4.0, 0.5];
+    for wanted in [vec![3.0, 1.0, 2.0, 8.0], vec![-5.0, 0.0, 1.0, 6.0], vec![5.0; 4]] {
+        let cost = cost(PressureMeasure::Deviation { wanted: wanted.clone() });
+        for force in [0.0, 2.0, 15.0, 40.0] {
+            let bound = cost.lower_bound(force);
+            // The best of a fine family of pressures that carry the force is not below the bound, and comes near it.
+            let mut best = f64::INFINITY;
+            for step in 0..4000 {
+                let shift = -10.0 + 0.01 * f64::from(step);
+                let carried = wanted.iter().map(|w| (w + shift).max(0.0));
+                let total: f64 = carried.clone().zip(areas).map(|(pressure, area)| area * pressure).sum();
+                let factor = if total > 0.0 { force / total } else { 0.0 };
+                if total > 0.0 || force == 0.0 {
+                    let pressures = Vector::from_iterator(4, carried.map(|pressure| factor * pressure));
+                    best = best.min(OuterFunction::value(&cost, &pressures));
+                }
+            }
+            assert!(best >= bound * (1.0 - 1e-12) - 1e-12, "{wanted:?} {force}: {best} {bound}");
+            assert!(best - bound < 1e-3 * (1.0 + bound), "{wanted:?} {force}: {best} {bound}");
+        }
+    }
+    // A pressure that can be had has the bound 0.
+    let uniform = cost(PressureMeasure::Deviation { wanted: vec![5.0; 4] });
+    assert_eq!(uniform.lower_bound(37.5), 0.0);
+    assert_eq!(OuterFunction::value(&uniform, &Vector::from_element(4, 5.0)), 0.0);
+}
+
+#[test]
+fn the_open_area_counts_whole_nodes_parts_and_none() {
+    let cost = cost(PressureMeasure::OpenArea { pressure: 10.0 });
+    let pressures = Vector::from_vec(vec![0.0, 5.0, 10.0, 30.0]);
+    assert_eq!(OuterFunction::value(&cost, &pressures), 2.0);
+    assert_eq!(cost.lower_bound(30.0), 4.5);
+    assert_eq!(cost.lower_bound(100.0), 0.0);
+    assert!(cost.curvature(&pressures, &Matrix::zeros(4, 2)).is_none());
+}
+
+#[test]
+fn curvature_of_the_deviation_is_the_derivative_of_its_subgradient() {
+    let cost = cost(PressureMeasure::Deviation { wanted: vec![1.0, -2.0, 0.5, 3.0] });
+    let jacobian = Matrix::from_fn(4, 3, |i, j| ((3 * i + j) as f64).sin());
+    let (c, d) = (Vector::from_vec(vec![2.0, 0.0, 1.0, 7.0]), Vector::from_vec(vec![0.3, -0.7, 0.4]));
+    let difference = cost.subgradient(&(&c + &jacobian * &d)) - cost.subgradient(&c);
+    let product = cost.curvature(&c, &jacobian).expect("smooth") * &d;
+    assert!((jacobian.tr_mul(&difference) - &product).norm() < 1e-13 * product.norm());
+}
+
+proptest! {
+    #[test]
+    fn subgradients_lie_below_the_measure(
+        a in prop::array::uniform4(0.0_f64..20.0), b in prop::array::uniform4(0.0_f64..20.0),
+        w in prop::array::uniform4(-5.0_f64..20.0), pressure in 0.5_f64..15.0,
+    ) {
+        let (a, b) = (Vector::from_vec(a.to_vec()), Vector::from_vec(b.to_vec()));
+        for measure in [PressureMeasure::Deviation { wanted: w.to_vec() }, PressureMeasure::OpenArea { pressure }] {
+            let cost = cost(measure);
+            let (here, there) = (OuterFunction::value(&cost, &a), OuterFunction::value(&cost, &b));
+            let cut = here + cost.subgradient(&a).dot(&(&b - &a));
+            prop_assert!(cut <= there + 1e-12 * (here + there), "{cut} {there}");
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Taylor tests of the objectives beside pressure norm and peak: both solvers, one and two bodies, with friction and without.
+
+use contact::body::mesh::Face;
+use contact::contact_shape::{ContactShape, ContactState, SolverKind};
+use contact::cost::{FieldCost, FieldMeasure, PressureCost, PressureMeasure, Region};
+use contact::scene::{Load, Scene, hertz, signorini};
+use nonsmooth::verify::{Direction, seeded_direction, taylor_test};
+use nonsmooth::{Accuracy, Cost, NonsmoothObjective, ReducedObjective, Request, StateSolver, Vector};
+
+const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
+
+/// Both scenes without and with friction; loads act on side faces of both bodies as well, whose area changes with the shape.
+fn scenes() -> impl Iterator<Item = Scene> {
+    let scene = |scene: Scene, friction| {
+        let mut scene = Scene { mesh: [4; 3], subdomains: [2, 1, 2], friction, ..scene };
+        let push = scene.lower.loads.first().map_or(20.0, |load| 0.02 * load.traction[2]);
+        scene.lower.loads.push(Load { face: Face::X1Max, traction: [-push, 0.0, 0.2 * push] });
+        scene
+    };
+    [0.0, 0.3].into_iter().flat_map(move |friction| [signorini(), hertz()].map(|found| scene(found.unwrap(), friction)))
+}
+
+/// A box that leaves out parts of both bodies.
+fn region(scene: &Scene, body: Option<usize>) -> Region {
+    let [a, b] = scene.size;
+    Region { lower: [0.0, 0.2 * b, 0.3 * scene.start_height], upper: [0.7 * a, b, 1.6 * scene.start_height], body }
+}
+
+fn controls(shape: &ContactShape, seed: u64) -> Vector {
+    let height = shape.problem().scene.start_height;
+    seeded_direction(36, seed).map(|entry| height * (0.98 + 0.01 * entry))
+}
+
+/// Smallest relative error of the directional derivative over the steps of a Taylor table around a shape without a kink nearby, and the
+/// evaluation there.
+fn derivative_error<J: Cost<ContactState>>(shape: ContactShape, cost: J) -> (f64, f64, Vector) {
+    let at = controls(&shape, 3);
+    let height = shape.problem().scene.start_height;
+    let objective = ReducedObjective::new(shape, cost);
+    let direction = Direction::Given(seeded_direction(36, 4));
+    let steps: Vec<f64> = (0..8).map(|k| height * 1e-4 * 10.0_f64.powf(-0.5 * f64::from(k))).collect();
+    let test = taylor_test(&objective, &at, &direction, &steps).unwrap();
+    let evaluation = objective.evaluate(&Request::tight(&at)).unwrap().into_evaluation();
+    (test.best_derivative_error, evaluation.value, evaluation.subgradient)
+}
+
+/// Both solvers have the derivative that differences have, and the same one.
+fn differentiated<J: Cost<ContactState>>(name: &str, scene: &Scene, cost: impl Fn(&ContactShape) -> J) {
+    let found = KINDS.map(|kind| {
+        let shape = ContactShape::new(scene.clone(), kind).unwrap().with_displacements();
+        let cost = cost(&shape);
+        derivative_error(shape, cost)
+    });
+    let [newton, direct] = &found;
+    let (value, slope) = (newton.1 / direct.1 - 1.0, (&newton.2 - &direct.2).norm() / direct.2.norm());
+    println!(
+        "{name}, {}, friction {}: {:.6e}; derivatives {:.1e}, {:.1e}; solvers differ by {value:.1e}, {slope:.1e}",
+        scene.name, scene.friction, newton.1, newton.0, direct.0
+    );
+    assert!(newton.0 < 1e-6 && direct.0 < 1e-6, "{name}: {} {}", newton.0, direct.0);
+    assert!(value.abs() < 1e-9 && slope < 1e-7, "{name}: {value:e} {slope:e}");
+}
+
+#[test]
+fn stress_norm() {
+    for scene in scenes() {
+        let bodies = if scene.upper.is_some() { vec![None, Some(0), Some(1)] } else { vec![None] };
+        for (body, exponent) in bodies.into_iter().zip([6.0, 12.0, 3.0]) {
+            let measure = FieldMeasure::StressNorm { region: region(&scene, body), exponent };
+            let name = format!("stress norm {exponent}, body {body:?}");
+            differentiated(&name, &scene, |shape| FieldCost::new(measure.clone(), shape.problem()).unwrap());
+        }
+    }
+}
+
+#[test]
+fn compliance() {
+    for scene in scenes() {
+        differentiated("compliance", &scene, |shape| {
+            FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap()
+        });
+    }
+}
+
+/// Σλ_N/ΣA of a state at the start, MPa.
+fn mean_pressure(shape: &ContactShape) -> f64 {
+    let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+    let areas: f64 = shape.problem().boundary.points.iter().map(|point| point.area).sum();
+    state.forces.total_normal_force() / areas
+}
+
+#[test]
+fn measures_of_the_pressures() {
+    for scene in scenes() {
+        differentiated("deviation from a wanted pressure", &scene, |shape| {
+            let mean = mean_pressure(shape);
+            let grid = shape.problem().grid;
+            let places = grid.columns().map(|(i, j)| grid.position(i, j));
+            let wanted = places.map(|[x1, x2]| mean * (1.0 + x1 / grid.size[0] - x2 / grid.size[1])).collect();
+            PressureCost::new(PressureMeasure::Deviation { wanted }, &shape.problem().boundary).unwrap()
+        });
+        differentiated("open area", &scene, |shape| {
+            let measure = PressureMeasure::OpenArea { pressure: 1.7 * mean_pressure(shape) };
+            PressureCost::new(measure, &shape.problem().boundary).unwrap()
+        });
+    }
+}
+
+#[test]
+fn successive_approximations_share_the_adjoint() {
+    let scene = Scene { friction: 0.3, mesh: [4; 3], ..signorini().unwrap() };
+    let subgradient = |kind| {
+        let shape = ContactShape::new(scene.clone(), kind).unwrap().with_displacements();
+        let cost = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
+        let at = controls(&shape, 3);
+        ReducedObjective::new(shape, cost).evaluate(&Request::tight(&at)).unwrap().into_evaluation().subgradient
+    };
+    let [paper, direct] = [SolverKind::AugmentedLagrangian, SolverKind::Direct].map(subgradient);
+    // Their states are accurate to 1e-9 or so.
+    assert!((&paper - &direct).norm() < 1e-6 * direct.norm(), "{:e}", (&paper - &direct).norm() / direct.norm());
+}
+
+#[test]
+fn a_dual_of_another_size_and_a_state_without_displacements_are_refused() {
+    let scene = Scene { mesh: [4; 3], ..signorini().unwrap() };
+    for kind in KINDS {
+        let shape = ContactShape::new(scene.clone(), kind).unwrap();
+        let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+        let sizes = [shape.problem().boundary.dual_dimension(), shape.problem().displacement_count()];
+        for wrong in [sizes[0] - 1, sizes[0] + 1, sizes[0] + sizes[1] - 1] {
+            let refusal = shape.height_sensitivity(&state, &Vector::zeros(wrong)).unwrap_err().to_string();
+            assert!(refusal.contains("dual of the contact state"), "{refusal}");
+        }
+        assert!(shape.height_sensitivity(&state, &Vector::zeros(sizes[0] + sizes[1])).is_ok());
+        let cost = FieldCost::new(FieldMeasure::Compliance, shape.problem()).unwrap();
+        let objective = ReducedObjective::new(shape, cost);
+        let refusal = objective.evaluate(&Request::tight(&objective.solver().start())).unwrap_err().to_string();
+        assert!(refusal.contains("value"), "{refusal}");
+    }
+}
+
+#[test]
+fn regions_without_a_brick_or_a_body_are_refused() {
+    let shape = ContactShape::new(Scene { mesh: [4; 3], ..signorini().unwrap() }, SolverKind::Direct).unwrap();
+    let refused = |region: Region| {
+        let measure = FieldMeasure::StressNorm { region, exponent: 4.0 };
+        FieldCost::new(measure, shape.problem()).unwrap_err().to_string()
+    };
+    let all = Region { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None };
+    let outside = refused(Region { lower: [0.0, 0.0, 200.0], ..all.clone() });
+    assert!(outside.contains("objective.region") && outside.contains("centre of a brick"), "{outside}");
+    let upper = refused(Region { body: Some(1), ..all });
+    assert!(upper.contains("objective.body = upper"), "{upper}");
+}

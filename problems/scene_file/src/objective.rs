@@ -1,0 +1,203 @@
+//! The objective of a scene file: its fields, and what they mean once a mesh is known.
+
+use crate::grid_file;
+use crate::wanted_pressure::WantedPressure;
+use contact::cost::{FieldMeasure, Measure, PressureMeasure, Region};
+use contact::equilibrium::ContactProblem;
+use contact::error::SceneError;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Exponent of the paper's norm.
+const DEFAULT_EXPONENT: f64 = 4.0;
+/// Exponent of the stress norm.
+const DEFAULT_STRESS_EXPONENT: f64 = 8.0;
+
+/// The objective.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ObjectiveSection {
+    /// Of the contact pressures: sum of powers, largest value, mean squared deviation from a wanted pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region, compliance.
+    pub measure: MeasureName,
+    /// Exponent p of the pressure norm and of the stress norm. Default 4 for the pressure norm, 8 for the stress norm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 64.0), extend("x-unit" = "1", "exclusiveMinimum" = 1.0))]
+    pub exponent: Option<f64>,
+    /// For `open-area`: the pressure from which a contact node counts with its whole area. Default none: required there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1e15), extend("x-unit" = "MPa", "exclusiveMinimum" = 0.0))]
+    pub pressure: Option<f64>,
+    /// For `pressure-deviation`, and required there: the wanted pressure.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wanted: Option<WantedSection>,
+    /// For `stress-norm`: the bricks whose centres lie in this box while the lower body has its start height, faces included; all bricks without it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub region: Option<RegionSection>,
+}
+
+/// Which function is minimised.
+// The tags of `PressureMeasure` and `FieldMeasure`, whose numbers are fields of their own in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeasureName {
+    /// Σσ^p.
+    #[default]
+    PressureNorm,
+    /// max σ.
+    PeakPressure,
+    /// ΣA(σ − w)²/ΣA.
+    PressureDeviation,
+    /// ΣA max(1 − σ/σ₀, 0).
+    OpenArea,
+    /// ((1/V₀) Σ V σ_vM^p)^{1/p}.
+    StressNorm,
+    /// f·u.
+    Compliance,
+}
+
+/// A wanted contact pressure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum WantedSection {
+    /// A formula.
+    Formula {
+        /// The pressure in MPa over x1, x2 in mm, such as "120*exp(-(x1/20)^2) + 5"; + - * / ^, abs, sqrt, exp, ln, sin, cos, tan, tanh, floor and others, PI, max(a, b), min(a, b). A sign binds less than a power: -x1^2 is -(x1^2).
+        pressure: String,
+    },
+    /// Pressures on a uniform grid over the base, bilinear in between.
+    Grid {
+        /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; MPa. Lines that begin with # are comments.
+        file: String,
+    },
+}
+
+/// A box in one body or in all.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct RegionSection {
+    /// The body. Default all bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub body: Option<BodyName>,
+    /// Smallest and largest x1. Default no bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub x1: Option<[f64; 2]>,
+    /// Smallest and largest x2. Default no bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub x2: Option<[f64; 2]>,
+    /// Smallest and largest x3. Default no bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(range(min = -1e9, max = 1e9)), extend("x-unit" = "mm"))]
+    pub x3: Option<[f64; 2]>,
+}
+
+/// One of the bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[allow(missing_docs, reason = "the names are the meaning")]
+pub enum BodyName {
+    Lower,
+    Upper,
+}
+
+/// What is minimised, checked as far as no mesh is needed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Objective {
+    /// A function of the contact pressures.
+    Pressure(PressureMeasure),
+    /// The deviation from a wanted pressure, which each mesh samples at its contact nodes.
+    Deviation(WantedPressure),
+    /// A function of the displacements.
+    Field(FieldMeasure),
+}
+
+impl Objective {
+    /// The objective of a section; a grid that it names is looked up in `folder`.
+    pub(crate) fn new(section: &ObjectiveSection, size: [f64; 2], folder: &Path) -> Result<Self, SceneError> {
+        refuse_foreign_fields(section)?;
+        let exponent = |default: f64| section.exponent.unwrap_or(default);
+        Ok(match section.measure {
+            MeasureName::PressureNorm => Self::Pressure(PressureMeasure::Norm { exponent: exponent(DEFAULT_EXPONENT) }),
+            MeasureName::PeakPressure => Self::Pressure(PressureMeasure::Peak),
+            MeasureName::PressureDeviation => Self::Deviation(match &section.wanted {
+                None => return Err(missing("objective.wanted", "a table with form = \"formula\" or form = \"grid\"")),
+                Some(WantedSection::Formula { pressure }) => WantedPressure::formula(pressure)?,
+                Some(WantedSection::Grid { file }) => {
+                    WantedPressure::Grid(grid_file::read(&folder.join(file), size, "MPa")?)
+                }
+            }),
+            MeasureName::OpenArea => match section.pressure {
+                None => return Err(missing("objective.pressure", "a finite number > 0 (MPa)")),
+                Some(pressure) => Self::Pressure(PressureMeasure::OpenArea { pressure }),
+            },
+            MeasureName::StressNorm => Self::Field(FieldMeasure::StressNorm {
+                region: region(section.region.as_ref())?,
+                exponent: exponent(DEFAULT_STRESS_EXPONENT),
+            }),
+            MeasureName::Compliance => Self::Field(FieldMeasure::Compliance),
+        })
+    }
+
+    /// The measure on the mesh of a problem.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] for a formula that is not finite at a contact node, with the place.
+    pub fn measure(&self, problem: &ContactProblem) -> Result<Measure, SceneError> {
+        Ok(match self {
+            Self::Pressure(measure) => Measure::Pressure(measure.clone()),
+            Self::Deviation(wanted) => {
+                Measure::Pressure(PressureMeasure::Deviation { wanted: wanted.at(&problem.grid)? })
+            }
+            Self::Field(measure) => Measure::Field(measure.clone()),
+        })
+    }
+
+    /// Whether it is a function of the contact pressures, which the composite model takes.
+    pub fn is_of_pressures(&self) -> bool {
+        !matches!(self, Self::Field(_))
+    }
+}
+
+fn missing(field: &str, allowed: &str) -> SceneError {
+    SceneError::out_of_range(field, "missing", allowed)
+}
+
+/// Refuses fields that belong to another measure than the one of the section.
+fn refuse_foreign_fields(section: &ObjectiveSection) -> Result<(), SceneError> {
+    use MeasureName::{OpenArea, PressureDeviation, PressureNorm, StressNorm};
+    let exponent = section.exponent.map(|exponent| exponent.to_string());
+    let pressure = section.pressure.map(|pressure| pressure.to_string());
+    let table = |is_set: bool| is_set.then(|| "a table".to_owned());
+    for (field, value, measures, words) in [
+        ("exponent", exponent, &[PressureNorm, StressNorm][..], "pressure norm and the stress norm"),
+        ("pressure", pressure, &[OpenArea], "open area"),
+        ("wanted", table(section.wanted.is_some()), &[PressureDeviation], "pressure deviation"),
+        ("region", table(section.region.is_some()), &[StressNorm], "stress norm"),
+    ] {
+        if let Some(value) = value.filter(|_| !measures.contains(&section.measure)) {
+            let allowed = format!("no {field} with this measure, only with the {words}");
+            return Err(SceneError::out_of_range(format!("objective.{field}"), value, allowed));
+        }
+    }
+    Ok(())
+}
+
+fn region(section: Option<&RegionSection>) -> Result<Region, SceneError> {
+    let section = section.cloned().unwrap_or_default();
+    let (mut lower, mut upper) = ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
+    for (axis, bounds) in [section.x1, section.x2, section.x3].into_iter().enumerate() {
+        let Some([low, high]) = bounds else { continue };
+        if low > high {
+            let field = format!("objective.region.x{}", axis + 1);
+            return Err(SceneError::out_of_range(field, format!("[{low}, {high}]"), "the smaller number first"));
+        }
+        (lower[axis], upper[axis]) = (low, high);
+    }
+    let body = section.body.map(|body| match body {
+        BodyName::Lower => 0,
+        BodyName::Upper => 1,
+    });
+    Ok(Region { lower, upper, body })
+}
