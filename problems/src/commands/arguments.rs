@@ -1,5 +1,6 @@
 //! The command and the options of the contact binaries, and the fields of the scene file that the options override.
 
+use crate::commands::export::ExportOptions;
 use crate::commands::failure::Failure;
 use crate::commands::processes::SharedSolver;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -30,6 +31,8 @@ pub enum Command {
     Verify,
     /// Compute norm and error of the certificate of an optimization again, from the files in its folder DIR.
     Recheck,
+    /// Write a shape as files for other programs (STL, STEP, CSV, matrices); needs --out.
+    Export,
 }
 
 /// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa). An option that is not given leaves the field of the
@@ -83,7 +86,7 @@ pub struct Arguments {
     /// Exponent p of the pressure norm.
     #[arg(long, value_name = "P", value_parser = real("objective.exponent"))]
     pub exponent: Option<f64>,
-    /// Control heights to evaluate or verify at: a JSON array, row major, index i*n2 + j with i along x1 [default: surface.start].
+    /// Control heights to evaluate, verify or export: a JSON array, row major, index i*n2 + j with i along x1 [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub controls: Option<PathBuf>,
     /// Control heights to start the optimization from [default: surface.start].
@@ -110,7 +113,14 @@ pub struct Arguments {
     /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
     #[arg(long)]
     pub overwrite: bool,
-    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --new-version, --json only).
+    /// With optimize and a folder: fields for ParaView of the start and of every serious step, as a series (history.pvd).
+    #[arg(long)]
+    pub vtk_history: bool,
+    /// What export writes.
+    #[command(flatten)]
+    pub export: ExportOptions,
+    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --new-version,
+    /// --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
     /// With --resume: continue a run that another version of the program has begun.
@@ -164,6 +174,7 @@ impl Arguments {
             }
         }
         self.check_resume()?;
+        self.export.check(self.command == Command::Export, self.out.is_some(), self.controls.is_some())?;
         if self.exponent.is_some() && self.objective == Some(MeasureName::PeakPressure) {
             return refused("--exponent", "with --objective pressure-norm only");
         }
@@ -175,17 +186,19 @@ impl Arguments {
         let evaluating = matches!(self.command, Command::Evaluate | Command::Verify);
         let optimizing = matches!(self.command, Command::Optimize | Command::Compare);
         let rechecking = self.command == Command::Recheck;
-        let takes_controls = "with evaluate and verify only (optimize and compare take --start-controls)";
+        let showing = evaluating || self.command == Command::Export;
+        let takes_controls = "with evaluate, verify and export only (optimize and compare take --start-controls)";
         let takes_start = "with optimize and compare only (evaluate and verify take --controls)";
         let limits = "with optimize and compare only";
         for (option, given, taken, allowed) in [
-            ("--controls", self.controls.is_some(), evaluating, takes_controls),
+            ("--controls", self.controls.is_some(), showing, takes_controls),
             ("--start-controls", self.start_controls.is_some(), optimizing, takes_start),
             ("--optimizer", self.optimizer.is_some(), optimizing, limits),
             ("--max-evaluations", self.max_evaluations.is_some(), optimizing, limits),
             ("--diagnose", self.diagnose, self.command == Command::Evaluate, "with evaluate only"),
             ("--time-limit", self.time_limit.is_some(), optimizing, limits),
             ("--continuation", self.continuation.is_some(), optimizing, limits),
+            ("--vtk-history", self.vtk_history, self.command == Command::Optimize, "with optimize only"),
             ("--starts", self.starts.is_some(), self.command == Command::Optimize, "with optimize only"),
             ("--resume", self.resume.is_some(), optimizing, limits),
             ("--out", self.out.is_some(), !rechecking, "without recheck, which writes no file"),
@@ -218,6 +231,7 @@ impl Arguments {
             max_evaluations: self.max_evaluations,
             time_limit: self.time_limit,
             threads: self.threads,
+            vtk_history: self.vtk_history,
             new_version: self.new_version,
             json: self.json,
             ..nothing
@@ -225,8 +239,7 @@ impl Arguments {
         if *self == allowed {
             return Ok(());
         }
-        let allowed =
-            "with --max-evaluations, --time-limit, --threads, --new-version, --json only: all else is in the folder";
+        let allowed = "with --max-evaluations, --time-limit, --threads, --vtk-history, --new-version, --json only: all else is in the folder";
         Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
 

@@ -5,6 +5,7 @@ use crate::commands::failure::Failure;
 use crate::commands::processes::{Processes, SharedSolver, SharedState};
 use contact::contact_shape::{ContactShape, ContactState, Wanted};
 use contact::cost::PressureCost;
+use contact::fields::Fields;
 use contact::plausibility::Warning;
 use nonsmooth::{Accuracy, CompositeObjective, Cost, StateSolver, Vector};
 use scene_file::{Case, MethodName};
@@ -73,6 +74,21 @@ impl SolvedShape {
         let value = objective.cost().value(controls, &state);
         let peak_pressure = objective.cost().pressures(&state).into_iter().fold(f64::NEG_INFINITY, f64::max);
         Ok(Self { controls: controls.clone(), state, value, peak_pressure })
+    }
+
+    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the height of every contact node, which takes an
+    /// adjoint, if it is asked for.
+    ///
+    /// # Errors
+    /// [`Failure`] of the adjoint.
+    pub fn fields(&self, objective: &ContactObjective, sensitivities: bool) -> Result<Fields, Failure> {
+        let shape = objective.solver();
+        let mut fields = shape.fields(&self.state)?;
+        if sensitivities {
+            let gradient = objective.cost().gradient(&self.controls, &self.state);
+            fields.contact.sensitivity = Some(shape.height_sensitivity(&self.state, &gradient.state)?.0);
+        }
+        Ok(fields)
     }
 }
 

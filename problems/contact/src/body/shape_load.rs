@@ -1,8 +1,9 @@
-//! Faces that carry a traction, for loads and for their derivative with respect to node heights.
+//! Faces that carry a traction, the nodal loads of a body, and their derivative with respect to node heights.
 
 use crate::body::elasticity::traction::face_weights;
 use crate::body::mesh::{Block, Face, Grid, Subdomain};
 use crate::scalar::Dual;
+use crate::scene::BodyScene;
 
 /// Four block nodes of every brick face on a side of the block, optionally only those of one subdomain.
 pub fn loaded_faces(grid: &Grid, face: Face, place: Option<&Subdomain>) -> Vec<[[usize; 3]; 4]> {
@@ -26,6 +27,23 @@ pub fn loaded_faces(grid: &Grid, face: Face, place: Option<&Subdomain>) -> Vec<[
         }
     }
     faces
+}
+
+/// Consistent nodal loads of a whole body, N: three components per node of its grid.
+pub fn body_load(block: &Block, scene: &BodyScene) -> Vec<f64> {
+    let grid = &block.grid;
+    let mut load = vec![0.0; 3 * grid.node_count()];
+    for part in &scene.loads {
+        for face in loaded_faces(grid, part.face, None) {
+            let weights = face_weights(&face.map(|node| block.coordinates(node)));
+            for (node, weight) in face.into_iter().zip(weights) {
+                for (component, traction) in part.traction.iter().enumerate() {
+                    load[3 * grid.node(node) + component] += weight * traction;
+                }
+            }
+        }
+    }
+    load
 }
 
 /// ∂(weight of corner b)/∂x₃ of corner a as `[a][b]`, for the four corners of a face, mm.

@@ -5,10 +5,9 @@
 //! ```
 //! The shift σ on the contact dofs holds the motions that supports leave free; it is taken off again exactly.
 
-use crate::body::elasticity::traction::face_weights;
 use crate::body::local_pattern::LocalPattern;
-use crate::body::mesh::{Block, Grid, Subdomain};
-use crate::body::shape_load::loaded_faces;
+use crate::body::mesh::{Block, Grid};
+use crate::body::shape_load::body_load;
 use crate::error::ContactError;
 use crate::linear::cholesky::{NumericFactor, SymbolicFactor};
 use crate::linear::dense::{DenseLu, multiply};
@@ -68,7 +67,7 @@ impl CondensationPattern {
     /// [`ContactError::Factorization`] when the stiffness matrix is not positive definite.
     pub fn condense(&self, block: &Block, scene: &BodyScene) -> Result<CondensedBody, ContactError> {
         let mut values = self.pattern.assemble(&scene.material, |brick| block.brick(brick));
-        let mut full_load = body_load(block, scene, &self.pattern.shape);
+        let mut full_load = body_load(block, scene);
         let shift = self.impose(&mut values, &mut full_load);
         let factor = self.symbolic.factorize(&values)?;
         let size = 3 * self.contact.len();
@@ -160,20 +159,4 @@ impl CondensedBody {
 
 fn contact_part(contact: &[usize], values: &[f64]) -> Vec<f64> {
     contact.iter().flat_map(|&first| values[first..first + 3].iter().copied()).collect()
-}
-
-/// Consistent nodal loads of a whole body.
-fn body_load(block: &Block, scene: &BodyScene, shape: &Subdomain) -> Vec<f64> {
-    let mut load = vec![0.0; shape.dof_count()];
-    for part in &scene.loads {
-        for face in loaded_faces(&block.grid, part.face, None) {
-            let weights = face_weights(&face.map(|node| block.coordinates(node)));
-            for (node, weight) in face.into_iter().zip(weights) {
-                for (component, traction) in part.traction.iter().enumerate() {
-                    load[3 * shape.local_node(node) + component] += weight * traction;
-                }
-            }
-        }
-    }
-    load
 }

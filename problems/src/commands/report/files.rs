@@ -19,7 +19,9 @@ use scene_file::OutputSection;
 /// Folder of the figures.
 const FIGURES: &str = "figures";
 /// Folder of the files for ParaView.
-const VTK: &str = "vtk";
+pub const VTK: &str = "vtk";
+/// Opens the files for ParaView with a good view.
+const VIEW: &str = include_str!("view.py");
 
 /// The folder of a report, with the list of its files and figures so far.
 struct ReportFolder<'a> {
@@ -81,12 +83,15 @@ impl<'a> ReportFolder<'a> {
         let mut states = Vec::new();
         for (index, shape) in shapes.iter().enumerate() {
             let fields = shape.fields.iter();
-            states.extend(fields.map(|fields| FieldState { time: index as f64, name: shape.name, fields }));
+            states.extend(fields.map(|fields| FieldState { time: index as f64, name: shape.name, fields, notes: &[] }));
         }
         let folder = self.folder.within(VTK)?;
         for (name, text) in vtk_files(&states).map_err(Failure::computation)? {
             folder.write(&name, &text)?;
         }
+        folder.write("view.py", VIEW)?;
+        self.files
+            .push((format!("{VTK}/view.py"), "opens them in ParaView with a good view: paraview --script=view.py"));
         let what = "displacements, stresses and contact fields: open fields.pvd with ParaView";
         self.files.push((format!("{VTK}/fields.pvd, *.vtu"), what));
         Ok(())

@@ -8,7 +8,7 @@ use figures::{
     Convergence, Figure, FigureError, Map, MapPanel, SolidBlock, SolidPanel, Solids, Step, SurfacePanel, Surfaces,
     nice_below,
 };
-use nonsmooth::{Cost, Report};
+use nonsmooth::Report;
 use scene_file::OutputSection;
 
 /// A solved shape with its fields and its names.
@@ -36,15 +36,7 @@ impl<'a> ShownShape<'a> {
         solved: &'a SolvedShape,
         wanted: &OutputSection,
     ) -> Result<Self, Failure> {
-        let shape = objective.solver();
-        let mut fields = None;
-        if wanted.pictures || wanted.vtk {
-            fields = Some(shape.fields(&solved.state)?);
-        }
-        if let Some(fields) = fields.as_mut().filter(|_| wanted.vtk) {
-            let gradient = objective.cost().gradient(&solved.controls, &solved.state);
-            fields.contact.sensitivity = Some(shape.height_sensitivity(&solved.state, &gradient.state)?.0);
-        }
+        let fields = (wanted.pictures || wanted.vtk).then(|| solved.fields(objective, wanted.vtk)).transpose()?;
         Ok(Self { caption: format!("{words}Θ = {:.4e}", solved.value), name, solved, fields })
     }
 }
