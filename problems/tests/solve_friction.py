@@ -111,6 +111,13 @@ def solve_by_newton(stiffness, load, contact, offset, friction):
     raise SystemExit(f"no convergence: residual {error / size:.1e} of the load")
 
 
+def wide(matrix):
+    """A matrix with the indices that Siconos has."""
+    matrix = sparse.csc_matrix(matrix)
+    matrix.indices, matrix.indptr = matrix.indices.astype(np.int64), matrix.indptr.astype(np.int64)
+    return matrix
+
+
 def solve_by_siconos(name, stiffness, load, contact, offset, friction):
     import siconos.numerics as numerics
 
@@ -120,8 +127,7 @@ def solve_by_siconos(name, stiffness, load, contact, offset, friction):
     length = force / scale
     problem = numerics.GlobalFrictionContactProblem()
     problem.dimension, problem.numberOfContacts = 3, len(friction)
-    problem.M = sparse.csc_matrix(stiffness / scale)
-    problem.H = sparse.csc_matrix(contact.T)
+    problem.M, problem.H = (wide(matrix) for matrix in (stiffness / scale, contact.T))
     problem.q, problem.b, problem.mu = load / force, offset / length, friction.copy()
     kind = {"nsn_ac": numerics.SICONOS_GLOBAL_FRICTION_3D_NSN_AC, "admm": numerics.SICONOS_GLOBAL_FRICTION_3D_ADMM}[name]
     options = numerics.SolverOptions(kind)

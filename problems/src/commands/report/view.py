@@ -3,8 +3,8 @@
     paraview --script=view.py             the program, to look at it
     pvpython view.py [picture.png]        a picture of the last state, without a window
 
-Bodies are drawn deformed, as surfaces with edges, in the colours of their von Mises stress, and the contact boundary in those of its
-pressure, in front and lifted out of the bodies. With history.pvd beside this file, the series of the optimization is shown, else
+Bodies are drawn deformed, as surfaces with edges, in the colours of their von Mises stress, and the contact boundary above them in
+those of its pressure. With history.pvd beside this file, the series of the optimization is shown, else
 fields.pvd.
 """
 
@@ -20,11 +20,7 @@ SHOWN_DISPLACEMENT = 0.05
 def part(source, name):
     """The bodies or the contact boundary of a series, as a part of its own."""
     extracted = simple.ExtractBlock(Input=source)
-    blocks = {"bodies": 1, "contact": 2}
-    try:
-        extracted.Selectors = [f"/Root/Block{blocks[name] - 1}"]
-    except AttributeError:
-        extracted.BlockIndices = [blocks[name]]
+    extracted.Selectors = [f"/Root/{name}"]
     return simple.MergeBlocks(Input=extracted)
 
 
@@ -37,9 +33,11 @@ def show(source, view, array, association, title):
     display = simple.Show(source, view)
     simple.ColorBy(display, (association, array))
     display.RescaleTransferFunctionToDataRange(False, True)
+    simple.GetColorTransferFunction(array).ApplyPreset("Viridis (matplotlib)", True)
     display.SetScalarBarVisibility(view, True)
     bar = simple.GetScalarBar(simple.GetColorTransferFunction(array), view)
-    bar.Title, bar.ComponentTitle = title, ""
+    bar.Title, bar.ComponentTitle, bar.HorizontalTitle = title, "", 1
+    bar.TitleFontSize = bar.LabelFontSize = 12
     return display
 
 
@@ -53,6 +51,8 @@ def main(picture):
     scene.UpdateAnimationUsingDataTimeSteps()
     scene.GoToLast()
     view = simple.GetActiveViewOrCreate("RenderView")
+    if picture:
+        view.ViewSize = [1200, 900]
     simple.UpdatePipeline(time=scene.TimeKeeper.Time, proxy=reader)
 
     bodies, contact = part(reader, "bodies"), part(reader, "contact")
@@ -70,8 +70,7 @@ def main(picture):
         warped.append(warp)
     shown = show(warped[0], view, "von_mises", "CELLS", "von Mises stress (MPa)")
     shown.SetRepresentationType("Surface With Edges")
-    shown.Opacity = 0.6
-    # The contact boundary lies inside: it is drawn above the bodies too.
+    # The contact boundary lies between the bodies: it is lifted above them.
     lifted = simple.Transform(Input=warped[1])
     lifted.Transform.Translate = [0, 0, 0.3 * size + bounds[5] - contact.GetDataInformation().GetBounds()[4]]
     show(lifted, view, "pressure", "POINTS", "contact pressure (MPa)")
@@ -83,7 +82,7 @@ def main(picture):
     simple.Render(view)
     print(f"{names[0]}: time {scene.TimeKeeper.Time}, displacements magnified {factor:.3g} times")
     if picture:
-        simple.SaveScreenshot(picture, view, ImageResolution=[1200, 900])
+        simple.SaveScreenshot(picture, view)
 
 
 main(sys.argv[1] if len(sys.argv) > 1 and sys.argv[1].endswith(".png") else None)
