@@ -2,14 +2,14 @@
 
     cargo run --release -p problems --bin hertz3d -- export --mesh 12 --friction-problem --out FOLDER
     cargo run --release -p problems --bin hertz3d -- evaluate --mesh 12 --out STATE
-    python3 problems/tests/solve_friction.py FOLDER --forces STATE/pressure_shape.csv [--solver scipy|nsn_ac|admm]
+    python3 problems/tests/solve_friction.py FOLDER --forces STATE/pressure_shape.csv [--solver scipy|admm|nsn_ac]
 
 The problem (docs/exchange.md):
 
     K u = f + Hᵀ r,   w = H u + (g, 0, 0),   0 ≤ r_N ⊥ w_N ≥ 0,   |r_T| ≤ μ r_N,   w_T = −κ r_T
 
 `scipy` is an own semismooth Newton method on all displacements and forces (Alart and Curnier 1991), which needs numpy and scipy
-only. `nsn_ac` and `admm` are those of Siconos (Debian: python3-siconos), in the global form of FCLIB: M v = q + H r, u = Hᵀ v + b with
+only. `admm` and `nsn_ac` are those of Siconos (Debian: python3-siconos), in the global form of FCLIB: M v = q + H r, u = Hᵀ v + b with
 M = K, q = f, H the transposed contact matrix, b = (g, 0, 0), displacements in the place of velocities.
 """
 
@@ -153,7 +153,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder")
     parser.add_argument("--forces", help="pressure_shape.csv of evaluate --out, to compare with")
-    parser.add_argument("--solver", choices=["scipy", "nsn_ac", "admm"], default="scipy")
+    parser.add_argument("--solver", choices=["scipy", "admm", "nsn_ac"], default="scipy")
     parser.add_argument("--within", type=float, default=1e-8, help="largest difference allowed, relative to the largest force")
     arguments = parser.parse_args()
     stiffness, load, contact, offset, friction, areas = read(arguments.folder)

@@ -37,7 +37,7 @@ pub struct FrictionProblem {
 }
 
 impl FrictionProblem {
-    /// Unknowns and supports of a scene: at most so many displacements.
+    /// Number of displacements of all bodies, those that supports hold included.
     pub fn most_unknowns(problem: &ContactProblem) -> usize {
         3 * problem.grid.node_count() * problem.bodies().count()
     }

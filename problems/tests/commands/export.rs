@@ -26,11 +26,10 @@ fn height(scene: &Scene, controls: &[f64], place: [f64; 2]) -> f64 {
             let last = knots[index + 1] == 1.0 && t == 1.0;
             return f64::from(u8::from((knots[index] <= t && t < knots[index + 1]) || (last && knots[index] < 1.0)));
         }
-        let share = |from: f64, to: f64, x: f64| if to > from { (x - from) / (to - from) } else { 0.0 };
-        share(knots[index], knots[index + degree], t) * basis(knots, degree - 1, index, t)
-            + share(knots[index + degree + 1], knots[index + 1], t).max(0.0)
-                * basis(knots, degree - 1, index + 1, t)
-                * f64::from(u8::from(knots[index + degree + 1] > knots[index + 1]))
+        let ratio = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
+        let (left, right) = (knots[index], knots[index + degree + 1]);
+        ratio(t - left, knots[index + degree] - left) * basis(knots, degree - 1, index, t)
+            + ratio(right - t, right - knots[index + 1]) * basis(knots, degree - 1, index + 1, t)
     }
     let along = |axis: usize| -> Vec<f64> {
         let count = scene.control_points[axis];
@@ -41,11 +40,8 @@ fn height(scene: &Scene, controls: &[f64], place: [f64; 2]) -> f64 {
         (0..count).map(|index| basis(&knots, degree, index, place[axis] / scene.size[axis])).collect()
     };
     let (first, second) = (along(0), along(1));
-    let terms = first
-        .iter()
-        .enumerate()
-        .flat_map(|(i, a)| second.iter().enumerate().map(move |(j, b)| a * b * controls[i * second.len() + j]));
-    terms.sum()
+    let row = |i: usize| -> f64 { second.iter().zip(&controls[i * second.len()..]).map(|(b, c)| b * c).sum() };
+    first.iter().enumerate().map(|(i, a)| a * row(i)).sum()
 }
 
 #[test]
@@ -153,7 +149,7 @@ fn shapes_come_from_runs_by_their_optimum_or_any_evaluation() {
     let best = course.iter().find(|entry| entry["objective"] == report["objective"]).unwrap();
     let (evaluation, found) = export("best", &["--run", text(&run), "--evaluation", &best["evaluation"].to_string()]);
     assert_eq!((&found, &evaluation["shape"]["evaluation"]), (&controls, &best["evaluation"]));
-    assert_eq!(export("first", &["--run", text(&run), "--evaluation", "1"]).1, json!([100.0; 36]));
+    assert_eq!(export("first", &["--run", text(&run), "--evaluation", "1"]).1, json!([100.0; 36].to_vec()));
     let file = at("best").join("controls.json");
     let begun =
         kit::json(SIGNORINI, &["--mesh", "4", "--max-evaluations", "1", "--json", "--start-controls", text(&file)]);
@@ -199,13 +195,13 @@ fn a_part_of_a_run_is_named_where_it_has_several() {
     assert_eq!(export(&meshes, &[]), report["controls"]);
     let words = ["--evaluation is allowed for one mesh or one start", "stage_2 or --run", "stage_4"];
     kit::refused(SIGNORINI, &["export", "--out", text(&at("x")), "--run", text(&meshes), "--evaluation", "1"], &words);
-    assert_eq!(export(&meshes.join("stage_2"), &["--evaluation", "1"]), json!([100.0; 36]));
+    assert_eq!(export(&meshes.join("stage_2"), &["--evaluation", "1"]), json!([100.0; 36].to_vec()));
     // The best of the last mesh is what the run reports.
     assert_eq!(export(&meshes.join("stage_4"), &[]), report["controls"]);
     kit::run(SIGNORINI, &["compare", "--mesh", "2", "--max-evaluations", "2", "--out", text(&compared)]);
     let words = ["holds a comparison", "with_friction or", "without_friction"];
     kit::refused(SIGNORINI, &["export", "--out", text(&at("x")), "--run", text(&compared)], &words);
-    assert_eq!(export(&compared.join("with_friction"), &["--evaluation", "1"]), json!([100.0; 36]));
+    assert_eq!(export(&compared.join("with_friction"), &["--evaluation", "1"]), json!([100.0; 36].to_vec()));
 }
 
 #[test]

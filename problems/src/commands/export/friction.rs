@@ -32,19 +32,23 @@ const EQUATIONS: &str = "K u = f + H^T r; w = H u + (g, 0, 0) per contact node; 
                          w_T = -k r_T with k >= 0, k = 0 where |r_T| < mu r_N";
 const UNITS: &str = "K in N/mm; load f in N; gaps g and places in mm; areas in mm^2; unknowns: body (0 lower, 1 upper), node, component";
 
+/// Refuses a mesh whose matrices would be too large.
+///
+/// # Errors
+/// [`SceneError::OutOfRange`] naming the mesh.
+pub fn check(problem: &ContactProblem) -> Result<(), SceneError> {
+    let most = FrictionProblem::most_unknowns(problem);
+    let found = format!("{:?}", problem.scene.mesh);
+    let allowed =
+        format!("with --friction-problem at most {MOST_UNKNOWNS} displacements, of which this mesh has {most}");
+    if most <= MOST_UNKNOWNS { Ok(()) } else { Err(SceneError::out_of_range("mesh.bricks", found, allowed)) }
+}
+
 /// The matrices of a shape.
 ///
 /// # Errors
-/// [`Failure::Input`] for a mesh whose matrices would be too large, and for an inverted brick.
+/// [`Failure::Input`] for an inverted brick.
 pub fn matrices(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<OutputFile>, Failure> {
-    let most = FrictionProblem::most_unknowns(problem);
-    if most > MOST_UNKNOWNS {
-        let found = format!("{:?}", problem.scene.mesh);
-        let allowed = format!(
-            "with --friction-problem at most {MOST_UNKNOWNS} displacements, here {most}; take a coarser mesh (--mesh)"
-        );
-        return Err(SceneError::out_of_range("mesh.bricks", found, allowed).into());
-    }
     let matrices = FrictionProblem::new(problem, controls).map_err(|error| Failure::Input(error.to_string()))?;
     let (unknowns, rows) = (matrices.unknowns.len(), ROWS * matrices.gaps.len());
     let words = format!("{}: stiffness K, N/mm; lower triangle", problem.scene.name);

@@ -65,6 +65,9 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let (arguments, case) = (session.arguments, &loaded.case);
     let options = &arguments.export;
     let problem = ContactProblem::new(case.scene.clone())?;
+    if options.friction_problem {
+        friction::check(&problem).map_err(|error| arguments.blame(error))?;
+    }
     let (controls, origin) = match &options.run {
         Some(folder) => FinishedRun::open(folder, &case.scene)?.shape(options.evaluation)?,
         None => start(&problem, loaded, arguments.controls.as_deref())?,

@@ -135,7 +135,7 @@ impl FinishedRun {
             let words = "is allowed for one mesh or one start of this run only";
             return Err(Failure::Input(format!("--evaluation {words}: {}", parts.join(" or "))));
         }
-        let journal = Journal::read(&self.parts.first().unwrap_or(&self.folder))?;
+        let journal = Journal::read(self.parts.first().unwrap_or(&self.folder))?;
         let entries = journal.map(|journal| journal.entries).unwrap_or_default();
         let allowed = match entries.len() {
             0 => format!("none, for {} holds no evaluation yet", self.folder.display()),
