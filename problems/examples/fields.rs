@@ -23,8 +23,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let moved = &start - subgradient.scale(0.1 / subgradient.amax());
     let (second, _) = solved(&shape, &cost, &moved)?;
     let states = [
-        FieldState { time: 0.0, name: "start", fields: &first },
-        FieldState { time: 1.0, name: "moved", fields: &second },
+        FieldState { time: 0.0, name: "start", fields: &first, notes: &[] },
+        FieldState { time: 1.0, name: "moved", fields: &second, notes: &[] },
     ];
     std::fs::create_dir_all(&folder)?;
     for (name, text) in vtk_files(&states)? {

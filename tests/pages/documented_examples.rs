@@ -11,7 +11,7 @@ const AROUND_THE_BUILD: [&str; 7] = [
     "cargo fetch --locked",
     "cargo build --release --locked",
     "cargo build --release --locked --offline",
-    "cargo package -p nonsmooth -p contact -p figures -p scene_file -p problems --locked",
+    "cargo package -p nonsmooth -p contact -p exchange -p figures -p scene_file -p problems --locked",
     "cargo build --release --locked -p problems-mpi",
     "cargo doc --no-deps --locked --open",
 ];

@@ -45,6 +45,7 @@
 //! | [`direct`] | direct condensation: an independent path |
 //! | [`qp`], [`linear`] | dual QPs over half-lines and discs; factorisations |
 //! | [`fields`], [`vtk`] | displacements, stresses and contact fields of a solved shape; their files |
+//! | [`friction_problem`] | the matrices of a shape, for other solvers |
 //! | [`communication`] | what passes between the processes of a run |
 //! | [`memory`] | memory estimated before any work |
 //! | [`deformation`] | the largest displacement, rotation and strain of bodies |
@@ -61,6 +62,7 @@ pub mod direct;
 pub mod equilibrium;
 pub mod error;
 pub mod fields;
+pub mod friction_problem;
 mod lattice;
 pub mod linear;
 pub mod memory;

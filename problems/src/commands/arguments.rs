@@ -1,6 +1,7 @@
 //! The command and the options of the contact binaries, and the fields of the scene file that the options override.
 
 use crate::commands::ascii::shown;
+use crate::commands::export::ExportOptions;
 use crate::commands::failure::Failure;
 use crate::commands::folder::RunKind;
 use crate::commands::processes::SharedSolver;
@@ -36,6 +37,8 @@ pub enum Command {
     Verify,
     /// Compute norm and error of the certificate of an optimization again, from the files in its folder DIR.
     Recheck,
+    /// Write a shape as files for other programs (STL, STEP, CSV, matrices); needs --out.
+    Export,
 }
 
 /// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa). An option that is not given leaves the field of the
@@ -95,7 +98,7 @@ pub struct Arguments {
     /// With study: optimize in every row, instead of evaluating the start.
     #[arg(long)]
     pub optimize: bool,
-    /// Control heights to evaluate or verify at: a JSON array, row major, index i*n2 + j with i along x1 [default: surface.start].
+    /// Control heights to evaluate, verify or export: a JSON array, row major, index i*n2 + j with i along x1 [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub controls: Option<PathBuf>,
     /// With evaluate, and as a value of --vary: every control height is off by so much, mm, up or down at random.
@@ -128,7 +131,14 @@ pub struct Arguments {
     /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
     #[arg(long)]
     pub overwrite: bool,
-    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --new-version, --json only).
+    /// With optimize and a folder: fields for ParaView of the start and of every serious step, as a series (history.pvd).
+    #[arg(long)]
+    pub vtk_history: bool,
+    /// What export writes.
+    #[command(flatten)]
+    pub export: ExportOptions,
+    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --new-version,
+    /// --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
     /// With --resume: continue a run that another version of the program has begun.
@@ -193,6 +203,7 @@ impl Arguments {
             }
         }
         self.check_resume()?;
+        self.export.check(self.command == Command::Export, self.out.is_some(), self.controls.is_some())?;
         let has_exponent = |measure| matches!(measure, MeasureName::PressureNorm | MeasureName::StressNorm);
         if self.exponent.is_some() && self.objective.is_some_and(|measure| !has_exponent(measure)) {
             return refused("--exponent", "with --objective pressure-norm or stress-norm only");
@@ -207,11 +218,12 @@ impl Arguments {
         let evaluating = matches!(self.command, Command::Evaluate | Command::Verify) || studying && !self.optimize;
         let optimizing = matches!(self.command, Command::Optimize | Command::Compare) || optimizing_rows;
         let rechecking = self.command == Command::Recheck;
-        let takes_controls = "with evaluate, verify and study only (what optimizes takes --start-controls)";
+        let showing = evaluating || self.command == Command::Export;
+        let takes_controls = "with evaluate, verify, study and export only (what optimizes takes --start-controls)";
         let takes_start = "with optimize, compare and study --optimize only (what evaluates takes --controls)";
         let limits = "with optimize, compare and study --optimize only";
         for (option, given, taken, allowed) in [
-            ("--controls", self.controls.is_some(), evaluating, takes_controls),
+            ("--controls", self.controls.is_some(), showing, takes_controls),
             ("--start-controls", self.start_controls.is_some(), optimizing, takes_start),
             (
                 "--height-error",
@@ -231,6 +243,7 @@ impl Arguments {
             ("--vary", !self.vary.is_empty(), studying, "with study only"),
             ("--optimize", self.optimize, studying, "with study only"),
             ("--continuation", self.continuation.is_some(), optimizing, limits),
+            ("--vtk-history", self.vtk_history, self.command == Command::Optimize, "with optimize only"),
             ("--starts", self.starts.is_some(), self.command == Command::Optimize, "with optimize only"),
             ("--resume", self.resume.is_some(), optimizing || studying, "with optimize, compare and study only"),
             ("--out", self.out.is_some(), !rechecking, "without recheck, which writes no file"),
@@ -266,6 +279,7 @@ impl Arguments {
             max_evaluations: self.max_evaluations,
             time_limit: self.time_limit,
             threads: self.threads,
+            vtk_history: self.vtk_history,
             new_version: self.new_version,
             json: self.json,
             ..nothing
@@ -273,8 +287,7 @@ impl Arguments {
         if *self == allowed {
             return Ok(());
         }
-        let allowed =
-            "with --max-evaluations, --time-limit, --threads, --new-version, --json only: all else is in the folder";
+        let allowed = "with --max-evaluations, --time-limit, --threads, --vtk-history, --new-version, --json only: all else is in the folder";
         Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
 

@@ -8,7 +8,7 @@ use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
 use crate::commands::output::{finish, leave, left};
 use crate::commands::processes::Processes;
 use crate::commands::shell_files::{asked, examples};
-use crate::commands::{compare, evaluate, optimize, recheck, study, verify};
+use crate::commands::{compare, evaluate, export, optimize, recheck, study, verify};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
 use contact::equilibrium::STAGE_TARGET;
 use scene_file::{SceneFile, schema};
@@ -122,6 +122,9 @@ pub fn execute_among(
     if let Some(threads) = arguments.threads {
         processes.use_threads(threads.into())?;
     }
+    if arguments.vtk_history && loaded.case.output.folder.is_none() {
+        return Err(Failure::Input("--vtk-history is allowed with --out or --resume only: it writes files".into()));
+    }
     let session = Session { arguments, clock: Instant::now(), status, processes: processes.clone() };
     let result = match arguments.command {
         Command::Optimize => optimize::run(&loaded, &session),
@@ -130,6 +133,7 @@ pub fn execute_among(
         Command::Evaluate => evaluate::run(&loaded, &session),
         Command::Verify => verify::run(&loaded.case, &session),
         Command::Recheck => recheck::run(&loaded.case, arguments),
+        Command::Export => export::run(&loaded, &session),
     };
     session.status.clear();
     result

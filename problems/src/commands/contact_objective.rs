@@ -5,6 +5,7 @@ use crate::commands::failure::Failure;
 use crate::commands::processes::{Processes, SharedSolver, SharedState};
 use contact::contact_shape::{ContactShape, ContactState, ContactWarmStart, Wanted};
 use contact::cost::{ContactAreas, FieldCost, Measure, PressureCost};
+use contact::fields::Fields;
 use contact::plausibility::Warning;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
@@ -206,6 +207,19 @@ impl SolvedShape {
         let value = objective.value(controls, &state);
         let peak_pressure = objective.pressures(&state).into_iter().fold(f64::NEG_INFINITY, f64::max);
         Ok(Self { controls: controls.clone(), state, value, peak_pressure })
+    }
+
+    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the height of every contact node, which takes an
+    /// adjoint, if it is asked for.
+    ///
+    /// # Errors
+    /// [`Failure`] of the adjoint.
+    pub fn fields(&self, objective: &ContactObjective, sensitivities: bool) -> Result<Fields, Failure> {
+        let mut fields = objective.solver().fields(&self.state)?;
+        if sensitivities {
+            fields.contact.sensitivity = Some(objective.height_sensitivity(self)?);
+        }
+        Ok(fields)
     }
 }
 

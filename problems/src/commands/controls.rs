@@ -2,11 +2,10 @@
 
 use crate::commands::arguments::Arguments;
 use crate::commands::folder::file_error;
-use crate::commands::processes::SharedSolver;
-use contact::contact_shape::ContactShape;
+use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
+use nonsmooth::Vector;
 use nonsmooth::verify::seeded_direction;
-use nonsmooth::{StateSolver, Vector};
 use scene_file::{Case, read_text};
 use std::path::Path;
 
@@ -18,18 +17,19 @@ const LARGEST_FILE: u64 = 1 << 20;
 /// # Errors
 /// [`SceneError`] for an unreadable file, a wrong count, numbers that are not finite, controls outside U.
 pub fn load(
-    shape: &ContactShape<SharedSolver>,
+    problem: &ContactProblem,
     case: &Case,
     (option, file): (&str, Option<&Path>),
 ) -> Result<Vector, SceneError> {
     let place = file.map_or_else(|| "surface.start".to_owned(), |_| option.to_owned());
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
+    let dimension = problem.scene.control_points.iter().product();
     let controls = match (file, &case.start) {
-        (Some(file), _) => read(file, shape.control_dimension()).map_err(within)?,
+        (Some(file), _) => read(file, dimension).map_err(within)?,
         (None, Some(controls)) => Vector::from_column_slice(controls),
-        (None, None) => shape.start(),
+        (None, None) => Vector::from_element(dimension, problem.scene.start_height),
     };
-    shape.problem().admissible.check(&controls).map_err(within)?;
+    problem.admissible.check(&controls).map_err(within)?;
     Ok(controls)
 }
 

@@ -57,7 +57,7 @@ struct Seconds {
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let (objective, arguments) = (&objective_among(&loaded.case, &session.processes)?, session.arguments);
     let solver = objective.solver();
-    let controls = controls::load(solver, &loaded.case, ("--controls", arguments.controls.as_deref()))?;
+    let controls = controls::load(solver.problem(), &loaded.case, ("--controls", arguments.controls.as_deref()))?;
     let controls = controls::as_made(controls, arguments);
     let folder = Folder::of_command(&loaded.case, arguments)?;
     let clock = Instant::now();

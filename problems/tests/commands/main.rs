@@ -18,6 +18,7 @@ mod binaries;
 mod certificates;
 mod compare;
 mod contact3d;
+mod export;
 mod fuzz;
 mod just_touching;
 mod long_runs;

@@ -99,6 +99,18 @@ fn several_processes_find_what_one_finds_to_the_last_bit() {
 }
 
 #[test]
+fn the_first_process_exports_alone() {
+    let folder = scratch();
+    let out = folder.path().join("out");
+    let options = ["export", "--mesh", "4", "--friction-problem", "--csv", "--overwrite", "--out", text(&out)];
+    let expected = alone(&options);
+    let files = || ["surface.csv", "friction/stiffness.mtx"].map(|name| std::fs::read(out.join(name)).unwrap());
+    let written = files();
+    assert_eq!(found(together(3, &options).unwrap()), expected);
+    assert_eq!(files(), written);
+}
+
+#[test]
 fn another_number_of_processes_continues_a_run() {
     let folder = scratch();
     let folder = folder.path().join("run");

@@ -9,6 +9,8 @@ mod numbers;
 pub mod pages;
 mod pins;
 mod program;
+pub mod step_file;
+pub mod stl_file;
 
 pub use documented_commands::run_commands;
 pub use mailbox::Mailbox;

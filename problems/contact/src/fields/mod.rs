@@ -14,4 +14,4 @@ mod vtk;
 pub use bodies::BodyFields;
 pub use contact::ContactFields;
 pub use solved_shape::Fields;
-pub use vtk::{FieldState, FieldsError, vtk_files};
+pub use vtk::{FieldState, FieldsError, StateFiles, list, state_files, vtk_files};

@@ -21,7 +21,7 @@ use crate::body::mesh::Grid;
 use crate::equilibrium::ContactStatus;
 use crate::fields::{BodyFields, ContactFields, Fields};
 use crate::lattice;
-use crate::vtk::{Array, Cell, Entry, UnstructuredGrid, Values, VtkError, collection, unstructured};
+use crate::vtk::{Array, Cell, Entry, Note, UnstructuredGrid, Values, VtkError, collection, unstructured};
 use thiserror::Error;
 
 /// A solved shape in a series.
@@ -33,6 +33,17 @@ pub struct FieldState<'a> {
     pub name: &'a str,
     /// Its fields.
     pub fields: &'a Fields,
+    /// What its files say of it as a whole.
+    pub notes: &'a [Note],
+}
+
+/// The files of one state, and their lines in the list of a series.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StateFiles {
+    /// Names and texts.
+    pub files: Vec<(String, String)>,
+    /// The lines of the list.
+    pub entries: Vec<Entry>,
 }
 
 /// Why fields were not written.
@@ -71,25 +82,50 @@ const LIST: &str = "fields.pvd";
 pub fn vtk_files(states: &[FieldState<'_>]) -> Result<Vec<(String, String)>, FieldsError> {
     let mut files = Vec::with_capacity(2 * states.len() + 1);
     let mut entries = Vec::with_capacity(2 * states.len());
-    let in_state = |state: &str| {
-        let state = state.to_owned();
-        move |source| FieldsError::File { state, source }
-    };
-    for (index, FieldState { time, name, fields }) in states.iter().enumerate() {
-        let usable = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-        if name.is_empty() || !name.chars().all(usable) || states[..index].iter().any(|other| other.name == *name) {
-            let allowed = "letters, digits, - and _, another name for every state";
-            return Err(FieldsError::Name { index, name: (*name).to_owned(), allowed });
+    for (index, state) in states.iter().enumerate() {
+        if states[..index].iter().any(|other| other.name == state.name) {
+            return Err(unusable(index, state.name));
         }
-        let parts = [("bodies", bodies(&fields.bodies)), ("contact", contact(&fields.contact))];
-        for (part, (kind, grid)) in parts.into_iter().enumerate() {
-            let file = format!("{name}_{kind}.vtu");
-            files.push((file.clone(), unstructured(&grid).map_err(in_state(name))?));
-            entries.push(Entry { time: *time, part, name: kind.to_owned(), file });
-        }
+        let of_state = state_files(index, state)?;
+        files.extend(of_state.files);
+        entries.extend(of_state.entries);
     }
-    files.push((LIST.to_owned(), collection(&entries).map_err(in_state("all"))?));
+    files.push((LIST.to_owned(), list(&entries)?));
     Ok(files)
+}
+
+/// The text of a list of files.
+///
+/// # Errors
+/// [`FieldsError::File`] for a time that is not finite.
+pub fn list(entries: &[Entry]) -> Result<String, FieldsError> {
+    collection(entries).map_err(|source| FieldsError::File { state: "all".to_owned(), source })
+}
+
+/// The files of the state with this place in its series, for series that are not held in memory as a whole.
+///
+/// # Errors
+/// As [`vtk_files`].
+pub fn state_files(index: usize, state: &FieldState<'_>) -> Result<StateFiles, FieldsError> {
+    let FieldState { time, name, fields, notes } = *state;
+    let usable = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if name.is_empty() || !name.chars().all(usable) {
+        return Err(unusable(index, name));
+    }
+    let (mut files, mut entries) = (Vec::new(), Vec::new());
+    let parts = [("bodies", bodies(&fields.bodies)), ("contact", contact(&fields.contact))];
+    for (part, (kind, grid)) in parts.into_iter().enumerate() {
+        let (grid, file) = (UnstructuredGrid { notes: notes.to_vec(), ..grid }, format!("{name}_{kind}.vtu"));
+        let text = unstructured(&grid).map_err(|source| FieldsError::File { state: name.to_owned(), source })?;
+        files.push((file.clone(), text));
+        entries.push(Entry { time, part, name: kind.to_owned(), file });
+    }
+    Ok(StateFiles { files, entries })
+}
+
+fn unusable(index: usize, name: &str) -> FieldsError {
+    let allowed = "letters, digits, - and _, another name for every state";
+    FieldsError::Name { index, name: name.to_owned(), allowed }
 }
 
 /// Corners of a brick in the order of [`crate::body::elasticity::hex8`] that VTK's hexahedron takes one after the other.
@@ -112,6 +148,7 @@ fn bodies(bodies: &[BodyFields]) -> UnstructuredGrid {
         description: "Bodies, undeformed. Lengths in mm, stresses in MPa.\n\
             body: 1 lower, 2 upper. stress: at the centre of the brick, order XX YY ZZ XY YZ XZ."
             .to_owned(),
+        notes: Vec::new(),
         points,
         cells,
         point_data: vec![
@@ -154,6 +191,7 @@ fn contact(contact: &ContactFields) -> UnstructuredGrid {
             status: 0 open, 1 stick, 2 slip. pressure times area: normal force of the node, N.\n\
             sensitivity: derivative of the objective by the height of the node."
             .to_owned(),
+        notes: Vec::new(),
         points: contact.position.clone(),
         cells: quads(&contact.grid),
         point_data,

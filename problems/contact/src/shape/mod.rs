@@ -3,7 +3,9 @@
 mod bspline;
 
 mod admissible;
+mod pieces;
 mod surface;
 
 pub use admissible::{AdmissibleSet, ShapeBounds};
+pub use pieces::Pieces;
 pub use surface::{HeightMap, SplineKind, SplineSurface};

@@ -3,6 +3,7 @@
 use crate::body::mesh::Grid;
 use crate::error::SceneError;
 use crate::shape::bspline::Basis;
+use crate::shape::pieces::Pieces;
 
 /// Which spline carries the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -65,13 +66,57 @@ impl SplineSurface {
         first.iter().flat_map(|a| second.iter().map(move |b| a * b)).collect()
     }
 
+    /// Degrees along both axes.
+    pub fn degrees(&self) -> [usize; 2] {
+        [self.bases[0].degree(), self.bases[1].degree()]
+    }
+
+    /// Knots along both axes on [0, 1], repetitions listed.
+    pub fn knots(&self) -> [&[f64]; 2] {
+        [self.bases[0].knots(), self.bases[1].knots()]
+    }
+
     /// The map from controls to the heights of the columns of `grid`.
     pub fn height_map(&self, grid: &Grid) -> HeightMap {
-        let along = std::array::from_fn(|axis| {
+        self.height_map_at(std::array::from_fn(|axis| {
             let cells = grid.cells[axis];
-            (0..=cells).map(|index| self.bases[axis].values(index as f64 / cells as f64)).collect()
-        });
+            (0..=cells).map(|index| index as f64 / cells as f64).collect()
+        }))
+    }
+
+    /// The map from controls to the heights where lines cross; places along both axes on [0, 1].
+    pub fn height_map_at(&self, places: [Vec<f64>; 2]) -> HeightMap {
+        let along = std::array::from_fn(|axis| places[axis].iter().map(|&t| self.bases[axis].values(t)).collect());
         HeightMap { along, counts: self.counts() }
+    }
+
+    /// The smooth pieces of the surface over a base of `size` mm: its polynomials lie between knots, and a B-spline is nowhere
+    /// larger than its largest coefficient.
+    pub fn pieces(&self, controls: &[f64], size: [f64; 2]) -> Pieces {
+        let lines = std::array::from_fn(|axis: usize| {
+            let mut knots = self.bases[axis].knots().to_vec();
+            knots.dedup();
+            knots.into_iter().map(|knot| size[axis] * knot).collect()
+        });
+        let largest = |orders: [usize; 2]| -> f64 {
+            let coefficients = self.derivative(controls, orders).unwrap_or_default();
+            let scale: f64 = (0..2).map(|axis| size[axis].powi(orders[axis] as i32)).product();
+            coefficients.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())) / scale
+        };
+        Pieces { lines, curvature: [largest([2, 0]), largest([1, 1]), largest([0, 2])] }
+    }
+
+    /// Coefficients of a derivative on the unit square, in any order; none where it vanishes between knots.
+    fn derivative(&self, controls: &[f64], [first, second]: [usize; 2]) -> Option<Vec<f64>> {
+        let repeated = |basis: &Basis, values: Vec<f64>, order: usize| {
+            (0..order).try_fold((basis.clone(), values), |(basis, values), _| basis.derivative(&values))
+        };
+        let [n1, n2] = self.counts();
+        let lines = (0..n2).map(|j| (0..n1).map(|i| controls[i * n2 + j]).collect());
+        let lines = lines.map(|line| Some(repeated(&self.bases[0], line, first)?.1)).collect::<Option<Vec<_>>>()?;
+        let crossed = (0..lines[0].len()).map(|i| lines.iter().map(|line| line[i]).collect());
+        let crossed = crossed.map(|line| Some(repeated(&self.bases[1], line, second)?.1));
+        Some(crossed.collect::<Option<Vec<_>>>()?.concat())
     }
 }
 
@@ -115,6 +160,23 @@ impl HeightMap {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn second_derivatives_are_bounded_closely() {
+        // 3 s² − 2 s t over a base of 2 mm × 5 mm, as a Bézier surface: the bounds are the derivatives themselves.
+        let polar = |i: usize, j: usize| 3.0 * f64::from(u8::from(i == 2)) - 2.0 * (i as f64 / 2.0) * (j as f64 / 2.0);
+        let controls: Vec<f64> = (0..9).map(|index| polar(index / 3, index % 3)).collect();
+        let surface = SplineSurface::new(SplineKind::Bezier, [3, 3]).expect("valid");
+        let pieces = surface.pieces(&controls, [2.0, 5.0]);
+        assert_eq!(pieces.lines, [vec![0.0, 2.0], vec![0.0, 5.0]]);
+        for (found, expected) in pieces.curvature.iter().zip([6.0 / 4.0, 2.0 / 10.0, 0.0]) {
+            assert!((found - expected).abs() < 1e-13, "{:?}", pieces.curvature);
+        }
+        // Between its knots a surface of degree 1 is bilinear: of the second derivatives it has the mixed one only.
+        let bilinear = SplineSurface::new(SplineKind::BSpline(1), [3, 3]).expect("valid").pieces(&controls, [2.0, 5.0]);
+        assert_eq!(bilinear.lines, [vec![0.0, 1.0, 2.0], vec![0.0, 2.5, 5.0]]);
+        assert!(bilinear.curvature[0] == 0.0 && bilinear.curvature[1] > 0.0 && bilinear.curvature[2] == 0.0);
+    }
 
     #[test]
     fn constant_controls_give_a_flat_surface_and_the_maps_are_adjoint() {

@@ -79,11 +79,40 @@ impl Array {
     }
 }
 
-/// Points, cells, and data on both.
+/// A number or a text about a grid as a whole.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// Name shown by readers; any text without control characters.
+    pub name: String,
+    /// What it says.
+    pub value: NoteValue,
+}
+
+/// What a [`Note`] says.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NoteValue {
+    /// An integer.
+    Integer(i32),
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+impl Note {
+    /// A note of this name.
+    pub fn new(name: impl Into<String>, value: NoteValue) -> Self {
+        Self { name: name.into(), value }
+    }
+}
+
+/// Points, cells, and data on both and on the whole.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct UnstructuredGrid {
     /// What the file shows, with units and codes; written as a comment at its head.
     pub description: String,
+    /// What is said of the grid as a whole.
+    pub notes: Vec<Note>,
     /// Coordinates.
     pub points: Vec<[f64; 3]>,
     /// Cells.
@@ -157,6 +186,11 @@ impl UnstructuredGrid {
     /// [`VtkError`] naming the array, the place and the value.
     pub fn check(&self) -> Result<(), VtkError> {
         check_finite("Points", self.points.as_flattened())?;
+        for note in &self.notes {
+            if let NoteValue::Number(value) = note.value {
+                check_finite(&note.name, &[value])?;
+            }
+        }
         for (cell, points) in self.cells.iter().enumerate() {
             if let Some(&point) = points.points().iter().find(|&&point| point >= self.points.len()) {
                 return Err(VtkError::NoSuchPoint { cell, point, points: self.points.len() });

@@ -1,7 +1,7 @@
 //! One grid as the text of a VTU file.
 
 use crate::vtk::xml::{attribute, comment};
-use crate::vtk::{Array, UnstructuredGrid, Values, VtkError};
+use crate::vtk::{Array, Note, NoteValue, UnstructuredGrid, Values, VtkError};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::fmt::Write;
@@ -19,11 +19,16 @@ pub fn unstructured(grid: &UnstructuredGrid) -> Result<String, VtkError> {
     text += &comment(&grid.description)?;
     text += "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
     text += "<UnstructuredGrid>\n";
+    if !grid.notes.is_empty() {
+        text += "<FieldData>\n";
+        grid.notes.iter().try_for_each(|note| write_note(&mut text, note))?;
+        text += "</FieldData>\n";
+    }
     let (points, cells) = (grid.points.len(), grid.cells.len());
     // Writing to a string does not fail.
     let _ = writeln!(text, "<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">");
     for (section, arrays) in [("PointData", &grid.point_data), ("CellData", &grid.cell_data)] {
-        let _ = writeln!(text, "<{section}>");
+        let _ = writeln!(text, "<{section}{}>", active(arrays)?);
         for array in arrays {
             write_array(&mut text, array)?;
         }
@@ -44,6 +49,37 @@ pub fn unstructured(grid: &UnstructuredGrid) -> Result<String, VtkError> {
     write_bytes(&mut text, "UInt8", "types", 1, "", &grid.cells.iter().map(|cell| cell.kind()).collect::<Vec<u8>>());
     text += "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
     Ok(text)
+}
+
+/// The attributes of a section that name its active arrays, each with a blank before it.
+fn active(arrays: &[Array]) -> Result<String, VtkError> {
+    let mut attributes = String::new();
+    for (kind, components) in [("Scalars", 1), ("Vectors", 3)] {
+        let fits =
+            |array: &&Array| !matches!(array.values, Values::Integers(_)) && array.values.numbers().0 == components;
+        if let Some(Array { name, .. }) = arrays.iter().find(fits) {
+            attributes += &format!(" {kind}=\"{}\"", attribute("name of an array", name)?);
+        }
+    }
+    Ok(attributes)
+}
+
+/// A field of one entry. A text is written by the numbers of its bytes with a zero at the end, the form of a string array.
+fn write_note(text: &mut String, Note { name, value }: &Note) -> Result<(), VtkError> {
+    let name = attribute("name of a note", name)?;
+    let (kind, value) = match value {
+        NoteValue::Integer(value) => ("Int32", value.to_string()),
+        NoteValue::Number(value) => ("Float64", format!("{value:e}")),
+        NoteValue::Text(value) => {
+            ("String", value.bytes().chain([0]).map(|byte| byte.to_string()).collect::<Vec<_>>().join(" "))
+        }
+    };
+    // Writing to a string does not fail.
+    let _ = writeln!(
+        text,
+        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{value}</DataArray>"
+    );
+    Ok(())
 }
 
 fn write_array(text: &mut String, Array { name, values }: &Array) -> Result<(), VtkError> {

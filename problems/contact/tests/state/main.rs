@@ -7,6 +7,7 @@ mod clusters;
 mod dual_qp;
 mod fields;
 mod flat_and_tall_bricks;
+mod friction_problem;
 mod friction_too_weak;
 mod nearly_incompressible;
 mod paths_agree;

@@ -6,7 +6,7 @@ use contact::cost::{PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
 use contact::fields::{FieldState, Fields, FieldsError, vtk_files};
 use contact::scene::{Scene, hertz, signorini};
-use contact::vtk::{Array, Cell, Entry, UnstructuredGrid, Values, VtkError, collection, unstructured};
+use contact::vtk::{Array, Cell, Entry, Note, NoteValue, UnstructuredGrid, Values, VtkError, collection, unstructured};
 use nonsmooth::{Accuracy, Cost, StateSolver};
 use std::collections::HashMap;
 use vtkio::model::{Attribute, CellType, DataSet, Piece, VertexNumbers};
@@ -64,7 +64,7 @@ fn fields(mut scene: Scene) -> Fields {
 }
 
 fn files(fields: &Fields) -> HashMap<String, String> {
-    vtk_files(&[FieldState { time: 0.0, name: "start", fields }]).unwrap().into_iter().collect()
+    vtk_files(&[FieldState { time: 0.0, name: "start", fields, notes: &[] }]).unwrap().into_iter().collect()
 }
 
 fn flat<const N: usize>(parts: impl IntoIterator<Item = [f64; N]>) -> Vec<f64> {
@@ -176,7 +176,8 @@ fn contact_boundary_is_read_back_bit_by_bit() {
 #[test]
 fn the_list_names_every_file_with_its_time() {
     let fields = fields(hertz().unwrap());
-    let states = [("start", 0.0), ("optimum", 1.0)].map(|(name, time)| FieldState { time, name, fields: &fields });
+    let states =
+        [("start", 0.0), ("optimum", 1.0)].map(|(name, time)| FieldState { time, name, fields: &fields, notes: &[] });
     let files = vtk_files(&states).unwrap();
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     let grids = ["start_bodies.vtu", "start_contact.vtu", "optimum_bodies.vtu", "optimum_contact.vtu"];
@@ -196,10 +197,54 @@ fn the_list_names_every_file_with_its_time() {
     assert_eq!(found, expected);
 }
 
+#[test]
+fn notes_and_active_arrays_stand_in_every_file() {
+    let fields = fields(signorini().unwrap());
+    let notes = [
+        Note::new("objective", NoteValue::Number(4.5e17)),
+        Note::new("evaluation", NoteValue::Integer(7)),
+        Note::new("units", NoteValue::Text("µm".into())),
+    ];
+    let files = vtk_files(&[FieldState { time: 7.0, name: "start", fields: &fields, notes: &notes }]).unwrap();
+    let active = [
+        [(Some("von_mises_nodal"), Some("displacement")), (Some("von_mises"), None)],
+        [(Some("pressure"), Some("displacement")), (None, None)],
+    ];
+    for ((_, text), expected) in files.iter().zip(active) {
+        let document = roxmltree::Document::parse(text).unwrap();
+        let field = document.descendants().find(|node| node.has_tag_name("FieldData")).unwrap();
+        let arrays = field.children().filter(|node| node.has_tag_name("DataArray"));
+        let found: Vec<[&str; 4]> = arrays
+            .map(|array| {
+                let attribute = |name| array.attribute(name).unwrap();
+                assert_eq!(attribute("NumberOfTuples"), "1");
+                [attribute("type"), attribute("Name"), attribute("format"), array.text().unwrap()]
+            })
+            .collect();
+        // µ is the bytes 194 and 181.
+        let expected_notes = [
+            ["Float64", "objective", "ascii", "4.5e17"],
+            ["Int32", "evaluation", "ascii", "7"],
+            ["String", "units", "ascii", "194 181 109 0"],
+        ];
+        assert_eq!(found, expected_notes);
+        for (section, expected) in ["PointData", "CellData"].into_iter().zip(expected) {
+            let node = document.descendants().find(|node| node.has_tag_name(section)).unwrap();
+            assert_eq!((node.attribute("Scalars"), node.attribute("Vectors")), expected, "{section}");
+        }
+    }
+    let grid = UnstructuredGrid {
+        notes: vec![Note::new("a", NoteValue::Number(f64::NAN))],
+        ..small("p", Values::Scalars(vec![0.0; 4]))
+    };
+    assert!(matches!(unstructured(&grid), Err(VtkError::NotFinite { index: 0, .. })));
+}
+
 /// One quadrilateral with one array of data on its points.
 fn small(name: &str, values: Values) -> UnstructuredGrid {
     UnstructuredGrid {
         description: "a < b & c".to_owned(),
+        notes: vec![],
         points: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
         cells: vec![Cell::Quad([0, 1, 2, 3])],
         point_data: vec![Array::new(name, values)],
@@ -264,13 +309,13 @@ fn data_that_readers_would_misread_are_refused() {
 #[test]
 fn states_need_names_of_files_and_finite_fields() {
     let mut fields = fields(signorini().unwrap());
-    let state = |name| FieldState { time: 0.0, name, fields: &fields };
+    let state = |name| FieldState { time: 0.0, name, fields: &fields, notes: &[] };
     for name in ["", "a/b", "..", "ä", "a b"] {
         let refused = vtk_files(&[state(name)]);
         assert!(matches!(refused, Err(FieldsError::Name { index: 0, .. })), "{name}");
     }
     assert!(matches!(vtk_files(&[state("a"), state("a")]), Err(FieldsError::Name { index: 1, .. })));
     fields.bodies[0].stress[5][2] = f64::NAN;
-    let error = vtk_files(&[FieldState { time: 0.0, name: "start", fields: &fields }]).unwrap_err();
+    let error = vtk_files(&[FieldState { time: 0.0, name: "start", fields: &fields, notes: &[] }]).unwrap_err();
     assert_eq!(error.to_string(), "fields of state `start`: array `stress`: value 32 is NaN, allowed: finite numbers");
 }

@@ -4,6 +4,7 @@ pub mod mesh_run;
 pub mod run;
 pub mod stages;
 pub mod summary;
+mod vtk_history;
 
 use crate::commands::contact_objective::{SolvedShape, checks};
 use crate::commands::failure::Failure;
@@ -57,6 +58,9 @@ pub fn report(
     }
     let write = |folder: &Folder| {
         files::write_optimization(folder, loaded, runs, last, &shapes, &checks)?;
+        if session.arguments.vtk_history {
+            vtk_history::write(folder, &optimization.reported())?;
+        }
         folder.write("report.txt", &text)?;
         if let Some(run) = runs.iter().find(|run| !run.is_kept) {
             let evaluations = run.report.counts.evaluations;

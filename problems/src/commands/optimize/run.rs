@@ -37,6 +37,15 @@ impl OptimizationRun {
         best.or(self.mesh_runs.last())
     }
 
+    /// The runs that lead to the one that it is reported by, this one included: all meshes in turn, or one start alone.
+    pub fn reported(&self) -> Vec<&MeshRun> {
+        let is_mesh = |run: &&MeshRun| run.name.as_ref().is_some_and(|name| name.starts_with("stage_"));
+        if self.mesh_runs.iter().all(|run| is_mesh(&run)) {
+            return self.mesh_runs.iter().collect();
+        }
+        self.chosen().into_iter().collect()
+    }
+
     /// Whether the time limit or an interruption ended it.
     pub fn was_cut_short(&self) -> bool {
         self.mesh_runs.last().is_some_and(ran_out_of_time)
@@ -142,7 +151,8 @@ pub fn begin(
         let controls = folder.initial_controls().clone();
         return Ok((Some(folder), controls));
     }
-    let load = || controls::load(shape, &loaded.case, ("--start-controls", arguments.start_controls.as_deref()));
+    let load =
+        || controls::load(shape.problem(), &loaded.case, ("--start-controls", arguments.start_controls.as_deref()));
     let controls = given.cloned().map_or_else(load, Ok)?;
     let begin = |path| RunFolder::begin(Folder::create(path, bytes, arguments.overwrite)?, loaded, &controls, parts);
     Ok((path.map(begin).transpose()?, controls))

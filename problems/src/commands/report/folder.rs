@@ -19,7 +19,9 @@ use scene_file::OutputSection;
 /// Folder of the figures.
 const FIGURES: &str = "figures";
 /// Folder of the files for ParaView.
-const VTK: &str = "vtk";
+pub const VTK: &str = "vtk";
+/// Opens the files for ParaView with a good view.
+const VIEW: &str = include_str!("view.py");
 
 /// The folder of a report.
 pub struct ReportFolder<'a> {
@@ -149,7 +151,7 @@ impl<'a> ReportFolder<'a> {
         let mut states = Vec::new();
         for (index, shape) in shapes.iter().enumerate() {
             let fields = shape.fields.iter();
-            states.extend(fields.map(|fields| FieldState { time: index as f64, name: shape.name, fields }));
+            states.extend(fields.map(|fields| FieldState { time: index as f64, name: shape.name, fields, notes: &[] }));
         }
         let folder = self.folder.within(VTK)?;
         for (name, text) in vtk_files(&states).map_err(Failure::computation)? {
@@ -160,6 +162,8 @@ impl<'a> ReportFolder<'a> {
             folder.write(&name, &text)?;
             self.announce(&format!("{VTK}/{name}"), what);
         }
+        folder.write("view.py", VIEW)?;
+        self.announce(&format!("{VTK}/view.py"), "opens them in ParaView with a good view: paraview --script=view.py");
         Ok(())
     }
 

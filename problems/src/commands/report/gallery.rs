@@ -37,14 +37,8 @@ impl<'a> ShownShape<'a> {
         solved: &'a SolvedShape,
         wanted: &OutputSection,
     ) -> Result<Self, Failure> {
-        let shape = objective.solver();
-        let mut fields = None;
-        if wanted.pictures || wanted.vtk || wanted.report {
-            fields = Some(shape.fields(&solved.state)?);
-        }
-        if let Some(fields) = fields.as_mut().filter(|_| wanted.vtk) {
-            fields.contact.sensitivity = Some(objective.height_sensitivity(solved)?);
-        }
+        let seen = wanted.pictures || wanted.vtk || wanted.report;
+        let fields = seen.then(|| solved.fields(objective, wanted.vtk)).transpose()?;
         Ok(Self { label, caption: format!("{label}, Θ = {:.4e}", solved.value), name, solved, fields })
     }
 }

@@ -12,3 +12,5 @@ mod setup;
 mod stamp;
 pub mod study;
 mod tables;
+
+pub use folder::VTK;

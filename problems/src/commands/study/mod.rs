@@ -114,7 +114,7 @@ fn started(
 ) -> Result<(Option<RunFolder>, Vector), Failure> {
     let parts: Vec<&str> = if plan.optimize { parts.iter().map(String::as_str).collect() } else { vec![] };
     let objective = objective_among(&loaded.case, &session.processes)?;
-    let load = |file| controls::load(objective.solver(), &loaded.case, ("--controls", Some(file)));
+    let load = |file| controls::load(objective.solver().problem(), &loaded.case, ("--controls", Some(file)));
     let given = session.arguments.controls.as_deref().map(load).transpose()?;
     let (folder, controls) = begin(&objective, loaded, given.as_ref(), &parts, session)?;
     if let Some(folder) = &folder {

@@ -140,7 +140,7 @@ fn evaluated(
             objective.solver().problem().admissible.check(start)?;
             start.clone()
         }
-        None => controls::load(objective.solver(), &part.case, ("--controls", None))?,
+        None => controls::load(objective.solver().problem(), &part.case, ("--controls", None))?,
     };
     solved(&objective, &SolvedShape::at(&objective, &controls::as_made(controls, options))?)
 }

@@ -1,0 +1,109 @@
+//! Why a file cannot be made.
+
+use thiserror::Error;
+
+/// Why a file cannot be made.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ExchangeError {
+    /// A tolerance below what single precision can hold.
+    #[error(
+        "tolerance = {value:e} mm is not allowed; allowed: at least {least:.1e} mm, because STL has single precision"
+    )]
+    Tolerance {
+        /// The tolerance, mm.
+        value: f64,
+        /// The least one that is allowed here, mm.
+        least: f64,
+    },
+    /// A tolerance that asks for too large a file.
+    #[error(
+        "tolerance = {value:e} mm takes {needed:.1e} triangles; allowed: a tolerance that takes at most {most:.1e}"
+    )]
+    TooManyTriangles {
+        /// The tolerance, mm.
+        value: f64,
+        /// Triangles that it takes.
+        needed: f64,
+        /// Most triangles.
+        most: f64,
+    },
+    /// A body without thickness.
+    #[error(
+        "height {height} mm at ({x1}, {x2}) is not allowed; allowed: heights on one side of {plane} mm, the plane that closes the body"
+    )]
+    Thickness {
+        /// Place along x₁, mm.
+        x1: f64,
+        /// Place along x₂, mm.
+        x2: f64,
+        /// The height there, mm.
+        height: f64,
+        /// Height of the plane, mm.
+        plane: f64,
+    },
+    /// A number that the file cannot hold.
+    #[error("{what} {index} is {value}; allowed: {allowed}")]
+    Number {
+        /// What it is.
+        what: &'static str,
+        /// Its place, counted from 0.
+        index: usize,
+        /// The number.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// Two numbers that belong together differ.
+    #[error("{found} {what}, expected {expected}")]
+    Count {
+        /// What was counted.
+        what: &'static str,
+        /// How many belong there.
+        expected: usize,
+        /// How many there are.
+        found: usize,
+    },
+    /// An entry outside its matrix.
+    #[error("entry {index} stands in row {row}, column {column}; allowed: {allowed}")]
+    Entry {
+        /// Its place in the list, counted from 0.
+        index: usize,
+        /// Row, counted from 0.
+        row: usize,
+        /// Column, counted from 0.
+        column: usize,
+        /// What is allowed.
+        allowed: String,
+    },
+    /// The STL file was not written.
+    #[error("the STL file cannot be made: {0}")]
+    Stl(String),
+}
+
+/// What coordinates may be.
+const FINITE: &str = "finite numbers in the range of single precision";
+
+/// What lines may be.
+const ASCENDING: &str = "ascending numbers that differ in single precision";
+
+/// Refuses numbers that are not finite, or beyond single precision.
+pub(crate) fn all_finite(what: &'static str, values: &[f64]) -> Result<(), ExchangeError> {
+    match values.iter().position(|value| !(*value as f32).is_finite()) {
+        Some(index) => Err(ExchangeError::Number { what, index, value: values[index], allowed: FINITE }),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a list of wrong length.
+pub(crate) fn counted(what: &'static str, expected: usize, found: usize) -> Result<(), ExchangeError> {
+    if expected == found { Ok(()) } else { Err(ExchangeError::Count { what, expected, found }) }
+}
+
+/// Refuses lines that are not one beyond the other when they are rounded to single precision.
+pub(crate) fn ascending(lines: &[f64]) -> Result<(), ExchangeError> {
+    match (1..lines.len()).find(|&index| lines[index] as f32 <= lines[index - 1] as f32) {
+        Some(index) => Err(ExchangeError::Number { what: "line", index, value: lines[index], allowed: ASCENDING }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,20 @@
+//! Surfaces over a rectangle, and bodies below or above them, as STL and STEP files; matrices as Matrix Market files.
+//!
+//! ```text
+//! heights on lines ─ triangles ─ stl        chord error bounded by second derivatives (triangulation.rs)
+//! B-spline heights ─ step                   exact: x₁, x₂ of the control points are Greville abscissae (step)
+//! entries          ─ matrix_market
+//! ```
+//! The package knows numbers only: no mechanics, no command line. Lengths are in mm. The same input gives the same bytes.
+
+mod error;
+mod heights;
+pub mod matrix_market;
+pub mod step;
+mod stl;
+mod triangulation;
+
+pub use error::ExchangeError;
+pub use heights::Heights;
+pub use stl::stl;
+pub use triangulation::{Triangle, lines, sheet, solid};

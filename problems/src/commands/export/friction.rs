@@ -1,0 +1,78 @@
+//! The friction problem of a shape as matrices (Matrix Market) and lists (JSON).
+
+use crate::commands::export::OutputFile;
+use crate::commands::export::shape::failure;
+use crate::commands::failure::Failure;
+use contact::equilibrium::ContactProblem;
+use contact::error::SceneError;
+use contact::friction_problem::{FrictionProblem, ROWS};
+use exchange::matrix_market::{general, symmetric};
+use serde::Serialize;
+
+/// Most displacements: matrices of a gigabyte.
+const MOST_UNKNOWNS: usize = 300_000;
+
+/// The lists beside the matrices.
+#[derive(Debug, Serialize)]
+struct FrictionJson<'a> {
+    /// What the numbers mean.
+    equations: &'static str,
+    units: &'static str,
+    stiffness: &'static str,
+    contact: &'static str,
+    load: &'a [f64],
+    gaps: &'a [f64],
+    friction: &'a [f64],
+    places: &'a [[f64; 3]],
+    areas: &'a [f64],
+    unknowns: &'a [[usize; 3]],
+}
+
+const EQUATIONS: &str = "K u = f + H^T r; w = H u + (g, 0, 0) per contact node; 0 <= r_N, w_N; r_N w_N = 0; |r_T| <= mu r_N; \
+                         w_T = -k r_T with k >= 0, k = 0 where |r_T| < mu r_N";
+const UNITS: &str = "K in N/mm; load f in N; gaps g and places in mm; areas in mm^2; unknowns: body (0 lower, 1 upper), node, component";
+
+/// Refuses a mesh whose matrices would be too large.
+///
+/// # Errors
+/// [`SceneError::OutOfRange`] naming the mesh.
+pub fn check(problem: &ContactProblem) -> Result<(), SceneError> {
+    let most = FrictionProblem::most_unknowns(problem);
+    let found = format!("{:?}", problem.scene.mesh);
+    let allowed =
+        format!("with --friction-problem at most {MOST_UNKNOWNS} displacements, of which this mesh has {most}");
+    if most <= MOST_UNKNOWNS { Ok(()) } else { Err(SceneError::out_of_range("mesh.bricks", found, allowed)) }
+}
+
+/// The matrices of a shape.
+///
+/// # Errors
+/// [`Failure::Input`] for an inverted brick.
+pub fn matrices(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<OutputFile>, Failure> {
+    let matrices = FrictionProblem::new(problem, controls).map_err(|error| Failure::Input(error.to_string()))?;
+    let (unknowns, rows) = (matrices.unknowns.len(), ROWS * matrices.gaps.len());
+    let words = format!("{}: stiffness K, N/mm; lower triangle", problem.scene.name);
+    let stiffness = symmetric(unknowns, &matrices.stiffness, &words).map_err(failure)?;
+    let words = format!("{}: contact matrix H; rows per contact node: normal, x1, x2", problem.scene.name);
+    let contact = general([rows, unknowns], &matrices.contact, &words).map_err(failure)?;
+    let lists = FrictionJson {
+        equations: EQUATIONS,
+        units: UNITS,
+        stiffness: "stiffness.mtx",
+        contact: "contact.mtx",
+        load: &matrices.load,
+        gaps: &matrices.gaps,
+        friction: &matrices.friction,
+        places: &matrices.places,
+        areas: &matrices.areas,
+        unknowns: &matrices.unknowns,
+    };
+    let lists = serde_json::to_string(&lists).map_err(Failure::computation)? + "\n";
+    let written =
+        |name, content: String, what: String| OutputFile { name, content: content.into_bytes(), what, triangles: None };
+    Ok(vec![
+        written("friction/stiffness.mtx", stiffness, format!("stiffness matrix K of {unknowns} displacements")),
+        written("friction/contact.mtx", contact, format!("contact matrix H of {} contact nodes", matrices.gaps.len())),
+        written("friction/problem.json", lists, "loads, gaps, friction coefficients, and what they mean".into()),
+    ])
+}

@@ -1,0 +1,133 @@
+//! `export`: a shape as files for other programs. Nothing is solved for it.
+
+mod friction;
+mod options;
+mod run;
+mod shape;
+
+pub use options::ExportOptions;
+
+use crate::commands::controls;
+use crate::commands::export::run::FinishedRun;
+use crate::commands::failure::Failure;
+use crate::commands::folder::{Folder, json, printed_with_files};
+use crate::commands::loaded_scene::{LoadedScene, Session};
+use contact::equilibrium::ContactProblem;
+use nonsmooth::Vector;
+use serde::Serialize;
+use std::fmt;
+use std::path::Path;
+
+/// Where an exported shape comes from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Origin {
+    /// In words.
+    pub source: String,
+    /// Number of the evaluation in its run, if it is known by one.
+    pub evaluation: Option<usize>,
+    /// Θ in that run, if it is known.
+    pub objective: Option<f64>,
+}
+
+/// A file that is to be written.
+pub struct OutputFile {
+    /// Name below the folder.
+    pub name: &'static str,
+    /// Its bytes.
+    pub content: Vec<u8>,
+    /// What it holds, in words.
+    pub what: String,
+    /// Triangles, in a file of triangles.
+    pub triangles: Option<usize>,
+}
+
+/// The keys of the JSON of `export`.
+#[derive(Debug, Serialize)]
+struct ExportJson {
+    folder: String,
+    shape: Origin,
+    /// Largest distance between triangles and surface, mm; null without files of triangles.
+    tolerance: Option<f64>,
+    files: Vec<FileJson>,
+}
+
+#[derive(Debug, Serialize)]
+struct FileJson {
+    file: &'static str,
+    holds: String,
+    bytes: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    triangles: Option<usize>,
+}
+
+/// The command.
+pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
+    let (arguments, case) = (session.arguments, &loaded.case);
+    let options = &arguments.export;
+    let problem = ContactProblem::new(case.scene.clone())?;
+    if options.friction_problem {
+        friction::check(&problem).map_err(|error| arguments.blame(error))?;
+    }
+    let (controls, origin) = match &options.run {
+        Some(folder) => FinishedRun::open(folder, &case.scene)?.shape(options.evaluation)?,
+        None => start(&problem, loaded, arguments.controls.as_deref())?,
+    };
+    problem.admissible.check(&controls)?;
+    let mut files = vec![OutputFile {
+        name: "controls.json",
+        content: json(controls.as_slice())?.into_bytes(),
+        what: "the control heights; --controls and --start-controls take the file".into(),
+        triangles: None,
+    }];
+    if options.writes_stl() {
+        files.extend(shape::triangles(&problem, controls.as_slice(), options.tolerance())?);
+    }
+    if options.writes_step() {
+        files.extend(shape::splines(&problem, controls.as_slice())?);
+    }
+    if options.writes_csv() {
+        files.push(shape::table(&problem, controls.as_slice())?);
+    }
+    if options.friction_problem {
+        files.extend(friction::matrices(&problem, controls.as_slice())?);
+    }
+    // The folder is touched when all that it will hold is there.
+    let path = arguments.out.as_deref().unwrap_or(Path::new(""));
+    let bytes = files.iter().map(|file| file.content.len() as u64).sum();
+    let folder = Folder::create(path, bytes, arguments.overwrite)?;
+    let describe = |file: &OutputFile| FileJson {
+        file: file.name,
+        holds: file.what.clone(),
+        bytes: file.content.len(),
+        triangles: file.triangles,
+    };
+    let result = ExportJson {
+        folder: path.display().to_string(),
+        shape: origin,
+        tolerance: options.writes_stl().then(|| options.tolerance()),
+        files: files.iter().map(describe).collect(),
+    };
+    let text = arguments.printed(result.to_string(), json(&result)?);
+    printed_with_files(text, arguments.json, Some(&folder), |folder| {
+        files.iter().try_for_each(|file| match file.name.split_once('/') {
+            Some((below, name)) => folder.within(below)?.write(name, &file.content),
+            None => folder.write(file.name, &file.content),
+        })
+    })
+}
+
+/// The shape that the command line or the scene names.
+fn start(problem: &ContactProblem, loaded: &LoadedScene, file: Option<&Path>) -> Result<(Vector, Origin), Failure> {
+    let controls = controls::load(problem, &loaded.case, ("--controls", file))?;
+    let source =
+        file.map_or_else(|| "the start of the scene".to_owned(), |file| format!("the controls in {}", file.display()));
+    Ok((controls, Origin { source, evaluation: None, objective: None }))
+}
+
+impl fmt::Display for ExportJson {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let objective = self.shape.objective.map_or_else(String::new, |value| format!(", Θ = {value:.6e}"));
+        writeln!(f, "shape:       {}{objective}", self.shape.source)?;
+        self.files.iter().try_for_each(|file| writeln!(f, "{:<24} {}", file.file, file.holds))
+    }
+}

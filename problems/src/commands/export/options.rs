@@ -1,0 +1,102 @@
+//! The options of `export`.
+
+use crate::commands::failure::Failure;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Distance between triangles and surface, mm, where no option says it.
+const DEFAULT_TOLERANCE: f64 = 1e-3;
+
+/// What `export` writes, and of which shape.
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+pub struct ExportOptions {
+    /// With export: the shape is that of the optimization in the folder DIR: its optimum or, while it has not ended, the best one
+    /// so far.
+    #[arg(long, value_name = "DIR")]
+    pub run: Option<PathBuf>,
+    /// With --run: the shape of evaluation K instead.
+    #[arg(long, value_name = "K", requires = "run")]
+    pub evaluation: Option<usize>,
+    /// With export: bodies and surface as triangles. Without one of --stl, --step, --csv, --friction-problem the first three are
+    /// written.
+    #[arg(long)]
+    pub stl: bool,
+    /// With export: the B-spline surface, and the lower body as a solid, for CAD systems.
+    #[arg(long)]
+    pub step: bool,
+    /// With export: a table of heights of the surface.
+    #[arg(long)]
+    pub csv: bool,
+    /// With export: stiffness, loads, contact matrix, gaps and friction coefficients for other solvers.
+    #[arg(long)]
+    pub friction_problem: bool,
+    /// With export: largest distance between triangles and surface, mm [default: 1e-3].
+    #[arg(long, value_name = "MM", value_parser = tolerance)]
+    pub tolerance: Option<f64>,
+}
+
+impl ExportOptions {
+    /// Whether triangles are written.
+    pub fn writes_stl(&self) -> bool {
+        self.stl || self.is_free()
+    }
+
+    /// Whether the B-spline is written.
+    pub fn writes_step(&self) -> bool {
+        self.step || self.is_free()
+    }
+
+    /// Whether the table of heights is written.
+    pub fn writes_csv(&self) -> bool {
+        self.csv || self.is_free()
+    }
+
+    /// Largest distance between triangles and surface, mm.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance.unwrap_or(DEFAULT_TOLERANCE)
+    }
+
+    /// Whether no format is named.
+    fn is_free(&self) -> bool {
+        !(self.stl || self.step || self.csv || self.friction_problem)
+    }
+
+    /// Refuses these options beside another command, and options of `export` that do not go together; `has_folder`,
+    /// `has_controls`: whether `--out` and `--controls` are given.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the option.
+    pub fn check(&self, exporting: bool, has_folder: bool, has_controls: bool) -> Result<(), Failure> {
+        let refused = |option: &str, allowed: &str| Err(Failure::Input(format!("{option} is allowed {allowed}")));
+        for (option, given) in [
+            ("--run", self.run.is_some()),
+            ("--evaluation", self.evaluation.is_some()),
+            ("--stl", self.stl),
+            ("--step", self.step),
+            ("--csv", self.csv),
+            ("--friction-problem", self.friction_problem),
+            ("--tolerance", self.tolerance.is_some()),
+        ] {
+            if given && !exporting {
+                return refused(option, "with export only");
+            }
+        }
+        if exporting && !has_folder {
+            return Err(Failure::Input("export needs --out DIR, the folder for its files".into()));
+        }
+        if has_controls && self.run.is_some() {
+            return refused("--controls", "without --run, which names the shape");
+        }
+        if self.tolerance.is_some() && !self.writes_stl() {
+            return refused("--tolerance", "with --stl only, or without any format");
+        }
+        Ok(())
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, &'static str> {
+    text.parse()
+        .ok()
+        .filter(|number: &f64| *number > 0.0 && number.is_finite())
+        .ok_or("allowed: a finite number > 0 (mm)")
+}

@@ -1,0 +1,187 @@
+//! The shape of an optimization in its folder: the optimum, the best one so far, or that of any evaluation.
+
+use crate::commands::controls;
+use crate::commands::export::Origin;
+use crate::commands::failure::Failure;
+use crate::commands::folder::{COMPARED, REPORT, RunKind, SCENE, START};
+use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::long_run::RunFolder;
+use crate::commands::optimize::stages::stages;
+use crate::commands::register::names;
+use contact::error::SceneError;
+use contact::scene::Scene;
+use nonsmooth::journal::{Entry, RecordedAnswer};
+use nonsmooth::{Journal, Vector};
+use scene_file::{SceneFile, read_text};
+use std::path::{Path, PathBuf};
+
+/// Largest report, bytes.
+const LARGEST_REPORT: u64 = 256 << 20;
+
+/// The folder of an optimization, ended or not, or of one of its parts: a mesh or a start.
+pub struct FinishedRun {
+    folder: PathBuf,
+    /// The folders of the journals that have been begun.
+    parts: Vec<PathBuf>,
+    kind: Kind,
+    /// Number of controls.
+    dimension: usize,
+}
+
+/// What the journals of a run are.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// One run on one mesh.
+    Single,
+    /// A part of a run with several.
+    Part,
+    /// One journal per mesh, each going on where the one before ended.
+    Meshes,
+    /// One journal per start.
+    Starts,
+}
+
+impl FinishedRun {
+    /// The run in a folder, whose surfaces must be those of the scene.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for a folder without an optimization, for a comparison, and for a run of other surfaces.
+    pub fn open(folder: &Path, scene: &Scene) -> Result<Self, Failure> {
+        let refused = |reason: String| Err(Failure::Input(format!("--run {}: {reason}", folder.display())));
+        let kind = RunKind::of(&names(folder));
+        if kind != RunKind::Optimization {
+            let parts = if kind == RunKind::Study { ["row_001", "row_002"] } else { COMPARED };
+            let parts = parts.map(|part| folder.join(part).display().to_string());
+            let words = format!("holds {}; name one of its optimizations, such as", kind.words());
+            return refused(format!("{words} {}", parts.join(" or ")));
+        }
+        let whole = folder.parent().filter(|whole| !RunFolder::is_one(folder) && RunFolder::is_one(whole));
+        let root = whole.filter(|_| Journal::exists(folder)).unwrap_or(folder);
+        if !RunFolder::is_one(root) {
+            return refused(format!("holds no optimization ({SCENE}, {START} and a journal)"));
+        }
+        let path = root.join(SCENE);
+        let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?.case;
+        if let Some((field, found, here)) = difference(&own.scene, scene) {
+            let hint = format!("{} is the scene of the run", path.display());
+            return refused(format!("is a run of another surface: {field} is {found} there and {here} here; {hint}"));
+        }
+        let (kind, parts) = if root == folder {
+            let places =
+                stages(&own).into_iter().map(|stage| stage.name.map_or(root.to_owned(), |name| root.join(name)));
+            let kind = match () {
+                () if !own.optimizer.continuation.is_empty() => Kind::Meshes,
+                () if own.optimizer.starts > 1 => Kind::Starts,
+                () => Kind::Single,
+            };
+            (kind, places.filter(|place| Journal::exists(place)).collect())
+        } else {
+            (Kind::Part, vec![folder.to_owned()])
+        };
+        let dimension = own.scene.control_points.iter().product();
+        Ok(Self { folder: folder.to_owned(), parts, kind, dimension })
+    }
+
+    /// The shape of an evaluation, or the one that the run has found.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] for an evaluation that the run does not have or that does not tell which part is meant; any [`Failure`]
+    /// of the files.
+    pub fn shape(&self, evaluation: Option<usize>) -> Result<(Vector, Origin), Failure> {
+        match evaluation {
+            Some(evaluation) => self.evaluation(evaluation),
+            None if self.kind != Kind::Part && self.folder.join(REPORT).exists() => self.optimum(),
+            None => self.best(),
+        }
+    }
+
+    /// The shape that an ended run reports.
+    fn optimum(&self) -> Result<(Vector, Origin), Failure> {
+        let controls = controls::read(&self.folder.join("controls.json"), self.dimension)?;
+        let report = read_text(&self.folder.join(REPORT), LARGEST_REPORT)?;
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap_or_default();
+        let source = format!("the optimum of {}", self.folder.display());
+        Ok((controls, Origin { source, evaluation: None, objective: report["objective"].as_f64() }))
+    }
+
+    /// The best shape in the journals of a run that has not ended: of its last mesh, or of all its starts.
+    fn best(&self) -> Result<(Vector, Origin), Failure> {
+        let mut journals = Vec::new();
+        for part in &self.parts {
+            journals.extend(Journal::read(part)?.map(|journal| evaluated(&journal)).filter(|known| !known.is_empty()));
+        }
+        let count: usize = journals.iter().map(Vec::len).sum();
+        let considered = if self.kind == Kind::Meshes {
+            journals.len().saturating_sub(1)..journals.len()
+        } else {
+            0..journals.len()
+        };
+        let known = journals[considered].iter().flatten();
+        let Some((value, entry)) = known.min_by(|a, b| a.0.total_cmp(&b.0)) else {
+            let words = "no evaluation has ended yet";
+            return Err(Failure::Input(format!("--run {}: {words}", self.folder.display())));
+        };
+        let source = format!(
+            "evaluation {}, the best of {count} in {}, {}",
+            entry.evaluation,
+            self.folder.display(),
+            if self.kind == Kind::Part { "a part of a run" } else { "which has not ended" }
+        );
+        let origin = Origin { source, evaluation: Some(entry.evaluation), objective: Some(*value) };
+        Ok((Vector::from_column_slice(&entry.point), origin))
+    }
+
+    /// The shape of one evaluation.
+    fn evaluation(&self, evaluation: usize) -> Result<(Vector, Origin), Failure> {
+        if matches!(self.kind, Kind::Meshes | Kind::Starts) {
+            let parts: Vec<String> = self.parts.iter().map(|part| format!("--run {}", part.display())).collect();
+            let words = "is allowed for one mesh or one start of this run only";
+            return Err(Failure::Input(format!("--evaluation {words}: {}", parts.join(" or "))));
+        }
+        let journal = Journal::read(self.parts.first().unwrap_or(&self.folder))?;
+        let entries = journal.map(|journal| journal.entries).unwrap_or_default();
+        let allowed = match entries.len() {
+            0 => format!("none, for {} holds no evaluation yet", self.folder.display()),
+            count => format!("1 to {count}, the evaluations in {}", self.folder.display()),
+        };
+        let outside = || SceneError::out_of_range("--evaluation", evaluation, allowed);
+        let entry = evaluation.checked_sub(1).and_then(|index| entries.get(index)).ok_or_else(outside)?;
+        let (objective, words) = match &entry.answer {
+            RecordedAnswer::Evaluated { value, no_descent: false, .. } => (Some(*value), String::new()),
+            RecordedAnswer::Evaluated { .. } => (None, ", known to be no descent".into()),
+            RecordedAnswer::Failed(reason) => (None, format!(", which failed: {reason}")),
+            _ => (None, String::new()),
+        };
+        let source = format!("evaluation {evaluation} of {}{words}", self.folder.display());
+        Ok((Vector::from_column_slice(&entry.point), Origin { source, evaluation: Some(evaluation), objective }))
+    }
+}
+
+/// The evaluations of a journal whose value is known.
+fn evaluated(journal: &Journal) -> Vec<(f64, Entry)> {
+    let known = journal.entries.iter().filter_map(|entry| match entry.answer {
+        RecordedAnswer::Evaluated { value, no_descent: false, .. } => Some((value, entry.clone())),
+        _ => None,
+    });
+    known.collect()
+}
+
+/// The first part of a scene's surfaces that differs from another's: its name, and both values.
+fn difference(there: &Scene, here: &Scene) -> Option<(&'static str, String, String)> {
+    let top = |scene: &Scene| scene.upper.as_ref().map(|upper| upper.top);
+    let words = |scene: &Scene| {
+        [
+            ("size", format!("{:?}", scene.size)),
+            ("surface.spline", format!("{:?}", scene.surface)),
+            ("surface.control_points", format!("{:?}", scene.control_points)),
+            ("counter_surface", format!("{:?}", scene.counter_surface)),
+            ("upper.top", format!("{:?}", top(scene))),
+        ]
+    };
+    let mut pairs = words(there).into_iter().zip(words(here));
+    let (there, here) = pairs.find(|(there, here)| there != here)?;
+    /// Longest value that a message shows.
+    const LONGEST: usize = 80;
+    let shown = |text: String| if text.chars().count() > LONGEST { "another one".to_owned() } else { text };
+    Some((there.0, shown(there.1), shown(here.1)))
+}

@@ -1,0 +1,121 @@
+//! The shape as triangles, as B-splines, and as a table.
+
+use crate::commands::export::OutputFile;
+use crate::commands::failure::Failure;
+use contact::equilibrium::ContactProblem;
+use contact::shape::Pieces;
+use exchange::step::{self, SplineHeights};
+use exchange::{ExchangeError, Heights, Triangle, lines, sheet, solid, stl};
+
+/// Points of the table along each axis.
+const TABLE_POINTS: usize = 101;
+
+/// Height of the plane below the lower body, mm.
+const BASE: f64 = 0.0;
+
+/// Bodies and surface as triangles within a distance of the exact surfaces, mm.
+///
+/// # Errors
+/// [`Failure::Input`] for a tolerance that is too small, and for a surface with a step.
+pub fn triangles(problem: &ContactProblem, controls: &[f64], tolerance: f64) -> Result<Vec<OutputFile>, Failure> {
+    let (scene, surface) = (&problem.scene, problem.scene.spline_surface()?);
+    let pieces = surface.pieces(controls, scene.size);
+    let lines = divided(&pieces, problem, controls, tolerance)?;
+    let heights = heights(problem, controls, lines)?;
+    let written = |name, what: &str, triangles: Vec<Triangle>| {
+        let (count, content) = (triangles.len(), stl(&triangles).map_err(failure)?);
+        let what = format!("{what}: {count} triangles within {tolerance} mm of it");
+        Ok::<_, Failure>(OutputFile { name, content, what, triangles: Some(count) })
+    };
+    let mut files = vec![
+        written("surface.stl", "the optimized surface alone", sheet(&heights))?,
+        written("lower_body.stl", "the lower body, closed", solid(&heights, BASE).map_err(failure)?)?,
+    ];
+    if let Some(upper) = &scene.upper {
+        let counter = &scene.counter_surface;
+        let step = || Failure::Input("the lower surface of the upper body has a step: it has no triangles".into());
+        let pieces = counter.pieces(scene.size).ok_or_else(step)?;
+        let lines = divided(&pieces, problem, controls, tolerance)?;
+        let places = lines[0].iter().flat_map(|&x1| lines[1].iter().map(move |&x2| [x1, x2]));
+        let values = places.map(|[x1, x2]| counter.height(x1, x2)).collect();
+        let heights = Heights::new(lines, values).map_err(failure)?;
+        let body = solid(&heights, upper.top).map_err(failure)?;
+        files.push(written("upper_body.stl", "the upper body, closed", body)?);
+    }
+    Ok(files)
+}
+
+/// Lines on which triangles keep their distance.
+fn divided(
+    pieces: &Pieces,
+    problem: &ContactProblem,
+    controls: &[f64],
+    tolerance: f64,
+) -> Result<[Vec<f64>; 2], Failure> {
+    let scene = &problem.scene;
+    let top = scene.upper.as_ref().map(|upper| upper.top);
+    let heights = controls.iter().copied().chain(scene.size).chain(top);
+    let reach = heights.fold(0.0, |reach: f64, length| reach.max(length.abs()));
+    lines([&pieces.lines[0], &pieces.lines[1]], pieces.curvature, reach, tolerance).map_err(failure)
+}
+
+/// Heights of the surface where lines cross.
+fn heights(problem: &ContactProblem, controls: &[f64], lines: [Vec<f64>; 2]) -> Result<Heights, Failure> {
+    let size = problem.scene.size;
+    let places = std::array::from_fn(|axis: usize| lines[axis].iter().map(|x| x / size[axis]).collect());
+    let values = problem.scene.spline_surface()?.height_map_at(places).heights(controls);
+    Heights::new(lines, values).map_err(failure)
+}
+
+/// The surface, and the solid below it, as STEP files.
+///
+/// # Errors
+/// [`Failure`] for control heights that leave no solid.
+pub fn splines(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<OutputFile>, Failure> {
+    let (scene, surface) = (&problem.scene, problem.scene.spline_surface()?);
+    let knots = surface.knots().map(<[f64]>::to_vec);
+    let spline = SplineHeights::new(surface.degrees(), knots, scene.size, controls.to_vec()).map_err(failure)?;
+    let written = |name, what: &str, text: String| OutputFile {
+        name,
+        content: text.into_bytes(),
+        what: what.into(),
+        triangles: None,
+    };
+    let body = step::solid(&format!("{}: lower body", scene.name), &spline, BASE).map_err(failure)?;
+    Ok(vec![
+        written("surface.step", "the optimized surface as an exact B-spline face", step::surface(&scene.name, &spline)),
+        written("lower_body.step", "the lower body as a solid with that face", body),
+    ])
+}
+
+/// Heights of the surface on a uniform grid.
+///
+/// # Errors
+/// [`Failure`] for heights that are no numbers.
+pub fn table(problem: &ContactProblem, controls: &[f64]) -> Result<OutputFile, Failure> {
+    let size = problem.scene.size;
+    let last = (TABLE_POINTS - 1) as f64;
+    let line = |axis: usize| (0..TABLE_POINTS).map(|index| size[axis] * index as f64 / last).collect();
+    let heights = heights(problem, controls, [line(0), line(1)])?;
+    let [h1, h2] = size.map(|length| length / last);
+    let spacing = format!("spacing {h1} mm along x1, {h2} mm along x2");
+    Ok(OutputFile {
+        name: "surface.csv",
+        content: heights
+            .csv(&format!("{}: heights of the optimized surface\n{spacing}", problem.scene.name))
+            .into_bytes(),
+        what: format!("heights of the surface at {TABLE_POINTS} x {TABLE_POINTS} points, {spacing}"),
+        triangles: None,
+    })
+}
+
+/// What the option says is bad input; so is a shape that makes no file.
+pub fn failure(error: ExchangeError) -> Failure {
+    match error {
+        ExchangeError::Tolerance { .. } | ExchangeError::TooManyTriangles { .. } => {
+            Failure::Input(format!("--{error}"))
+        }
+        ExchangeError::Stl(_) => Failure::computation(error),
+        _ => Failure::Input(error.to_string()),
+    }
+}
