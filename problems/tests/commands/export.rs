@@ -172,6 +172,20 @@ fn shapes_come_from_runs_by_their_optimum_or_any_evaluation() {
         &["--run", "another surface: surface.control_points is [6, 6] there and [5, 5]", "scene.toml"],
     );
     refused(&["--controls", text(&file)], &["--controls is allowed without --run"]);
+    // A journal that was tampered with: points without their last entry.
+    let journal = std::fs::read_to_string(run.join("journal.jsonl")).unwrap();
+    let shortened = journal.lines().map(|line| {
+        let mut line: Value = serde_json::from_str(line).unwrap();
+        if let Some(point) = line.get_mut("point").and_then(Value::as_array_mut) {
+            point.pop();
+        } else {
+            line["dimension"] = json!(35);
+        }
+        format!("{line}\n")
+    });
+    std::fs::write(run.join("journal.jsonl"), shortened.collect::<String>()).unwrap();
+    refused(&["--evaluation", "1"], &["controls of evaluation 1", "35 numbers found, 36 expected"]);
+    std::fs::write(run.join("journal.jsonl"), journal).unwrap();
     kit::refused(HERTZ, &["export", "--run", text(&run), "--out", text(&at("other"))], &["another surface: size is"]);
     kit::refused(
         SIGNORINI,

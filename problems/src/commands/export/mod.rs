@@ -8,7 +8,7 @@ mod shape;
 pub use options::ExportOptions;
 
 use crate::commands::controls;
-use crate::commands::export::run::FinishedRun;
+use crate::commands::export::run::KeptRun;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::{LoadedScene, Session};
@@ -69,7 +69,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         friction::check(&problem).map_err(|error| arguments.blame(error))?;
     }
     let (controls, origin) = match &options.run {
-        Some(folder) => FinishedRun::open(folder, &case.scene)?.shape(options.evaluation)?,
+        Some(folder) => KeptRun::open(folder, &case.scene)?.shape(options.evaluation)?,
         None => start(&problem, loaded, arguments.controls.as_deref())?,
     };
     problem.admissible.check(&controls)?;

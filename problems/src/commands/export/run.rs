@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 const LARGEST_REPORT: u64 = 256 << 20;
 
 /// The folder of an optimization, ended or not, or of one of its parts: a mesh or a start.
-pub struct FinishedRun {
+pub struct KeptRun {
     folder: PathBuf,
     /// The folders of the journals that have been begun.
     parts: Vec<PathBuf>,
@@ -41,7 +41,7 @@ enum Kind {
     Starts,
 }
 
-impl FinishedRun {
+impl KeptRun {
     /// The run in a folder, whose surfaces must be those of the scene.
     ///
     /// # Errors
@@ -128,7 +128,19 @@ impl FinishedRun {
             if self.kind == Kind::Part { "a part of a run" } else { "which has not ended" }
         );
         let origin = Origin { source, evaluation: Some(entry.evaluation), objective: Some(*value) };
-        Ok((Vector::from_column_slice(&entry.point), origin))
+        Ok((self.controls(entry)?, origin))
+    }
+
+    /// The controls of an evaluation.
+    fn controls(&self, entry: &Entry) -> Result<Vector, SceneError> {
+        let what = || format!("controls of evaluation {} in {}", entry.evaluation, self.folder.display());
+        if entry.point.len() != self.dimension {
+            return Err(SceneError::WrongCount { what: what(), expected: self.dimension, found: entry.point.len() });
+        }
+        match entry.point.iter().find(|height| !height.is_finite()) {
+            Some(height) => Err(SceneError::out_of_range(what(), height, "finite numbers (mm)")),
+            None => Ok(Vector::from_column_slice(&entry.point)),
+        }
     }
 
     /// The shape of one evaluation.
@@ -153,7 +165,7 @@ impl FinishedRun {
             _ => (None, String::new()),
         };
         let source = format!("evaluation {evaluation} of {}{words}", self.folder.display());
-        Ok((Vector::from_column_slice(&entry.point), Origin { source, evaluation: Some(evaluation), objective }))
+        Ok((self.controls(entry)?, Origin { source, evaluation: Some(evaluation), objective }))
     }
 }
 
