@@ -10,7 +10,7 @@ use crate::body::elasticity::brick::DOFS;
 use crate::body::elasticity::von_mises::{StressedBrick, stress_and_volume};
 use crate::body::mesh::{Block, Grid, Subdomain};
 use crate::body::shape_load::{height_derivative, loaded_faces, nodal_loads};
-use crate::cost::region::Region;
+use crate::cost::region::{Region, RegionBricks};
 use crate::equilibrium::{ContactProblem, ContactState, SolvedBody};
 use crate::error::SceneError;
 use crate::scene::BodyScene;
@@ -68,9 +68,7 @@ impl FieldCost {
         if let FieldMeasure::StressNorm { region, exponent } = &measure {
             let valid = *exponent > 1.0 && exponent.is_finite();
             SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
-            let found = region.bricks(problem)?;
-            volume = found.iter().flatten().map(|(_, volume)| volume).sum();
-            bricks = found.into_iter().map(|body| body.into_iter().map(|(brick, _)| brick).collect()).collect();
+            RegionBricks { bricks, volume } = region.bricks(problem)?;
         }
         Ok(Self {
             measure,

@@ -9,9 +9,9 @@ mod field;
 mod pressure;
 mod region;
 
-pub use field::{FieldCost, FieldMeasure};
+pub use field::{FieldCost, FieldGradient, FieldMeasure};
 pub use pressure::{ContactAreas, PressureCost, PressureMeasure};
-pub use region::Region;
+pub use region::{Region, RegionBricks};
 
 /// What is minimised.
 #[derive(Debug, Clone, PartialEq)]
