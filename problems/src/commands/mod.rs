@@ -19,6 +19,7 @@ mod loaded_scene;
 pub mod long_run;
 mod optimize;
 mod output;
+mod overrides;
 pub mod processes;
 mod recheck;
 mod register;
