@@ -131,6 +131,19 @@ fn check_table(out: &Path, scene: &Scene, controls: &[f64]) {
     }
 }
 
+/// A journal whose points have lost their last entry.
+fn shortened(journal: &str) -> String {
+    let line = |line: &str| {
+        let mut line: Value = serde_json::from_str(line).unwrap();
+        match line.get_mut("point").and_then(Value::as_array_mut) {
+            Some(point) => drop(point.pop()),
+            None => line["dimension"] = json!(35),
+        }
+        format!("{line}\n")
+    };
+    journal.lines().map(line).collect()
+}
+
 #[test]
 fn shapes_come_from_runs_by_their_optimum_or_any_evaluation() {
     let folder = scratch();
@@ -174,16 +187,7 @@ fn shapes_come_from_runs_by_their_optimum_or_any_evaluation() {
     refused(&["--controls", text(&file)], &["--controls is allowed without --run"]);
     // A journal that was tampered with: points without their last entry.
     let journal = std::fs::read_to_string(run.join("journal.jsonl")).unwrap();
-    let shortened = journal.lines().map(|line| {
-        let mut line: Value = serde_json::from_str(line).unwrap();
-        if let Some(point) = line.get_mut("point").and_then(Value::as_array_mut) {
-            point.pop();
-        } else {
-            line["dimension"] = json!(35);
-        }
-        format!("{line}\n")
-    });
-    std::fs::write(run.join("journal.jsonl"), shortened.collect::<String>()).unwrap();
+    std::fs::write(run.join("journal.jsonl"), shortened(&journal)).unwrap();
     refused(&["--evaluation", "1"], &["controls of evaluation 1", "35 numbers found, 36 expected"]);
     std::fs::write(run.join("journal.jsonl"), journal).unwrap();
     kit::refused(HERTZ, &["export", "--run", text(&run), "--out", text(&at("other"))], &["another surface: size is"]);

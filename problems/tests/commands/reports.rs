@@ -106,7 +106,7 @@ fn an_optimization_delivers_page_pictures_and_fields() {
     let expected = ["initial", "optimal"]
         .into_iter()
         .flat_map(|name| [format!("{name}_bodies.vtu"), format!("{name}_contact.vtu")]);
-    let expected: BTreeSet<String> = expected.chain(["fields.pvd".to_owned()]).collect();
+    let expected: BTreeSet<String> = expected.chain(["fields.pvd", "view.py"].map(str::to_owned)).collect();
     assert_eq!(names(&scratch.join("run/vtk")), expected);
     // Warnings stand before everything else.
     let first = page.find("<nav>").unwrap();
