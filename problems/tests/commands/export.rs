@@ -236,7 +236,7 @@ fn options_that_do_not_go_together_are_refused() {
         (&["export", "--out", out, "--step", "--tolerance", "1e-2"], &["--tolerance is allowed with --stl only"]),
         (&["export", "--out", out, "--tolerance", "0"], &["--tolerance", "a finite number > 0"]),
         (&["export", "--out", out, "--tolerance", "1e-9"], &["--tolerance = 1e-9 mm", "single precision"]),
-        (&["export", "--out", out, "--resume", "x"], &["--resume is allowed with optimize and compare only"]),
+        (&["export", "--out", out, "--resume", "x"], &["--resume is allowed with optimize, compare and study only"]),
         (&["export", "--out", out, "--diagnose"], &["--diagnose is allowed with evaluate only"]),
         (&["export", "--out", out, "--controls", "none.json"], &["--controls: none.json"]),
         (&["export", "--out", out, "--mesh", "60", "--friction-problem"], &["--mesh = [60, 60, 60]", "at most 300000"]),

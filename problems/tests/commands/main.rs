@@ -36,3 +36,14 @@ mod stages;
 mod study;
 mod terminal;
 mod toy2d;
+
+#[path = "../../examples/own_objective.rs"]
+mod own_objective;
+
+/// docs/tutorial_objective.md states these numbers.
+#[test]
+fn an_objective_of_ones_own_falls_as_the_tutorial_says() {
+    let report = own_objective::minimize().unwrap();
+    let reduction = report.start_value / report.value;
+    assert!(report.counts.evaluations <= 30 && reduction > 3.0, "{report}");
+}

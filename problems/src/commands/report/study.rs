@@ -5,7 +5,7 @@ use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, STU
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::report::sections;
 use crate::commands::report::stamp::stamp;
-use crate::commands::study::{Outcome, Picture, Row, Solved, StudyJson, values};
+use crate::commands::study::{Outcome, Picture, Row, Solved, StudyJson, row_folder, values};
 use figures::page::{Block, File, Page, Section};
 use figures::{ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces};
 
@@ -53,8 +53,11 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     ] {
         files.push(File { path: path.into(), what: what.into() });
     }
-    for name in folder.names().iter().filter(|name| name.ends_with("/report.html")) {
-        files.push(File { path: name.clone(), what: "the optimization of a row".into() });
+    for (number, row) in (1..).zip(study.rows()) {
+        if matches!(&row.outcome, Outcome::Solved(solved) if solved.optimization.is_some()) {
+            let what = format!("the optimization of row {number}: {}", caption(row));
+            files.push(File { path: format!("{}/report.html", row_folder(number)), what });
+        }
     }
     let failed = study.rows().iter().filter(|row| matches!(row.outcome, Outcome::Failed(_))).count();
     let varied: Vec<&str> = study.vary().iter().map(|varied| varied.name()).collect();

@@ -33,6 +33,11 @@ const ROWS: &str = "rows.json";
 /// Most rows.
 const MAX_ROWS: usize = 1000;
 
+/// The folder of a row, by its number from 1.
+pub fn row_folder(number: usize) -> String {
+    format!("row_{number:03}")
+}
+
 /// What a study varies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
@@ -52,7 +57,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         None => stated(session)?,
     };
     let combinations = varied::combinations(&plan.vary);
-    let parts: Vec<String> = (1..=combinations.len()).map(|number| format!("row_{number:03}")).collect();
+    let parts: Vec<String> = (1..=combinations.len()).map(row_folder).collect();
     let (folder, controls) = started(loaded, session, &plan, &parts)?;
     let folder = folder.as_ref();
     watch_interrupts(session.processes.is_alone());

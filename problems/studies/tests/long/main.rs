@@ -7,3 +7,4 @@ mod composite;
 mod headline;
 mod pins;
 mod stability;
+mod tutorial;
