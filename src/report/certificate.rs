@@ -136,9 +136,12 @@ impl Certificate {
 
 impl fmt::Display for Certificate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.value {
-            0.0 => write!(f, "predicted decrease {:.1e}", self.predicted_decrease)?,
-            value => write!(f, "predicted decrease {:.1e} of the objective", self.predicted_decrease / value.abs())?,
+        // An objective that has reached zero up to rounding is no scale.
+        match self.predicted_decrease <= self.value.abs() && self.value != 0.0 {
+            false => write!(f, "predicted decrease {:.1e}", self.predicted_decrease)?,
+            true => {
+                write!(f, "predicted decrease {:.1e} of the objective", self.predicted_decrease / self.value.abs())?;
+            }
         }
         write!(
             f,

@@ -101,7 +101,8 @@ impl Lines {
         let right = 8.0 + columns as f64 * wide;
         let width = (right + legend_width(&legend)).max(text_width(&self.title, TITLE) + 32.0);
         let rows = self.panels.len().div_ceil(columns);
-        let mut canvas = Canvas::new(width, 34.0 + rows as f64 * tall);
+        let legend_foot = 70.0 + 21.0 * legend.len() as f64;
+        let mut canvas = Canvas::new(width, (34.0 + rows as f64 * tall).max(legend_foot));
         canvas.text([16.0, 22.0], TITLE, &self.title);
         for (index, panel) in self.panels.iter().enumerate() {
             let left = 8.0 + ROOM_LEFT + (index % columns) as f64 * wide;

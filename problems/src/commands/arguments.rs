@@ -2,10 +2,10 @@
 
 use crate::commands::ascii::shown;
 use crate::commands::export::ExportOptions;
-use crate::commands::failure::Failure;
-use crate::commands::folder::RunKind;
+use crate::commands::failure::{Failure, refused};
 use crate::commands::processes::SharedSolver;
-use crate::commands::study::Varied;
+use crate::commands::run_kind::RunKind;
+use crate::commands::study::varied::Varied;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, ValueEnum};
 use contact::body::elasticity::Formulation;
@@ -98,11 +98,11 @@ pub struct Arguments {
     /// Control heights to evaluate, verify or export: a JSON array, row major, index i*n2 + j with i along x1 [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub controls: Option<PathBuf>,
-    /// With evaluate, and as a value of --vary: every control height is off by so much, mm, up or down at random.
+    /// With evaluate and study: every control height is off by so much, mm, up or down at random.
     #[arg(long, value_name = "MM", value_parser = size)]
     pub height_error: Option<f64>,
     /// With --height-error: another number, other signs [default: 1].
-    #[arg(long, value_name = "K", requires = "height_error")]
+    #[arg(long, value_name = "K")]
     pub seed: Option<u64>,
     /// Control heights to start the optimization from [default: surface.start].
     #[arg(long, value_name = "FILE")]
@@ -134,7 +134,7 @@ pub struct Arguments {
     /// What export writes.
     #[command(flatten)]
     pub export: ExportOptions,
-    /// Continue the optimization that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --new-version,
+    /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --new-version,
     /// --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
@@ -215,6 +215,7 @@ impl Arguments {
         let evaluating = matches!(self.command, Command::Evaluate | Command::Verify) || studying && !self.optimize;
         let optimizing = matches!(self.command, Command::Optimize | Command::Compare) || optimizing_rows;
         let rechecking = self.command == Command::Recheck;
+        let looking = self.command == Command::Evaluate || studying && !self.optimize;
         let showing = evaluating || self.command == Command::Export;
         let takes_controls = "with evaluate, verify, study and export only (what optimizes takes --start-controls)";
         let takes_start = "with optimize, compare and study --optimize only (what evaluates takes --controls)";
@@ -225,8 +226,14 @@ impl Arguments {
             (
                 "--height-error",
                 self.height_error.is_some(),
-                self.command == Command::Evaluate,
-                "with evaluate, and within --vary",
+                looking,
+                "with evaluate, and with study without --optimize",
+            ),
+            (
+                "--seed",
+                self.seed.is_some(),
+                looking && (self.height_error.is_some() || studying),
+                "with --height-error only",
             ),
             ("--optimizer", self.optimizer.is_some(), optimizing, limits),
             ("--max-evaluations", self.max_evaluations.is_some(), optimizing, limits),
@@ -287,10 +294,6 @@ impl Arguments {
         let allowed = "with --max-evaluations, --time-limit, --threads, --vtk-history, --new-version, --json only: all else is in the folder";
         Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
-}
-
-fn refused(option: &str, allowed: &str) -> Result<(), Failure> {
-    Err(Failure::Input(format!("{option} is allowed {allowed}")))
 }
 
 fn parse_surface(text: &str) -> Result<SplineKind, String> {

@@ -20,9 +20,12 @@ use tracing_subscriber::fmt::layer as log;
 use tracing_subscriber::layer::{Layer, SubscriberExt};
 use tracing_subscriber::util::SubscriberInitExt;
 
+/// What the binary does.
+const ABOUT: &str = "3D contact shape optimization with Coulomb friction (units: N, mm, MPa)";
+
 /// Arguments of the binary that takes any scene.
 #[derive(Debug, Parser)]
-#[command(name = "contact3d", version, about, allow_negative_numbers = true)]
+#[command(name = "contact3d", version, about = ABOUT, allow_negative_numbers = true)]
 struct AnyScene {
     /// Scene file (docs/scenes.md; examples in problems/scenes).
     #[arg(value_name = "SCENE.toml")]
@@ -63,7 +66,8 @@ pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
     };
     let missing = || Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into());
     // A command in the place of the scene.
-    let word = scene.as_ref().filter(|scene| !scene.exists()).and_then(|scene| scene.to_str());
+    let is_file = scene.as_ref().is_some_and(|scene| scene.is_file());
+    let word = scene.as_ref().filter(|_| !is_file || arguments.resume.is_some()).and_then(|scene| scene.to_str());
     let first = word.and_then(|word| Command::from_str(word, true).ok());
     if arguments.resume.is_some() {
         if let Some(command) = first.filter(|_| arguments.command == Command::default()) {
@@ -132,7 +136,7 @@ pub fn execute_among(
         Command::Study => study::run(&loaded, &session),
         Command::Evaluate => evaluate::run(&loaded, &session),
         Command::Verify => verify::run(&loaded.case, &session),
-        Command::Recheck => recheck::run(&loaded.case, arguments),
+        Command::Recheck => recheck::run(&loaded, arguments),
         Command::Export => export::run(&loaded, &session),
     };
     session.status.clear();

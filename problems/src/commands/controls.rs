@@ -9,10 +9,13 @@ use nonsmooth::verify::seeded_direction;
 use scene_file::{Case, read_text};
 use std::path::Path;
 
+/// The option that names the controls at which an optimization starts.
+pub const START_OPTION: &str = "--start-controls";
 /// Largest control file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// The controls of a file that an option names, or those the case starts from; checked against the admissible set.
+/// The controls of a file that an option names, or those the case starts from. Where an optimization starts they lie in the admissible
+/// set; of shapes that are only looked at, heights and slopes do.
 ///
 /// # Errors
 /// [`SceneError`] for an unreadable file, a wrong count, numbers that are not finite, controls outside U.
@@ -29,7 +32,9 @@ pub fn load(
         (None, Some(controls)) => Vector::from_column_slice(controls),
         (None, None) => Vector::from_element(dimension, problem.scene.start_height),
     };
-    problem.admissible.check(&controls).map_err(within)?;
+    let set = &problem.admissible;
+    let checked = if option == START_OPTION { set.check(&controls) } else { set.check_shape(&controls) };
+    checked.map_err(within)?;
     Ok(controls)
 }
 

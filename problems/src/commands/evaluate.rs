@@ -20,7 +20,7 @@ use std::time::Instant;
 struct EvaluationJson {
     objective: f64,
     /// log₁₀ of the objective, of Σσ^p where its root is given.
-    log10_objective: f64,
+    log10_objective: Option<f64>,
     /// p where objective and subgradient are those of (Σσ^p)^{1/p}, since those of Σσ^p are no doubles; else 1.
     objective_root: f64,
     subgradient: Vec<f64>,
@@ -76,7 +76,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         if representable { (power, slope, 1.0) } else { (evaluation.value, 1.0, root) };
     let result = EvaluationJson {
         objective: value,
-        log10_objective: root * evaluation.value.log10(),
+        log10_objective: (evaluation.value > 0.0).then(|| root * evaluation.value.log10()),
         objective_root,
         subgradient: (&evaluation.subgradient * slope).as_slice().to_vec(),
         peak_pressure: shape.peak_pressure,
@@ -118,7 +118,10 @@ impl fmt::Display for EvaluationJson {
         let norm = largest * self.subgradient.iter().map(|x| (x / largest).powi(2)).sum::<f64>().sqrt();
         let power = match self.objective_root {
             1.0 => String::new(),
-            root => format!(" = (Σσ^{root})^(1/{root}); Σσ^{root} = 10^{:.10}", self.log10_objective),
+            root => {
+                let exponent = self.log10_objective.map_or_else(|| "–".into(), |exponent| format!("{exponent:.10}"));
+                format!(" = (Σσ^{root})^(1/{root}); Σσ^{root} = 10^{exponent}")
+            }
         };
         writeln!(f, "objective            {:.10e}{power}", self.objective)?;
         writeln!(f, "|subgradient|        {norm:.6e} ({} controls)", self.subgradient.len())?;

@@ -56,6 +56,14 @@ impl Failure {
     }
 }
 
+/// The refusal of an option that is given where it has no meaning.
+///
+/// # Errors
+/// [`Failure::Input`], always.
+pub fn refused(option: &str, allowed: &str) -> Result<(), Failure> {
+    Err(Failure::Input(format!("{option} is allowed {allowed}")))
+}
+
 /// The end of a run in words, if failures of the oracle or of the subproblem ended it; none for every other end.
 pub fn failed(termination: &Termination) -> Option<String> {
     let failed = matches!(termination, Termination::OracleFailing { .. } | Termination::SubproblemFailed { .. });

@@ -4,6 +4,7 @@ use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
 use crate::commands::output::notice;
 use crate::commands::register::{self, REGISTER, Register, UNFINISHED};
+use crate::commands::run_kind::RunKind;
 use contact::error::SceneError;
 use figures::Figure;
 use scene_file::Case;
@@ -250,43 +251,21 @@ fn what_it_holds(path: &Path, names: &BTreeSet<String>) -> String {
     if !path.join(SCENE).exists() {
         return format!("holds results ({beside})");
     }
-    let command = resume_command(path, RunKind::of(names));
+    let command = resume_command(path, run_kind(names));
     match path.join(REPORT).exists() {
         true => format!("holds results of a run; `{command}` continues it with larger limits ({beside})"),
         false => format!("holds a run that has not ended; continue it with `{command}` ({beside})"),
     }
 }
 
-/// What the run in a folder is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RunKind {
-    /// One optimization.
-    Optimization,
-    /// Two optimizations, with and without friction.
-    Comparison,
-    /// A study of parameters.
-    Study,
-}
-
-impl RunKind {
-    /// The kind of the run that has written these files.
-    pub fn of(names: &BTreeSet<String>) -> Self {
-        if names.contains(STUDY) {
-            Self::Study
-        } else if names.contains(&format!("{}/{REGISTER}", COMPARED[0])) {
-            Self::Comparison
-        } else {
-            Self::Optimization
-        }
-    }
-
-    /// What it is, in words.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Optimization => "an optimization",
-            Self::Comparison => "a comparison",
-            Self::Study => "a study",
-        }
+/// What the run is that has written these files.
+pub fn run_kind(names: &BTreeSet<String>) -> RunKind {
+    if names.contains(STUDY) {
+        RunKind::Study
+    } else if names.contains(&format!("{}/{REGISTER}", COMPARED[0])) {
+        RunKind::Comparison
+    } else {
+        RunKind::Optimization
     }
 }
 
@@ -298,12 +277,7 @@ pub fn resume_command(folder: &Path, kind: RunKind) -> String {
         false => format!("'{}'", word.replace('\'', r"'\''")),
     };
     let program = std::env::args().next().map_or_else(String::new, |program| quoted(program) + " ");
-    let command = match kind {
-        RunKind::Optimization => "",
-        RunKind::Comparison => "compare ",
-        RunKind::Study => "study ",
-    };
-    format!("{program}{command}--resume {}", quoted(folder.display().to_string()))
+    format!("{program}{}--resume {}", kind.command(), quoted(folder.display().to_string()))
 }
 
 /// The first free `DIR.1`, `DIR.2`, …

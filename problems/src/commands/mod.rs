@@ -24,6 +24,7 @@ pub mod processes;
 mod recheck;
 mod register;
 mod report;
+mod run_kind;
 mod shell_files;
 mod study;
 mod verify;

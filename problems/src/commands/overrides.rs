@@ -4,7 +4,7 @@ use crate::commands::arguments::Arguments;
 use clap::Parser;
 use contact::error::SceneError;
 use contact::shape::SplineKind;
-use scene_file::{ObjectiveSection, SceneFile, SplineName, default_subdomains};
+use scene_file::{MeasureName, MethodName, ObjectiveSection, SceneFile, SplineName, default_subdomains};
 
 /// Largest traction of a scene, MPa.
 const LARGEST_TRACTION: f64 = 1e15;
@@ -107,6 +107,11 @@ impl Arguments {
             file.objective = ObjectiveSection { measure, ..ObjectiveSection::default() };
         }
         file.objective.exponent = self.exponent.or(file.objective.exponent);
+        let has_model = !matches!(file.objective.measure, MeasureName::StressNorm | MeasureName::Compliance);
+        if self.objective.is_some() && !has_model {
+            // The file's method belongs to the file's measure.
+            file.optimizer.method = file.optimizer.method.filter(|method| *method != MethodName::Composite);
+        }
         file.optimizer.method = self.optimizer.or(file.optimizer.method);
         file.optimizer.max_evaluations = self.max_evaluations.unwrap_or(file.optimizer.max_evaluations);
         file.optimizer.time_limit = self.time_limit.or(file.optimizer.time_limit);

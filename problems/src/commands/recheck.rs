@@ -3,13 +3,18 @@
 use crate::commands::arguments::Arguments;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{file_error, json};
+use crate::commands::folder::{SCENE, file_error, json, run_kind};
+use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::{MeshStage, stages};
+use crate::commands::register::names;
+use crate::commands::run_kind::RunKind;
 use contact::cost::{Measure, PressureCost};
 use contact::equilibrium::ContactProblem;
 use nonsmooth::{Certificate, CertificateCheck, Journal, ProofCheck};
-use scene_file::{Case, read_text};
+use scene_file::{Case, SceneFile, read_text};
 use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
@@ -56,10 +61,17 @@ struct RecheckJson {
 }
 
 /// The command.
-pub fn run(case: &Case, arguments: &Arguments) -> Result<String, Failure> {
+pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
     let folder = arguments.certified.as_deref().unwrap_or(Path::new(""));
+    let kind = run_kind(&names(folder));
+    if kind != RunKind::Optimization {
+        let words = "recheck takes one of its optimizations, which lie in folders below";
+        return Err(Failure::Input(format!("{}: holds {}; {words}", folder.display(), kind.words())));
+    }
     let certificate = read(&folder.join("certificate.json"))?;
     let controls = controls::read(&folder.join("controls.json"), certificate.point.len())?;
+    let own = own_scene(&loaded.file, folder)?;
+    let case = own.as_ref().map_or(&loaded.case, |own| &own.case);
     let Some(MeshStage { case, .. }) = last_stage(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };
@@ -91,6 +103,42 @@ pub fn run(case: &Case, arguments: &Arguments) -> Result<String, Failure> {
     let reason =
         format!("{}: the certificate does not agree with its cuts, its multipliers and the scene", folder.display());
     Err(Failure::Incomplete { text, reason, status: 1 })
+}
+
+/// The scene of the run in a folder, if the folder tells it.
+///
+/// # Errors
+/// [`Failure::Computation`] if it is another one than that of the command, in more than its name, its start, its optimizer, and its outputs.
+fn own_scene(here: &SceneFile, folder: &Path) -> Result<Option<LoadedScene>, Failure> {
+    let path = folder.join(SCENE);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
+    let value = |scene: &SceneFile| serde_json::to_value(scene).map_err(Failure::computation);
+    if let Some((field, there, here)) = difference("", &value(&own.file)?, &value(here)?) {
+        let words = format!("{field} is {there} in the run and {here} here; {} is its scene", path.display());
+        return Err(Failure::Computation(format!(
+            "{}: the certificate is not one of this scene: {words}",
+            folder.display()
+        )));
+    }
+    Ok(Some(own))
+}
+
+/// The first field in which two scenes differ, with its values; what a certificate does not depend on, and names of files, are left out.
+fn difference(field: &str, there: &Value, here: &Value) -> Option<(String, String, String)> {
+    const LEFT_OUT: [&str; 5] = ["name", "optimizer", "output", "surface.start", "file"];
+    if LEFT_OUT.contains(&field) || field.ends_with(".file") {
+        return None;
+    }
+    if let (Value::Object(first), Value::Object(second)) = (there, here) {
+        let keys: BTreeSet<&String> = first.keys().chain(second.keys()).collect();
+        let of = |fields: &serde_json::Map<String, Value>, key: &str| fields.get(key).cloned().unwrap_or_default();
+        let below = |key: &str| if field.is_empty() { key.to_owned() } else { format!("{field}.{key}") };
+        return keys.into_iter().find_map(|key| difference(&below(key), &of(first, key), &of(second, key)));
+    }
+    (there != here).then(|| (field.to_owned(), there.to_string(), here.to_string()))
 }
 
 /// The last mesh that the run in a folder has begun.

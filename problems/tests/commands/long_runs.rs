@@ -426,3 +426,21 @@ fn coarse_to_fine_reports_its_stages_and_resumes() {
     refused(&["--continuation", "6,4"], &["continuation", "growing"]);
     refused(&["--continuation", "4,6", "--mesh", "6"], &["--mesh", "--continuation"]);
 }
+
+/// A build with other fields of the optimizer writes the same run in another way.
+#[test]
+fn a_run_of_a_build_with_other_fields_goes_on() {
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let small = ["--mesh", "3", "--max-evaluations", "2", "--json"];
+    succeeded(&[&small[..], &["--out", text(&folder)]].concat());
+    let journal = folder.join("journal.jsonl");
+    let written = std::fs::read_to_string(&journal).unwrap();
+    let older = written.replacen(r#"\"optimizer\":{"#, r#"\"optimizer\":{\"method\":\"composite\","#, 1);
+    assert!(older != written, "{written}");
+    std::fs::write(&journal, older).unwrap();
+    let resumed = succeeded(&["--resume", text(&folder), "--max-evaluations", "4", "--json"]);
+    assert_eq!(resumed["resumed_evaluations"], 2);
+    let at_once = succeeded(&["--mesh", "3", "--max-evaluations", "4", "--json"]);
+    assert_eq!(resumed["objective"], at_once["objective"]);
+}

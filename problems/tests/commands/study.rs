@@ -72,17 +72,33 @@ fn an_optimized_study_goes_on_where_it_was_cut_short() {
         assert_eq!(row["solved"]["optimization"]["evaluations"], 4);
     }
     let table = std::fs::read_to_string(whole.join("study.csv")).unwrap();
-    assert_eq!((table.lines().count(), table.lines().next().unwrap().split(',').count()), (3, 14));
+    assert_eq!((table.lines().count(), table.lines().next().unwrap().split(',').count()), (3, 15));
     let page = std::fs::read_to_string(whole.join("report.html")).unwrap();
     for part in ["figures/objective.svg", "figures/surfaces_1.svg", "row_002/report.html", "study.csv", "rows.json"] {
         assert!(page.contains(&format!("href=\"{part}\"")) && whole.join(part).exists(), "{part}");
     }
+    // Killed within its second row, whose journal answers: no evaluation is made again.
+    let rows_file = whole.join("rows.json");
+    let kept = std::fs::read_to_string(&rows_file).unwrap();
+    let mut first: Value = serde_json::from_str(&kept).unwrap();
+    first.as_array_mut().unwrap().truncate(1);
+    std::fs::write(&rows_file, first.to_string()).unwrap();
+    let resumed = json(SIGNORINI, &["study", "--resume", text(&whole), "--json"]);
+    assert_eq!(outcomes(&resumed), outcomes(&expected));
+    assert_eq!(kit::read_json(&whole.join("row_002/report.json"))["resumed_evaluations"], 4);
     // More evaluations than the limit that ended the rows.
     let longer = json(CONTACT, &["study", "--resume", text(&whole), "--max-evaluations", "6", "--json"]);
     let at_once =
         ["study", "--mesh", "3", "--vary", "friction=0,0.3", "--optimize", "--max-evaluations", "6", "--json"];
     assert_eq!(outcomes(&longer), outcomes(&json(SIGNORINI, &at_once)));
     refused(SIGNORINI, &["--resume", text(&whole)], &["holds a study", "study --resume"]);
+    let kept = std::fs::read(&rows_file).unwrap();
+    refused(SIGNORINI, &["study", "--resume", text(&whole), "--max-evaluations", "2"], &["at least the 6"]);
+    assert_eq!(std::fs::read(&rows_file).unwrap(), kept);
+    refused(SIGNORINI, &["recheck", text(&whole)], &["holds a study"]);
+    let row = whole.join("row_002");
+    let scene = row.join("scene.toml");
+    assert_eq!(json(CONTACT, &[text(&scene), "recheck", text(&row), "--json"])["agrees"], true);
 }
 
 /// What the error of a workshop does: none at 0; with a seed, the same as of `evaluate`.
@@ -98,6 +114,9 @@ fn heights_that_are_off_change_the_pressure() {
         assert_eq!(json(SIGNORINI, &off)["objective"], value(row));
         assert!((value(row) / value(0) - 1.0).abs() > 1e-6);
     }
+    let fixed = ["study", "--mesh", "4", "--json", "--height-error", "0.1", "--vary", "seed=2,3"];
+    let fixed = json(SIGNORINI, &fixed);
+    assert!((0..2).all(|row| rows(&fixed)[row]["solved"]["objective"] == value(4 + row)));
     let folder = kit::scratch();
     let file = folder.path().join("half.json");
     let heights: Vec<f64> = (0..36).map(|control| if control < 18 { 80.0 } else { 81.0 }).collect();
@@ -111,6 +130,8 @@ fn heights_that_are_off_change_the_pressure() {
         (&["study", "--vary", "height-error=0,1", "--optimize"][..], "without --optimize"),
         (&["study", "--vary", "seed=1,2"], "height-error"),
         (&["evaluate", "--height-error", "-1"], "≥ 0"),
+        (&["evaluate", "--seed", "1"], "--height-error"),
+        (&["study", "--height-error", "0.1", "--vary", "friction=0", "--optimize"], "without --optimize"),
         (&["--height-error", "1"], "with evaluate"),
     ] {
         refused(SIGNORINI, arguments, &[words]);
@@ -131,6 +152,54 @@ fn what_makes_no_study_is_refused() {
     );
     let many = ["study", "--vary", "friction=0:1:100", "--vary", "load-factor=1:2:100"];
     refused(SIGNORINI, &many, &["--vary", "10000 rows", "at most 1000"]);
+}
+
+/// A folder of the name of the command is none of a scene; what failed is tried again; an edited plan is checked.
+#[test]
+fn a_study_in_a_folder_of_any_name_tries_failed_rows_again() {
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("study");
+    let run = |arguments: &[&str]| {
+        let output = kit::command(CONTACT, arguments).current_dir(scratch.path()).output().unwrap();
+        (output.status.code(), errors(&output), String::from_utf8_lossy(&output.stdout).into_owned())
+    };
+    json(SIGNORINI, &["study", "--mesh", "2", "--vary", "friction=0,0.3", "--json", "--out", text(&folder)]);
+    let rows_file = folder.join("rows.json");
+    let mut rows: Value = kit::read_json(&rows_file);
+    let whole = rows.clone();
+    rows[0].as_object_mut().unwrap().remove("solved");
+    rows[0]["failed"] = "no space left".into();
+    std::fs::write(&rows_file, rows.to_string()).unwrap();
+    let (status, said, _) = run(&["study", "--resume", "study", "--json"]);
+    assert_eq!(status, Some(0), "{said}");
+    assert_eq!(kit::read_json(&rows_file)[0]["solved"], whole[0]["solved"]);
+    for (plan, words) in [
+        (
+            r#"{"vary":[{"name":"friction","values":["x"]}],"fixed":[],"optimize":false,"same_start":false}"#,
+            "--friction",
+        ),
+        (r#"{"vary":[{"name":"friction","values":[]}],"fixed":[],"optimize":false,"same_start":false}"#, "0 rows"),
+        ("{}", "study.json"),
+    ] {
+        std::fs::write(folder.join("study.json"), plan).unwrap();
+        let (status, said, _) = run(&["study", "--resume", "study"]);
+        assert!(status == Some(2) && said.contains(words), "{said}");
+    }
+}
+
+/// A shape at a bound of the volume has another volume of bricks on every mesh; it can still be looked at.
+#[test]
+fn an_optimum_is_shown_on_other_meshes() {
+    let scratch = kit::scratch();
+    let out = scratch.path().join("run");
+    let run = json(SIGNORINI, &["--mesh", "4", "--max-evaluations", "4", "--json", "--out", text(&out)]);
+    assert!(run["evaluations"] == 4);
+    let controls = out.join("controls.json");
+    for mesh in ["3", "5", "7"] {
+        json(SIGNORINI, &["evaluate", "--mesh", mesh, "--controls", text(&controls), "--json"]);
+        let files = scratch.path().join(mesh);
+        json(SIGNORINI, &["export", "--mesh", mesh, "--run", text(&out), "--csv", "--out", text(&files), "--json"]);
+    }
 }
 
 /// What the program says when a run has not ended can be typed as it stands, without a scene.

@@ -14,6 +14,9 @@ use nonsmooth::{Matrix, Polyhedron, Vector};
 /// Relative violation that still counts as admissible: rounding in user files and in the optimizer's steps.
 const ADMISSIBLE: f64 = 1e-9;
 
+/// The last rows are the volumes under the surface and of the bricks.
+const VOLUME_ROWS: usize = 2;
+
 /// U as a polyhedron, with words for its rows.
 #[derive(Debug, Clone)]
 pub struct AdmissibleSet {
@@ -119,15 +122,26 @@ impl AdmissibleSet {
     /// # Errors
     /// [`SceneError::NotAdmissible`] naming the most violated bound or row, its value and what is allowed.
     pub fn check(&self, controls: &Vector) -> Result<(), SceneError> {
-        if self.polyhedron.violation(controls) <= ADMISSIBLE {
-            return Ok(());
-        }
+        self.check_some(controls, self.row_names.len())
+    }
+
+    /// Refuses controls whose heights or slopes are outside U. The volume of the bricks is another one on every mesh: a shape that
+    /// attains its bound on one of them may be shown on all.
+    ///
+    /// # Errors
+    /// As [`AdmissibleSet::check`].
+    pub fn check_shape(&self, controls: &Vector) -> Result<(), SceneError> {
+        self.check_some(controls, self.row_names.len() - VOLUME_ROWS)
+    }
+
+    /// Refuses controls outside the bounds and the first rows of U.
+    fn check_some(&self, controls: &Vector, rows: usize) -> Result<(), SceneError> {
         let excess = |value: f64, lower: f64, upper: f64| {
             (lower - value).max(value - upper) / lower.abs().max(upper.abs()).max(f64::MIN_POSITIVE)
         };
-        let expressions = self.expressions(controls).into_iter();
+        let expressions = self.expressions(controls).into_iter().take(controls.len() + rows);
         let worst = expressions.max_by(|a, b| excess(a.1, a.2, a.3).total_cmp(&excess(b.1, b.2, b.3)));
-        match worst {
+        match worst.filter(|worst| excess(worst.1, worst.2, worst.3) > ADMISSIBLE) {
             Some((constraint, value, lower, upper)) => {
                 Err(SceneError::NotAdmissible { constraint, value, allowed: format!("[{lower}, {upper}]") })
             }

@@ -6,12 +6,14 @@ pub mod comparison;
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{SolvedShape, optimized_objective};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{COMPARED, Folder, REPORT, RunKind, json, printed_with_files, resume_command};
+use crate::commands::folder::{COMPARED, Folder, REPORT, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS};
 use crate::commands::optimize::run::{OptimizationRun, begin, optimize};
 use crate::commands::optimize::{interruption, report};
+use crate::commands::register::REGISTER;
 use crate::commands::report::files;
+use crate::commands::run_kind::RunKind;
 use contact::error::SceneError;
 use std::path::Path;
 
@@ -22,8 +24,9 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         let allowed = "a coefficient > 0 to compare with no friction at all";
         return Err(session.arguments.blame(SceneError::out_of_range("friction", 0, allowed)).into());
     }
+    let claimed = COMPARED.map(|part| format!("{part}/{REGISTER}"));
     let (folder, initial_controls) =
-        begin(&optimized_objective(&loaded.case, &session.processes)?, loaded, None, &COMPARED, session)?;
+        begin(&optimized_objective(&loaded.case, &session.processes)?, loaded, None, (&claimed, 2), session)?;
     let folder = folder.as_ref();
     let continued = folder.map(|folder| resume_command(folder.folder().path(), RunKind::Comparison));
     let (as_json, parts) = (session.arguments.json, parts(loaded, folder)?);

@@ -72,7 +72,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         Some(folder) => KeptRun::open(folder, &case.scene)?.shape(options.evaluation)?,
         None => start(&problem, loaded, arguments.controls.as_deref())?,
     };
-    problem.admissible.check(&controls)?;
+    problem.admissible.check_shape(&controls)?;
     let mut files = vec![OutputFile {
         name: "controls.json",
         content: json(controls.as_slice())?.into_bytes(),

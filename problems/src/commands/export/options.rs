@@ -1,6 +1,6 @@
 //! The options of `export`.
 
-use crate::commands::failure::Failure;
+use crate::commands::failure::{Failure, refused};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -67,7 +67,6 @@ impl ExportOptions {
     /// # Errors
     /// [`Failure::Input`] naming the option.
     pub fn check(&self, exporting: bool, has_folder: bool, has_controls: bool) -> Result<(), Failure> {
-        let refused = |option: &str, allowed: &str| Err(Failure::Input(format!("{option} is allowed {allowed}")));
         for (option, given) in [
             ("--run", self.run.is_some()),
             ("--evaluation", self.evaluation.is_some()),

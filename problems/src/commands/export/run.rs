@@ -3,11 +3,12 @@
 use crate::commands::controls;
 use crate::commands::export::Origin;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{COMPARED, REPORT, RunKind, SCENE, START};
+use crate::commands::folder::{COMPARED, REPORT, SCENE, START, run_kind};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::stages::stages;
 use crate::commands::register::names;
+use crate::commands::run_kind::RunKind;
 use contact::error::SceneError;
 use contact::scene::Scene;
 use nonsmooth::journal::{Entry, RecordedAnswer};
@@ -48,7 +49,7 @@ impl KeptRun {
     /// [`Failure::Input`] for a folder without an optimization, for a comparison, and for a run of other surfaces.
     pub fn open(folder: &Path, scene: &Scene) -> Result<Self, Failure> {
         let refused = |reason: String| Err(Failure::Input(format!("--run {}: {reason}", folder.display())));
-        let kind = RunKind::of(&names(folder));
+        let kind = run_kind(&names(folder));
         if kind != RunKind::Optimization {
             let parts = if kind == RunKind::Study { ["row_001", "row_002"] } else { COMPARED };
             let parts = parts.map(|part| folder.join(part).display().to_string());

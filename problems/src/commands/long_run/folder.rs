@@ -2,10 +2,11 @@
 
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, GRIDS, REPORT, RunKind, SCENE, START, file_error, json, resume_command};
+use crate::commands::folder::{Folder, GRIDS, REPORT, SCENE, START, file_error, json, resume_command, run_kind};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::stages;
-use crate::commands::register::{JOURNAL, REGISTER, names};
+use crate::commands::register::{JOURNAL, names};
+use crate::commands::run_kind::RunKind;
 use contact::error::SceneError;
 use nonsmooth::{Journal, JournalError, Journaled, NonsmoothObjective, Vector};
 use scene_file::{CounterSection, OptimizerSection, OutputSection, SceneFile, StartSection, WantedSection};
@@ -82,7 +83,7 @@ impl RunFolder {
             let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
             return Err(file_error(folder, reason));
         }
-        let found = RunKind::of(&names(folder));
+        let found = run_kind(&names(folder));
         if found != kind {
             let command = resume_command(folder, found);
             return Err(file_error(folder, format!("holds {}: continue it with `{command}`", found.words())));
@@ -98,7 +99,8 @@ impl RunFolder {
         folder.join(START).exists() && folder.join(SCENE).exists()
     }
 
-    /// Begins a run in a folder, with its scene and its initial controls. `parts` are the folders of the runs of a comparison or of a study.
+    /// Begins a run in a folder, with its scene and its initial controls. `claimed` are further files that will be written there; they
+    /// say what kind of run it is.
     ///
     /// # Errors
     /// As [`Folder::create`].
@@ -106,11 +108,9 @@ impl RunFolder {
         folder: Folder,
         loaded: &LoadedScene,
         initial_controls: &Vector,
-        parts: &[&str],
+        claimed: &[String],
     ) -> Result<Self, Failure> {
-        for part in parts {
-            folder.claim(&format!("{part}/{}", REGISTER))?;
-        }
+        claimed.iter().try_for_each(|name| folder.claim(name))?;
         let identity = Identity::new(loaded, initial_controls.as_slice())?;
         let mut scene = loaded.file.clone();
         let copy = |file: &mut String, name: &str| {
@@ -212,18 +212,18 @@ impl RunFolder {
         let found = journal.map_or("", |journal| &journal.identity);
         let version =
             serde_json::from_str(found).map_or_else(|_| expected.version.clone(), |Written { version }| version);
-        if version == expected.version {
-            return expected.text();
-        }
-        if !self.new_version {
+        if version != expected.version && !self.new_version {
             let here = &expected.version;
             let words = format!(
                 "the run was begun by version {version} of the program, this is version {here}; --new-version continues it"
             );
             return Err(file_error(&self.place(stage).join(JOURNAL), words).into());
         }
-        let same =
-            serde_json::from_str(found).is_ok_and(|found: Identity| found == Identity { version, ..expected.clone() });
+        // A build that has other fields writes the same identity in another way.
+        let same = serde_json::from_str(found).is_ok_and(|mut found: Identity| {
+            (found.scene.optimizer, found.scene.output) = (OptimizerSection::default(), OutputSection::default());
+            found == Identity { version, ..expected.clone() }
+        });
         if same { Ok(found.to_owned()) } else { expected.text() }
     }
 

@@ -8,12 +8,13 @@ mod vtk_history;
 
 use crate::commands::contact_objective::{SolvedShape, checks};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, REPORT, RunKind, json, printed_with_files, resume_command};
+use crate::commands::folder::{Folder, REPORT, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS, interrupted};
 use crate::commands::optimize::run::{OptimizationRun, optimize};
 use crate::commands::optimize::summary::{page, stages_page, summary};
 use crate::commands::report::files;
+use crate::commands::run_kind::RunKind;
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {

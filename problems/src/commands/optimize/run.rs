@@ -81,7 +81,7 @@ pub fn optimize(
 ) -> Result<OptimizationRun, Failure> {
     let stages = stages(&loaded.case);
     let first = optimized_objective(&stages[0].case, &session.processes)?;
-    let (folder, mut controls) = begin(&first, loaded, given, &[], session)?;
+    let (folder, mut controls) = begin(&first, loaded, given, (&[], 1), session)?;
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
     }
@@ -131,7 +131,7 @@ fn random_start(objective: &ContactObjective, start: &Vector, step: f64, seed: u
 
 /// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is continued,
 /// else those given, else those that the command line or the scene names. Everything is checked before the folder is touched.
-/// `parts` are the folders of the runs of a comparison or of a study.
+/// `claimed` are further files that will be written there; so many runs write theirs at once.
 ///
 /// # Errors
 /// [`Failure::Input`] for controls outside the admissible set; any [`Failure`] of the folder.
@@ -139,22 +139,24 @@ pub fn begin(
     objective: &ContactObjective,
     loaded: &LoadedScene,
     given: Option<&Vector>,
-    parts: &[&str],
+    (claimed, runs): (&[String], u64),
     session: &Session<'_>,
 ) -> Result<(Option<RunFolder>, Vector), Failure> {
     let (shape, arguments) = (objective.solver(), session.arguments);
     let path = loaded.case.output.folder.as_deref().map(Path::new);
-    let bytes = room(&stages(&loaded.case)) * parts.len().max(1) as u64;
+    let bytes = room(&stages(&loaded.case)) * runs;
     if let Some(path) = path.filter(|path| arguments.resume.is_some() && RunFolder::is_one(path)) {
         let folder = RunFolder::reopen(Folder::reopen(path, bytes)?, loaded, arguments.new_version)?;
         shape.problem().admissible.check(folder.initial_controls())?;
         let controls = folder.initial_controls().clone();
         return Ok((Some(folder), controls));
     }
-    let load =
-        || controls::load(shape.problem(), &loaded.case, ("--start-controls", arguments.start_controls.as_deref()));
+    let load = || {
+        let file = (controls::START_OPTION, arguments.start_controls.as_deref());
+        controls::load(shape.problem(), &loaded.case, file)
+    };
     let controls = given.cloned().map_or_else(load, Ok)?;
-    let begin = |path| RunFolder::begin(Folder::create(path, bytes, arguments.overwrite)?, loaded, &controls, parts);
+    let begin = |path| RunFolder::begin(Folder::create(path, bytes, arguments.overwrite)?, loaded, &controls, claimed);
     Ok((path.map(begin).transpose()?, controls))
 }
 

@@ -4,6 +4,7 @@ use crate::commands::arguments::Arguments;
 use crate::commands::contact_objective::SolvedShape;
 use crate::commands::evaluate::said;
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::output::pressure;
 use crate::commands::processes::Usage;
 use contact::contact_shape::SolverKind;
 use contact::cost::ContactAreas;
@@ -243,21 +244,24 @@ pub fn all_warnings(report: &Report, checks: &[Warning]) -> Vec<Warning> {
     own.chain(checks.iter().cloned()).collect()
 }
 
+/// Reduction of Θ from which on what is left of it is rounding.
+const MEANINGLESS_REDUCTION: f64 = 1e12;
+
 /// The one-page report.
 pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], arguments: &Arguments) -> String {
     let MeshRun { report, objective, .. } = last;
     let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
-    // A compliance may change its sign.
-    let ratio = Some(shapes[0].value / report.value).filter(|ratio| *ratio > 0.0);
+    // A compliance may change its sign, and a deviation may vanish up to rounding.
+    let ratio = Some(shapes[0].value / report.value).filter(|ratio| *ratio > 0.0 && *ratio < MEANINGLESS_REDUCTION);
     let reduction = ratio.map_or_else(|| "no ratio".into(), |ratio| format!("{ratio:.4} times"));
     let areas = contact_areas(last, shapes).map_or_else(String::new, |[start, end]| {
         format!("contact:     at the start {start}\n             at the end   {end}\n")
     });
     format!(
         "{}: {} of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}; objective in {}\n\
-         reduction:   {reduction}, peak pressure {:.1} -> {:.1} MPa\n{areas}{report}\
+         reduction:   {reduction}, peak pressure {} -> {} MPa\n{areas}{report}\
          state:       relative residuals at the solution: {}\n\
          \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
          solver:      {}\n\
@@ -273,8 +277,8 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], argum
         scene.subdomains[2],
         scene.friction,
         objective.unit().replace(['{', '}'], ""),
-        shapes[0].peak_pressure,
-        shapes[1].peak_pressure,
+        pressure(shapes[0].peak_pressure),
+        pressure(shapes[1].peak_pressure),
         at_solution.residuals,
         at_solution.kink.smallest_margin,
         at_solution.kink.weakly_active,

@@ -46,12 +46,16 @@ pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Res
 
 /// Heights of the contact surface less their mean, with a caption; none for a shape without fields.
 fn heights(shape: &ShownShape<'_>) -> Option<(String, Vec<f64>)> {
-    let heights = &shape.fields.as_ref()?.bodies.first()?.block.upper;
+    Some(above_mean(&shape.caption, &shape.fields.as_ref()?.bodies.first()?.block.upper))
+}
+
+/// Heights less their mean, and a caption that tells the mean.
+pub fn above_mean(caption: &str, heights: &[f64]) -> (String, Vec<f64>) {
     // The mean height says little, and would hide the shape: contact holds the bodies.
     let mean = heights.iter().sum::<f64>() / heights.len() as f64;
     let rounding = f64::EPSILON * heights.len() as f64 * mean.abs();
     let above = |height: &f64| if (height - mean).abs() <= rounding { 0.0 } else { height - mean };
-    Some((format!("{}, mean height {mean:.2} mm", shape.caption), heights.iter().map(above).collect()))
+    (format!("{caption}, mean height {mean:.2} mm"), heights.iter().map(above).collect())
 }
 
 /// Heights of the contact surface of the lower body side by side on one scale; shapes without fields are left out.

@@ -6,14 +6,13 @@ pub const SKETCH: &str = "The bodies at the first shape with their bricks. Trian
 
 /// The pressure map.
 pub const PRESSURE: &str = "Contact pressure over the plan of the contact surface; a ring marks the peak. On one scale, equal colours are \
-    equal pressures: few colours mean an even pressure. On scales of their own, the unevenness that is left can be seen.";
+    equal pressures. On scales of their own, small differences can be seen.";
 
 /// The pressure map of a single shape.
 pub const PRESSURE_ALONE: &str = "Contact pressure over the plan of the contact surface; a ring marks the peak.";
 
 /// The line cuts.
-pub const CUTS: &str = "The same pressures along lines through the peak of each shape. A good optimum is flat where the start has its \
-    peak, and carries pressure where the start had none.";
+pub const CUTS: &str = "The same pressures along lines through the peak of each shape.";
 
 /// The status with friction.
 pub const STATUS: &str = "Open nodes carry no pressure. Sticking nodes hold by friction, slipping nodes slide against it. Arrows show the \
@@ -36,5 +35,5 @@ pub const SURFACE_MAP: &str = "The same heights from above. The lines join point
 
 /// The course.
 pub const COURSE: &str = "Every mark is an evaluation. Its shape says what became of it, its colour who proposed it. The line is the best \
-    value so far. Values worse than the start do not stretch the axis: they stand at the upper edge with an arrow and their value. No shape \
-    that carries the same total force can be below the dashed line.";
+    value so far. Values worse than the start do not stretch the axis: they stand at the upper edge with an arrow and their value. Where \
+    there is a dashed line, no shape that carries the same total force can be below it.";

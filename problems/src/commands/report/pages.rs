@@ -3,6 +3,7 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::output::pressure;
 use crate::commands::report::folder::Parts;
 use crate::commands::report::sections::{certificate, course, pictures, states};
 use contact::equilibrium::StageSeconds;
@@ -16,15 +17,15 @@ pub fn optimization(parts: Parts, runs: &[MeshRun], last: &MeshRun, shapes: &[So
     } else {
         "It is the best shape found; the run ended without a proof of optimality."
     };
+    // A compliance may change its sign.
+    let ratio = Some(shapes[0].value / report.value).filter(|ratio| *ratio > 0.0);
+    let times = ratio.map_or_else(String::new, |ratio| format!(", {ratio:.3} times less"));
     let lead = format!(
-        "From the start to the shape found, Θ goes from {:.4e} to {:.4e}, {:.3} times less; the peak pressure from {:.1} to {:.1} MPa, \
-         after {}. \
-         {confirmed}",
+        "From the start to the shape found, Θ goes from {:.4e} to {:.4e}{times}; the peak pressure from {} to {} MPa, after {}. {confirmed}",
         shapes[0].value,
         report.value,
-        shapes[0].value / report.value,
-        shapes[0].peak_pressure,
-        shapes[1].peak_pressure,
+        pressure(shapes[0].peak_pressure),
+        pressure(shapes[1].peak_pressure),
         evaluations(runs)
     );
     let sections = vec![
@@ -44,8 +45,12 @@ pub fn optimization(parts: Parts, runs: &[MeshRun], last: &MeshRun, shapes: &[So
 pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShape) -> Page {
     let counts = shape.state.forces.counts();
     let lead = format!(
-        "Θ = {:.10e}, peak pressure {:.2} MPa; {} contact nodes open, {} stick, {} slip.",
-        shape.value, shape.peak_pressure, counts.open, counts.stick, counts.slip
+        "Θ = {:.10e}, peak pressure {} MPa; {} contact nodes open, {} stick, {} slip.",
+        shape.value,
+        pressure(shape.peak_pressure),
+        counts.open,
+        counts.stick,
+        counts.slip
     );
     let sections = vec![
         parts.numbers,

@@ -9,6 +9,10 @@ pub fn pictures(blocks: Vec<Block>) -> Section {
     Section::new("Pictures", blocks)
 }
 
+/// Rows that objectives without a least value do not have.
+const LEAST: &str = "least value for this total force";
+const OVER_LEAST: &str = "Θ over that";
+
 /// Contact states side by side: the bound of the objective, and residuals that say how far the numbers can be trusted.
 pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> Section {
     let row = |name: &str, cell: &dyn Fn(&SolvedShape) -> String| -> Vec<String> {
@@ -17,12 +21,10 @@ pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> 
     let force = |shape: &SolvedShape| shape.state.forces.total_normal_force();
     let bound = |shape: &SolvedShape| objective.lower_bound(force(shape));
     let unknown = || "–".to_owned();
-    let rows = vec![
+    let mut rows = vec![
         row("objective Θ", &|shape| format!("{:.10e}", shape.value)),
-        row("least value for this total force", &|shape| {
-            bound(shape).map_or_else(unknown, |bound| format!("{bound:.4e}"))
-        }),
-        row("Θ over that", &|shape| {
+        row(LEAST, &|shape| bound(shape).map_or_else(unknown, |bound| format!("{bound:.4e}"))),
+        row(OVER_LEAST, &|shape| {
             let above_zero = bound(shape).filter(|bound| *bound > 0.0);
             above_zero.map_or_else(unknown, |bound| format!("{:.3}", shape.value / bound))
         }),
@@ -42,9 +44,14 @@ pub fn states(objective: &ContactObjective, shapes: &[(&str, &SolvedShape)]) -> 
         row("weakly active nodes", &|shape| shape.state.forces.kink.weakly_active.to_string()),
     ];
     let head = std::iter::once("").chain(shapes.iter().map(|(label, _)| *label));
-    let words = "Residuals are relative to the load. No shape that carries the same total force over the same contact nodes \
-                 can be below the least value.";
-    Section::new("States", vec![Block::table(head, rows), Block::Text(words.into())])
+    let mut words = "Residuals are relative to the load.".to_owned();
+    if shapes.iter().any(|(_, shape)| bound(shape).is_some()) {
+        words +=
+            " No shape that carries the same total force over the same contact nodes can be below the least value.";
+    } else {
+        rows.retain(|row| row[0] != LEAST && row[0] != OVER_LEAST);
+    }
+    Section::new("States", vec![Block::table(head, rows), Block::Text(words)])
 }
 
 /// The course of the optimization.

@@ -3,9 +3,11 @@
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, STUDY};
 use crate::commands::loaded_scene::LoadedScene;
+use crate::commands::report::bodies::above_mean;
 use crate::commands::report::sections;
 use crate::commands::report::stamp::stamp;
-use crate::commands::study::{Outcome, Picture, Row, Solved, StudyJson, row_folder, values};
+use crate::commands::study::row::{Outcome, Picture, Row, Solved};
+use crate::commands::study::table::{StudyJson, row_folder, values};
 use figures::page::{Block, File, Page, Section};
 use figures::{ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces};
 
@@ -142,6 +144,7 @@ fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureEr
                 None => curves.push(Curve { name, points: vec![point] }),
             }
         }
+        curves.iter_mut().for_each(|curve| curve.points.sort_by(|a, b| a.0.total_cmp(&b.0)));
         let across = study.vary()[across].name();
         Lines {
             name: name.to_owned(),
@@ -156,11 +159,15 @@ fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureEr
     if shown.is_empty() {
         return vec![];
     }
-    vec![
-        figure("objective", "Θ", "", |solved| solved.objective),
+    let mut figures = vec![
         figure("peak_pressure", "peak pressure", "MPa", |solved| solved.peak_pressure),
         figure("contact_area", "contact area", "mm²", |solved| solved.contact_area),
-    ]
+    ];
+    // Values of different objectives have different units.
+    if study.vary().iter().all(|varied| varied.name() != "objective") {
+        figures.insert(0, figure("objective", "Θ", "", |solved| solved.objective));
+    }
+    figures
 }
 
 fn caption(row: &Row) -> String {
@@ -188,13 +195,8 @@ fn pressures(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, 
 fn surfaces(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {
     let panel = |Shown { row, solved }: &Shown<'_>| {
         let Picture { counts, size, heights, .. } = &solved.picture;
-        let mean = heights.iter().sum::<f64>() / heights.len() as f64;
-        SurfacePanel {
-            caption: format!("{}, mean height {mean:.2} mm", caption(row)),
-            counts: *counts,
-            size: *size,
-            heights: heights.iter().map(|height| height - mean).collect(),
-        }
+        let (caption, heights) = above_mean(&caption(row), heights);
+        SurfacePanel { caption, counts: *counts, size: *size, heights }
     };
     Surfaces {
         name,

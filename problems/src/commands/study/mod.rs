@@ -6,78 +6,66 @@
 //! DIR/row_001, row_002, …                  with --optimize: the optimization of each row
 //! ```
 
-mod row;
-mod table;
-mod varied;
-
-pub use row::{Outcome, Picture, Row, Solved};
-pub use varied::Varied;
-use varied::{HEIGHT_ERROR, SEED};
+mod plan;
+pub mod row;
+pub mod table;
+pub mod varied;
 
 use crate::commands::contact_objective::objective_among;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, REPORT, RunKind, STUDY, json, printed_with_files, resume_command};
+use crate::commands::folder::{Folder, REPORT, STUDY, file_error, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS, interrupted, watch_interrupts};
 use crate::commands::optimize::run::begin;
+use crate::commands::register::REGISTER;
 use crate::commands::report::study::write_study;
+use crate::commands::run_kind::RunKind;
 use contact::error::SceneError;
 use nonsmooth::Vector;
-use serde::{Deserialize, Serialize};
+use plan::Plan;
+use row::Row;
+use scene_file::read_text;
+use serde::Deserialize;
 use std::path::Path;
-pub use table::{StudyJson, values};
+use table::{StudyJson, row_folder};
 
 /// The rows of a study.
 const ROWS: &str = "rows.json";
-/// Most rows.
-const MAX_ROWS: usize = 1000;
-
-/// The folder of a row, by its number from 1.
-pub fn row_folder(number: usize) -> String {
-    format!("row_{number:03}")
-}
-
-/// What a study varies.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
-    /// The options with their values.
-    vary: Vec<Varied>,
-    /// Whether every row is optimized.
-    optimize: bool,
-    /// Whether all rows begin at the controls of the study, or each at the start of its scene.
-    same_start: bool,
-}
+/// Largest file of rows, bytes.
+const LARGEST_FILE: u64 = 1 << 30;
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let path = loaded.case.output.folder.as_deref().map(Path::new);
     let plan = match path.filter(|_| session.arguments.resume.is_some()) {
-        Some(folder) => read(&folder.join(STUDY))?,
-        None => stated(session)?,
+        Some(folder) => read::<Plan>(&folder.join(STUDY))?.checked()?,
+        None => Plan::stated(session.arguments)?,
     };
     let combinations = varied::combinations(&plan.vary);
-    let parts: Vec<String> = (1..=combinations.len()).map(row_folder).collect();
-    let (folder, controls) = started(loaded, session, &plan, &parts)?;
+    let (folder, controls) = started(loaded, session, &plan, combinations.len())?;
     let folder = folder.as_ref();
     watch_interrupts(session.processes.is_alone());
-    let mut rows: Vec<Row> = kept(folder, &combinations, session)?;
-    let begin_rows = rows.len();
+    let mut rows: Vec<Row> = kept(folder, &combinations)?;
     let mut cut = None;
-    for (options, part) in combinations.iter().zip(&parts).skip(begin_rows) {
-        session.status.begin(format!("row {} of {}: ", rows.len() + 1, combinations.len()));
-        let out = folder.filter(|_| plan.optimize).map(|folder| folder.folder().path().join(part));
+    for (index, options) in combinations.iter().enumerate() {
+        if rows.get(index).is_some_and(|row| !row.is_to_be_continued(session.arguments.max_evaluations.is_some())) {
+            continue;
+        }
+        session.status.begin(format!("row {} of {}: ", index + 1, combinations.len()));
+        let out = folder.filter(|_| plan.optimize).map(|folder| folder.folder().path().join(row_folder(index + 1)));
         let start = plan.same_start.then_some(&controls);
         let row = match cut_short(session, loaded) {
-            None => row::computed(loaded, options, (plan.optimize, start, out.as_deref()), session)?,
+            None => row::computed(loaded, (options, &plan.fixed), (plan.optimize, start, out.as_deref()), session)?,
             Some(reason) => Err(reason),
         };
         match row {
-            Ok(row) => rows.push(row),
             Err(reason) => {
                 cut = Some(reason);
                 break;
             }
+            Ok(row) if index < rows.len() => rows[index] = row,
+            Ok(row) => rows.push(row),
         }
         if let Some(folder) = folder {
             folder.folder().write(ROWS, json(&rows)?)?;
@@ -87,41 +75,32 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     finished(loaded, session, folder, &study, cut)
 }
 
-/// The study that the command line states.
-fn stated(session: &Session<'_>) -> Result<Plan, Failure> {
-    let arguments = session.arguments;
-    let mut names: Vec<&str> = arguments.vary.iter().map(Varied::name).collect();
-    names.sort_unstable();
-    if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
-        return Err(Failure::Input(format!("--vary {} is allowed once", pair[0])));
-    }
-    let varies = |name: &str| names.contains(&name);
-    if varies(HEIGHT_ERROR) && arguments.optimize {
-        return Err(Failure::Input(format!("--vary {HEIGHT_ERROR} is allowed without --optimize")));
-    }
-    if varies(SEED) && !varies(HEIGHT_ERROR) {
-        return Err(Failure::Input(format!("--vary {SEED} is allowed with --vary {HEIGHT_ERROR}=VALUES")));
-    }
-    let count = arguments.vary.iter().fold(1_usize, |count, varied| count.saturating_mul(varied.values().len()));
-    if count > MAX_ROWS {
-        return Err(SceneError::out_of_range("--vary", format!("{count} rows"), format!("at most {MAX_ROWS}")).into());
-    }
-    let same_start = arguments.controls.is_some() || arguments.start_controls.is_some();
-    Ok(Plan { vary: arguments.vary.clone(), optimize: arguments.optimize, same_start })
-}
-
 /// The folder of the study, if one is asked for, and the controls that it names.
 fn started(
     loaded: &LoadedScene,
     session: &Session<'_>,
     plan: &Plan,
-    parts: &[String],
+    count: usize,
 ) -> Result<(Option<RunFolder>, Vector), Failure> {
-    let parts: Vec<&str> = if plan.optimize { parts.iter().map(String::as_str).collect() } else { vec![] };
+    let rows = (1..=if plan.optimize { count } else { 0 }).map(|number| format!("{}/{REGISTER}", row_folder(number)));
+    // The plan is claimed first: it says what kind of run the folder holds. Every row proves its own room.
+    let claimed: Vec<String> = std::iter::once(STUDY.to_owned()).chain(rows).collect();
     let objective = objective_among(&loaded.case, &session.processes)?;
     let load = |file| controls::load(objective.solver().problem(), &loaded.case, ("--controls", Some(file)));
     let given = session.arguments.controls.as_deref().map(load).transpose()?;
-    let (folder, controls) = begin(&objective, loaded, given.as_ref(), &parts, session)?;
+    let (folder, controls) = begin(&objective, loaded, given.as_ref(), (&claimed, 1), session)?;
+    let optimizer = &loaded.case.optimizer;
+    if plan.optimize && !optimizer.continuation.is_empty() && plan.vary.iter().any(|varied| varied.name() == "mesh") {
+        folder.iter().for_each(RunFolder::abandon);
+        return Err(Failure::Input("--vary mesh is allowed without --continuation, which names the meshes".into()));
+    }
+    if let Some(folder) = folder.as_ref().filter(|folder| folder.is_resumed()) {
+        let most = rows_of(folder)?.iter().filter_map(Row::evaluations).max().unwrap_or(0);
+        if optimizer.max_evaluations < most {
+            let allowed = format!("at least the {most} evaluations that a row has");
+            return Err(SceneError::out_of_range("--max-evaluations", optimizer.max_evaluations, allowed).into());
+        }
+    }
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
         folder.folder().write(STUDY, json(plan)?)?;
@@ -129,19 +108,20 @@ fn started(
     Ok((folder, controls))
 }
 
-/// The rows that a study which is continued has. A larger limit of evaluations takes up the optimizations that a limit has ended.
-fn kept(folder: Option<&RunFolder>, combinations: &[Vec<String>], session: &Session<'_>) -> Result<Vec<Row>, Failure> {
+/// The rows that a study which is continued has.
+fn kept(folder: Option<&RunFolder>, combinations: &[Vec<String>]) -> Result<Vec<Row>, Failure> {
     let Some(folder) = folder.filter(|folder| folder.is_resumed()) else { return Ok(Vec::new()) };
-    let path = folder.folder().path().join(ROWS);
-    let mut rows: Vec<Row> = if path.exists() { read(&path)? } else { Vec::new() };
-    if session.arguments.max_evaluations.is_some() {
-        let whole = rows.iter().position(Row::ended_at_a_limit).unwrap_or(rows.len());
-        rows.truncate(whole);
-    }
+    let rows = rows_of(folder)?;
     match rows.iter().zip(combinations).all(|(row, options)| row.options == *options) {
         true if rows.len() <= combinations.len() => Ok(rows),
-        _ => Err(Failure::Input(format!("{}: the rows are not those of {STUDY}", path.display()))),
+        _ => Err(file_error(&folder.folder().path().join(ROWS), format!("the rows are not those of {STUDY}")).into()),
     }
+}
+
+/// The rows in the folder of a study.
+fn rows_of(folder: &RunFolder) -> Result<Vec<Row>, Failure> {
+    let path = folder.folder().path().join(ROWS);
+    if path.exists() { read(&path) } else { Ok(Vec::new()) }
 }
 
 /// Why no further row may be begun, if so.
@@ -182,7 +162,6 @@ fn finished(
 
 /// A JSON file of the study.
 fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<T, Failure> {
-    let failed = |reason: String| Failure::Input(format!("{}: {reason}", path.display()));
-    let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
-    serde_json::from_str(&text).map_err(|error| failed(error.to_string()))
+    let text = read_text(path, LARGEST_FILE)?;
+    serde_json::from_str(&text).map_err(|error| file_error(path, error).into())
 }

@@ -1,13 +1,13 @@
 //! One row of a study.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::{ContactObjective, SolvedShape, objective_among};
+use crate::commands::contact_objective::{ContactObjective, SolvedShape, checks, objective_among};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
-use crate::commands::study::varied::options;
+use crate::commands::study::plan::options;
 use contact::equilibrium::{ContactStatus, StatusCounts};
 use nonsmooth::{StateSolver, Vector};
 use serde::{Deserialize, Serialize};
@@ -53,6 +53,8 @@ pub struct Solved {
     pub controls: Vec<f64>,
     /// Where the row was optimized, how.
     pub optimization: Option<Optimized>,
+    /// Codes of what is implausible about the state, unless that is not checked.
+    pub warnings: Vec<String>,
     /// What the pictures show.
     pub picture: Picture,
 }
@@ -66,6 +68,8 @@ pub struct Optimized {
     pub peak_pressure_start: f64,
     /// Evaluations.
     pub evaluations: usize,
+    /// Evaluations on the mesh that took most.
+    pub most_evaluations: usize,
     /// How it ended.
     pub termination: String,
     /// Whether the shape is proved stationary.
@@ -88,25 +92,35 @@ pub struct Picture {
 }
 
 impl Row {
-    /// Whether an optimization ended at a limit.
-    pub fn ended_at_a_limit(&self) -> bool {
-        matches!(&self.outcome, Outcome::Solved(solved) if solved.optimization.as_ref().is_some_and(|run| run.can_continue))
+    /// Evaluations on the mesh that took most, if the row was optimized.
+    pub fn evaluations(&self) -> Option<usize> {
+        let Outcome::Solved(solved) = &self.outcome else { return None };
+        solved.optimization.as_ref().map(|run| run.most_evaluations)
+    }
+
+    /// Whether a study that is continued computes it again: it failed, or, where there is a new limit, its optimization ended at the old
+    /// one.
+    pub fn is_to_be_continued(&self, new_limit: bool) -> bool {
+        match &self.outcome {
+            Outcome::Failed(_) => true,
+            Outcome::Solved(solved) => new_limit && solved.optimization.as_ref().is_some_and(|run| run.can_continue),
+        }
     }
 }
 
-/// Computes a row: the scene with some options, at controls that are given or at its own start; optimized if asked for, in a folder
+/// Computes a row: the scene with its options and those that all rows have, at controls that are given or at its own start; optimized if asked for, in a folder
 /// if there is one. The inner error says why the row was cut short.
 ///
 /// # Errors
-/// [`Failure`] of a folder; failures of the scene and of its solver are the row's outcome.
+/// [`Failure::Incomplete`] if files of the row could not be written; every other failure is the row's outcome.
 pub fn computed(
     loaded: &LoadedScene,
-    words: &[String],
+    (words, fixed): (&[String], &[String]),
     (optimized, start, out): (bool, Option<&Vector>, Option<&Path>),
     session: &Session<'_>,
 ) -> Result<Result<Row, String>, Failure> {
     let clock = Instant::now();
-    let part = options(words).map_err(Failure::Input).and_then(|options| {
+    let part = options(&[words, fixed].concat()).and_then(|options| {
         let mut file = options.apply(loaded.file.clone())?;
         file.output.folder = out.map(|path| path.display().to_string());
         let part = loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?;
@@ -120,6 +134,8 @@ pub fn computed(
     let outcome = match outcome {
         Ok(Ok(solved)) => Outcome::Solved(Box::new(solved)),
         Ok(Err(reason)) => return Ok(Err(reason)),
+        // Its files could not be written.
+        Err(failure @ Failure::Incomplete { .. }) => return Err(failure),
         Err(failure) => Outcome::Failed(failure.to_string()),
     };
     Ok(Ok(Row { options: words.to_vec(), outcome, seconds: clock.elapsed().as_secs_f64() }))
@@ -137,12 +153,12 @@ fn evaluated(
         Some(start) => {
             let expected = objective.solver().control_dimension();
             controls::check_count(start.len(), expected, "--controls")?;
-            objective.solver().problem().admissible.check(start)?;
+            objective.solver().problem().admissible.check_shape(start)?;
             start.clone()
         }
         None => controls::load(objective.solver().problem(), &part.case, ("--controls", None))?,
     };
-    solved(&objective, &SolvedShape::at(&objective, &controls::as_made(controls, options))?)
+    solved(&objective, &SolvedShape::at(&objective, &controls::as_made(controls, options))?, session)
 }
 
 /// The optimum, or why the run was cut short.
@@ -160,20 +176,22 @@ fn optimum(
     }
     let (_, [first, last]) = report(&run, part, session, None)?;
     let chosen = run.chosen().ok_or_else(|| Failure::computation("no mesh was begun"))?;
+    let evaluations = || run.mesh_runs.iter().map(|run| run.report.counts.evaluations);
     let optimization = Optimized {
         objective_start: first.value,
         peak_pressure_start: first.peak_pressure,
-        evaluations: run.mesh_runs.iter().map(|run| run.report.counts.evaluations).sum(),
+        evaluations: evaluations().sum(),
+        most_evaluations: evaluations().max().unwrap_or(0),
         termination: chosen.report.termination.to_string(),
         confirmed: chosen.report.termination.is_confirmed(),
         can_continue: run.can_continue(),
     };
     let objective = chosen.report.value;
-    Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved(&chosen.objective, &last)? }))
+    Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved(&chosen.objective, &last, session)? }))
 }
 
 /// What a row keeps of a solved shape.
-fn solved(objective: &ContactObjective, shape: &SolvedShape) -> Result<Solved, Failure> {
+fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'_>) -> Result<Solved, Failure> {
     let (problem, forces) = (objective.solver().problem(), &shape.state.forces);
     let closed = problem.boundary.points.iter().zip(&forces.status).filter(|(_, s)| **s != ContactStatus::Open);
     let [n1, n2, _] = problem.grid.nodes();
@@ -186,6 +204,10 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape) -> Result<Solved, F
         status: forces.counts(),
         controls: shape.controls.as_slice().to_vec(),
         optimization: None,
+        warnings: checks(objective, shape, session.arguments)?
+            .into_iter()
+            .map(|warning| warning.code.to_owned())
+            .collect(),
         picture: Picture {
             counts: [n1, n2],
             size: problem.grid.size,

@@ -1,7 +1,9 @@
 //! The table of a study as text, as comma-separated values and as JSON.
 
+use crate::commands::output::pressure;
+use crate::commands::study::plan::Plan;
 use crate::commands::study::row::{Outcome, Row, Solved};
-use crate::commands::study::{Plan, Varied};
+use crate::commands::study::varied::Varied;
 use serde::Serialize;
 use std::fmt;
 
@@ -57,6 +59,7 @@ impl StudyJson {
         if self.optimize {
             head.extend(["evaluations", "ended"].map(str::to_owned));
         }
+        head.push("warnings".to_owned());
         head
     }
 
@@ -74,14 +77,15 @@ impl StudyJson {
         let mut cells = Vec::new();
         let run = solved.optimization.as_ref();
         cells.extend(run.map(|run| format!("{:.6e}", run.objective_start)));
-        cells.extend(run.map(|run| format!("{:.1}", run.peak_pressure_start)));
+        cells.extend(run.map(|run| pressure(run.peak_pressure_start)));
         let status = &solved.status;
         cells.push(format!("{:.6e}", solved.objective));
-        cells.push(format!("{:.1}", solved.peak_pressure));
+        cells.push(pressure(solved.peak_pressure));
         cells.push(format!("{:.1}", solved.contact_area));
         cells.extend([status.open, status.stick, status.slip].map(|count| count.to_string()));
         cells.extend(run.map(|run| run.evaluations.to_string()));
         cells.extend(run.map(|run| if run.confirmed { "confirmed".into() } else { run.termination.clone() }));
+        cells.push(if solved.warnings.is_empty() { "–".into() } else { solved.warnings.join(", ") });
         cells
     }
 
@@ -89,18 +93,23 @@ impl StudyJson {
     pub fn csv(&self) -> String {
         let mut table: String =
             self.vary.iter().map(|varied| format!("{},", varied.name().replace('-', "_"))).collect();
-        table += "objective_start,peak_pressure_start,objective,peak_pressure,contact_area,total_normal_force,open,stick,slip,evaluations,confirmed,seconds,reason\n";
+        table += "objective_start,peak_pressure_start,objective,peak_pressure,contact_area,total_normal_force,open,stick,slip,evaluations,confirmed,warnings,seconds,reason\n";
         for row in &self.rows {
             table += &values(row).iter().map(|value| format!("{value},")).collect::<String>();
             table += &match &row.outcome {
                 Outcome::Failed(reason) => {
-                    format!(",,,,,,,,,,,{},\"{}\"\n", row.seconds, reason.replace('"', "\"\"").replace('\n', " "))
+                    format!(",,,,,,,,,,,,{},\"{}\"\n", row.seconds, reason.replace('"', "\"\"").replace('\n', " "))
                 }
                 Outcome::Solved(solved) => line(solved, row.seconds),
             };
         }
         table
     }
+}
+
+/// The folder of a row, by its number from 1.
+pub fn row_folder(number: usize) -> String {
+    format!("row_{number:03}")
 }
 
 /// The values of a row, without the names of its options.
@@ -116,9 +125,10 @@ fn line(solved: &Solved, seconds: f64) -> String {
         .map_or_else(|| ",".to_owned(), |run| format!("{},{}", run.objective_start, run.peak_pressure_start));
     let end =
         optimization.as_ref().map_or_else(|| ",".to_owned(), |run| format!("{},{}", run.evaluations, run.confirmed));
+    let warnings = solved.warnings.join(" ");
     let [open, stick, slip] = [status.open, status.stick, status.slip];
     format!(
-        "{start},{objective},{peak_pressure},{contact_area},{total_normal_force},{open},{stick},{slip},{end},{seconds},\n"
+        "{start},{objective},{peak_pressure},{contact_area},{total_normal_force},{open},{stick},{slip},{end},{warnings},{seconds},\n"
     )
 }
 
