@@ -68,23 +68,23 @@ def overhead():
     finally:
         _minimize._engine = engine
 
-    def fastest(call):
-        times = []
-        for _ in range(30):
-            begin = time.perf_counter()
-            result = call()
-            times.append(time.perf_counter() - begin)
-        return min(times), result
+    def seconds(call):
+        begin = time.process_time()
+        result = call()
+        return time.process_time() - begin, result
 
-    alone, _ = fastest(lambda: problem.minimize(setups[0]))
-    through, result = fastest(lambda: nonsmooth.minimize(problem, problem.start))
-    return (through - alone) / result.nfev
+    # Time of the processor, by turns: the machine may do other work.
+    pairs = [
+        (seconds(lambda: problem.minimize(setups[0]))[0], *seconds(lambda: nonsmooth.minimize(problem, problem.start)))
+        for _ in range(40)
+    ]
+    alone, through = (min(pair[k] for pair in pairs) for k in (0, 1))
+    return (through - alone) / pairs[0][2].nfev
 
 
 def test_an_evaluation_costs_at_most_30_microseconds_more():
-    # The least of three: the machine may do other work.
-    assert min(overhead() for _ in range(3)) < 30e-6
+    assert sorted(overhead() for _ in range(3))[1] < 30e-6
 
 
 if __name__ == "__main__":
-    print(f"{1e6 * min(overhead() for _ in range(5)):.1f} microseconds per evaluation")
+    print(f"{1e6 * sorted(overhead() for _ in range(5))[2]:.1f} microseconds per evaluation")

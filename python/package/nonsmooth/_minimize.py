@@ -94,7 +94,7 @@ def minimize(
     >>> import numpy as np, nonsmooth
     >>> def fun(x):
     ...     return np.abs(x - [1, 2]).sum(), np.sign(x - [1, 2])
-    >>> result = nonsmooth.minimize(fun, [5.0, 5.0], constraints=([[1, 1]], -np.inf, 2), options={"convex": True})
+    >>> result = nonsmooth.minimize(fun, [5.0, -3.0], constraints=([[1, 1]], -np.inf, 2), options={"convex": True})
     >>> result.success, round(result.fun, 6)
     (True, 1.0)
     """
@@ -169,7 +169,8 @@ def bundle_trust(
     --------
     >>> import numpy as np, scipy.optimize, nonsmooth
     >>> fun = lambda x: (abs(x).max(), np.eye(2)[abs(x).argmax()] * np.sign(x[abs(x).argmax()]))
-    >>> scipy.optimize.minimize(fun, [1.0, 2.0], jac=True, method=nonsmooth.bundle_trust).success
+    >>> options = {"convex": True}
+    >>> scipy.optimize.minimize(fun, [1.0, 2.0], jac=True, method=nonsmooth.bundle_trust, options=options).success
     True
     """
     if hess is not None or hessp is not None:

@@ -1,6 +1,6 @@
 from collections.abc import Callable, Sequence
 from os import PathLike
-from typing import Any, Literal, TypedDict
+from typing import Any, Literal, TypedDict, type_check_only
 
 from numpy import float64
 from numpy.typing import ArrayLike, NDArray
@@ -8,7 +8,8 @@ from scipy.optimize import Bounds, LinearConstraint
 
 from ._result import Result
 
-class Options(TypedDict, total=False):
+@type_check_only
+class _Options(TypedDict, total=False):
     tolerance: float
     tol: float
     max_evaluations: int
@@ -48,7 +49,7 @@ def minimize(
     args: tuple[Any, ...] = (),
     bounds: _Bounds | None = None,
     constraints: LinearConstraint | Sequence[Any] | None = (),
-    options: Options | None = None,
+    options: _Options | None = None,
     callback: Callable[..., Any] | None = None,
     *,
     journal: _Path | None = None,
@@ -61,7 +62,7 @@ def minimize_composite(
     args: tuple[Any, ...] = (),
     bounds: _Bounds | None = None,
     constraints: LinearConstraint | Sequence[Any] | None = (),
-    options: Options | None = None,
+    options: _Options | None = None,
     callback: Callable[..., Any] | None = None,
     *,
     exponent: float = 2.0,

@@ -24,6 +24,7 @@ STATUS = {
 #: What a Python user can do beside what the engine advises.
 _MORE = {
     "stationary_unconfirmed": "if the function is convex, options={'convex': True} lets the run prove it",
+    "noise_limit": "if the function is convex, the minimum is lower by at most about this",
     "step_too_short": "nonsmooth.taylor_test(fun, x) shows whether the subgradient is right",
     "evaluation_limit": "the option is max_evaluations",
     "iteration_limit": "the option is max_iterations",

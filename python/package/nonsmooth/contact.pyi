@@ -7,7 +7,7 @@ from numpy import float64, int8
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import Bounds, LinearConstraint
 
-from ._minimize import Options
+from ._minimize import _Options
 from ._result import Result
 
 OPEN: int
@@ -44,7 +44,7 @@ class Scene:
     def optimize(
         self,
         start: ArrayLike | None = None,
-        options: Options | None = None,
+        options: _Options | None = None,
         callback: Callable[..., Any] | None = None,
         *,
         journal: str | PathLike[str] | None = None,
