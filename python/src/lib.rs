@@ -1,7 +1,7 @@
 //! The Python module `nonsmooth._engine`: what the package `nonsmooth` (python/package) needs of the engine.
 //!
-//! The package checks and arranges what a user passes; this module calls the user's function ([`oracle`]), drives the run
-//! ([`run`]) and hands out reports and certificates ([`outcome`], [`certificate`]). Vectors are copied between the languages.
+//! The package checks and arranges what a user passes; this module calls the user's function (`oracle`), drives the run
+//! (`run`) and hands out reports and certificates (`outcome`, `certificate`). Vectors are copied between the languages.
 
 #![forbid(unsafe_code)]
 

@@ -58,6 +58,13 @@ def test_the_same_scene_for_minimize_and_by_keywords():
     assert result.fun < scene.evaluate().theta and result.largest_violation < 1e-9
 
 
+def test_a_shape_without_a_solution_is_outside_the_domain():
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    # The surface lies below the base: elements are inverted.
+    with pytest.raises(nonsmooth.OutsideDomain):
+        scene.fun(np.full(36, -1.0))
+
+
 def test_a_run_is_resumed(tmp_path):
     scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
     whole = scene.optimize()

@@ -1,6 +1,7 @@
 """Memory does not grow, and a call costs little."""
 
 import gc
+import resource
 import sys
 import time
 
@@ -10,8 +11,6 @@ import nonsmooth
 from conftest import l1
 from nonsmooth import _minimize
 from nonsmooth._engine import CollectionProblem
-
-resource = __import__("resource") if sys.platform != "win32" else None
 
 
 def failing(x):

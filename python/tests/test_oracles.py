@@ -130,8 +130,15 @@ def test_accuracy_is_asked_for_on_demand():
     assert max(asked) == 1e-2 and min(asked) < 1e-4
     assert result.fun - 1 < 1e-4
     asked.clear()
-    nonsmooth.minimize(rough, [5.0, -3.0], options={"accuracy": "tightest"})
+    nonsmooth.minimize(rough, [-1.5, 2.0], options={"accuracy": "tightest"})
     assert set(asked) == {0.0}
+    asked.clear()
+
+    def value(x, accuracy):
+        return rough(x, accuracy)[0]
+
+    apart = nonsmooth.minimize(value, [-1.5, 2.0], jac=lambda x: crescent(x)[1])
+    assert max(asked) == 1e-2 and apart.fun - 1 < 1e-2
 
 
 def interrupt_after(seconds):

@@ -187,7 +187,8 @@ def _joined(fun, jac, args):
     if not callable(fun):
         raise TypeError(f"fun is {type(fun).__name__}, expected a function")
     if callable(jac):
-        return lambda x, **accuracy: (fun(x, *args, **accuracy), jac(x, *args, **accuracy))
+        informed = takes_accuracy(jac)
+        return lambda x, **accuracy: (fun(x, *args, **accuracy), jac(x, *args, **(accuracy if informed else {})))
     if jac is not True:
         raise ValueError(
             f"jac = {jac!r} is not allowed: pass jac=True and let fun return (value, subgradient), or pass a function. "

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import _options, _result
+from ._engine import OutsideDomain
 from ._minimize import _attach, _journal, _told
 
 try:
@@ -148,8 +149,14 @@ class Scene:
         )
 
     def fun(self, heights):
-        """Theta and one subgradient, flattened: a function for `nonsmooth.minimize`."""
-        found = self.evaluate(heights)
+        """Theta and one subgradient, flattened: a function for `nonsmooth.minimize`.
+
+        A shape without a solution raises `nonsmooth.OutsideDomain`, which shortens the step.
+        """
+        try:
+            found = self.evaluate(heights)
+        except RuntimeError as error:
+            raise OutsideDomain(str(error)) from error
         return found.theta, found.gradient.ravel()
 
     def optimize(self, start=None, options=None, callback=None, *, journal=None, resume=None):
