@@ -103,6 +103,7 @@ impl Run<'_, '_> {
         let below = if proposal.origin == Origin::CompositeModel { f64::INFINITY } else { target };
         match self.evaluate(&proposal.trial, accuracy, Some(target), below) {
             Outcome::MinusInfinity => return Break(Termination::UnboundedBelow),
+            Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
             Outcome::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
             Outcome::Answer(answer) => self.accept_or_reject(proposal, accuracy, answer),
         }
@@ -249,6 +250,7 @@ impl Run<'_, '_> {
                 self.move_center(center, evaluation.value, accuracy);
                 self.state.bundle.retain(|cut| cut.id != old);
             }
+            Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
             Outcome::Failure(error) => event.failure = Some(error.to_string()),
             _ => event.failure = Some("no accurate value at the center".to_owned()),
         }
@@ -274,6 +276,12 @@ impl Run<'_, '_> {
             return Break(Termination::OracleFailing { failures, last: error.to_string() });
         }
         Continue(())
+    }
+
+    /// Ends the run because the oracle was interrupted; the evaluation that was under way does not count.
+    fn interrupted(&mut self) -> ControlFlow<Termination> {
+        self.state.counts.evaluations -= 1;
+        Break(Termination::StoppedByObserver)
     }
 
     /// Seconds since the start.

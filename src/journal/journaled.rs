@@ -276,6 +276,10 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
         request: &Request<'_, RestartData<O::WarmStart>>,
     ) -> Result<Answer<RestartData<O::WarmStart>>, OracleError> {
         let result = self.ask(request);
+        if let Err(OracleError::Interrupted) = result {
+            // Not an answer: a continued run asks again.
+            return Err(OracleError::Interrupted);
+        }
         let (answer, text) = match &result {
             Ok(answer) => self.record(evaluation, answer),
             Err(error) => (RecordedAnswer::Failed(error.to_string()), None),

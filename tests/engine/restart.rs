@@ -284,3 +284,28 @@ fn numbers_that_json_lacks_survive() {
     assert_eq!((&first.termination, first.counts.failed), (&Termination::UnboundedBelow, 1));
     assert_eq!(found(&run(true)), found(&first));
 }
+
+#[test]
+fn an_interrupted_evaluation_ends_the_run_and_is_asked_again() {
+    let (theta, folder, calls) = (crescent(), Folder::new("interrupted"), Cell::new(0));
+    let start = v(&[-1.0, 2.0]);
+    let whole = method(None).minimize(&theta, start.clone()).unwrap();
+    let interrupted = FnObjective::new(2, |x: &Vector| {
+        calls.set(calls.get() + 1);
+        if calls.get() == 6 {
+            return Err(OracleError::Interrupted);
+        }
+        let evaluation = theta.evaluate(&Request::tight(x)).unwrap().into_evaluation();
+        Ok((evaluation.value, evaluation.subgradient))
+    });
+    let journaled = Journaled::open(&interrupted, &*folder, "crescent").unwrap();
+    let report = method(None).minimize(&journaled, start.clone()).unwrap();
+    assert_eq!((report.termination, report.counts.evaluations), (Termination::StoppedByObserver, 5));
+    assert_eq!((report.history.len(), report.counts.failed, folder.held()), (5, 0, 5));
+    assert_eq!(report.value, whole.history[4].center_value);
+    let journaled = Journaled::open(&interrupted, &*folder, "crescent").unwrap();
+    let mut resumed = method(None).minimize(&journaled, start).unwrap();
+    journaled.complete(&mut resumed);
+    assert_eq!(found(&resumed), found(&whole));
+    assert_eq!(calls.get(), whole.counts.evaluations + 1);
+}

@@ -1,0 +1,289 @@
+"""`minimize`, `minimize_composite`, and the method for `scipy.optimize.minimize`."""
+
+import inspect
+import json
+import os
+
+import numpy as np
+from scipy.optimize import OptimizeResult
+
+from . import _constraints, _engine, _options, _result
+
+
+def minimize(
+    fun, x0, jac=True, args=(), bounds=None, constraints=(), options=None, callback=None, *, journal=None, resume=None
+):
+    """Minimise a nonsmooth function with bounds and linear constraints.
+
+    Parameters
+    ----------
+    fun : callable
+        ``fun(x, *args)`` returns ``(value, subgradient)``. One subgradient per point is enough, where the function has
+        a kink that of either side. With ``jac`` a callable, ``fun`` returns the value alone. ``fun`` is called only at
+        points that satisfy bounds and constraints. If it takes the keyword ``accuracy``, it is told which relative
+        accuracy is enough, and may return ``(value, subgradient, error_bound)``; 0 means as accurate as it can.
+        Raise ``nonsmooth.OutsideDomain``, or return NaN, where ``fun`` is not defined: the step is shortened.
+        Every other exception ends the run and is raised again, the same object; its attribute ``best`` is the
+        ``Result`` so far (None if there is none).
+    x0 : array_like
+        Start with n entries. It need not satisfy the constraints.
+    jac : True or callable
+        True if ``fun`` returns the subgradient too, or ``jac(x, *args)``, which returns it. Differences of values are
+        no subgradients of a nonsmooth function and are not offered.
+    args : tuple
+        Further arguments of ``fun`` and ``jac``.
+    bounds : scipy.optimize.Bounds or sequence of pairs, optional
+        ``(lower, upper)`` for every variable; None or infinity leaves a side open.
+    constraints : scipy.optimize.LinearConstraint, (A, lower, upper), or a list of these
+        ``lower <= A x <= upper``; equal sides make an equality. A may be sparse.
+    options : dict, optional
+        See Notes. An unknown name is refused.
+    callback : callable, optional
+        ``callback(xk)`` or ``callback(intermediate_result=...)`` after every evaluation, with the best point so far;
+        the latter has ``x``, ``fun``, ``nfev`` and ``record``. ``StopIteration`` ends the run.
+    journal, resume : path, optional
+        ``journal``: every evaluation is kept in this new folder. ``resume``: continues the run of such a folder, which
+        ends as if it had never been interrupted; call it with the same arguments. Limits may be raised.
+
+    Returns
+    -------
+    Result
+        A ``scipy.optimize.OptimizeResult`` with ``certificate``, ``history`` and ``recheck()``.
+
+    Raises
+    ------
+    ValueError, TypeError
+        Input that cannot be worked with; the message names it and what is allowed.
+    InfeasibleError
+        Bounds and constraints contradict each other. It is a ``ValueError``.
+
+    Notes
+    -----
+    Options, with their defaults:
+
+    tolerance : float, 1e-7 (also ``tol``)
+        Predicted decrease, relative to the size of the function, that counts as small.
+    max_evaluations : int, 2000 (also ``maxfev``)
+        Largest number of evaluations.
+    max_iterations : int, 100000 (also ``maxiter``)
+        Largest number of steps, each with at most one evaluation.
+    max_seconds : float, none
+        Largest time.
+    convex : bool, False
+        Whether the function is known to be convex. The run then bounds how far it is from the minimum (``gap``).
+    first_step : float, chosen from x0
+        Length of the first step.
+    objective_scale : float, chosen from the values
+        The size of the function that ``tolerance`` refers to.
+    scaling : array, from the bounds
+        Typical sizes of the variables (n), or a regular matrix M (n, n): the run takes the course of x = M b in b.
+    accuracy : 'tightest', 'on_demand' or (tightest, coarsest, factor)
+        What ``fun`` is asked for. On demand if ``fun`` takes the keyword ``accuracy``, else tightest.
+    bundle_size : int, n + 15, at most 500
+        Largest number of cuts.
+    disp : bool, False
+        Print one line per evaluation.
+
+    The constants of the method are options too: ``serious_fraction`` (0.02), ``good_fraction`` (0.5),
+    ``weight_decrease`` (8), ``weight_increase`` (10), ``weight_range`` (1e10), ``curvature_quantile`` (0.8),
+    ``attenuation_steps`` (12), ``max_restarts`` (5), ``restart_radius`` (0.1), ``max_failures`` (10),
+    ``composite_model``, ``curved_model`` and ``exploration`` (True).
+
+    Examples
+    --------
+    >>> import numpy as np, nonsmooth
+    >>> def fun(x):
+    ...     return np.abs(x - [1, 2]).sum(), np.sign(x - [1, 2])
+    >>> result = nonsmooth.minimize(fun, [5.0, -3.0], constraints=([[1, 1]], -np.inf, 2), options={"convex": True})
+    >>> result.success, round(result.fun, 6)
+    (True, 1.0)
+    """
+    joined = _joined(fun, jac, tuple(args))
+    return _run(joined, fun, x0, bounds, constraints, options, callback, journal, resume)
+
+
+def minimize_composite(
+    outer,
+    fun,
+    x0,
+    args=(),
+    bounds=None,
+    constraints=(),
+    options=None,
+    callback=None,
+    *,
+    exponent=2.0,
+    journal=None,
+    resume=None,
+):
+    """Minimise a convex function of outputs whose Jacobian is known.
+
+    Minimax problems, sums of absolute values and norms need a fraction of the evaluations in this form.
+
+    Parameters
+    ----------
+    outer : {'max', 'l1', 'power', 'norm'} or callable
+        The convex function h: the largest output, the sum of absolute values, of their powers, the Euclidean norm, or
+        a function ``outer(c)`` that returns its value and one subgradient.
+    fun : callable
+        ``fun(x, *args)`` returns ``(outputs, jacobian)``: m outputs and the m × n matrix of their derivatives.
+    exponent : float
+        The exponent of ``'power'``, at least 1.
+    x0, args, bounds, constraints, options, callback, journal, resume
+        As for `minimize`.
+
+    Returns
+    -------
+    Result
+
+    Examples
+    --------
+    >>> import numpy as np, nonsmooth
+    >>> def lines(x):
+    ...     return np.array([x[0], -x[0], x[1] - 1]), np.array([[1.0, 0], [-1, 0], [0, 1]])
+    >>> result = nonsmooth.minimize_composite("max", lines, [3.0, 4.0])
+    >>> result.success, abs(result.fun) < 1e-9
+    (True, True)
+    """
+    if isinstance(outer, str):
+        if outer not in ("max", "l1", "power", "norm"):
+            raise ValueError(f"outer = {outer!r} is unknown; allowed: 'max', 'l1', 'power', 'norm', or a function")
+        if outer == "power" and not (np.isfinite(exponent) and exponent >= 1):
+            raise ValueError(f"exponent = {exponent!r} is not allowed; allowed: a finite number ≥ 1")
+    elif not callable(outer):
+        raise TypeError(f"outer is {type(outer).__name__}, expected a name or a function")
+    joined = _joined(fun, True, tuple(args))
+    return _run(
+        joined, fun, x0, bounds, constraints, options, callback, journal, resume, outer=(outer, float(exponent))
+    )
+
+
+def bundle_trust(
+    fun, x0, args=(), jac=None, hess=None, hessp=None, bounds=None, constraints=(), callback=None, **options
+):
+    """The method for ``scipy.optimize.minimize(fun, x0, jac=True, method=nonsmooth.bundle_trust)``.
+
+    Options are those of `minimize`; scipy's ``tol`` is ``tolerance``. ``hess`` and ``hessp`` are refused.
+
+    Examples
+    --------
+    >>> import numpy as np, scipy.optimize, nonsmooth
+    >>> fun = lambda x: (abs(x).max(), np.eye(2)[abs(x).argmax()] * np.sign(x[abs(x).argmax()]))
+    >>> options = {"convex": True}
+    >>> scipy.optimize.minimize(fun, [1.0, 2.0], jac=True, method=nonsmooth.bundle_trust, options=options).success
+    True
+    """
+    if hess is not None or hessp is not None:
+        raise ValueError("bundle_trust uses no second derivatives: leave out hess and hessp")
+    owner = getattr(jac, "__self__", None)
+    if owner is not None and owner is fun and hasattr(fun, "fun"):
+        # scipy has split a function that returns both.
+        fun, jac = fun.fun, True
+    return minimize(fun, x0, jac, args, bounds, constraints, options, callback)
+
+
+def _joined(fun, jac, args):
+    """One function of x alone that returns value and subgradient."""
+    if not callable(fun):
+        raise TypeError(f"fun is {type(fun).__name__}, expected a function")
+    if callable(jac):
+        informed = takes_accuracy(jac)
+        return lambda x, **accuracy: (fun(x, *args, **accuracy), jac(x, *args, **(accuracy if informed else {})))
+    if jac is not True:
+        raise ValueError(
+            f"jac = {jac!r} is not allowed: pass jac=True and let fun return (value, subgradient), or pass a function. "
+            "Finite differences are no subgradients of a nonsmooth function"
+        )
+    return (lambda x, **accuracy: fun(x, *args, **accuracy)) if args else fun
+
+
+def takes_accuracy(fun):
+    """Whether a function has a parameter of the name `accuracy`."""
+    try:
+        return "accuracy" in inspect.signature(fun).parameters
+    except (TypeError, ValueError):
+        # A function without a signature, of C for example.
+        return False
+
+
+def _run(joined, fun, x0, bounds, constraints, options, callback, journal, resume, outer=None):
+    x0 = np.atleast_1d(np.asarray(x0, dtype=float))
+    if x0.ndim != 1 or x0.size == 0:
+        raise ValueError(f"x0 has shape {x0.shape}, expected one dimension with at least one entry")
+    accepts = takes_accuracy(fun)
+    config, scaling, disp = _options.read(options, accepts)
+    setup = {
+        "fun": joined,
+        "takes_accuracy": accepts,
+        "outer": outer[0] if outer else None,
+        "exponent": outer[1] if outer else 1.0,
+        "x0": x0,
+        "constraints": _constraints.read(bounds, constraints, x0.size),
+        "options": config,
+        "scaling": scaling,
+        "callback": _told(callback) if callback is not None else None,
+        "disp": disp,
+        "journal": _journal(journal, resume, getattr(fun, "__qualname__", type(fun).__qualname__)),
+    }
+    outcome, error = _engine.minimize(setup)
+    result = None if outcome is None else _result.build(outcome, outer)
+    if error is None:
+        return result
+    _attach(error, result)
+    raise error
+
+
+def _told(callback):
+    """The callback as the engine calls it: true ends the run."""
+    # scipy.optimize.minimize hands over a wrapper that takes the result, whatever the user's callback takes.
+    wrapped = hasattr(callback, "stop_iteration")
+    try:
+        by_name = not wrapped and set(inspect.signature(callback).parameters) == {"intermediate_result"}
+    except (TypeError, ValueError):
+        by_name = False
+
+    def told(x, value, record):
+        try:
+            if not wrapped and not by_name:
+                callback(x)
+                return False
+            record = json.loads(record)
+            result = OptimizeResult(x=x, fun=value, nfev=record["evaluation"], record=record)
+            callback(intermediate_result=result) if by_name else callback(result)
+        except StopIteration:
+            return True
+        return False
+
+    return told
+
+
+def _journal(journal, resume, identity):
+    """Folder and identity for the engine."""
+    if journal is not None and resume is not None:
+        raise ValueError("pass journal to begin a run, or resume to continue one, not both")
+    folder = journal if journal is not None else resume
+    if folder is None:
+        return None
+    folder = os.fspath(folder)
+    # A path of the journal itself is as good as that of its folder.
+    if os.path.basename(folder) == "journal.jsonl":
+        folder = os.path.dirname(folder) or "."
+    exists = os.path.exists(os.path.join(folder, "journal.jsonl"))
+    if journal is not None and exists:
+        raise FileExistsError(f"{folder} holds a journal: pass resume={folder!r} to continue it, or another folder")
+    if resume is not None and not exists:
+        raise FileNotFoundError(f"{folder} holds no journal; pass journal={folder!r} to begin one")
+    return folder, identity
+
+
+def _attach(error, result):
+    """The best point so far for whoever handles the exception."""
+    try:
+        error.best = result
+    except AttributeError:
+        return  # An exception with __slots__ takes no attribute.
+    if result is not None and hasattr(error, "add_note"):
+        error.add_note(
+            f"nonsmooth: the best value before was {result.fun:.10g}, after {result.nfev} evaluations; the attribute "
+            "`best` of this exception is the result so far"
+        )

@@ -1,0 +1,84 @@
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import Any, Literal, TypedDict, type_check_only
+
+from numpy import float64
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import Bounds, LinearConstraint
+
+from ._result import Result
+
+@type_check_only
+class _Options(TypedDict, total=False):
+    tolerance: float
+    tol: float
+    max_evaluations: int
+    maxfev: int
+    maxfun: int
+    max_iterations: int
+    maxiter: int
+    max_seconds: float | None
+    convex: bool
+    first_step: float | None
+    objective_scale: float | None
+    scaling: ArrayLike | None
+    accuracy: Literal["tightest", "on_demand"] | tuple[float, float, float]
+    bundle_size: int | None
+    disp: bool
+    serious_fraction: float
+    good_fraction: float
+    weight_decrease: float
+    weight_increase: float
+    weight_range: float
+    curvature_quantile: float
+    attenuation_steps: int
+    max_restarts: int
+    restart_radius: float
+    max_failures: int
+    composite_model: bool
+    curved_model: bool | dict[str, Any]
+    exploration: bool | dict[str, Any]
+
+_Path = str | PathLike[str]
+_Bounds = Bounds | Sequence[tuple[float | None, float | None]] | NDArray[float64]
+
+def minimize(
+    fun: Callable[..., Any],
+    x0: ArrayLike,
+    jac: Literal[True] | Callable[..., ArrayLike] = True,
+    args: tuple[Any, ...] = (),
+    bounds: _Bounds | None = None,
+    constraints: LinearConstraint | Sequence[Any] | None = (),
+    options: _Options | None = None,
+    callback: Callable[..., Any] | None = None,
+    *,
+    journal: _Path | None = None,
+    resume: _Path | None = None,
+) -> Result: ...
+def minimize_composite(
+    outer: Literal["max", "l1", "power", "norm"] | Callable[[NDArray[float64]], tuple[float, ArrayLike]],
+    fun: Callable[..., Any],
+    x0: ArrayLike,
+    args: tuple[Any, ...] = (),
+    bounds: _Bounds | None = None,
+    constraints: LinearConstraint | Sequence[Any] | None = (),
+    options: _Options | None = None,
+    callback: Callable[..., Any] | None = None,
+    *,
+    exponent: float = 2.0,
+    journal: _Path | None = None,
+    resume: _Path | None = None,
+) -> Result: ...
+def bundle_trust(
+    fun: Callable[..., Any],
+    x0: ArrayLike,
+    args: tuple[Any, ...] = (),
+    jac: Literal[True] | Callable[..., ArrayLike] | None = None,
+    hess: None = None,
+    hessp: None = None,
+    bounds: _Bounds | None = None,
+    constraints: LinearConstraint | Sequence[Any] | None = (),
+    callback: Callable[..., Any] | None = None,
+    **options: Any,
+) -> Result: ...
+def takes_accuracy(fun: Callable[..., Any]) -> bool: ...

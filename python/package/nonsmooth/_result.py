@@ -1,0 +1,172 @@
+"""What a run returns."""
+
+import json
+from dataclasses import dataclass
+
+from scipy.optimize import OptimizeResult
+
+#: Status by the reason why the run ended.
+STATUS = {
+    "stationary": 0,
+    "stationary_unconfirmed": 1,
+    "noise_limit": 2,
+    "step_too_short": 3,
+    "evaluation_limit": 4,
+    "iteration_limit": 5,
+    "time_limit": 6,
+    "stopped": 7,
+    "unbounded_below": 8,
+    "function_failing": 9,
+    "subproblem_failed": 10,
+    "other": 11,
+}
+
+#: What a Python user can do beside what the engine advises.
+_MORE = {
+    "stationary_unconfirmed": "if the function is convex, options={'convex': True} lets the run prove it",
+    "noise_limit": "if the function is convex, the minimum is lower by at most about this",
+    "step_too_short": "nonsmooth.taylor_test(fun, x) shows whether the subgradient is right",
+    "evaluation_limit": "the option is max_evaluations",
+    "iteration_limit": "the option is max_iterations",
+    "time_limit": "the option is max_seconds",
+}
+
+
+class History(list):
+    """One dict per evaluation: number, kind of step, values, predicted decrease, seconds."""
+
+    def __repr__(self):
+        return f"<History of {len(self)} evaluations>"
+
+
+@dataclass(frozen=True)
+class Recheck:
+    """The numbers of a certificate, computed again from its cuts and multipliers.
+
+    Attributes
+    ----------
+    aggregate_norm, aggregate_error : float
+        Norm and error of the aggregate subgradient.
+    multiplier_defect : float
+        The larger of ``|sum of multipliers - 1|`` and the largest negative multiplier.
+    violation : float
+        Relative violation of the constraints at the point.
+    open_side_multiplier : float
+        Largest multiplier of an infinite side; 0 in a valid certificate.
+    composite_difference : float or None
+        Largest relative difference of the cuts against outputs, Jacobian and outer function, computed again; None
+        for a certificate that does not rest on them.
+    agrees : bool
+        Whether norm and error are those of the certificate to 1e-9 relative to its sizes, and the other numbers small.
+    """
+
+    aggregate_norm: float
+    aggregate_error: float
+    multiplier_defect: float
+    violation: float
+    open_side_multiplier: float
+    composite_difference: "float | None"
+    agrees: bool
+
+    def proves(self, norm_tolerance, error_tolerance):
+        """Whether the point is stationary up to these tolerances."""
+        return (
+            self.agrees and self.aggregate_norm <= norm_tolerance and self.aggregate_error <= error_tolerance
+        )
+
+
+class Result(OptimizeResult):
+    """A ``scipy.optimize.OptimizeResult`` with a certificate.
+
+    Attributes
+    ----------
+    x : ndarray
+        The best admissible point that was evaluated.
+    fun : float
+        The value there.
+    jac : ndarray or None
+        One subgradient there. It need not be small at a minimum; the certificate says how stationary the point is.
+    success : bool
+        Whether the point is stationary and confirmed. A limit, a stall or noise is no success.
+    status : int
+        0 for success; see ``nonsmooth._result.STATUS`` for the others.
+    reason : str
+        The name of the status.
+    message : str
+        Why the run ended, with numbers, and what to do.
+    nfev, njev, nit : int
+        Evaluations of value and subgradient, and steps.
+    gap : float or None
+        Bound of ``fun`` minus the minimum, for a confirmed run with ``convex=True``.
+    certificate : Certificate or None
+        Cuts and multipliers of the last subproblem; None if there was none.
+    history : History
+        One record per evaluation.
+    counts : dict
+        Steps by kind, subproblems.
+    warnings : list of str
+        What went wrong without ending the run, a journal that cannot be written for example.
+    """
+
+    def recheck(self):
+        """Compute norm and error of the certificate again, from its cuts and multipliers alone.
+
+        Returns
+        -------
+        Recheck
+        """
+        certificate = self.certificate
+        if certificate is None:
+            raise ValueError("there is no certificate: the run ended before its first subproblem")
+        numbers = json.loads(certificate.recheck())
+        outer, exponent = self.get("_outer", (None, 1.0))
+        difference = None if outer is None else certificate.recheck_composite(outer, exponent)
+        return Recheck(**numbers, composite_difference=difference, agrees=_agrees(certificate, numbers, difference))
+
+    def __dir__(self):
+        return [*super().__dir__(), "recheck"]
+
+    def __repr__(self):
+        return OptimizeResult.__repr__(OptimizeResult({k: v for k, v in self.items() if not k.startswith("_")}))
+
+
+def _agrees(certificate, numbers, difference):
+    largest = max(abs(certificate.subgradients).max(initial=0.0), abs(certificate.row_multipliers).max(initial=0.0), 1e-300)
+    near = 1e-9
+    return (
+        abs(numbers["aggregate_norm"] - certificate.aggregate_norm) <= near * max(certificate.aggregate_norm, largest)
+        and abs(numbers["aggregate_error"] - certificate.aggregate_error)
+        <= near * max(certificate.aggregate_error, abs(certificate.fun), largest)
+        and numbers["multiplier_defect"] <= near
+        and numbers["violation"] <= near
+        and numbers["open_side_multiplier"] == 0.0
+        and (difference is None or difference <= near)
+    )
+
+
+def build(outcome, outer=None):
+    """The result of a run of the engine."""
+    counts = json.loads(outcome.counts)
+    reason = outcome.reason
+    more = _MORE.get(reason)
+    return Result(
+        message=f"{outcome.message}; {more}" if more else outcome.message,
+        success=outcome.confirmed,
+        status=STATUS[reason],
+        reason=reason,
+        fun=outcome.value,
+        x=outcome.x,
+        jac=outcome.subgradient,
+        nit=counts["iterations"],
+        nfev=counts["evaluations"],
+        njev=counts["evaluations"],
+        gap=outcome.gap,
+        certificate=outcome.certificate,
+        history=History(json.loads(outcome.history)),
+        counts=counts,
+        largest_violation=outcome.largest_violation,
+        start_value=outcome.start_value,
+        seconds=outcome.seconds,
+        warnings=outcome.warnings,
+        _outer=outer or (None, 1.0),
+    )

@@ -1,0 +1,211 @@
+"""Contact scenes: 3D contact with Coulomb friction as an objective. Units: N, mm, MPa."""
+
+import json
+import os
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import _options, _result
+from ._engine import OutsideDomain
+from ._minimize import _attach, _journal, _told
+
+try:
+    from ._engine import ContactScene as _ContactScene
+except ImportError as error:
+    raise ImportError("this wheel of nonsmooth was built without the feature `contact`") from error
+
+#: Meaning of the entries of `Evaluation.status`.
+OPEN, STICK, SLIP = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Objective and contact state at a shape.
+
+    Attributes
+    ----------
+    theta : float
+        The pressure measure of the scene, in `unit`.
+    gradient : ndarray, shape of the control points
+        One Clarke subgradient with respect to the heights, unit of theta per mm. Where `weakly_active` counts no node,
+        it is the gradient.
+    pressures : ndarray, one entry per contact node
+        Contact pressures, MPa; first index along x1, second along x2.
+    gaps : ndarray, one entry per contact node
+        Distance to the counter surface, mm; 0 in contact.
+    status : ndarray of int8, one entry per contact node
+        `OPEN`, `STICK` or `SLIP`. Without friction, nodes in contact that are free to slide slip.
+    total_force : float
+        Sum of the normal forces, N.
+    error_bound : float
+        Estimate of the error of theta that the residual of the state causes.
+    residual : float
+        Largest relative residual of equilibrium and contact law.
+    weakly_active : dict
+        How close the state is to a kink.
+    unit : str
+        Unit of theta.
+    root : float
+        p where theta is (sum of pressures**p)**(1/p), because the sum may be no double; else 1.
+    """
+
+    theta: float
+    gradient: np.ndarray
+    pressures: np.ndarray
+    gaps: np.ndarray
+    status: np.ndarray
+    total_force: float
+    error_bound: float
+    residual: float
+    weakly_active: dict
+    unit: str
+    root: float
+
+
+class Scene:
+    """A contact shape optimization problem.
+
+    Parameters
+    ----------
+    **fields
+        The fields of a scene file, nested sections as dicts: ``Scene(name="punch", size=[10, 10], friction=0.3,
+        lower={...}, ...)``. The page docs/scenes.md of the repository lists them; a bad one is named with what is
+        allowed. Mandatory are those that have no default there.
+
+    Examples
+    --------
+    >>> scene = Scene(
+    ...     name="block", size=[10.0, 10.0], friction=0.2, mesh={"bricks": [2, 2, 2], "subdomains": [1, 1, 1]},
+    ...     lower={"material": {"young_modulus": 1e5, "poisson_ratio": 0.3},
+    ...            "loads": [{"face": "bottom", "traction": [0.0, 0.0, 100.0]}],
+    ...            "supports": [{"face": "x1-min", "held": ["u1", "u2"]}]},
+    ...     counter_surface={"form": "plane", "height": 10.5},
+    ...     surface={"control_points": [4, 4], "start": {"form": "plane", "height": 10.0}},
+    ...     admissible={"minimum_height": 5.0, "slope": 1.0, "volume": [500.0, 1500.0]})
+    >>> round(scene.evaluate().total_force)  # 100 MPa on 10 mm x 10 mm
+    10000
+    """
+
+    def __init__(self, **fields):
+        self._scene = _ContactScene(None, json.dumps(fields, default=_plain))
+
+    @classmethod
+    def from_toml(cls, path, **fields):
+        """The scene of a file, with fields changed: ``Scene.from_toml("hertz.toml", friction=0.5, mesh={"bricks": [6, 6, 6]})``."""
+        scene = cls.__new__(cls)
+        scene._scene = _ContactScene(os.fspath(path), json.dumps(fields, default=_plain))
+        return scene
+
+    @property
+    def name(self):
+        """Name of the scene."""
+        return self._scene.name
+
+    @property
+    def start(self):
+        """Control heights at the start, mm; shape of the control points."""
+        return self._scene.start
+
+    @property
+    def constraints(self):
+        """Admissible heights, flattened: ``(bounds, constraint)`` as scipy's objects, for `nonsmooth.minimize`."""
+        from scipy.optimize import Bounds, LinearConstraint
+
+        arrays = self._scene.constraints()
+        rows = LinearConstraint(arrays["rows"], arrays["row_lower"], arrays["row_upper"])
+        return Bounds(arrays["lower"], arrays["upper"]), rows
+
+    def to_toml(self):
+        """The scene as a complete commented file."""
+        return self._scene.toml()
+
+    def evaluate(self, heights=None):
+        """Solve the contact problem of a shape.
+
+        Parameters
+        ----------
+        heights : array_like, optional
+            Control heights, mm, in the shape of the control points or flattened; by default the start.
+
+        Returns
+        -------
+        Evaluation
+        """
+        heights = self.start if heights is None else np.asarray(heights, dtype=float)
+        found = self._scene.evaluate(heights.ravel())
+        return Evaluation(
+            theta=found["value"],
+            gradient=found["gradient"],
+            pressures=found["pressures"],
+            gaps=found["gaps"],
+            status=found["status"].astype(np.int8),
+            total_force=found["total_force"],
+            error_bound=found["error_bound"],
+            residual=found["residual"],
+            weakly_active=json.loads(found["weakly_active"]),
+            unit=found["unit"],
+            root=found["root"],
+        )
+
+    def fun(self, heights):
+        """Theta and one subgradient, flattened: a function for `nonsmooth.minimize`.
+
+        A shape without a solution raises `nonsmooth.OutsideDomain`, which shortens the step.
+        """
+        try:
+            found = self.evaluate(heights)
+        except RuntimeError as error:
+            raise OutsideDomain(str(error)) from error
+        return found.theta, found.gradient.ravel()
+
+    def optimize(self, start=None, options=None, callback=None, *, journal=None, resume=None):
+        """Minimise theta over the admissible heights, with the Jacobian of all pressures.
+
+        Parameters
+        ----------
+        start : array_like, optional
+            Control heights to begin with; by default those of the scene.
+        options, callback, journal, resume
+            As for `nonsmooth.minimize`. By default, ``max_evaluations``, ``tolerance`` and the limits are those of the
+            scene, first step and scaling those of the command ``contact3d optimize``.
+
+        Returns
+        -------
+        Result
+            ``x`` has the shape of the control points in row-major order, flattened.
+        """
+        start = (self.start if start is None else np.asarray(start, dtype=float)).ravel()
+        given = self._scene.options()
+        config, scaling, disp = _options.read({**json.loads(given), **(options or {})}, False)
+        nothing = np.zeros(0)
+        unused = {"lower": nothing, "upper": nothing, "rows": np.zeros((0, 0)), "row_lower": nothing, "row_upper": nothing}
+        setup = {
+            "fun": None,
+            "takes_accuracy": False,
+            "outer": None,
+            "exponent": 1.0,
+            "x0": start,
+            "constraints": unused,
+            "options": config,
+            "scaling": scaling,
+            "callback": _told(callback) if callback is not None else None,
+            "disp": disp,
+            "journal": _journal(journal, resume, self.to_toml()),
+        }
+        outcome, error = self._scene.optimize(setup)
+        result = None if outcome is None else _result.build(outcome)
+        if error is None:
+            return result
+        _attach(error, result)
+        raise error
+
+    def __repr__(self):
+        return f"<Scene {self.name!r}>"
+
+
+def _plain(value):
+    """Numpy's numbers and arrays in fields."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    raise TypeError(f"a field of a scene is {type(value).__name__}, expected numbers, text, lists and dicts")

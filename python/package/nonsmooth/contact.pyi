@@ -1,0 +1,52 @@
+from collections.abc import Callable
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any
+
+from numpy import float64, int8
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import Bounds, LinearConstraint
+
+from ._minimize import _Options
+from ._result import Result
+
+OPEN: int
+STICK: int
+SLIP: int
+
+@dataclass(frozen=True)
+class Evaluation:
+    theta: float
+    gradient: NDArray[float64]
+    pressures: NDArray[float64]
+    gaps: NDArray[float64]
+    status: NDArray[int8]
+    total_force: float
+    error_bound: float
+    residual: float
+    weakly_active: dict[str, Any]
+    unit: str
+    root: float
+
+class Scene:
+    def __init__(self, **fields: Any) -> None: ...
+    @classmethod
+    def from_toml(cls, path: str | PathLike[str], **fields: Any) -> Scene: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def start(self) -> NDArray[float64]: ...
+    @property
+    def constraints(self) -> tuple[Bounds, LinearConstraint]: ...
+    def to_toml(self) -> str: ...
+    def evaluate(self, heights: ArrayLike | None = None) -> Evaluation: ...
+    def fun(self, heights: ArrayLike) -> tuple[float, NDArray[float64]]: ...
+    def optimize(
+        self,
+        start: ArrayLike | None = None,
+        options: _Options | None = None,
+        callback: Callable[..., Any] | None = None,
+        *,
+        journal: str | PathLike[str] | None = None,
+        resume: str | PathLike[str] | None = None,
+    ) -> Result: ...

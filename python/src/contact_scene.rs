@@ -1,0 +1,270 @@
+//! Contact scenes as objectives: Θ, its subgradient, pressures and statuses at a shape, and the optimal shape.
+
+use crate::convert;
+use crate::failure::Failure;
+use crate::outcome::Outcome;
+use crate::run::{Plan, RunError, drive, journaled};
+use crate::setup::Setup;
+use crate::watched::Watched;
+use contact::communication::InProcess;
+use contact::contact_shape::{ContactShape, Wanted};
+use contact::cost::{Measure, PressureCost};
+use contact::equilibrium::ContactStatus;
+use contact::error::SceneError;
+use nonsmooth::{Accuracy, CompositeObjective, Matrix, OracleError, StateSolver, VariableScaling, Vector};
+use numpy::{PyArray2, PyArrayMethods};
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use scene_file::{AccuracyName, Case, MethodName, SceneFile, read_text};
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+/// Θ of a scene.
+type ContactObjective = CompositeObjective<ContactShape, PressureCost>;
+
+/// Largest scene file, bytes.
+const LARGEST_FILE: u64 = 1 << 20;
+
+/// A scene, with the solver of its contact problem once it is needed.
+#[pyclass(frozen, module = "nonsmooth._engine")]
+#[derive(Debug)]
+pub struct ContactScene {
+    file: SceneFile,
+    case: Case,
+    objective: OnceLock<ContactObjective>,
+}
+
+fn input(error: SceneError) -> PyErr {
+    match error {
+        SceneError::File { .. } => PyOSError::new_err(error.to_string()),
+        _ => PyValueError::new_err(error.to_string()),
+    }
+}
+
+fn computation(error: OracleError) -> PyErr {
+    match error {
+        OracleError::Input(error) => crate::errors::input(error),
+        OracleError::OutsideDomain { reason } => crate::errors::OutsideDomain::new_err(reason),
+        error => PyRuntimeError::new_err(error.to_string()),
+    }
+}
+
+/// Sets the fields of a table to others, field by field in nested tables.
+fn merge(table: &mut toml::Table, fields: toml::Table) {
+    for (name, value) in fields {
+        match (table.get_mut(&name), value) {
+            (Some(toml::Value::Table(old)), toml::Value::Table(new)) => merge(old, new),
+            (_, value) => {
+                table.insert(name, value);
+            }
+        }
+    }
+}
+
+#[pymethods]
+impl ContactScene {
+    /// The scene of a file, or of none, with fields changed: a JSON object of the form of the file.
+    #[new]
+    fn new(path: Option<&str>, fields: &str) -> PyResult<Self> {
+        let name = path.unwrap_or("scene");
+        let bad = |error: &dyn std::fmt::Display| PyValueError::new_err(format!("{name}: {error}"));
+        let mut table = match path {
+            Some(path) => toml::from_str(&read_text(Path::new(path), LARGEST_FILE).map_err(input)?)
+                .map_err(|error| bad(&error))?,
+            None => toml::Table::new(),
+        };
+        merge(&mut table, serde_json::from_str(fields).map_err(|error| bad(&error))?);
+        let text = toml::to_string(&table).map_err(|error| bad(&error))?;
+        let file = SceneFile::parse(&text, name).map_err(|error| bad(&error))?;
+        let folder = path.and_then(|path| Path::new(path).parent()).unwrap_or(Path::new(""));
+        let case = Case::new(&file, folder).map_err(input)?;
+        Ok(Self { file, case, objective: OnceLock::new() })
+    }
+
+    /// The scene as a complete commented file.
+    fn toml(&self) -> PyResult<String> {
+        self.file.print().map_err(input)
+    }
+
+    /// Name of the scene.
+    #[getter]
+    fn name(&self) -> String {
+        self.case.scene.name.clone()
+    }
+
+    /// Numbers of control points along x₁ and x₂.
+    #[getter]
+    fn control_points(&self) -> [usize; 2] {
+        self.case.scene.control_points
+    }
+
+    /// Control heights at the start, mm.
+    #[getter]
+    fn start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let [rows, columns] = self.case.scene.control_points;
+        let start = self.start_heights();
+        convert::array2(py, rows, columns, |i, j| start[i * columns + j])
+    }
+
+    /// Θ, its subgradient, and the state at control heights in row-major order.
+    fn evaluate<'py>(&self, py: Python<'py>, heights: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+        let heights = convert::vector(heights, "heights", Some(self.case.scene.control_points.iter().product()))?;
+        let objective = self.objective(py)?;
+        let (state, evaluation) = py
+            .detach(|| {
+                let state = objective.solver().solve(&heights, None, Accuracy::TIGHTEST)?;
+                let evaluation = objective.reduced().differentiate(&heights, &state)?;
+                Ok((state, evaluation))
+            })
+            .map_err(computation)?;
+        let problem = objective.solver().problem();
+        let (scene, points) = (&problem.scene, &problem.boundary.points);
+        let forces = &state.forces;
+        let shape = [scene.mesh[0] + 1, scene.mesh[1] + 1];
+        let field = |entry: &dyn Fn(usize) -> f64| -> PyResult<Bound<'py, PyArray2<f64>>> {
+            let mut grid = Matrix::from_element(shape[0], shape[1], f64::NAN);
+            for (index, point) in points.iter().enumerate() {
+                grid[(point.position[0], point.position[1])] = entry(index);
+            }
+            convert::array2(py, shape[0], shape[1], |i, j| grid[(i, j)])
+        };
+        let result = PyDict::new(py);
+        let [rows, columns] = scene.control_points;
+        result.set_item("value", evaluation.value)?;
+        result.set_item("root", objective.cost().root())?;
+        result.set_item("unit", objective.cost().unit())?;
+        result.set_item("error_bound", evaluation.error_bound)?;
+        let gradient = convert::array(py, &evaluation.subgradient).reshape([rows, columns])?;
+        result.set_item("gradient", gradient)?;
+        let pressures = objective.cost().pressures(&state);
+        result.set_item("pressures", field(&|index| pressures[index])?)?;
+        result.set_item("gaps", field(&|index| -forces.opening[index])?)?;
+        result.set_item(
+            "status",
+            field(&|index| match forces.status[index] {
+                ContactStatus::Open => 0.0,
+                ContactStatus::Stick => 1.0,
+                ContactStatus::Slip => 2.0,
+            })?,
+        )?;
+        result.set_item("total_force", forces.total_normal_force())?;
+        result.set_item("residual", forces.residuals.largest())?;
+        result.set_item("weakly_active", crate::outcome::json(&forces.kink)?)?;
+        Ok(result)
+    }
+
+    /// The admissible control heights: bounds, rows, sides of the rows.
+    fn constraints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let set = self.objective(py)?.solver().problem().admissible.polyhedron();
+        let result = PyDict::new(py);
+        result.set_item("lower", convert::array(py, set.lower()))?;
+        result.set_item("upper", convert::array(py, set.upper()))?;
+        let rows = set.rows();
+        result.set_item("rows", convert::array2(py, rows.nrows(), rows.ncols(), |i, j| rows[(i, j)])?)?;
+        result.set_item("row_lower", convert::array(py, set.row_lower()))?;
+        result.set_item("row_upper", convert::array(py, set.row_upper()))?;
+        Ok(result)
+    }
+
+    /// The settings of the scene's optimizer as options of the package, as JSON.
+    fn options(&self) -> PyResult<String> {
+        let optimizer = &self.case.optimizer;
+        let accuracy = match optimizer.accuracy {
+            AccuracyName::Tightest => "tightest",
+            AccuracyName::OnDemand => "on_demand",
+        };
+        crate::outcome::json(&serde_json::json!({
+            "max_evaluations": optimizer.max_evaluations,
+            "tolerance": optimizer.tolerance,
+            "max_seconds": optimizer.time_limit,
+            "first_step": optimizer.first_step,
+            "bundle_size": optimizer.bundle_size,
+            "composite_model": self.case.method == MethodName::Composite,
+            "accuracy": accuracy,
+        }))
+    }
+
+    /// Minimises Θ from the start of the setup; settings that it leaves open are those of the scene. As [`crate::run::minimize`].
+    fn optimize<'py>(&self, py: Python<'py>, setup: Setup) -> PyResult<(Option<Outcome>, Option<Bound<'py, PyAny>>)> {
+        let failure = Failure::default();
+        let mut config = setup.config(py)?;
+        let wanted = if config.composite_model { Wanted::Jacobians } else { Wanted::States };
+        let objective = py.detach(|| self.objective_for(wanted)).map_err(input)?;
+        let problem = objective.solver().problem();
+        let start = setup.start();
+        let step = config.first_step.unwrap_or_else(|| first_step(&objective, &start));
+        config.first_step = Some(step);
+        if setup.scaling.is_none() {
+            config.scaling = VariableScaling::Linear(mean_height_coordinates(&start, step));
+        }
+        problem.admissible.check(&start).map_err(input)?;
+        let plan = Plan {
+            config,
+            set: problem.admissible.polyhedron().clone(),
+            start,
+            callback: setup.callback.as_ref().map(|callback| callback.clone_ref(py)),
+            disp: setup.disp,
+            failure: failure.clone(),
+        };
+        let result = py.detach(|| match setup.journal.as_ref() {
+            Some((folder, identity)) => journaled(plan, &objective, folder, identity),
+            None => {
+                let watched = Watched::new(&objective);
+                drive(plan, &watched).map(|(report, set)| watched.outcome(report, set)).map_err(RunError::Optimize)
+            }
+        });
+        let exception = failure.take().map(|error| error.into_value(py).into_bound(py).into_any());
+        match (result, exception) {
+            (Ok(outcome), exception) => Ok((Some(outcome), exception)),
+            (Err(_), Some(exception)) => Ok((None, Some(exception))),
+            (Err(error), None) => Err(error.into()),
+        }
+    }
+}
+
+impl ContactScene {
+    fn start_heights(&self) -> Vec<f64> {
+        let count = self.case.scene.control_points.iter().product();
+        self.case.start.clone().unwrap_or_else(|| vec![self.case.scene.start_height; count])
+    }
+
+    fn objective_for(&self, wanted: Wanted) -> Result<ContactObjective, SceneError> {
+        let case = &self.case;
+        let shape =
+            ContactShape::for_use(case.scene.clone(), case.solver, case.preconditioner, wanted, Arc::new(InProcess))?;
+        let Measure::Pressure(measure) = case.objective.measure(shape.problem())? else {
+            let allowed = "a function of the contact pressures; contact3d takes those of stress and displacement";
+            return Err(SceneError::out_of_range("objective.measure", "a function of the displacements", allowed));
+        };
+        let cost = PressureCost::new(measure, &shape.problem().boundary)?.normalised_for(&case.scene);
+        Ok(CompositeObjective::new(shape, cost))
+    }
+
+    /// Θ for single shapes, prepared at the first call.
+    fn objective(&self, py: Python<'_>) -> PyResult<&ContactObjective> {
+        if self.objective.get().is_none() {
+            let built = py.detach(|| self.objective_for(Wanted::States)).map_err(input)?;
+            // Another thread may have been first; its solver is the same.
+            let _first = self.objective.set(built);
+        }
+        self.objective.get().ok_or_else(|| PyRuntimeError::new_err("the contact solver was not prepared"))
+    }
+}
+
+/// Half of the mean distance between the starting surface and its counterpart, mm, as the command `optimize` of the contact
+/// binaries takes it; a hundredth of the height where they coincide.
+fn first_step(objective: &ContactObjective, start: &Vector) -> f64 {
+    let problem = objective.solver().problem();
+    let gaps = problem.lower_block(start.as_slice()).map(|block| problem.gaps(&block)).unwrap_or_default();
+    let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (2 * gaps.len().max(1)) as f64;
+    if length > 0.0 { length } else { 0.01 * start.amax() }
+}
+
+/// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first step, as in
+/// the command `optimize`: bodies that contact holds follow the surface as a whole.
+fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
+    let count = start.len();
+    let stretch = (start.mean().abs() / first_step).max(1.0);
+    Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
+}

@@ -1,0 +1,147 @@
+//! The user's Python function as an objective.
+//!
+//! ```text
+//! fun(x) → (value, subgradient)               fun(x, accuracy=τ) → the same, or (value, subgradient, error bound)
+//! fun(x) → (outputs, Jacobian)                with an outer function
+//! ```
+//! `OutsideDomain` and numbers that are not finite shorten the step. Every other exception ends the run and is kept as it is.
+
+use crate::convert;
+use crate::errors::OutsideDomain;
+use crate::failure::Failure;
+use crate::outer::Outer;
+use nonsmooth::composite::{Linearization, OuterFunction};
+use nonsmooth::{Answer, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+/// A Python function with value and subgradient, or with outputs and Jacobian.
+#[derive(Debug)]
+pub struct PythonOracle {
+    /// The function.
+    pub function: Py<PyAny>,
+    /// Number of variables.
+    pub dimension: usize,
+    /// Whether the function takes the keyword `accuracy`.
+    pub takes_accuracy: bool,
+    /// The convex function of the outputs, if the function returns outputs.
+    pub outer: Option<Outer>,
+    /// Where an exception is kept.
+    pub failure: Failure,
+    /// The first `OutsideDomain`, for a start at which the function is not defined.
+    pub outside: Failure,
+}
+
+impl PythonOracle {
+    fn call<'py>(&self, py: Python<'py>, request: &Request<'_, ()>) -> PyResult<Bound<'py, PyAny>> {
+        let x = convert::array(py, request.point);
+        let function = self.function.bind(py);
+        let answer = if self.takes_accuracy {
+            let keywords = PyDict::new(py);
+            keywords.set_item(intern!(py, "accuracy"), request.accuracy.tolerance())?;
+            function.call((x,), Some(&keywords))
+        } else {
+            function.call1((x,))
+        };
+        // A signal that arrived while code without bytecode ran.
+        py.check_signals()?;
+        answer
+    }
+
+    fn evaluation(&self, answer: &Bound<'_, PyAny>, request: &Request<'_, ()>) -> PyResult<Evaluation<()>> {
+        let parts = parts(answer, self.outer.is_some())?;
+        let (first, second) = (parts.get_item(0)?, parts.get_item(1)?);
+        let mut evaluation = match &self.outer {
+            None => {
+                let value = convert::number(&first, "the value that fun returns")?;
+                let subgradient = convert::vector(&second, "the subgradient that fun returns", Some(self.dimension))?;
+                Evaluation::exact(value, subgradient, ())
+            }
+            Some(outer) => self.composite(outer, &first, &second, request)?,
+        };
+        evaluation.error_bound = if parts.len() == 3 {
+            convert::number(&parts.get_item(2)?, "the error bound that fun returns")?
+        } else if self.takes_accuracy {
+            request.accuracy.tolerance() * evaluation.value.abs()
+        } else {
+            0.0
+        };
+        Ok(evaluation)
+    }
+
+    fn composite(
+        &self,
+        outer: &Outer,
+        outputs: &Bound<'_, PyAny>,
+        jacobian: &Bound<'_, PyAny>,
+        request: &Request<'_, ()>,
+    ) -> PyResult<Evaluation<()>> {
+        let outputs = convert::vector(outputs, "the vector of outputs that fun returns", None)?;
+        let jacobian = convert::matrix(jacobian, "the Jacobian that fun returns")?;
+        let (expected, found) = ((outputs.len(), self.dimension), jacobian.shape());
+        if expected != found {
+            return Err(PyValueError::new_err(format!(
+                "the Jacobian that fun returns has shape {found:?}, expected {expected:?} (outputs, variables)"
+            )));
+        }
+        let value = outer.value(&outputs);
+        let subgradient: Vector = jacobian.tr_mul(&outer.subgradient(&outputs));
+        let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
+        let linearization = request.linearization.map(|_| Ok(linearization));
+        Ok(Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) })
+    }
+
+    /// What the engine is told of an exception.
+    fn failed(&self, py: Python<'_>, error: PyErr) -> OracleError {
+        if error.is_instance_of::<OutsideDomain>(py) {
+            let reason = error.value(py).to_string();
+            self.outside.set(error);
+            return OracleError::OutsideDomain { reason };
+        }
+        self.failure.set(error);
+        OracleError::Interrupted
+    }
+}
+
+/// The two or three parts of an answer.
+fn parts<'py>(answer: &Bound<'py, PyAny>, composite: bool) -> PyResult<Bound<'py, PyTuple>> {
+    let wanted = if composite { "(outputs, Jacobian)" } else { "(value, subgradient)" };
+    let found = match answer.cast::<PyTuple>() {
+        Ok(tuple) if tuple.len() == 2 || tuple.len() == 3 => return Ok(tuple.clone()),
+        Ok(tuple) => format!("a tuple of {}", tuple.len()),
+        Err(_) => answer.get_type().name()?.to_string(),
+    };
+    Err(PyTypeError::new_err(format!(
+        "fun must return {wanted}, and may add an error bound; it returned {found}. If fun returns the value alone, pass its \
+         subgradient as jac"
+    )))
+}
+
+impl NonsmoothObjective for PythonOracle {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        self.outer.as_ref().map(|outer| outer as &dyn OuterFunction)
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        if self.failure.is_set() {
+            return Err(OracleError::Interrupted);
+        }
+        Python::attach(|py| {
+            let evaluation = self.call(py, request).and_then(|answer| self.evaluation(&answer, request));
+            match evaluation {
+                // An outer function that raised has returned no number.
+                Ok(_) if self.failure.is_set() => Err(OracleError::Interrupted),
+                Ok(evaluation) => Ok(Answer::Accurate(evaluation)),
+                Err(error) => Err(self.failed(py, error)),
+            }
+        })
+    }
+}

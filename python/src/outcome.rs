@@ -1,0 +1,135 @@
+//! The report of a run as a Python object.
+
+use crate::certificate::Certificate;
+use crate::convert;
+use nonsmooth::{Polyhedron, Report, Termination, Vector};
+use numpy::PyArray1;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// The report of a run, with the set that its certificate refers to.
+#[pyclass(frozen, module = "nonsmooth._engine")]
+#[derive(Debug)]
+pub struct Outcome {
+    /// The engine's report.
+    pub report: Report,
+    /// The admissible set.
+    pub set: Polyhedron,
+    /// One subgradient at the solution, if it is known.
+    pub subgradient: Option<Vector>,
+}
+
+#[pymethods]
+impl Outcome {
+    /// The best admissible point.
+    #[getter]
+    fn x<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        convert::array(py, &self.report.solution)
+    }
+
+    /// The value there.
+    #[getter]
+    fn value(&self) -> f64 {
+        self.report.value
+    }
+
+    /// One subgradient there, if it is known.
+    #[getter]
+    fn subgradient<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.subgradient.as_ref().map(|subgradient| convert::array(py, subgradient))
+    }
+
+    /// Name of the reason why the run ended.
+    #[getter]
+    fn reason(&self) -> &'static str {
+        match self.report.termination {
+            Termination::Stationary { .. } => "stationary",
+            Termination::StationaryUnconfirmed { .. } => "stationary_unconfirmed",
+            Termination::NoiseLimit { .. } => "noise_limit",
+            Termination::StepTooShort { .. } => "step_too_short",
+            Termination::EvaluationLimit => "evaluation_limit",
+            Termination::IterationLimit => "iteration_limit",
+            Termination::TimeLimit => "time_limit",
+            Termination::StoppedByObserver | Termination::Unfinished => "stopped",
+            Termination::UnboundedBelow => "unbounded_below",
+            Termination::OracleFailing { .. } => "function_failing",
+            Termination::SubproblemFailed { .. } => "subproblem_failed",
+            _ => "other",
+        }
+    }
+
+    /// Whether the solution is a stationary point and confirmed.
+    #[getter]
+    fn confirmed(&self) -> bool {
+        self.report.termination.is_confirmed()
+    }
+
+    /// Why the run ended, with numbers, and what to do.
+    #[getter]
+    fn message(&self) -> String {
+        let termination = &self.report.termination;
+        format!("{termination}; {}", termination.advice())
+    }
+
+    /// Largest value minus minimum that the cuts of a convex function leave, if it was declared convex and confirmed.
+    #[getter]
+    fn gap(&self) -> Option<f64> {
+        match self.report.termination {
+            Termination::Stationary { gap, .. } => gap,
+            _ => None,
+        }
+    }
+
+    /// Counts as JSON.
+    #[getter]
+    fn counts(&self) -> PyResult<String> {
+        json(&self.report.counts)
+    }
+
+    /// One record per evaluation, as JSON.
+    #[getter]
+    fn history(&self) -> PyResult<String> {
+        json(&self.report.history)
+    }
+
+    /// What went wrong without ending the run.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.report.warnings.clone()
+    }
+
+    /// Value at the start.
+    #[getter]
+    fn start_value(&self) -> f64 {
+        self.report.start_value
+    }
+
+    /// Largest relative violation of the set among all points evaluated.
+    #[getter]
+    fn largest_violation(&self) -> f64 {
+        self.report.largest_violation
+    }
+
+    /// Seconds used.
+    #[getter]
+    fn seconds(&self) -> f64 {
+        self.report.seconds
+    }
+
+    /// The certificate, if a subproblem was solved.
+    #[getter]
+    fn certificate(&self) -> Option<Certificate> {
+        let certificate = self.report.certificate.clone()?;
+        Some(Certificate { certificate, set: self.set.clone() })
+    }
+
+    /// The summary of one page.
+    fn __str__(&self) -> String {
+        self.report.to_string()
+    }
+}
+
+/// JSON of plain data.
+pub fn json<T: serde::Serialize>(data: &T) -> PyResult<String> {
+    serde_json::to_string(data).map_err(|error| PyValueError::new_err(error.to_string()))
+}

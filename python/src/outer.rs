@@ -1,0 +1,124 @@
+//! Convex functions of the outputs: those of the engine, or a Python function with value and subgradient.
+
+use crate::convert;
+use crate::failure::Failure;
+use nonsmooth::composite::{Epigraph, EuclideanNorm, Maximum, OuterFunction, SumOfPowers};
+use nonsmooth::{Matrix, Vector};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
+
+/// The convex function h of Θ = h∘c.
+#[derive(Debug)]
+pub enum Outer {
+    /// A function of the engine.
+    Max(Maximum),
+    /// A function of the engine.
+    Powers(SumOfPowers),
+    /// A function of the engine.
+    Norm(EuclideanNorm),
+    /// A function of the user.
+    Python(PythonOuter),
+}
+
+/// A Python function c ↦ (h(c), one subgradient).
+#[derive(Debug)]
+pub struct PythonOuter {
+    function: Py<PyAny>,
+    failure: Failure,
+    /// The last call: the engine asks for value and subgradient one after the other.
+    last: Mutex<Option<(Vector, f64, Vector)>>,
+}
+
+impl Outer {
+    /// The function of a name, `l1`, `max`, `norm` or `power` with an exponent, or a Python function.
+    pub fn new(object: &Bound<'_, PyAny>, exponent: f64, failure: &Failure) -> PyResult<Self> {
+        let Ok(name) = object.extract::<String>() else {
+            let function = object.clone().unbind();
+            return Ok(Self::Python(PythonOuter { function, failure: failure.clone(), last: Mutex::new(None) }));
+        };
+        match name.as_str() {
+            "max" => Ok(Self::Max(Maximum)),
+            "l1" => Ok(Self::Powers(SumOfPowers { exponent: 1.0 })),
+            "power" => Ok(Self::Powers(SumOfPowers { exponent })),
+            "norm" => Ok(Self::Norm(EuclideanNorm)),
+            _ => Err(PyValueError::new_err(format!(
+                "outer = '{name}' is unknown; allowed: 'max', 'l1', 'power', 'norm', or a function"
+            ))),
+        }
+    }
+
+    fn inner(&self) -> &dyn OuterFunction {
+        match self {
+            Self::Max(function) => function,
+            Self::Powers(function) => function,
+            Self::Norm(function) => function,
+            Self::Python(function) => function,
+        }
+    }
+}
+
+impl OuterFunction for Outer {
+    fn value(&self, outputs: &Vector) -> f64 {
+        self.inner().value(outputs)
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        self.inner().subgradient(outputs)
+    }
+
+    fn curvature(&self, outputs: &Vector, jacobian: &Matrix) -> Option<Matrix> {
+        self.inner().curvature(outputs, jacobian)
+    }
+
+    fn epigraph(&self) -> Option<Epigraph> {
+        self.inner().epigraph()
+    }
+}
+
+impl PythonOuter {
+    fn call(&self, outputs: &Vector) -> PyResult<(f64, Vector)> {
+        Python::attach(|py| {
+            let answer = self.function.bind(py).call1((convert::array(py, outputs),))?;
+            let (value, subgradient): (Bound<'_, PyAny>, Bound<'_, PyAny>) = answer.extract()?;
+            let value = convert::number(&value, "the value that outer returns")?;
+            let subgradient = convert::vector(&subgradient, "the subgradient that outer returns", Some(outputs.len()))?;
+            Ok((value, subgradient))
+        })
+    }
+
+    /// Value and subgradient; NaN once there is an exception, with which the run ends.
+    fn both(&self, outputs: &Vector) -> (f64, Vector) {
+        if let Some((at, value, subgradient)) = &*self.last.lock().unwrap_or_else(PoisonError::into_inner)
+            && at == outputs
+        {
+            return (*value, subgradient.clone());
+        }
+        let none = || (f64::NAN, Vector::from_element(outputs.len(), f64::NAN));
+        if self.failure.is_set() {
+            return none();
+        }
+        // The lock is not held while Python runs: another thread may hold the interpreter and wait for the lock.
+        match self.call(outputs) {
+            Ok((value, subgradient)) => {
+                let kept = (outputs.clone(), value, subgradient.clone());
+                self.last.lock().unwrap_or_else(PoisonError::into_inner).replace(kept);
+                (value, subgradient)
+            }
+            Err(error) => {
+                self.failure.set(error);
+                none()
+            }
+        }
+    }
+}
+
+impl OuterFunction for PythonOuter {
+    fn value(&self, outputs: &Vector) -> f64 {
+        self.both(outputs).0
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        self.both(outputs).1
+    }
+}

@@ -1,0 +1,28 @@
+"""Helpers of the tests. The wheel under test is built with the feature `collection`, by .ci/python."""
+
+import numpy as np
+import pytest
+
+from nonsmooth import _engine
+
+
+def l1(x, at=(1.0, 2.0)):
+    """|x - at|_1 with a subgradient."""
+    return float(np.abs(x - at).sum()), np.sign(x - np.asarray(at))
+
+
+def same_bits(a, b):
+    """Whether two arrays or numbers are equal to the last bit, NaN included."""
+    return np.asarray(a, dtype=float).tobytes() == np.asarray(b, dtype=float).tobytes()
+
+
+def without_times(history):
+    """The records of a run without what the clock decides."""
+    return [{key: value for key, value in record.items() if key != "seconds"} for record in history]
+
+
+@pytest.fixture(scope="session")
+def collection():
+    """The problems of the collection by name."""
+    problem = _engine.CollectionProblem
+    return {name: problem(name) for name in problem.names()}

@@ -1,0 +1,94 @@
+"""Contact scenes from Python give the numbers of the binaries."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import nonsmooth
+from conftest import same_bits
+
+contact = pytest.importorskip("nonsmooth.contact", reason="built without the feature contact")
+
+SCENES = Path(__file__).parents[2] / "problems" / "scenes"
+SMALL = {"bricks": [4, 4, 4], "subdomains": [2, 2, 2]}
+
+
+@pytest.fixture(scope="module")
+def signorini():
+    return contact.Scene.from_toml(SCENES / "signorini.toml")
+
+
+def test_the_state_at_the_start_is_that_of_the_method_page(signorini):
+    state = signorini.evaluate()
+    # docs/verification.md: independent implementations agree on these digits.
+    assert abs(state.theta / 4.4456794708e17 - 1) < 1e-10
+    counts = [(state.status == kind).sum() for kind in (contact.OPEN, contact.STICK, contact.SLIP)]
+    assert counts == [96, 32, 41]
+    assert abs(state.total_force / 3e7 - 1) < 1e-9
+    assert state.pressures.shape == (13, 13) and state.gradient.shape == (6, 6)
+    assert (state.pressures[state.status == contact.OPEN] == 0).all()
+    assert abs((np.maximum(state.pressures, 0) ** 4).sum() / state.theta - 1) < 1e-12
+    assert state.unit == "MPa^{4}" and state.root == 1
+
+
+def test_the_gradient_passes_the_taylor_test():
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    x = scene.start + 0.3 * np.cos(np.arange(36)).reshape(6, 6)
+    assert nonsmooth.taylor_test(scene.fun, x.ravel(), disp=False).right
+
+
+def test_optimize_ends_as_the_command_does(signorini):
+    told = []
+    result = signorini.optimize(callback=told.append)
+    # README.md: 14 evaluations, confirmed.
+    assert result.success and result.nfev == 14 == len(told)
+    assert abs(result.fun / 1.4770e16 - 1) < 1e-4
+    assert result.recheck().agrees
+    assert abs(signorini.evaluate(result.x.reshape(6, 6)).theta / result.fun - 1) < 1e-9
+
+
+def test_the_same_scene_for_minimize_and_by_keywords():
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, friction=0.0)
+    assert "friction = 0.0" in scene.to_toml()
+    bounds, rows = scene.constraints
+    result = nonsmooth.minimize(
+        scene.fun, scene.start.ravel(), bounds=bounds, constraints=rows, options={"max_evaluations": 10}
+    )
+    assert result.fun < scene.evaluate().theta and result.largest_violation < 1e-9
+
+
+def test_a_shape_without_a_solution_is_outside_the_domain():
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    # The surface lies below the base: elements are inverted.
+    with pytest.raises(nonsmooth.OutsideDomain):
+        scene.fun(np.full(36, -1.0))
+
+
+def test_a_run_is_resumed(tmp_path):
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    whole = scene.optimize()
+    scene.optimize(journal=tmp_path, options={"max_evaluations": 3})
+    assert same_bits(scene.optimize(resume=tmp_path).x, whole.x)
+
+
+@pytest.mark.parametrize(
+    "fields, words",
+    [
+        ({"frictio": 0.3}, "friction"),
+        ({"friction": -0.3}, "friction = -0.3 is not allowed"),
+        ({"mesh": {"bricks": [0, 4, 4]}}, "mesh.bricks"),
+    ],
+)
+def test_bad_fields_are_named(fields, words):
+    with pytest.raises(ValueError, match=words):
+        contact.Scene.from_toml(SCENES / "signorini.toml", **fields)
+
+
+def test_bad_shapes_and_missing_files_are_refused(signorini):
+    with pytest.raises(OSError, match="nowhere.toml"):
+        contact.Scene.from_toml("nowhere.toml")
+    with pytest.raises(ValueError, match="heights has 3 entries, expected 36"):
+        signorini.evaluate([1.0, 2.0, 3.0])
+    with pytest.raises(ValueError, match="admissible|outside|violat"):
+        signorini.optimize(start=np.full(36, 10.0))
