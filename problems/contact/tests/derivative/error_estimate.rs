@@ -38,7 +38,7 @@ impl TestCost for PressureCost {
 
 impl TestCost for FieldCost {
     const IS_FIELD: bool = true;
-    // At 1e-2 the remainder of the stress norm can exceed what the bound allows for.
+    // At 1e-2 the remainder can exceed what the bound allows for; docs/method.md (5.3).
     const TOLERANCES: &'static [f64] = &[1e-4, 1e-7, 1e-10];
     // Displacements of the whole bodies enter: a digit more is lost than with the forces.
     const ROUNDING: f64 = 4e-12;
