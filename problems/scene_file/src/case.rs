@@ -3,8 +3,8 @@
 use crate::bodies::body;
 use crate::grid_file;
 use crate::{
-    CounterSection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile, SplineName, StartSection,
-    SurfaceSection,
+    AccuracyName, CounterSection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile, SplineName,
+    StartSection, SurfaceSection,
 };
 use contact::contact_shape::SolverKind;
 use contact::error::SceneError;
@@ -72,6 +72,7 @@ impl Case {
             wanted.at(&scene.grid())?;
         }
         let method = method(&objective, file.optimizer.method)?;
+        check_accuracy(&objective, file.optimizer.accuracy)?;
         Ok(Self {
             scene,
             start,
@@ -157,6 +158,15 @@ fn method(objective: &Objective, asked: Option<MethodName>) -> Result<MethodName
         }
         (_, Some(method)) => Ok(method),
     }
+}
+
+/// Accuracy on demand is relative to |Θ|, which says nothing about the forces where Θ comes near 0.
+fn check_accuracy(objective: &Objective, accuracy: AccuracyName) -> Result<(), SceneError> {
+    if accuracy == AccuracyName::OnDemand && objective.can_vanish() {
+        let allowed = "\"tightest\" with this objective: accuracy on demand is relative to the objective, which can reach or cross 0 here";
+        return Err(SceneError::out_of_range("optimizer.accuracy", "on-demand", allowed));
+    }
+    Ok(())
 }
 
 fn check_continuation(optimizer: &OptimizerSection) -> Result<(), SceneError> {

@@ -158,6 +158,21 @@ impl Objective {
     pub fn is_of_pressures(&self) -> bool {
         !matches!(self, Self::Field(_))
     }
+
+    /// Whether its value can come near 0 or change its sign while the load stays: deviation, open area and compliance.
+    pub(crate) fn can_vanish(&self) -> bool {
+        match self {
+            Self::Deviation(_) => true,
+            Self::Pressure(measure) => match measure {
+                PressureMeasure::Deviation { .. } | PressureMeasure::OpenArea { .. } => true,
+                PressureMeasure::Norm { .. } | PressureMeasure::Peak => false,
+            },
+            Self::Field(measure) => match measure {
+                FieldMeasure::Compliance => true,
+                FieldMeasure::StressNorm { .. } => false,
+            },
+        }
+    }
 }
 
 fn missing(field: &str, allowed: &str) -> SceneError {

@@ -59,7 +59,7 @@ pub struct OptimizerSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 2, max = 10_000), extend("x-unit" = "1"))]
     pub bundle_size: Option<usize>,
-    /// Accuracy asked of the contact solver: always the tightest, or as the predicted decrease demands.
+    /// Accuracy asked of the contact solver: always the tightest, or as the predicted decrease demands. The latter is relative to the objective and therefore refused with `pressure-deviation`, `open-area` and `compliance`, which can reach or cross 0.
     pub accuracy: AccuracyName,
     /// Growing meshes of a coarse-to-fine optimization, bricks along the axis that has most, the others in proportion; empty for one run on the mesh of the scene.
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]

@@ -10,7 +10,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use testset::kit;
 
-const SCENES: [&str; 9] = [
+const SCENES: [&str; 10] = [
     "signorini",
     "hertz",
     "signorini_frictionless",
@@ -20,6 +20,7 @@ const SCENES: [&str; 9] = [
     "just_touching",
     "seal",
     "support",
+    "jack_seat",
 ];
 
 fn folder() -> PathBuf {
@@ -254,10 +255,30 @@ fn objectives_are_read_or_refused_with_the_field() {
         ),
         (
             "measure = \"compliance\"\n[optimizer]\nmethod = \"composite\"",
-            ["optimizer.method = composite", "contact pressures alone"],
+            ["optimizer.method = composite", "allowed: \"bundle\" with this objective"],
         ),
     ] {
         let refusal = with_objective(section).expect_err(section);
         assert!(words.iter().all(|word| refusal.contains(word)), "{section}: {refusal}");
+    }
+}
+
+/// Accuracy on demand is relative to Θ: a wanted pressure that is met has Θ = 0.
+#[test]
+fn accuracy_on_demand_is_refused_where_the_objective_can_vanish() {
+    for objective in [
+        "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"100\" }",
+        "measure = \"open-area\"\npressure = 3.0",
+        "measure = \"compliance\"",
+    ] {
+        let case = |accuracy: &str| with_objective(&format!("{objective}\n[optimizer]\naccuracy = \"{accuracy}\""));
+        assert!(case("tightest").is_ok(), "{objective}");
+        let refusal = case("on-demand").expect_err(objective);
+        for words in ["optimizer.accuracy = on-demand", "allowed: \"tightest\"", "can reach or cross 0"] {
+            assert!(refusal.contains(words), "{objective}: {refusal}");
+        }
+    }
+    for objective in ["measure = \"pressure-norm\"", "measure = \"peak-pressure\"", "measure = \"stress-norm\""] {
+        with_objective(&format!("{objective}\n[optimizer]\naccuracy = \"on-demand\"")).expect(objective);
     }
 }

@@ -4,7 +4,7 @@
 //! Σσ^p,    max σ,    Σ A_i (σ_i − w_i)² / Σ A_i,    Σ A_i max(1 − σ_i/σ₀, 0)
 //! ```
 
-use crate::equilibrium::{ContactBoundary, ContactState, ContactStatus};
+use crate::equilibrium::{ContactBoundary, ContactState};
 use crate::error::SceneError;
 use crate::scene::Scene;
 use nonsmooth::composite::{OuterFunction, weighted_gram};
@@ -58,8 +58,9 @@ pub struct PressureCost {
     measure: PressureMeasure,
     /// Whether the value is the p-th root of Σσ^p.
     is_root: bool,
+    boundary: ContactBoundary,
+    /// Areas of its nodes, mm².
     areas: Vec<f64>,
-    dual_dimension: usize,
 }
 
 /// Decades of Σσ^p at the typical pressure of a scene beyond which its root is taken. Squares of subgradients at pressures far
@@ -100,7 +101,7 @@ impl PressureCost {
             }
         }
         let areas = boundary.points.iter().map(|point| point.area).collect();
-        Ok(Self { measure, is_root: false, areas, dual_dimension: boundary.dual_dimension() })
+        Ok(Self { measure, is_root: false, boundary: boundary.clone(), areas })
     }
 
     /// The same cost in a form that can be computed for the pressures of a scene: where Σσ^p may leave the range of doubles, its
@@ -134,8 +135,7 @@ impl PressureCost {
     pub fn contact_areas<S>(&self, state: &ContactState<S>) -> Option<ContactAreas> {
         let PressureMeasure::OpenArea { .. } = self.measure else { return None };
         let whole = self.areas.iter().sum::<f64>();
-        let nodes = self.areas.iter().zip(&state.forces.status);
-        let closed = nodes.filter(|(_, status)| **status != ContactStatus::Open).map(|(area, _)| area).sum();
+        let closed = self.boundary.closed_area(&state.forces.status);
         let open = OuterFunction::value(self, &Vector::from_vec(self.pressures(state)));
         Some(ContactAreas { closed, smoothed: whole - open, whole })
     }
@@ -253,7 +253,7 @@ impl<S> Cost<ContactState<S>> for PressureCost {
 
     fn gradient(&self, control: &Vector, state: &ContactState<S>) -> CostGradient {
         let weights = self.subgradient(&Vector::from_vec(self.pressures(state)));
-        let mut dual = Vector::zeros(self.dual_dimension);
+        let mut dual = Vector::zeros(self.boundary.dual_dimension());
         for (index, (weight, area)) in weights.iter().zip(&self.areas).enumerate() {
             dual[index] = weight / area;
         }

@@ -4,6 +4,7 @@
 //! and none for a tangential dof that supports hold on all bodies (method.md section 3).
 
 use crate::body::mesh::Grid;
+use crate::equilibrium::ContactStatus;
 use crate::scene::Scene;
 
 /// One contact node.
@@ -79,6 +80,13 @@ impl ContactBoundary {
         self.friction > 0.0
     }
 
+    /// Area of the closed nodes, Σ A over the nodes that stick or slip, mm²; one status per node, in the order of
+    /// [`ContactBoundary::points`].
+    pub fn closed_area(&self, status: &[ContactStatus]) -> f64 {
+        let nodes = self.points.iter().zip(status).filter(|(_, status)| **status != ContactStatus::Open);
+        nodes.map(|(point, _)| point.area).sum()
+    }
+
     /// Length of the dual of a contact state: normal forces, then (with friction) two tangential forces per node.
     pub fn dual_dimension(&self) -> usize {
         self.points.len() * if self.has_friction() { 3 } else { 1 }
@@ -92,5 +100,27 @@ impl ContactBoundary {
             packed.extend(point.tangents.iter().map(|tangent| dual[self.points.len() + 2 * index + tangent]));
         }
         packed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::body::mesh::Grid;
+    use crate::equilibrium::{ContactBoundary, ContactStatus};
+    use crate::scene::signorini;
+
+    #[test]
+    fn open_nodes_have_no_closed_area() {
+        let scene = signorini().unwrap();
+        let boundary = ContactBoundary::new(&scene, &Grid { cells: [2, 1, 1], size: scene.size });
+        assert_eq!(boundary.points.len(), 6);
+        let [a, b] = scene.size;
+        let mut status = [ContactStatus::Stick; 6];
+        assert!((boundary.closed_area(&status) / (a * b) - 1.0).abs() < 1e-15);
+        // A corner has an eighth of the area; the nodes at x1 = a/2 have a half together.
+        status[0] = ContactStatus::Open;
+        status[3] = ContactStatus::Slip;
+        assert!((boundary.closed_area(&status) / (a * b) - 0.875).abs() < 1e-15);
+        assert_eq!(boundary.closed_area(&[ContactStatus::Open; 6]), 0.0);
     }
 }

@@ -7,6 +7,9 @@
 //! The sum is the error to first order. The remainder is of second order: nodes whose status differs between λ and λ*, the
 //! curvature of J and of the slip circle. The bound holds whenever the remainder is at most a quarter of Σ|t_i|; the residual has
 //! to be so small that few nodes change their status on the way to the solution. The last term is rounding.
+//!
+//! It is an estimate for the peak pressure, whose largest node may change; for the deviation from a wanted pressure near that pressure,
+//! where ∂J/∂σ and with it every t_i vanishes but the curvature stays; and for the open area where a node has σ = σ₀, a kink of J.
 
 use crate::linear::vector::dot;
 use serde::{Deserialize, Serialize};
@@ -16,13 +19,13 @@ use serde::{Deserialize, Serialize};
 pub struct ValueError {
     /// Σ t_i, with its sign: J less this is more accurate than J.
     pub first_order: f64,
-    /// Bound of the absolute error.
+    /// Bound of the absolute error; an estimate for peak pressure, deviation near the wanted pressure and open area where σ = σ₀.
     pub bound: f64,
 }
 
 /// Remainder allowed for, as a share of Σ|t_i|.
 const REMAINDER: f64 = 0.25;
-/// Relative rounding error of the forces.
+/// Relative rounding error allowed for in every force and in every displacement.
 const ROUNDING: f64 = 1e-14;
 
 impl ValueError {

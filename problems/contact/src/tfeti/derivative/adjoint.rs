@@ -119,7 +119,7 @@ impl AdjointSystem<'_> {
         product
     }
 
-    /// The smallest q with Gq q = Rᵀ l: 0 without a load.
+    /// q = G_Tᵀ (Gq G_Tᵀ)⁻¹ Rᵀ l, with which Gq q = Rᵀ l: 0 without a load.
     fn at_start(&self) -> AdjointIterate {
         match self.load {
             None => self.with_residual(vec![0.0; self.right.len()], self.right.clone()),

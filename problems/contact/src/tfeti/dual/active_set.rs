@@ -110,7 +110,7 @@ impl<'a> ActiveSet<'a> {
         })
     }
 
-    /// The smallest q with Gq q = e for resultants e of all clusters.
+    /// q = G_Tᵀ (Gq G_Tᵀ)⁻¹ e for resultants e of all clusters: Gq q = e then; q is the smallest such vector if T = Q.
     pub fn carrying(&self, mut resultants: Vec<f64>) -> Vec<f64> {
         self.space.timed(|| {
             self.coarse.solve_transpose_in_place(&mut resultants);
