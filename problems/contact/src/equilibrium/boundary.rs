@@ -84,7 +84,7 @@ impl ContactBoundary {
     /// [`ContactBoundary::points`].
     pub fn closed_area(&self, status: &[ContactStatus]) -> f64 {
         let nodes = self.points.iter().zip(status).filter(|(_, status)| **status != ContactStatus::Open);
-        nodes.map(|(point, _)| point.area).sum()
+        nodes.map(|(point, _)| point.area).fold(0.0, |sum, area| sum + area)
     }
 
     /// Length of the dual of a contact state: normal forces, then (with friction) two tangential forces per node.

@@ -3,7 +3,6 @@
 use crate::commands::contact_objective::ContactObjective;
 use crate::commands::report::gallery::ShownShape;
 use contact::deformation::Deformation;
-use contact::equilibrium::ContactStatus;
 use contact::fields::Fields;
 use figures::page::{Block, Section};
 use serde::Serialize;
@@ -50,11 +49,8 @@ impl KeyNumbers {
             row("mean_pressure", "mean pressure over the whole contact surface", "MPa", &|shape, fields| {
                 shape.solved.state.forces.total_normal_force() / area(fields)
             }),
-            row("contact_area", "contact area (nodes that are closed)", "mm²", &|_, fields| {
-                let contact = &fields.contact;
-                let closed =
-                    contact.status.iter().zip(&contact.area).filter(|(status, _)| **status != ContactStatus::Open);
-                closed.map(|(_, area)| area).sum()
+            row("contact_area", "contact area (nodes that are closed)", "mm²", &|shape, _| {
+                objective.solver().problem().boundary.closed_area(&shape.solved.state.forces.status)
             }),
             row("peak_von_mises_at_centres", "peak von Mises stress at brick centres", "MPa", &|_, fields| {
                 largest(fields.bodies.iter().flat_map(|body| &body.von_mises))

@@ -8,7 +8,7 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
 use crate::commands::study::plan::options;
-use contact::equilibrium::{ContactStatus, StatusCounts};
+use contact::equilibrium::StatusCounts;
 use nonsmooth::{StateSolver, Vector};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -193,13 +193,12 @@ fn optimum(
 /// What a row keeps of a solved shape.
 fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'_>) -> Result<Solved, Failure> {
     let (problem, forces) = (objective.solver().problem(), &shape.state.forces);
-    let closed = problem.boundary.points.iter().zip(&forces.status).filter(|(_, s)| **s != ContactStatus::Open);
     let [n1, n2, _] = problem.grid.nodes();
     let block = problem.lower_block(shape.controls.as_slice()).map_err(Failure::computation)?;
     Ok(Solved {
         objective: shape.value,
         peak_pressure: shape.peak_pressure,
-        contact_area: closed.map(|(point, _)| point.area).sum(),
+        contact_area: problem.boundary.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),
         status: forces.counts(),
         controls: shape.controls.as_slice().to_vec(),

@@ -43,6 +43,8 @@ fn the_seat_is_what_the_tutorial_says() {
     compare(&study(&["--vary", "mesh=12,18,24"]), &[77.9, 85.3, 88.6]);
     let loads = study(&["--vary", "friction=0,0.15,0.3", "--vary", "load-factor=0.5,1,1.5"]);
     compare(&loads, &[50.9, 79.5, 131.7, 52.4, 77.9, 125.5, 53.3, 77.1, 123.3]);
+    let worst = study(&["--height-error", "0.01", "--seed", "6", "--vary", "mesh=12,18,24"]);
+    compare(&worst, &[472.2, 628.2, 744.7]);
     let off = study(&["--vary", "height-error=0.005,0.01,0.02", "--vary", "seed=1:10:10"]);
     let ends = off.chunks(10).flat_map(|peaks| {
         [peaks.iter().copied().fold(f64::INFINITY, f64::min), peaks.iter().copied().fold(0.0, f64::max)]
