@@ -87,9 +87,9 @@ fn check<J: TestCost>(
                 "{solver:?} {tolerance:.0e}: error {truth:.3e}, bound {:.3e}",
                 error.bound
             );
-            // The first order term predicts the error, up to what the bound allows for.
+            // The first order term predicts the error, up to what the bound allows for; not that of the compliance, docs/method.md (5.3).
             let rest = (found - error.first_order - exact).abs();
-            prop_assert!(rest <= error.bound + rounding, "{rest:.3e} {:.3e}", error.bound);
+            prop_assert!(J::IS_FIELD || rest <= error.bound + rounding, "{rest:.3e} {:.3e}", error.bound);
         }
     }
     Ok(())
