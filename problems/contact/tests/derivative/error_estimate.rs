@@ -87,9 +87,9 @@ fn check<J: TestCost>(
                 "{solver:?} {tolerance:.0e}: error {truth:.3e}, bound {:.3e}",
                 error.bound
             );
-            // The first order term predicts the error, up to what the bound allows for; not that of the compliance, docs/method.md (5.3).
+            // The first order term predicts the error, up to what the bound allows for.
             let rest = (found - error.first_order - exact).abs();
-            prop_assert!(J::IS_FIELD || rest <= error.bound + rounding, "{rest:.3e} {:.3e}", error.bound);
+            prop_assert!(rest <= error.bound + rounding, "{rest:.3e} {:.3e}", error.bound);
         }
     }
     Ok(())
@@ -112,17 +112,15 @@ fn check_pressures(scene: &Scene, control: &Vector) -> Result<(), TestCaseError>
     )
 }
 
-/// Stress norm and compliance: their adjoint carries a load as well.
+/// The stress norm: its adjoint carries a load as well. For the compliance the bound is an estimate, docs/method.md (5.3).
 fn check_fields(scene: &Scene, control: &Vector) -> Result<(), TestCaseError> {
     let all = Region { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None };
     let solvers = [DIRICHLET, Some((PreconditionerKind::Dirichlet, DualMethod::SuccessiveApproximations))];
     let stress = FieldMeasure::StressNorm { region: all, exponent: 8.0 };
     check::<FieldCost>(scene, control, &stress, &solvers, &[1e-4])?;
     // At coarser states the remainder can exceed what the bound allows for; docs/method.md (5.3).
-    for measure in [stress, FieldMeasure::Compliance] {
-        for solvers in [&solvers[..], &[None]] {
-            check::<FieldCost>(scene, control, &measure, solvers, &[1e-7, 1e-10])?;
-        }
+    for solvers in [&solvers[..], &[None]] {
+        check::<FieldCost>(scene, control, &stress, solvers, &[1e-7, 1e-10])?;
     }
     Ok(())
 }
