@@ -1,6 +1,7 @@
 //! Bounds, derivatives and convexity of the costs of the pressure.
 
 use super::*;
+use crate::equilibrium::ContactPoint;
 use proptest::prelude::*;
 
 /// Σσ^p of forces over areas.
@@ -13,7 +14,7 @@ fn the_lower_bound_is_attained_and_never_undercut() {
     let areas = vec![1.0, 2.0, 4.0, 0.5];
     for p in [1.02, 1.5, 4.0, 12.0] {
         let measure = PressureMeasure::Norm { exponent: p };
-        let cost = PressureCost { is_root: false, measure, areas: areas.clone(), dual_dimension: 4 };
+        let cost = cost_over(measure, &areas);
         let weights: Vec<f64> = areas.iter().map(|area: &f64| area.powf(p / (p - 1.0))).collect();
         let forces: Vec<f64> = weights.iter().map(|w| 30.0 * w / weights.iter().sum::<f64>()).collect();
         let bound = cost.lower_bound(30.0);
@@ -24,9 +25,9 @@ fn the_lower_bound_is_attained_and_never_undercut() {
     }
     // Near p = 1 everything goes to the largest area: (30/4)^p.
     let nearly = PressureMeasure::Norm { exponent: 1.001 };
-    let cost = PressureCost { is_root: false, measure: nearly, areas: areas.clone(), dual_dimension: 4 };
+    let cost = cost_over(nearly, &areas);
     assert!((cost.lower_bound(30.0) / 7.5_f64.powf(1.001) - 1.0).abs() < 1e-12);
-    let cost = PressureCost { is_root: false, measure: PressureMeasure::Peak, areas, dual_dimension: 4 };
+    let cost = cost_over(PressureMeasure::Peak, &areas);
     assert!((cost.lower_bound(30.0) - 4.0).abs() < 1e-14);
 }
 
@@ -34,15 +35,28 @@ fn the_lower_bound_is_attained_and_never_undercut() {
 fn the_lower_bound_of_the_paper_s_example() {
     // method.md (9.1): (3e7)⁴/(Σ A^{4/3})³ = 1.294e16 on 12 × 12 bricks of a 100 mm square.
     let grid = crate::body::mesh::Grid { cells: [12, 12, 12], size: [100.0, 100.0] };
-    let areas = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
-    let cost =
-        PressureCost { is_root: false, measure: PressureMeasure::Norm { exponent: 4.0 }, areas, dual_dimension: 169 };
+    let areas: Vec<f64> = grid.columns().map(|(i, j)| grid.tributary_area(i, j)).collect();
+    let cost = cost_over(PressureMeasure::Norm { exponent: 4.0 }, &areas);
     assert!((cost.lower_bound(3e7) / 1.294e16 - 1.0).abs() < 5e-4);
+}
+
+/// A cost over nodes with these areas, without friction.
+fn cost_over(measure: PressureMeasure, areas: &[f64]) -> PressureCost {
+    let point = |(start, &area): (usize, &f64)| ContactPoint {
+        position: [start, 0],
+        area,
+        start,
+        tangents: vec![],
+        can_slide: true,
+    };
+    let points = areas.iter().enumerate().map(point).collect();
+    let boundary = ContactBoundary { points, row_count: areas.len(), friction: 0.0 };
+    PressureCost::new(measure, &boundary).expect("a measure over as many nodes")
 }
 
 /// A cost over four nodes.
 fn cost(measure: PressureMeasure) -> PressureCost {
-    PressureCost { measure, is_root: false, areas: vec![1.0, 2.0, 4.0, 0.5], dual_dimension: 4 }
+    cost_over(measure, &[1.0, 2.0, 4.0, 0.5])
 }
 
 #[test]
