@@ -9,7 +9,8 @@
 //! to be so small that few nodes change their status on the way to the solution. The last term is rounding.
 //!
 //! It is an estimate for the peak pressure, whose largest node may change; for the deviation from a wanted pressure near that pressure,
-//! where ∂J/∂σ and with it every t_i vanishes but the curvature stays; and for the open area where a node has σ = σ₀, a kink of J.
+//! where ∂J/∂σ and with it every t_i vanishes but the curvature stays; for the open area where a node has σ = σ₀, a kink of
+//! J; and for the compliance, where it was exceeded up to three times (method.md (5.3)).
 
 use crate::linear::vector::dot;
 use serde::{Deserialize, Serialize};
@@ -19,7 +20,7 @@ use serde::{Deserialize, Serialize};
 pub struct ValueError {
     /// Σ t_i, with its sign: J less this is more accurate than J.
     pub first_order: f64,
-    /// Bound of the absolute error; an estimate for peak pressure, deviation near the wanted pressure and open area where σ = σ₀.
+    /// Bound of the absolute error; an estimate for peak pressure, deviation near the wanted pressure, open area where σ = σ₀ and compliance.
     pub bound: f64,
 }
 
