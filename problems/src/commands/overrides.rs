@@ -102,6 +102,21 @@ impl Arguments {
         }
         file.solver.kind = self.solver.unwrap_or(file.solver.kind);
         file.solver.preconditioner = self.preconditioner.unwrap_or(file.solver.preconditioner);
+        self.apply_objective(&mut file);
+        file.optimizer.max_evaluations = self.max_evaluations.unwrap_or(file.optimizer.max_evaluations);
+        file.optimizer.time_limit = self.time_limit.or(file.optimizer.time_limit);
+        if let Some(meshes) = &self.continuation {
+            file.optimizer.continuation.clone_from(meshes);
+        }
+        file.optimizer.starts = self.starts.unwrap_or(file.optimizer.starts);
+        if let Some(folder) = &self.out {
+            file.output.folder = Some(folder.display().to_string());
+        }
+        Ok(file)
+    }
+
+    /// Puts the objective and the method in; what a file says for another objective does not hold for this one.
+    fn apply_objective(&self, file: &mut SceneFile) {
         if let Some(measure) = self.objective.filter(|measure| *measure != file.objective.measure) {
             // Exponent, wanted pressure and region of the file belong to the file's measure.
             file.objective = ObjectiveSection { measure, ..ObjectiveSection::default() };
@@ -113,15 +128,5 @@ impl Arguments {
             file.optimizer.method = file.optimizer.method.filter(|method| *method != MethodName::Composite);
         }
         file.optimizer.method = self.optimizer.or(file.optimizer.method);
-        file.optimizer.max_evaluations = self.max_evaluations.unwrap_or(file.optimizer.max_evaluations);
-        file.optimizer.time_limit = self.time_limit.or(file.optimizer.time_limit);
-        if let Some(meshes) = &self.continuation {
-            file.optimizer.continuation.clone_from(meshes);
-        }
-        file.optimizer.starts = self.starts.unwrap_or(file.optimizer.starts);
-        if let Some(folder) = &self.out {
-            file.output.folder = Some(folder.display().to_string());
-        }
-        Ok(file)
     }
 }

@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn open_nodes_have_no_closed_area() {
-        let scene = signorini().unwrap();
+        let scene = signorini().expect("the scene of the paper");
         let boundary = ContactBoundary::new(&scene, &Grid { cells: [2, 1, 1], size: scene.size });
         assert_eq!(boundary.points.len(), 6);
         let [a, b] = scene.size;
