@@ -84,6 +84,14 @@ impl ContactObjective {
         self.solver().outputs(state).as_slice().to_vec()
     }
 
+    /// The wanted pressure per contact node, MPa, where the deviation from it is minimised.
+    pub fn wanted(&self) -> Option<&[f64]> {
+        match self {
+            Self::Pressure(objective) => objective.cost().wanted(),
+            Self::Field(_) => None,
+        }
+    }
+
     /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements.
     pub fn lower_bound(&self, total_force: f64) -> Option<f64> {
         match self {

@@ -71,6 +71,8 @@ fn every_objective_is_evaluated_verified_optimized_and_rechecked() {
         near(&run["objective_start"], number(&at_start["objective"]), 1e-9);
         assert!(number(&run["objective"]) <= number(&run["objective_start"]));
         assert!(out.join("report.html").exists() && out.join("vtk/fields.pvd").exists());
+        let cuts = std::fs::read_to_string(out.join("figures/pressure_cuts.svg")).unwrap();
+        assert_eq!(cuts.contains(">wanted<"), index == 0, "{section}");
         let recheck = of_scene(&["recheck", text(&out), "--json"]);
         assert_eq!(recheck["agrees"], true, "{recheck}");
         let resumed = json(contact3d(), &["--resume", text(&out), "--max-evaluations", "5", "--json"]);

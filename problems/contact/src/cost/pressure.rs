@@ -113,6 +113,14 @@ impl PressureCost {
         Self { is_root: typical > 0.0 && exponent * typical.log10().abs() > MAX_DECADES, ..self }
     }
 
+    /// The wanted pressure per contact node, MPa, of a deviation; none for the other measures.
+    pub fn wanted(&self) -> Option<&[f64]> {
+        match &self.measure {
+            PressureMeasure::Deviation { wanted } => Some(wanted),
+            _ => None,
+        }
+    }
+
     /// p where the value is (Σσ^p)^{1/p}, else 1.
     pub fn root(&self) -> f64 {
         match self.measure {

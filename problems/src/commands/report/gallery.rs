@@ -51,13 +51,10 @@ pub fn pressure(
 ) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let [n1, n2, _] = problem.grid.nodes();
-    let panel = |shape: &ShownShape<'_>| MapPanel {
-        caption: shape.caption.clone(),
-        counts: [n1, n2],
-        origin: [0.0; 2],
-        size: problem.grid.size,
-        values: objective.pressures(&shape.solved.state),
-    };
+    let (counts, size) = ([n1, n2], problem.grid.size);
+    let panel = |(caption, values)| MapPanel { caption, counts, origin: [0.0; 2], size, values };
+    let found = shapes.iter().map(|shape| (shape.caption.clone(), objective.pressures(&shape.solved.state)));
+    let wanted = objective.wanted().map(|wanted| (WANTED.to_owned(), wanted.to_vec()));
     let (name, words) = match scales {
         ColourScales::Common => ("pressure", ""),
         ColourScales::Own => ("pressure_own_scales", ", each on its own scale"),
@@ -70,10 +67,13 @@ pub fn pressure(
         axes: ["x₁ (mm)".into(), "x₂ (mm)".into()],
         scales,
         contours: false,
-        panels: shapes.iter().map(panel).collect(),
+        panels: found.chain(wanted).map(panel).collect(),
     }
     .figure()
 }
+
+/// What the wanted pressure is called beside those of shapes.
+const WANTED: &str = "wanted";
 
 /// Pressures of all shapes along x₁ and x₂ through the peak of each of them.
 pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
@@ -97,17 +97,19 @@ pub fn cuts(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<F
             let labels = labels.collect::<Vec<_>>().join(", ");
             let across = number(grid.position(peak[0], peak[1])[1 - axis]);
             let node = |index: usize| if axis == 0 { [index, peak[1]] } else { [peak[0], index] };
-            let curve = |(shape, values): (&ShownShape<'_>, &Vec<f64>)| Curve {
-                name: shape.label.to_owned(),
+            let curve = |(name, values): (&str, &[f64])| Curve {
+                name: name.to_owned(),
                 points: (0..=grid.cells[axis])
                     .map(node)
                     .map(|[i, j]| (grid.position(i, j)[axis], values[grid.column(i, j)]))
                     .collect(),
             };
+            let found = shapes.iter().zip(&pressures).map(|(shape, values)| (shape.label, values.as_slice()));
+            let wanted = objective.wanted().map(|wanted| (WANTED, wanted));
             panels.push(LinePanel {
                 caption: format!("{other} = {across} mm, through the peak ({labels})"),
                 across: format!("{along} (mm)"),
-                curves: shapes.iter().zip(&pressures).map(curve).collect(),
+                curves: found.chain(wanted).map(curve).collect(),
             });
         }
     }
