@@ -1,9 +1,11 @@
-"""Evaluations and success of nonsmooth and of scipy's methods on the same functions; prints the table of docs/python.md.
+"""Evaluations and success of nonsmooth and of other methods on the same functions; prints the tables of docs/python.md.
 
 `python against_scipy.py` prints for each function and method f - f* at the end, relative to 1 + |f*|, and the evaluations to
-1e-6 (or all that were used, in brackets), and marks a claimed success that is none with `!`.
+1e-6 (or all that were used, in brackets), and marks a claimed success that is none with `!`. A second table has the methods of
+NLopt, CMA-ES and nsopy that are installed.
 """
 
+import importlib.util
 import warnings
 
 import numpy as np
@@ -13,6 +15,8 @@ from scipy.optimize import LinearConstraint
 import nonsmooth
 
 METHODS = ["BFGS", "L-BFGS-B", "SLSQP", "trust-constr", "COBYLA"]
+# Column, package of the index.
+OTHERS = [("NLopt MMA", "nlopt"), ("NLopt SLSQP", "nlopt"), ("CMA-ES", "cma"), ("nsopy subgradient", "nsopy")]
 LEVEL = 1e-6
 EVALUATIONS = 1500
 
@@ -98,6 +102,48 @@ def functions():
     ]
 
 
+def nlopt_claims(name, fun, start):
+    """Whether NLopt says that it has converged."""
+    import nlopt
+
+    algorithm = {"NLopt MMA": nlopt.LD_MMA, "NLopt SLSQP": nlopt.LD_SLSQP}[name]
+    method = nlopt.opt(algorithm, len(start))
+
+    def objective(x, gradient):
+        value, subgradient = fun(x.copy())
+        if gradient.size:
+            gradient[:] = subgradient
+        return value
+
+    method.set_min_objective(objective)
+    method.set_xtol_rel(1e-9)
+    method.set_maxeval(EVALUATIONS)
+    try:
+        method.optimize(start)
+    except (nlopt.RoundoffLimited, RuntimeError):
+        return False
+    return method.last_optimize_result() in (nlopt.SUCCESS, nlopt.FTOL_REACHED, nlopt.XTOL_REACHED)
+
+
+def cma_claims(fun, start):
+    """Whether CMA-ES, which uses the values alone, says that it has converged."""
+    import cma
+
+    strategy = cma.CMAEvolutionStrategy(start, 0.5, {"verbose": -9, "seed": 1, "maxfevals": EVALUATIONS})
+    strategy.optimize(lambda x: fun(np.asarray(x))[0])
+    return bool({"tolfun", "tolx", "tolfunhist"} & set(strategy.stop()))
+
+
+def nsopy_claims(fun, start):
+    """The subgradient method of nsopy with steps 1/k; it claims nothing."""
+    from nsopy.methods.subgradient import SubgradientMethod
+
+    method = SubgradientMethod(lambda x: (x, *fun(x)), lambda x: x, dimension=len(start))
+    method.lambda_k = start.copy()
+    while True:
+        method.dual_step()
+
+
 def run(method, fun, start, least, sets, convex):
     """Relative error, evaluations, whether 1e-6 was reached, whether success was claimed."""
     values = []
@@ -118,6 +164,12 @@ def run(method, fun, start, least, sets, convex):
             warnings.simplefilter("ignore")
             if method == "nonsmooth":
                 claimed = nonsmooth.minimize(counted, start, options={"convex": convex}, **sets).success
+            elif method.startswith("NLopt"):
+                claimed = nlopt_claims(method, counted, start)
+            elif method == "CMA-ES":
+                claimed = cma_claims(counted, start)
+            elif method == "nsopy subgradient":
+                nsopy_claims(counted, start)
             elif method == "COBYLA":
                 value = lambda x: counted(x)[0]
                 claimed = scipy.optimize.minimize(value, start, method=method, options={"maxiter": EVALUATIONS}, **sets).success
@@ -131,14 +183,15 @@ def run(method, fun, start, least, sets, convex):
     return best, hits[0] if hits else len(values), bool(hits), bool(claimed)
 
 
-def table():
-    """Lines of the table, and (claimed, claimed and true) per method."""
-    lines = ["| error / evaluations | nonsmooth | " + " | ".join(METHODS) + " |", "|---" * (len(METHODS) + 2) + "|"]
-    totals = {method: [0, 0, 0] for method in ["nonsmooth", *METHODS]}
+def table(methods=METHODS):
+    """Lines of the table, and (reached, claimed, claimed wrongly) per method."""
+    lines = ["| error / evaluations | nonsmooth | " + " | ".join(methods) + " |", "|---" * (len(methods) + 2) + "|"]
+    totals = {method: [0, 0, 0] for method in ["nonsmooth", *methods]}
+    unconstrained = {"BFGS", "L-BFGS-B", *(name for name, _ in OTHERS)}
     for name, fun, start, least, sets, convex in functions():
         cells = []
         for method, total in totals.items():
-            if sets and method in ("BFGS", "L-BFGS-B"):
+            if sets and method in unconstrained:
                 cells.append("–")
                 continue
             error, count, reached, claimed = run(method, fun, start, least, sets, convex)
@@ -155,3 +208,6 @@ def table():
 
 if __name__ == "__main__":
     print("\n".join(table()[0]))
+    installed = [name for name, package in OTHERS if importlib.util.find_spec(package)]
+    if installed:
+        print("\n" + "\n".join(table(installed)[0]))
