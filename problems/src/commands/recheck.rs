@@ -108,7 +108,8 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
 /// The scene of the run in a folder, if the folder tells it.
 ///
 /// # Errors
-/// [`Failure::Computation`] if it is another one than that of the command, in more than its name, its start, its optimizer, and its outputs.
+/// [`Failure::Computation`] if it is another one than that of the command, in more than its name, its tearing, its start, its solver,
+/// its optimizer, and its outputs.
 fn own_scene(here: &SceneFile, folder: &Path) -> Result<Option<LoadedScene>, Failure> {
     let path = folder.join(SCENE);
     if !path.exists() {
@@ -128,7 +129,7 @@ fn own_scene(here: &SceneFile, folder: &Path) -> Result<Option<LoadedScene>, Fai
 
 /// The first field in which two scenes differ, with its values; what a certificate does not depend on, and names of files, are left out.
 fn difference(field: &str, there: &Value, here: &Value) -> Option<(String, String, String)> {
-    const LEFT_OUT: [&str; 5] = ["name", "optimizer", "output", "surface.start", "file"];
+    const LEFT_OUT: [&str; 7] = ["name", "mesh.subdomains", "solver", "optimizer", "output", "surface.start", "file"];
     if LEFT_OUT.contains(&field) || field.ends_with(".file") {
         return None;
     }
