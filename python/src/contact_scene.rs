@@ -7,11 +7,11 @@ use crate::run::{Plan, RunError, drive, journaled};
 use crate::setup::Setup;
 use crate::watched::Watched;
 use contact::communication::InProcess;
+use contact::contact_objective::{ContactObjective, mean_height_coordinates};
 use contact::contact_shape::{ContactShape, Wanted};
-use contact::cost::{Measure, PressureCost};
 use contact::equilibrium::ContactStatus;
 use contact::error::SceneError;
-use nonsmooth::{Accuracy, CompositeObjective, Matrix, OracleError, StateSolver, VariableScaling, Vector};
+use nonsmooth::{Accuracy, Matrix, OracleError, StateSolver, VariableScaling};
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -19,9 +19,6 @@ use pyo3::types::PyDict;
 use scene_file::{AccuracyName, Case, MethodName, SceneFile, read_text};
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
-
-/// Θ of a scene.
-type ContactObjective = CompositeObjective<ContactShape, PressureCost>;
 
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
@@ -114,7 +111,7 @@ impl ContactScene {
         let (state, evaluation) = py
             .detach(|| {
                 let state = objective.solver().solve(&heights, None, Accuracy::TIGHTEST)?;
-                let evaluation = objective.reduced().differentiate(&heights, &state)?;
+                let evaluation = objective.differentiate(&heights, &state)?;
                 Ok((state, evaluation))
             })
             .map_err(computation)?;
@@ -132,12 +129,12 @@ impl ContactScene {
         let result = PyDict::new(py);
         let [rows, columns] = scene.control_points;
         result.set_item("value", evaluation.value)?;
-        result.set_item("root", objective.cost().root())?;
-        result.set_item("unit", objective.cost().unit())?;
+        result.set_item("root", objective.root())?;
+        result.set_item("unit", objective.unit())?;
         result.set_item("error_bound", evaluation.error_bound)?;
         let gradient = convert::array(py, &evaluation.subgradient).reshape([rows, columns])?;
         result.set_item("gradient", gradient)?;
-        let pressures = objective.cost().pressures(&state);
+        let pressures = objective.pressures(&state);
         result.set_item("pressures", field(&|index| pressures[index])?)?;
         result.set_item("gaps", field(&|index| -forces.opening[index])?)?;
         result.set_item(
@@ -193,7 +190,7 @@ impl ContactScene {
         let objective = py.detach(|| self.objective_for(wanted)).map_err(input)?;
         let problem = objective.solver().problem();
         let start = setup.start();
-        let step = config.first_step.unwrap_or_else(|| first_step(&objective, &start));
+        let step = config.first_step.unwrap_or_else(|| objective.first_step(&start));
         config.first_step = Some(step);
         if setup.scaling.is_none() {
             config.scaling = VariableScaling::Linear(mean_height_coordinates(&start, step));
@@ -233,12 +230,8 @@ impl ContactScene {
         let case = &self.case;
         let shape =
             ContactShape::for_use(case.scene.clone(), case.solver, case.preconditioner, wanted, Arc::new(InProcess))?;
-        let Measure::Pressure(measure) = case.objective.measure(shape.problem())? else {
-            let allowed = "a function of the contact pressures; contact3d takes those of stress and displacement";
-            return Err(SceneError::out_of_range("objective.measure", "a function of the displacements", allowed));
-        };
-        let cost = PressureCost::new(measure, &shape.problem().boundary)?.normalised_for(&case.scene);
-        Ok(CompositeObjective::new(shape, cost))
+        let measure = case.objective.measure(shape.problem())?;
+        ContactObjective::new(shape, measure)
     }
 
     /// Θ for single shapes, prepared at the first call.
@@ -250,21 +243,4 @@ impl ContactScene {
         }
         self.objective.get().ok_or_else(|| PyRuntimeError::new_err("the contact solver was not prepared"))
     }
-}
-
-/// Half of the mean distance between the starting surface and its counterpart, mm, as the command `optimize` of the contact
-/// binaries takes it; a hundredth of the height where they coincide.
-fn first_step(objective: &ContactObjective, start: &Vector) -> f64 {
-    let problem = objective.solver().problem();
-    let gaps = problem.lower_block(start.as_slice()).map(|block| problem.gaps(&block)).unwrap_or_default();
-    let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (2 * gaps.len().max(1)) as f64;
-    if length > 0.0 { length } else { 0.01 * start.amax() }
-}
-
-/// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first step, as in
-/// the command `optimize`: bodies that contact holds follow the surface as a whole.
-fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
-    let count = start.len();
-    let stretch = (start.mean().abs() / first_step).max(1.0);
-    Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
 }

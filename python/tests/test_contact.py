@@ -48,6 +48,23 @@ def test_optimize_ends_as_the_command_does(signorini):
     assert abs(signorini.evaluate(result.x.reshape(6, 6)).theta / result.fun - 1) < 1e-9
 
 
+@pytest.mark.parametrize(
+    ("objective", "unit"),
+    [
+        ({"measure": "compliance"}, "N mm"),
+        ({"measure": "stress-norm"}, "MPa"),
+        ({"measure": "pressure-deviation", "wanted": {"form": "formula", "pressure": "3000"}}, "MPa^{2}"),
+    ],
+)
+def test_other_objectives_have_derivatives_and_optima(objective, unit):
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, objective=objective)
+    start = scene.evaluate()
+    assert start.unit == unit and start.root == 1
+    assert nonsmooth.taylor_test(scene.fun, scene.start.ravel(), disp=False).right
+    result = scene.optimize(options={"max_evaluations": 10})
+    assert result.fun < 0.9 * start.theta
+
+
 def test_the_same_scene_for_minimize_and_by_keywords():
     scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, friction=0.0)
     assert "friction = 0.0" in scene.to_toml()

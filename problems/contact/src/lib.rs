@@ -37,7 +37,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
-//! | [`contact_shape`], [`cost`] | the contact problem in the framework's terms: state solver with coderivative, costs |
+//! | [`contact_shape`], [`cost`], [`contact_objective`] | the contact problem in the framework's terms: state solver with coderivative, costs, Θ |
 //! | [`scene`], [`shape`] | what a problem is made of; splines and the admissible set |
 //! | [`body`] | bricks and tearing; trilinear elasticity; element sums of the adjoint |
 //! | [`equilibrium`] | boundary, contact law, rigid motions, certificates, the discrete problem and its state |
@@ -55,6 +55,7 @@
 mod any_solver;
 pub mod body;
 pub mod communication;
+pub mod contact_objective;
 pub mod contact_shape;
 pub mod cost;
 pub mod deformation;

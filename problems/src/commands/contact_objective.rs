@@ -1,151 +1,17 @@
-//! The objective Θ of a contact problem, and shapes with their contact states.
+//! The objective Θ of a contact problem as the commands solve it, and shapes with their contact states.
 
 use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
 use crate::commands::processes::{Processes, SharedSolver, SharedState};
-use contact::contact_shape::{ContactShape, ContactState, ContactWarmStart, Wanted};
-use contact::cost::{ContactAreas, FieldCost, Measure, PressureCost};
+use contact::contact_objective;
+use contact::contact_shape::{ContactState, Wanted};
 use contact::fields::Fields;
 use contact::plausibility::Warning;
-use nonsmooth::composite::OuterFunction;
-use nonsmooth::{
-    Accuracy, Answer, CompositeObjective, Cost, CostGradient, Evaluation, NonsmoothObjective, OracleError,
-    OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
-};
+use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName};
 
-/// Θ of a scene: a measure of the contact state that the control heights lead to. Where Σσ^p may lie outside the range of doubles, Θ is
-/// its p-th root.
-#[derive(Debug)]
-pub enum ContactObjective {
-    /// A convex function of the contact pressures.
-    Pressure(CompositeObjective<ContactShape<SharedSolver>, PressureCost>),
-    /// A function of the displacements, which has no composite model.
-    Field(ReducedObjective<ContactShape<SharedSolver>, FieldCost>),
-}
-
-impl ContactObjective {
-    /// The map from control heights to contact states.
-    pub fn solver(&self) -> &ContactShape<SharedSolver> {
-        match self {
-            Self::Pressure(objective) => objective.solver(),
-            Self::Field(objective) => objective.solver(),
-        }
-    }
-
-    /// Θ at a state already found.
-    pub fn value(&self, control: &Vector, state: &ContactState<SharedState>) -> f64 {
-        match self {
-            Self::Pressure(objective) => Cost::value(objective.cost(), control, state),
-            Self::Field(objective) => objective.cost().value(control, state),
-        }
-    }
-
-    /// The partial gradients of the cost at a state.
-    pub fn gradient(&self, control: &Vector, state: &ContactState<SharedState>) -> CostGradient {
-        match self {
-            Self::Pressure(objective) => objective.cost().gradient(control, state),
-            Self::Field(objective) => objective.cost().gradient(control, state),
-        }
-    }
-
-    /// Θ and one subgradient at a state already found.
-    ///
-    /// # Errors
-    /// As [`ReducedObjective::differentiate`].
-    pub fn differentiate(
-        &self,
-        control: &Vector,
-        state: &ContactState<SharedState>,
-    ) -> Result<Evaluation<ContactWarmStart>, OracleError> {
-        match self {
-            Self::Pressure(objective) => objective.reduced().differentiate(control, state),
-            Self::Field(objective) => objective.differentiate(control, state),
-        }
-    }
-
-    /// The derivative of Θ by the height of every contact node, unit of Θ per mm.
-    ///
-    /// # Errors
-    /// As [`ContactShape::height_sensitivity`].
-    pub fn height_sensitivity(&self, shape: &SolvedShape) -> Result<Vec<f64>, OracleError> {
-        let SolvedShape { controls, state, .. } = shape;
-        let mut heights = self.solver().height_sensitivity(state, &self.gradient(controls, state).state)?.0;
-        // At fixed displacements, costs of the pressures do not depend on the shape.
-        if let (Self::Field(objective), Some(bodies)) = (self, &state.bodies) {
-            let direct = objective.cost().gradient_of(bodies).heights;
-            heights.iter_mut().zip(direct).for_each(|(height, direct)| *height += direct);
-        }
-        Ok(heights)
-    }
-
-    /// σ per contact node, MPa.
-    pub fn pressures(&self, state: &ContactState<SharedState>) -> Vec<f64> {
-        self.solver().outputs(state).as_slice().to_vec()
-    }
-
-    /// The wanted pressure per contact node, MPa, where the deviation from it is minimised.
-    pub fn wanted(&self) -> Option<&[f64]> {
-        match self {
-            Self::Pressure(objective) => objective.cost().wanted(),
-            Self::Field(_) => None,
-        }
-    }
-
-    /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements.
-    pub fn lower_bound(&self, total_force: f64) -> Option<f64> {
-        match self {
-            Self::Pressure(objective) => Some(objective.cost().lower_bound(total_force)),
-            Self::Field(_) => None,
-        }
-    }
-
-    /// The unit of Θ, such as `MPa^{4}`.
-    pub fn unit(&self) -> String {
-        match self {
-            Self::Pressure(objective) => objective.cost().unit(),
-            Self::Field(objective) => objective.cost().unit().into(),
-        }
-    }
-
-    /// p where Θ is (Σσ^p)^{1/p} in place of Σσ^p, else 1.
-    pub fn root(&self) -> f64 {
-        match self {
-            Self::Pressure(objective) => objective.cost().root(),
-            Self::Field(_) => 1.0,
-        }
-    }
-
-    /// The contact areas of a state, where the open area is what is minimised.
-    pub fn contact_areas(&self, state: &ContactState<SharedState>) -> Option<ContactAreas> {
-        match self {
-            Self::Pressure(objective) => objective.cost().contact_areas(state),
-            Self::Field(_) => None,
-        }
-    }
-}
-
-impl NonsmoothObjective for ContactObjective {
-    type WarmStart = ContactWarmStart;
-
-    fn dimension(&self) -> usize {
-        self.solver().control_dimension()
-    }
-
-    fn outer(&self) -> Option<&dyn OuterFunction> {
-        match self {
-            Self::Pressure(objective) => objective.outer(),
-            Self::Field(objective) => objective.outer(),
-        }
-    }
-
-    fn evaluate(&self, request: &Request<'_, ContactWarmStart>) -> Result<Answer<ContactWarmStart>, OracleError> {
-        match self {
-            Self::Pressure(objective) => objective.evaluate(request),
-            Self::Field(objective) => objective.evaluate(request),
-        }
-    }
-}
+/// Θ of a scene, by all processes together.
+pub type ContactObjective = contact_objective::ContactObjective<SharedSolver>;
 
 /// Θ of a case, for single shapes, in a single process.
 ///
@@ -180,16 +46,8 @@ pub fn optimized_objective(case: &Case, processes: &Processes) -> Result<Contact
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
     let shape = processes.shape(case, wanted)?;
-    Ok(match case.objective.measure(shape.problem())? {
-        Measure::Pressure(measure) => {
-            let cost = PressureCost::new(measure, &shape.problem().boundary)?.normalised_for(&case.scene);
-            ContactObjective::Pressure(CompositeObjective::new(shape, cost))
-        }
-        Measure::Field(measure) => {
-            let cost = FieldCost::new(measure, shape.problem())?;
-            ContactObjective::Field(ReducedObjective::new(shape.with_displacements(), cost))
-        }
-    })
+    let measure = case.objective.measure(shape.problem())?;
+    Ok(ContactObjective::new(shape, measure)?)
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.
@@ -225,7 +83,7 @@ impl SolvedShape {
     pub fn fields(&self, objective: &ContactObjective, sensitivities: bool) -> Result<Fields, Failure> {
         let mut fields = objective.solver().fields(&self.state)?;
         if sensitivities {
-            fields.contact.sensitivity = Some(objective.height_sensitivity(self)?);
+            fields.contact.sensitivity = Some(objective.height_sensitivity(&self.controls, &self.state)?);
         }
         Ok(fields)
     }

@@ -35,6 +35,5 @@ pub use contact_objective::{ContactObjective, SolvedShape, objective};
 pub use controls::parse as parse_controls;
 pub use failure::{Failure, failed};
 pub use folder::{Folder, json, printed_with_files};
-pub use optimize::mesh_run::{first_step, mean_height_coordinates};
 pub use output::{arguments, finish, notice, print, print_failure};
 pub use verify::{DIRECTION_SEED, smooth_taylor_test, taylor_steps};

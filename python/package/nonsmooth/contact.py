@@ -26,7 +26,7 @@ class Evaluation:
     Attributes
     ----------
     theta : float
-        The pressure measure of the scene, in `unit`.
+        The objective of the scene, in `unit`.
     gradient : ndarray, shape of the control points
         One Clarke subgradient with respect to the heights, unit of theta per mm. Where `weakly_active` counts no node,
         it is the gradient.
@@ -160,7 +160,7 @@ class Scene:
         return found.theta, found.gradient.ravel()
 
     def optimize(self, start=None, options=None, callback=None, *, journal=None, resume=None):
-        """Minimise theta over the admissible heights, with the Jacobian of all pressures.
+        """Minimise theta over the admissible heights, with the Jacobian of all pressures where theta is a function of them.
 
         Parameters
         ----------

@@ -5,9 +5,10 @@ use crate::commands::failure::Failure;
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
 use crate::commands::optimize::stages::MeshStage;
 use crate::commands::output::notice;
+use contact::contact_objective::mean_height_coordinates;
 use nonsmooth::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Matrix, Observer, Report,
-    VariableScaling, Vector,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Observer, Report, VariableScaling,
+    Vector,
 };
 use scene_file::{AccuracyName, MethodName};
 use std::ops::ControlFlow;
@@ -100,23 +101,4 @@ fn warner<O>(journaled: &Journaled<O>) -> impl Observer {
         said = warnings.len();
         ControlFlow::Continue(())
     }
-}
-
-/// Half of the mean distance between the starting surface and its counterpart: the length on which contact changes, mm. A
-/// hundredth of the height where they coincide.
-pub fn first_step(objective: &ContactObjective, initial_controls: &Vector) -> f64 {
-    let problem = objective.solver().problem();
-    let gaps = problem.lower_block(initial_controls.as_slice()).map(|block| problem.gaps(&block)).unwrap_or_default();
-    let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (2 * gaps.len().max(1)) as f64;
-    if length > 0.0 { length } else { 0.01 * initial_controls.amax() }
-}
-
-/// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first step:
-/// bodies that contact holds follow the surface as a whole, so that Θ hardly depends on its mean height.
-///
-/// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and leaves differences alone.
-pub fn mean_height_coordinates(initial_controls: &Vector, first_step: f64) -> Matrix {
-    let count = initial_controls.len();
-    let stretch = (initial_controls.mean().abs() / first_step).max(1.0);
-    Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
 }

@@ -6,7 +6,7 @@ use crate::commands::failure::{Failure, failed};
 use crate::commands::folder::Folder;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, interrupted, watch_interrupts};
-use crate::commands::optimize::mesh_run::{MeshRun, first_step, run_on_mesh};
+use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
 use crate::commands::optimize::stages::{MeshStage, stages};
 use nonsmooth::qp::project;
 use nonsmooth::verify::seeded_direction;
@@ -88,7 +88,7 @@ pub fn optimize(
     // What starts several processes asks the others to end when one has failed, and must not make them talk.
     watch_interrupts(session.processes.is_alone());
     let optimizer = &loaded.case.optimizer;
-    let mut step = optimizer.first_step.unwrap_or_else(|| first_step(&first, &controls));
+    let mut step = optimizer.first_step.unwrap_or_else(|| first.first_step(&controls));
     let start = controls.clone();
     let (mut mesh_runs, mut first) = (Vec::new(), Some(first));
     for stage in &stages {

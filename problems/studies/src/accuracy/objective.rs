@@ -3,10 +3,9 @@
 use crate::accuracy::extent::case;
 use crate::scaling::{SceneName, Variant};
 use contact::contact_shape::ContactShape;
-use contact::cost::{PressureCost, PressureMeasure};
-use contact::equilibrium::{ContactProblem, ContactSolver};
+use contact::cost::{Measure, PressureMeasure};
+use contact::equilibrium::ContactProblem;
 use contact::scene::Scene;
-use nonsmooth::CompositeObjective;
 use problems::commands::{ContactObjective, Failure};
 use std::sync::Arc;
 
@@ -37,8 +36,7 @@ pub fn objective_of(scene: SceneName, mesh: usize, measure: PressureMeasure) -> 
 /// [`Failure`] from the scene or the preparation of the solver.
 pub fn objective_by(variant: Variant, scene: Scene, measure: PressureMeasure) -> Result<ContactObjective, Failure> {
     let solver = variant.solver(&Arc::new(ContactProblem::new(scene)?)).map_err(Failure::computation)?;
-    let cost = PressureCost::new(measure, &solver.problem().boundary)?;
-    Ok(ContactObjective::Pressure(CompositeObjective::new(ContactShape::by(solver.into()), cost)))
+    Ok(ContactObjective::new(ContactShape::by(solver.into()), Measure::Pressure(measure))?)
 }
 
 /// Σσ⁴.

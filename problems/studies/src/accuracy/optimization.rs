@@ -7,13 +7,14 @@
 use crate::accuracy::extent::{Extent, case};
 use crate::accuracy::objective::{norm, objective_of};
 use crate::scaling::SceneName;
+use contact::contact_objective::mean_height_coordinates;
 use contact::contact_shape::ContactWarmStart;
 use contact::cost::PressureMeasure;
 use nonsmooth::{
     AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, NonsmoothObjective, OracleError, Request, StateSolver,
     VariableScaling, Vector,
 };
-use problems::commands::{ContactObjective, Failure, SolvedShape, first_step, mean_height_coordinates};
+use problems::commands::{ContactObjective, Failure, SolvedShape};
 use serde::Serialize;
 use std::cell::RefCell;
 use std::time::Instant;
@@ -181,7 +182,7 @@ fn minimize(
     max_evaluations: usize,
 ) -> Result<Run, Failure> {
     let clock = Instant::now();
-    let first_step = first_step(objective, &start);
+    let first_step = objective.first_step(&start);
     let config = BundleTrustConfig {
         max_evaluations,
         accuracy,

@@ -1,0 +1,185 @@
+//! The objective Θ of a contact problem: a measure of the states that control heights lead to, and how far its first step goes.
+
+use crate::any_solver::AnySolver;
+use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
+use crate::cost::{ContactAreas, FieldCost, Measure, PressureCost};
+use crate::equilibrium::ContactSolver;
+use crate::error::SceneError;
+use nonsmooth::composite::OuterFunction;
+use nonsmooth::{
+    Answer, CompositeObjective, Cost, CostGradient, Evaluation, Matrix, NonsmoothObjective, OracleError,
+    OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
+};
+
+/// Θ of a scene: a measure of the contact state that the control heights lead to. Where Σσ^p may lie outside the range of doubles, Θ is
+/// its p-th root.
+#[derive(Debug)]
+pub enum ContactObjective<S: ContactSolver = AnySolver> {
+    /// A convex function of the contact pressures.
+    Pressure(CompositeObjective<ContactShape<S>, PressureCost>),
+    /// A function of the displacements, which has no composite model.
+    Field(ReducedObjective<ContactShape<S>, FieldCost>),
+}
+
+impl<S: ContactSolver> ContactObjective<S> {
+    /// A measure of the states of a map.
+    ///
+    /// # Errors
+    /// As [`PressureCost::new`] and [`FieldCost::new`].
+    pub fn new(shape: ContactShape<S>, measure: Measure) -> Result<Self, SceneError> {
+        Ok(match measure {
+            Measure::Pressure(measure) => {
+                let problem = shape.problem();
+                let cost = PressureCost::new(measure, &problem.boundary)?.normalised_for(&problem.scene);
+                Self::Pressure(CompositeObjective::new(shape, cost))
+            }
+            Measure::Field(measure) => {
+                let cost = FieldCost::new(measure, shape.problem())?;
+                Self::Field(ReducedObjective::new(shape.with_displacements(), cost))
+            }
+        })
+    }
+
+    /// The map from control heights to contact states.
+    pub fn solver(&self) -> &ContactShape<S> {
+        match self {
+            Self::Pressure(objective) => objective.solver(),
+            Self::Field(objective) => objective.solver(),
+        }
+    }
+
+    /// Θ at a state already found.
+    pub fn value(&self, control: &Vector, state: &ContactState<S::State>) -> f64 {
+        match self {
+            Self::Pressure(objective) => Cost::value(objective.cost(), control, state),
+            Self::Field(objective) => objective.cost().value(control, state),
+        }
+    }
+
+    /// The partial gradients of the cost at a state.
+    pub fn gradient(&self, control: &Vector, state: &ContactState<S::State>) -> CostGradient {
+        match self {
+            Self::Pressure(objective) => objective.cost().gradient(control, state),
+            Self::Field(objective) => objective.cost().gradient(control, state),
+        }
+    }
+
+    /// Θ and one subgradient at a state already found.
+    ///
+    /// # Errors
+    /// As [`ReducedObjective::differentiate`].
+    pub fn differentiate(
+        &self,
+        control: &Vector,
+        state: &ContactState<S::State>,
+    ) -> Result<Evaluation<ContactWarmStart>, OracleError> {
+        match self {
+            Self::Pressure(objective) => objective.reduced().differentiate(control, state),
+            Self::Field(objective) => objective.differentiate(control, state),
+        }
+    }
+
+    /// The derivative of Θ by the height of every contact node at a state already found, unit of Θ per mm.
+    ///
+    /// # Errors
+    /// As [`ContactShape::height_sensitivity`].
+    pub fn height_sensitivity(
+        &self,
+        control: &Vector,
+        state: &ContactState<S::State>,
+    ) -> Result<Vec<f64>, OracleError> {
+        let mut heights = self.solver().height_sensitivity(state, &self.gradient(control, state).state)?.0;
+        // At fixed displacements, costs of the pressures do not depend on the shape.
+        if let (Self::Field(objective), Some(bodies)) = (self, &state.bodies) {
+            let direct = objective.cost().gradient_of(bodies).heights;
+            heights.iter_mut().zip(direct).for_each(|(height, direct)| *height += direct);
+        }
+        Ok(heights)
+    }
+
+    /// σ per contact node, MPa.
+    pub fn pressures(&self, state: &ContactState<S::State>) -> Vec<f64> {
+        self.solver().outputs(state).as_slice().to_vec()
+    }
+
+    /// The wanted pressure per contact node, MPa, where the deviation from it is minimised.
+    pub fn wanted(&self) -> Option<&[f64]> {
+        match self {
+            Self::Pressure(objective) => objective.cost().wanted(),
+            Self::Field(_) => None,
+        }
+    }
+
+    /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements.
+    pub fn lower_bound(&self, total_force: f64) -> Option<f64> {
+        match self {
+            Self::Pressure(objective) => Some(objective.cost().lower_bound(total_force)),
+            Self::Field(_) => None,
+        }
+    }
+
+    /// The unit of Θ, such as `MPa^{4}`.
+    pub fn unit(&self) -> String {
+        match self {
+            Self::Pressure(objective) => objective.cost().unit(),
+            Self::Field(objective) => objective.cost().unit().into(),
+        }
+    }
+
+    /// p where Θ is (Σσ^p)^{1/p} in place of Σσ^p, else 1.
+    pub fn root(&self) -> f64 {
+        match self {
+            Self::Pressure(objective) => objective.cost().root(),
+            Self::Field(_) => 1.0,
+        }
+    }
+
+    /// The contact areas of a state, where the open area is what is minimised.
+    pub fn contact_areas(&self, state: &ContactState<S::State>) -> Option<ContactAreas> {
+        match self {
+            Self::Pressure(objective) => objective.cost().contact_areas(state),
+            Self::Field(_) => None,
+        }
+    }
+
+    /// Half of the mean distance between a surface and its counterpart: the length on which contact changes, mm. A hundredth of the
+    /// height where they coincide.
+    pub fn first_step(&self, start: &Vector) -> f64 {
+        let problem = self.solver().problem();
+        let gaps = problem.lower_block(start.as_slice()).map(|block| problem.gaps(&block)).unwrap_or_default();
+        let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (2 * gaps.len().max(1)) as f64;
+        if length > 0.0 { length } else { 0.01 * start.amax() }
+    }
+}
+
+impl<S: ContactSolver> NonsmoothObjective for ContactObjective<S> {
+    type WarmStart = ContactWarmStart;
+
+    fn dimension(&self) -> usize {
+        self.solver().control_dimension()
+    }
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        match self {
+            Self::Pressure(objective) => objective.outer(),
+            Self::Field(objective) => objective.outer(),
+        }
+    }
+
+    fn evaluate(&self, request: &Request<'_, ContactWarmStart>) -> Result<Answer<ContactWarmStart>, OracleError> {
+        match self {
+            Self::Pressure(objective) => objective.evaluate(request),
+            Self::Field(objective) => objective.evaluate(request),
+        }
+    }
+}
+
+/// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first step:
+/// bodies that contact holds follow the surface as a whole, so that Θ hardly depends on its mean height.
+///
+/// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and leaves differences alone.
+pub fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
+    let count = start.len();
+    let stretch = (start.mean().abs() / first_step).max(1.0);
+    Matrix::from_fn(count, count, |i, j| (stretch - 1.0) / count as f64 + f64::from(u8::from(i == j)))
+}
