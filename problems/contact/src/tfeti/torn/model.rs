@@ -148,6 +148,11 @@ impl TornModel {
         })
     }
 
+    /// Number of dofs of other processes that rows of this one need: values received per product with B.
+    pub fn ghost_count(&self) -> usize {
+        self.interface.torn_count() - self.interface.owned_count()
+    }
+
     /// Factors the subdomains of the given blocks (lower, then upper). The upper body keeps its shape: it is factored at the first call
     /// and shared afterwards. Factorisations are counted over all processes.
     ///

@@ -6,6 +6,7 @@
 //! run: ranks, subdomains per rank, with or without clusters ─┘
 //! ```
 
+mod interface;
 mod machine;
 mod prediction;
 mod report;

@@ -5,7 +5,7 @@
 //!   + coarse: factor of all coarse units, dense matrices of those at the contact boundary, solves            on every rank
 //!   + P (2 exchanges with neighbours)  + P (gathers of contact rows, resultants and sums)
 //! ```
-//! A cube of bodies is torn into ranks that are cubes of n subdomains. A coarse unit has six unknowns: a subdomain, or with clusters
+//! A cube of bodies is torn into ranks that are cubes of n subdomains; for a given case the interfaces are counted on its tearing. A coarse unit has six unknowns: a subdomain, or with clusters
 //! all subdomains of a rank. Every rank waits for the slowest; an imbalance is not modelled.
 
 use crate::scaling::model::machine::Machine;
@@ -29,6 +29,8 @@ pub struct Run {
     pub subdomains: f64,
     /// Products with clusters over those without; none for plain total FETI.
     pub clusters: Option<f64>,
+    /// Dofs of other ranks that a rank needs in the mean, where they are counted on the tearing; none for cubes among cubes.
+    pub ghosts: Option<f64>,
 }
 
 /// Seconds, bytes and messages of one rank, for a state to 1e-8 and its subgradient.
@@ -85,10 +87,16 @@ fn coarse_values(units: f64) -> f64 {
     4.0 * 268_000.0 * (3.0 * units / 1536.0).powf(1.48)
 }
 
+/// Dofs on the faces that a cube of subdomains has in common with others, in the mean over all cubes.
+fn cube_ghosts(ranks: f64, subdomains: f64) -> f64 {
+    let face = 3.0 * (RATIO * subdomains.cbrt() + 1.0).powi(2);
+    6.0 * (1.0 - ranks.cbrt().recip()) * face
+}
+
 impl Prediction {
     /// The prediction for a run.
     pub fn new(machine: &Machine, network: &Network, run: Run) -> Self {
-        let Run { ranks, subdomains, clusters } = run;
+        let Run { ranks, subdomains, clusters, ghosts } = run;
         let all = ranks * subdomains;
         let factor = clusters.unwrap_or(1.0);
         let (products, adjoint) = (factor * machine.products, factor * machine.adjoint_products);
@@ -97,9 +105,7 @@ impl Prediction {
         let own = machine.factor + products * machine.product + adjoint * machine.adjoint_product + machine.derivative;
         let bodies = all.cbrt() * RATIO;
         let contact_rows = 3.0 * (bodies + 1.0).powi(2);
-        let face = 3.0 * (RATIO * subdomains.cbrt() + 1.0).powi(2);
-        let share = 1.0 - ranks.cbrt().recip();
-        let exchanged = NUMBER * 6.0 * share * face;
+        let exchanged = NUMBER * ghosts.unwrap_or_else(|| cube_ghosts(ranks, subdomains));
         let messages = NEIGHBOURS.min(ranks - 1.0);
         let exchange = messages * network.latency + exchanged / network.bandwidth;
         let branches = 2.0 * subdomains.log2().max(1.0);
@@ -184,7 +190,7 @@ mod tests {
     const NETWORK: Network = Network { latency: 2e-6, bandwidth: 1e10 };
 
     fn predicted(ranks: f64, subdomains: f64, clusters: Option<f64>) -> Prediction {
-        Prediction::new(&MACHINE, &NETWORK, Run { ranks, subdomains, clusters })
+        Prediction::new(&MACHINE, &NETWORK, Run { ranks, subdomains, clusters, ghosts: None })
     }
 
     #[test]
