@@ -5,6 +5,8 @@ use crate::commands::failure::Failure;
 use crate::commands::processes::{Processes, SharedSolver, SharedState};
 use contact::contact_shape::{ContactShape, ContactState, ContactWarmStart, Wanted};
 use contact::cost::{ContactAreas, FieldCost, Measure, PressureCost};
+use contact::equilibrium::ContactProblem;
+use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::plausibility::Warning;
 use nonsmooth::composite::OuterFunction;
@@ -180,16 +182,35 @@ pub fn optimized_objective(case: &Case, processes: &Processes) -> Result<Contact
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
     let shape = processes.shape(case, wanted)?;
-    Ok(match case.objective.measure(shape.problem())? {
-        Measure::Pressure(measure) => {
-            let cost = PressureCost::new(measure, &shape.problem().boundary)?.normalised_for(&case.scene);
-            ContactObjective::Pressure(CompositeObjective::new(shape, cost))
-        }
-        Measure::Field(measure) => {
-            let cost = FieldCost::new(measure, shape.problem())?;
-            ContactObjective::Field(ReducedObjective::new(shape.with_displacements(), cost))
-        }
+    Ok(match AnyCost::new(case, shape.problem())? {
+        AnyCost::Pressure(cost) => ContactObjective::Pressure(CompositeObjective::new(shape, cost)),
+        AnyCost::Field(cost) => ContactObjective::Field(ReducedObjective::new(shape.with_displacements(), cost)),
     })
+}
+
+/// The cost of a case on its mesh.
+enum AnyCost {
+    Pressure(PressureCost),
+    Field(FieldCost),
+}
+
+impl AnyCost {
+    fn new(case: &Case, problem: &ContactProblem) -> Result<Self, SceneError> {
+        Ok(match case.objective.measure(problem)? {
+            Measure::Pressure(measure) => {
+                Self::Pressure(PressureCost::new(measure, &problem.boundary)?.normalised_for(&case.scene))
+            }
+            Measure::Field(measure) => Self::Field(FieldCost::new(measure, problem)?),
+        })
+    }
+}
+
+/// Refuses a case whose objective has no value on its mesh, without preparing a solver for it.
+///
+/// # Errors
+/// [`SceneError`] naming the field.
+pub fn check_objective(case: &Case) -> Result<(), SceneError> {
+    AnyCost::new(case, &ContactProblem::new(case.scene.clone())?).map(|_| ())
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.

@@ -3,9 +3,10 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::optimize::stages::Part;
 use crate::commands::output::pressure;
 use crate::commands::report::folder::Parts;
-use crate::commands::report::sections::{certificate, course, pictures, states};
+use crate::commands::report::sections::{certificate, course, found_label, pictures, states};
 use contact::equilibrium::StageSeconds;
 use figures::page::{Block, Page, Section};
 
@@ -31,7 +32,7 @@ pub fn optimization(parts: Parts, runs: &[MeshRun], last: &MeshRun, shapes: &[So
     let sections = vec![
         parts.numbers,
         pictures(parts.pictures),
-        states(objective, &[("start", &shapes[0]), ("optimum", &shapes[1])]),
+        states(objective, &[("start", &shapes[0]), (found_label(report), &shapes[1])]),
         stages(runs),
         course(report, &last.active_constraints()),
         certificate(report.certificate.as_ref()),
@@ -112,7 +113,7 @@ fn evaluations(runs: &[MeshRun]) -> String {
 
 /// The meshes of a coarse-to-fine optimization, or the starts; empty for a single run.
 fn stages(runs: &[MeshRun]) -> Section {
-    if runs.iter().all(|run| run.name.is_none()) {
+    if runs.iter().all(|run| run.part == Part::Whole) {
         return Section::default();
     }
     let rows = runs.iter().map(|run| {

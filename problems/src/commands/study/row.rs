@@ -9,7 +9,7 @@ use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
 use crate::commands::study::plan::options;
 use contact::equilibrium::StatusCounts;
-use nonsmooth::{StateSolver, Vector};
+use nonsmooth::Vector;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Instant;
@@ -124,6 +124,10 @@ pub fn computed(
         let mut file = options.apply(loaded.file.clone())?;
         file.output.folder = out.map(|path| path.display().to_string());
         let part = loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?;
+        if start.is_some() {
+            let given = loaded.case.scene.control_points;
+            controls::check_grid(given, part.case.scene.control_points, "the study, at which its rows begin")?;
+        }
         Ok((part, options))
     });
     let outcome = match part {
@@ -151,8 +155,6 @@ fn evaluated(
     let objective = objective_among(&part.case, &session.processes)?;
     let controls = match start {
         Some(start) => {
-            let expected = objective.solver().control_dimension();
-            controls::check_count(start.len(), expected, "--controls")?;
             objective.solver().problem().admissible.check_shape(start)?;
             start.clone()
         }
