@@ -60,19 +60,19 @@ mod tests {
     /// A function of the displacements needs them for its value, its adjoint and the estimate of its error.
     #[test]
     fn a_state_solves_for_its_displacements_once() {
-        let mut scene = hertz().unwrap();
+        let mut scene = hertz().expect("the example");
         (scene.mesh, scene.subdomains) = ([3; 3], [1; 3]);
         let controls = vec![scene.start_height; scene.control_points.iter().product()];
-        let problem = Arc::new(ContactProblem::new(scene).unwrap());
-        let solver = DirectSolver::new(Arc::clone(&problem)).unwrap();
-        let state = solver.solve(&controls, None, 1e-10).unwrap().solution;
+        let problem = Arc::new(ContactProblem::new(scene).expect("a scene"));
+        let solver = DirectSolver::new(Arc::clone(&problem)).expect("a pattern");
+        let state = solver.solve(&controls, None, 1e-10).expect("a state").solution;
         assert!(state.displacements.iter().all(|found| found.get().is_none()));
-        let bodies = solver.bodies(&state).unwrap();
+        let bodies = solver.bodies(&state).expect("bodies");
         let places: Vec<*const f64> = (0..2).map(|body| state.displacement(body).as_ptr()).collect();
         let mut dual = vec![0.0; problem.boundary.row_count];
         dual.extend(bodies.iter().flat_map(|body| body.displacement.as_flattened()));
-        solver.sensitivities(&state, &dual, 1e-10).unwrap();
+        solver.sensitivities(&state, &dual, 1e-10).expect("an adjoint");
         assert_eq!((0..2).map(|body| state.displacement(body).as_ptr()).collect::<Vec<_>>(), places);
-        assert_eq!(solver.bodies(&state).unwrap(), bodies);
+        assert_eq!(solver.bodies(&state).expect("bodies"), bodies);
     }
 }

@@ -99,7 +99,9 @@ impl KeptRun {
         let controls = controls::read(&self.folder.join("controls.json"), self.control_points)?;
         let report = read_text(&self.folder.join(REPORT), LARGEST_REPORT)?;
         let report: serde_json::Value = serde_json::from_str(&report).unwrap_or_default();
-        let source = format!("the optimum of {}", self.folder.display());
+        let confirmed = report["termination"]["confirmed"] == true;
+        let shape = if confirmed { "optimum" } else { "best shape" };
+        let source = format!("the {shape} of {}", self.folder.display());
         Ok((controls, Origin { source, evaluation: None, objective: report["objective"].as_f64() }))
     }
 

@@ -3,7 +3,7 @@
 pub mod mesh_run;
 pub mod run;
 pub mod stages;
-mod standstill;
+pub mod standstill;
 pub mod summary;
 mod vtk_history;
 

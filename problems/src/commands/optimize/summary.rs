@@ -261,14 +261,19 @@ pub fn all_warnings(report: &Report, checks: &[Warning]) -> Vec<Warning> {
 /// Reduction of Θ from which on what is left of it is rounding.
 const MEANINGLESS_REDUCTION: f64 = 1e12;
 
+/// Θ at the start over Θ at the end; none where that says nothing: a compliance may change its sign, and a deviation may vanish up to
+/// rounding.
+pub fn reduction(start: f64, end: f64) -> Option<f64> {
+    Some(start / end).filter(|ratio| *ratio > 0.0 && *ratio < MEANINGLESS_REDUCTION)
+}
+
 /// The one-page report.
 pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], arguments: &Arguments) -> String {
     let MeshRun { report, objective, .. } = last;
     let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
-    // A compliance may change its sign, and a deviation may vanish up to rounding.
-    let ratio = Some(shapes[0].value / report.value).filter(|ratio| *ratio > 0.0 && *ratio < MEANINGLESS_REDUCTION);
+    let ratio = reduction(shapes[0].value, report.value);
     let reduction = ratio.map_or_else(|| "no ratio".into(), |ratio| format!("{ratio:.4} times"));
     let areas = contact_areas(last, shapes).map_or_else(String::new, |[start, end]| {
         format!("contact:     at the start {start}\n             at the end   {end}\n")

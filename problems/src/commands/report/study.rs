@@ -102,15 +102,11 @@ fn unconfirmed(study: &StudyJson) -> String {
     }
 }
 
-/// The table; the reason of a failed row stands in its first cell after the values.
+/// The table; the reason of a failed row stands in the cell after the values.
 fn table(study: &StudyJson) -> Block {
     let head = study.head();
-    let rows = study.rows().iter().map(|row| {
-        let mut cells = study.cells(row);
-        cells.resize(head.len(), String::new());
-        cells
-    });
-    Block::table(head.clone(), rows.collect::<Vec<_>>())
+    let rows: Vec<Vec<String>> = study.rows().iter().map(|row| study.cells(row)).collect();
+    Block::table(head, rows)
 }
 
 /// A row that has a result.
@@ -182,9 +178,12 @@ fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureEr
         figure("peak_pressure", "peak pressure", "MPa", |solved| solved.peak_pressure),
         figure("contact_area", "contact area", "mm²", |solved| solved.contact_area),
     ];
-    // Values of different objectives have different units.
-    if study.vary().iter().all(|varied| varied.name() != "objective") {
-        figures.insert(0, figure("objective", "Θ", "", |solved| solved.objective));
+    // Values of different units have no axis in common.
+    let unit = &shown[0].solved.objective_unit;
+    if shown.iter().all(|shown| shown.solved.objective_unit == *unit) {
+        // Figures set what stands in braces higher.
+        let unit = unit.split_once('^').map_or_else(|| unit.clone(), |(base, power)| format!("{base}^{{{power}}}"));
+        figures.insert(0, figure("objective", "Θ", &unit, |solved| solved.objective));
     }
     figures
 }

@@ -7,6 +7,7 @@ use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
+use crate::commands::optimize::standstill::standstill;
 use crate::commands::study::plan::options;
 use contact::equilibrium::StatusCounts;
 use nonsmooth::Vector;
@@ -41,6 +42,8 @@ pub enum Outcome {
 pub struct Solved {
     /// Θ.
     pub objective: f64,
+    /// The unit of Θ.
+    pub objective_unit: String,
     /// Largest contact pressure, MPa.
     pub peak_pressure: f64,
     /// Tributary area of the closed contact nodes, mm².
@@ -189,7 +192,9 @@ fn optimum(
         can_continue: run.can_continue(),
     };
     let objective = chosen.report.value;
-    Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved(&chosen.objective, &last, session)? }))
+    let mut solved = solved(&chosen.objective, &last, session)?;
+    solved.warnings.extend(standstill(&run.mesh_runs, chosen, &last)?.map(|warning| warning.code.to_owned()));
+    Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved }))
 }
 
 /// What a row keeps of a solved shape.
@@ -199,6 +204,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
     let block = problem.lower_block(shape.controls.as_slice()).map_err(Failure::computation)?;
     Ok(Solved {
         objective: shape.value,
+        objective_unit: objective.unit().replace(['{', '}'], ""),
         peak_pressure: shape.peak_pressure,
         contact_area: problem.boundary.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),
