@@ -3,7 +3,7 @@
 use crate::any_solver::AnySolver;
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 use crate::cost::{ContactAreas, FieldCost, Measure, PressureCost};
-use crate::equilibrium::ContactSolver;
+use crate::equilibrium::{ContactProblem, ContactSolver};
 use crate::error::SceneError;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
@@ -21,22 +21,39 @@ pub enum ContactObjective<S: ContactSolver = AnySolver> {
     Field(ReducedObjective<ContactShape<S>, FieldCost>),
 }
 
+/// A measure on the bodies of a problem.
+#[derive(Debug, Clone)]
+pub enum ContactCost {
+    /// Of the contact pressures, normalised where it may lie outside the range of doubles.
+    Pressure(PressureCost),
+    /// Of the displacements.
+    Field(FieldCost),
+}
+
+impl ContactCost {
+    /// The cost of a measure.
+    ///
+    /// # Errors
+    /// As [`PressureCost::new`] and [`FieldCost::new`].
+    pub fn new(measure: Measure, problem: &ContactProblem) -> Result<Self, SceneError> {
+        Ok(match measure {
+            Measure::Pressure(measure) => {
+                Self::Pressure(PressureCost::new(measure, &problem.boundary)?.normalised_for(&problem.scene))
+            }
+            Measure::Field(measure) => Self::Field(FieldCost::new(measure, problem)?),
+        })
+    }
+}
+
 impl<S: ContactSolver> ContactObjective<S> {
     /// A measure of the states of a map.
     ///
     /// # Errors
-    /// As [`PressureCost::new`] and [`FieldCost::new`].
+    /// As [`ContactCost::new`].
     pub fn new(shape: ContactShape<S>, measure: Measure) -> Result<Self, SceneError> {
-        Ok(match measure {
-            Measure::Pressure(measure) => {
-                let problem = shape.problem();
-                let cost = PressureCost::new(measure, &problem.boundary)?.normalised_for(&problem.scene);
-                Self::Pressure(CompositeObjective::new(shape, cost))
-            }
-            Measure::Field(measure) => {
-                let cost = FieldCost::new(measure, shape.problem())?;
-                Self::Field(ReducedObjective::new(shape.with_displacements(), cost))
-            }
+        Ok(match ContactCost::new(measure, shape.problem())? {
+            ContactCost::Pressure(cost) => Self::Pressure(CompositeObjective::new(shape, cost)),
+            ContactCost::Field(cost) => Self::Field(ReducedObjective::new(shape.with_displacements(), cost)),
         })
     }
 

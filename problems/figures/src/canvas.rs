@@ -14,8 +14,8 @@ pub(super) const LABEL: f64 = 12.0;
 pub(super) const TITLE_ROOM: f64 = 30.0;
 /// Colour of text and frames.
 pub(super) const INK: &str = "#222222";
-/// Average width of a letter relative to its size; only decides about distances.
-const LETTER: f64 = 0.5;
+/// Average width of a letter relative to its size, of the widest fonts that browsers take for sans-serif; only decides about distances.
+const LETTER: f64 = 0.56;
 
 /// A position in points.
 pub(super) type Place = [f64; 2];

@@ -174,6 +174,9 @@ impl Classes {
             // Shorter ones are no arrows any more.
             if drawn && dx.hypot(dy) > 0.7 {
                 let [dx, dy] = [0.5 * dx, 0.5 * dy];
+                // Arrows at the edges are moved inwards: beyond the edges stand captions and labels.
+                let x = inside(x, dx.abs(), [frame.left, frame.left + frame.width]);
+                let y = inside(y, dy.abs(), [frame.top, frame.top + frame.height]);
                 canvas.arrow([[x - dx, y - dy], [x + dx, y + dy]], Stroke::solid(INK, 0.9));
             }
         }
@@ -189,6 +192,11 @@ impl Classes {
         };
         panel.grid().name_nodes(canvas, frame, text);
     }
+}
+
+/// The middle of a line of this half length, moved so that the line lies between two ends; the middle between them if it is longer.
+fn inside(middle: f64, half: f64, [low, high]: [f64; 2]) -> f64 {
+    if high - low < 2.0 * half { 0.5 * (low + high) } else { middle.clamp(low + half, high - half) }
 }
 
 fn colour(class: usize) -> &'static str {
@@ -238,6 +246,14 @@ mod tests {
         assert_eq!((heads(&with), heads(&without)), (15, 0));
         assert!(with.svg.contains("traction 2 MPa<") && !without.svg.contains("MPa"));
         assert_eq!(without.svg.matches("<title>node").count(), 120);
+    }
+
+    #[test]
+    fn arrows_stay_inside_their_panel() {
+        let ends = [10.0, 20.0];
+        for (middle, half, expected) in [(10.0, 2.0, 12.0), (15.0, 2.0, 15.0), (20.0, 2.0, 18.0), (10.0, 6.0, 15.0)] {
+            assert_eq!(inside(middle, half, ends), expected, "{middle}");
+        }
     }
 
     #[test]

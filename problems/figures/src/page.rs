@@ -42,7 +42,7 @@ pub enum Block {
     Table {
         /// Names of the columns.
         head: Vec<String>,
-        /// As many cells each as there are columns.
+        /// As many cells each as there are columns; the last cell of a row that has fewer spans the rest.
         rows: Vec<Vec<String>>,
     },
     /// A picture.
@@ -142,9 +142,9 @@ impl Block {
             Self::Text(text) => html! { p { (text) } },
             Self::List(items) => html! { ul { @for item in items { li { (item) } } } },
             Self::Table { head, rows } => html! {
-                div.wide { table {
+                div.wide { table class=[(head.len() >= MANY_COLUMNS).then_some("many")] {
                     thead { tr { @for cell in head { th { (cell) } } } }
-                    tbody { @for row in rows { tr { @for cell in row { td { (cell) } } } } }
+                    tbody { @for row in rows { tr { @for (column, cell) in row.iter().enumerate() { (table_cell(cell, column, row.len(), head.len())) } } } }
                 } }
             },
             Self::Picture { figure, caption } => html! {
@@ -176,6 +176,19 @@ impl Block {
             Self::Listing { title, text } => html! { details { summary { (title) } pre { (text) } } },
         }
     }
+}
+
+/// Columns from which on a table is set smaller.
+const MANY_COLUMNS: usize = 9;
+
+/// Characters from which on a cell is a text that may be broken, and no number.
+const LONG_CELL: usize = 20;
+
+/// A cell of a row of so many cells, in a table of so many columns.
+fn table_cell(cell: &str, column: usize, cells: usize, columns: usize) -> Markup {
+    let spanned = if column + 1 == cells && cells < columns { Some(columns - column) } else { None };
+    let long = (column > 0 && cell.chars().count() >= LONG_CELL).then_some("long");
+    html! { td class=[long] colspan=[spanned] { (cell) } }
 }
 
 /// A figure on its light ground; on a narrow page its parts, which show the same drawing, stand in its place.
@@ -219,6 +232,17 @@ const SCRIPT: &str = include_str!("page.js");
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_cells_may_be_broken_and_short_rows_are_filled() {
+        let reason = "no equilibrium: the load has a resultant along x1";
+        let rows = [vec!["1", "2", "3"], vec!["4", reason]];
+        let html =
+            Page { sections: vec![Section::new("t", vec![Block::table(["a", "b", "c"], rows)])], ..Page::default() }
+                .html();
+        let expected = format!("<tr><td>4</td><td class=\"long\" colspan=\"2\">{reason}</td></tr>");
+        assert!(html.contains("<tr><td>1</td><td>2</td><td>3</td></tr>") && html.contains(&expected), "{html}");
+    }
 
     #[test]
     fn texts_are_escaped_and_nothing_is_loaded_from_elsewhere() {

@@ -10,6 +10,7 @@ mod allowed;
 mod bodies;
 mod case;
 mod check;
+mod formula;
 mod grid_file;
 mod objective;
 mod print;
@@ -36,6 +37,9 @@ use contact::error::SceneError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+
+/// Names of copies of the grids of a scene, beside a copy of its file.
+pub const GRIDS: [&str; 3] = ["counter_surface.csv", "start.csv", "wanted_pressure.csv"];
 
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
@@ -103,6 +107,22 @@ impl SceneFile {
     pub fn read(file: &Path) -> Result<Self, SceneError> {
         let path = file.display().to_string();
         Self::parse(&read_text(file, LARGEST_FILE)?, &path)
+    }
+
+    /// The grid files that the scene names, each with the name of its copy beside a copy of the scene.
+    pub fn grids_mut(&mut self) -> Vec<(&'static str, &mut String)> {
+        let [counter, start, wanted] = GRIDS;
+        let mut grids = Vec::new();
+        if let CounterSection::Grid { file } = &mut self.counter_surface {
+            grids.push((counter, file));
+        }
+        if let StartSection::Grid { file } = &mut self.surface.start {
+            grids.push((start, file));
+        }
+        if let Some(WantedSection::Grid { file }) = &mut self.objective.wanted {
+            grids.push((wanted, file));
+        }
+        grids
     }
 
     /// The value of the field at a path such as `mesh.bricks`, as it stands in a file; for a field that is not set, what its

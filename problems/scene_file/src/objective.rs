@@ -62,7 +62,7 @@ pub enum MeasureName {
 pub enum WantedSection {
     /// A formula.
     Formula {
-        /// The pressure in MPa over x1, x2 in mm, such as "120*exp(-(x1/20)^2) + 5"; + - * / ^, abs, sqrt, exp, ln, sin, cos, tan, tanh, floor and others, PI, max(a, b), min(a, b). A sign binds less than a power: -x1^2 is -(x1^2).
+        /// The pressure in MPa over x1, x2 in mm, such as "120*exp(-(x1/20)^2) + 5": numbers, + - * / ^, parentheses, functions and PI, as docs/scenes.md lists them. A sign binds less than a power: -x1^2 is -(x1^2); powers count from the right: 2^3^2 is 2^9.
         pressure: String,
     },
     /// Pressures on a uniform grid over the base, bilinear in between.

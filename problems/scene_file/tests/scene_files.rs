@@ -247,7 +247,7 @@ fn objectives_are_read_or_refused_with_the_field() {
         ),
         (
             "measure = \"pressure-deviation\"\nwanted = { form = \"formula\", pressure = \"x1 + y\" }",
-            ["objective.wanted.pressure = y", "names x1, x2"],
+            ["objective.wanted.pressure = \"y\" at character 6", "names x1, x2"],
         ),
         (
             "measure = \"pressure-deviation\"\nwanted = { form = \"grid\", file = \"none.csv\" }",

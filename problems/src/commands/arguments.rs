@@ -95,7 +95,7 @@ pub struct Arguments {
     /// With study: optimize in every row, instead of evaluating the start.
     #[arg(long)]
     pub optimize: bool,
-    /// Control heights to evaluate, verify or export: a JSON array, row major, index i*n2 + j with i along x1 [default: surface.start].
+    /// Control heights to evaluate, verify or export: a JSON array with an array per control point along x1 [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub controls: Option<PathBuf>,
     /// With evaluate and study: every control height is off by so much, mm, up or down at random.
@@ -104,7 +104,7 @@ pub struct Arguments {
     /// With --height-error: another number, other signs [default: 1].
     #[arg(long, value_name = "K")]
     pub seed: Option<u64>,
-    /// Control heights to start the optimization from [default: surface.start].
+    /// Control heights to start the optimization from, as with --controls [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
     /// What proposes trial points: the composite model beside the bundle, or the bundle alone.

@@ -5,7 +5,7 @@ use crate::commands::failure::Failure;
 use crate::commands::folder::json;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
-use crate::commands::output::{finish, leave, left};
+use crate::commands::output::{finish, leave, left, notice};
 use crate::commands::processes::Processes;
 use crate::commands::shell_files::{asked, examples};
 use crate::commands::{compare, evaluate, export, optimize, recheck, study, verify};
@@ -122,6 +122,12 @@ pub fn execute_among(
     let loaded = LoadedScene::new(arguments.apply(file)?, path).map_err(|error| arguments.blame(error))?;
     if arguments.print_scene {
         return Ok(loaded.file.print()?);
+    }
+    if let (Some(folder), None, Some(limit)) =
+        (&arguments.resume, arguments.time_limit, loaded.file.optimizer.time_limit)
+    {
+        let words = "the time limit that the run was begun with; --time-limit SECONDS sets another one";
+        notice(&format!("{}: {limit} s, {words}", folder.display()));
     }
     if let Some(threads) = arguments.threads {
         processes.use_threads(threads.into())?;

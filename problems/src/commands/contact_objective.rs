@@ -3,8 +3,10 @@
 use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
 use crate::commands::processes::{Processes, SharedSolver, SharedState};
-use contact::contact_objective;
+use contact::contact_objective::{self, ContactCost};
 use contact::contact_shape::{ContactState, Wanted};
+use contact::equilibrium::ContactProblem;
+use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::plausibility::Warning;
 use nonsmooth::{Accuracy, StateSolver, Vector};
@@ -48,6 +50,15 @@ fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<C
     let shape = processes.shape(case, wanted)?;
     let measure = case.objective.measure(shape.problem())?;
     Ok(ContactObjective::new(shape, measure)?)
+}
+
+/// Refuses a case whose objective has no value on its mesh, without preparing a solver for it.
+///
+/// # Errors
+/// [`SceneError`] naming the field.
+pub fn check_objective(case: &Case) -> Result<(), SceneError> {
+    let problem = ContactProblem::new(case.scene.clone())?;
+    ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.

@@ -1,12 +1,14 @@
-//! Control files: a JSON array of numbers.
+//! Control files: a JSON array of rows of heights.
 
 use crate::commands::arguments::Arguments;
+use crate::commands::failure::Failure;
 use crate::commands::folder::file_error;
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use nonsmooth::Vector;
 use nonsmooth::verify::seeded_direction;
 use scene_file::{Case, read_text};
+use serde::Deserialize;
 use std::path::Path;
 
 /// The option that names the controls at which an optimization starts.
@@ -18,7 +20,7 @@ const LARGEST_FILE: u64 = 1 << 20;
 /// set; of shapes that are only looked at, heights and slopes do.
 ///
 /// # Errors
-/// [`SceneError`] for an unreadable file, a wrong count, numbers that are not finite, controls outside U.
+/// [`SceneError`] for an unreadable file, another grid or count, numbers that are not finite, controls outside U.
 pub fn load(
     problem: &ContactProblem,
     case: &Case,
@@ -26,11 +28,11 @@ pub fn load(
 ) -> Result<Vector, SceneError> {
     let place = file.map_or_else(|| "surface.start".to_owned(), |_| option.to_owned());
     let within = |source| SceneError::InFile { file: place.clone(), source: Box::new(source) };
-    let dimension = problem.scene.control_points.iter().product();
+    let counts = problem.scene.control_points;
     let controls = match (file, &case.start) {
-        (Some(file), _) => read(file, dimension).map_err(within)?,
+        (Some(file), _) => read(file, counts).map_err(within)?,
         (None, Some(controls)) => Vector::from_column_slice(controls),
-        (None, None) => Vector::from_element(dimension, problem.scene.start_height),
+        (None, None) => Vector::from_element(counts.iter().product(), problem.scene.start_height),
     };
     let set = &problem.admissible;
     let checked = if option == START_OPTION { set.check(&controls) } else { set.check_shape(&controls) };
@@ -42,21 +44,35 @@ pub fn load(
 ///
 /// # Errors
 /// [`SceneError`] for an unreadable file; as [`parse`].
-pub fn read(file: &Path, expected: usize) -> Result<Vector, SceneError> {
+pub fn read(file: &Path, counts: [usize; 2]) -> Result<Vector, SceneError> {
     let text = read_text(file, LARGEST_FILE)?;
-    parse(&text, &file.display().to_string(), expected)
+    parse(&text, &file.display().to_string(), counts)
 }
 
-/// The controls in a text; `name` stands in messages.
+/// The controls in a text, for so many control points along x₁ and x₂; `name` stands in messages. Rows say the grid that they are made
+/// for; a plain array of numbers does not.
 ///
 /// # Errors
-/// [`SceneError`] for a text that is no JSON array, a wrong count, numbers that are not finite.
-pub fn parse(text: &str, name: &str, expected: usize) -> Result<Vector, SceneError> {
-    let values: Vec<Option<f64>> = serde_json::from_str(text).map_err(|error| {
-        file_error(Path::new(name), format!("{error}; expected a JSON array of {expected} numbers"))
-    })?;
-    check_count(values.len(), expected, name)?;
-    let mut controls = Vector::zeros(expected);
+/// [`SceneError`] for a text that holds neither, another grid, a wrong count, numbers that are not finite.
+pub fn parse(text: &str, name: &str, counts @ [n1, n2]: [usize; 2]) -> Result<Vector, SceneError> {
+    let expected = format!("expected {n1} arrays of {n2} numbers, or one array of {}", n1 * n2);
+    let unreadable = |reason: String| file_error(Path::new(name), format!("{reason}; {expected}"));
+    let rows: Rows = serde_json::from_str(text).map_err(|error| unreadable(error.to_string()))?;
+    let values = match rows {
+        Rows::Plain(values) => {
+            check_count(values.len(), n1 * n2, name)?;
+            values
+        }
+        Rows::Grid(rows) => {
+            let found = [rows.len(), rows.iter().map(Vec::len).max().unwrap_or(0)];
+            if rows.iter().any(|row| row.len() != found[1]) {
+                return Err(unreadable("rows of different lengths".into()));
+            }
+            check_grid(found, counts, name)?;
+            rows.concat()
+        }
+    };
+    let mut controls = Vector::zeros(n1 * n2);
     for (index, value) in values.into_iter().enumerate() {
         controls[index] = value.filter(|value| value.is_finite()).ok_or_else(|| {
             SceneError::out_of_range(format!("control {index} in {name}"), "null", "a finite number (mm)")
@@ -65,11 +81,38 @@ pub fn parse(text: &str, name: &str, expected: usize) -> Result<Vector, SceneErr
     Ok(controls)
 }
 
-/// Refuses a wrong number of controls; `name` says where they stand.
+/// What a control file may hold; null stands for a number that is not finite.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "no JSON array of numbers, nor one of such arrays")]
+enum Rows {
+    Plain(Vec<Option<f64>>),
+    Grid(Vec<Vec<Option<f64>>>),
+}
+
+/// Controls as a control file holds them: one row per control point along x₁.
 ///
 /// # Errors
-/// [`SceneError::WrongCount`].
-pub fn check_count(found: usize, expected: usize, name: &str) -> Result<(), SceneError> {
+/// [`Failure::Computation`] for a number that JSON does not have.
+pub fn written(controls: &[f64], [_, along]: [usize; 2]) -> Result<String, Failure> {
+    let rows: Result<Vec<String>, _> = controls.chunks(along.max(1)).map(serde_json::to_string).collect();
+    Ok(format!("[\n  {}\n]\n", rows.map_err(Failure::computation)?.join(",\n  ")))
+}
+
+/// Refuses controls of another grid; `name` says where they stand.
+///
+/// # Errors
+/// [`SceneError::OutOfRange`] with both grids.
+pub fn check_grid(found: [usize; 2], expected: [usize; 2], name: &str) -> Result<(), SceneError> {
+    let words = |[n1, n2]: [usize; 2]| format!("{n1}x{n2}");
+    if found == expected {
+        return Ok(());
+    }
+    let allowed = format!("{}, the control points of the scene along x1 and x2", words(expected));
+    Err(SceneError::out_of_range(format!("the grid of the controls in {name}"), words(found), allowed))
+}
+
+/// Refuses a wrong number of controls.
+fn check_count(found: usize, expected: usize, name: &str) -> Result<(), SceneError> {
     match found == expected {
         true => Ok(()),
         false => Err(SceneError::WrongCount { what: format!("controls in {name}"), expected, found }),

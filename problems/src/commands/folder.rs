@@ -4,10 +4,10 @@ use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
 use crate::commands::output::notice;
 use crate::commands::register::{self, REGISTER, Register, UNFINISHED};
-use crate::commands::run_kind::RunKind;
+use crate::commands::run_kind::{RUN, RunKind};
 use contact::error::SceneError;
 use figures::Figure;
-use scene_file::Case;
+use scene_file::{Case, GRIDS};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::io::{self, Write};
@@ -28,8 +28,6 @@ pub const PICTURE_ENDINGS: &[&str] = if cfg!(feature = "png") { &["svg", "png"] 
 pub const SCENE: &str = "scene.toml";
 pub const START: &str = "start.json";
 pub const REPORT: &str = "report.json";
-/// Copies of the grids that a scene names.
-pub const GRIDS: [&str; 3] = ["counter_surface.csv", "start.csv", "wanted_pressure.csv"];
 /// Folders of the two runs of a comparison.
 pub const COMPARED: [&str; 2] = ["with_friction", "without_friction"];
 /// What a study varies; its rows lie beside it.
@@ -70,7 +68,7 @@ impl Folder {
             return Self::with_room(path, bytes, held);
         }
         if !overwrite {
-            return Err(Failure::Input(format!("{}: {}", path.display(), what_it_holds(path, &names))));
+            return Err(Failure::Input(format!("{}: {}", path.display(), what_it_holds(path))));
         }
         let elsewhere = free_name(path)?;
         std::fs::rename(path, &elsewhere).map_err(unwritable(path))?;
@@ -242,30 +240,20 @@ pub fn printed_with_files(
 
 /// Whether a file on the list of a folder is more than a preparation.
 fn is_result(name: &str) -> bool {
-    name != REGISTER && name != START && name != PROBE && !GRIDS.contains(&name)
+    ![REGISTER, START, RUN, PROBE].contains(&name) && !GRIDS.contains(&name)
 }
 
 /// Why a folder with results is refused.
-fn what_it_holds(path: &Path, names: &BTreeSet<String>) -> String {
+fn what_it_holds(path: &Path) -> String {
     let beside = "--out with another folder keeps it, --overwrite renames it";
     if !path.join(SCENE).exists() {
         return format!("holds results ({beside})");
     }
-    let command = resume_command(path, run_kind(names));
+    let Ok(Some(kind)) = RunKind::of(path) else { return format!("holds a run without {RUN} ({beside})") };
+    let command = resume_command(path, kind);
     match path.join(REPORT).exists() {
         true => format!("holds results of a run; `{command}` continues it with larger limits ({beside})"),
         false => format!("holds a run that has not ended; continue it with `{command}` ({beside})"),
-    }
-}
-
-/// What the run is that has written these files.
-pub fn run_kind(names: &BTreeSet<String>) -> RunKind {
-    if names.contains(STUDY) {
-        RunKind::Study
-    } else if names.contains(&format!("{}/{REGISTER}", COMPARED[0])) {
-        RunKind::Comparison
-    } else {
-        RunKind::Optimization
     }
 }
 

@@ -3,10 +3,9 @@
 use crate::commands::arguments::Arguments;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{SCENE, file_error, json, run_kind};
+use crate::commands::folder::{SCENE, file_error, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::{MeshStage, stages};
-use crate::commands::register::names;
 use crate::commands::run_kind::RunKind;
 use contact::cost::{Measure, PressureCost};
 use contact::equilibrium::ContactProblem;
@@ -63,15 +62,14 @@ struct RecheckJson {
 /// The command.
 pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
     let folder = arguments.certified.as_deref().unwrap_or(Path::new(""));
-    let kind = run_kind(&names(folder));
-    if kind != RunKind::Optimization {
+    if let Some(kind) = RunKind::of(folder)?.filter(|kind| *kind != RunKind::Optimization) {
         let words = "recheck takes one of its optimizations, which lie in folders below";
         return Err(Failure::Input(format!("{}: holds {}; {words}", folder.display(), kind.words())));
     }
     let certificate = read(&folder.join("certificate.json"))?;
-    let controls = controls::read(&folder.join("controls.json"), certificate.point.len())?;
     let own = own_scene(&loaded.file, folder)?;
     let case = own.as_ref().map_or(&loaded.case, |own| &own.case);
+    let controls = controls::read(&folder.join("controls.json"), case.scene.control_points)?;
     let Some(MeshStage { case, .. }) = last_stage(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };
@@ -144,7 +142,7 @@ fn difference(field: &str, there: &Value, here: &Value) -> Option<(String, Strin
 
 /// The last mesh that the run in a folder has begun.
 fn last_stage(case: &Case, folder: &Path) -> Option<MeshStage> {
-    let begun = |stage: &MeshStage| stage.name.as_ref().is_none_or(|name| Journal::exists(folder.join(name)));
+    let begun = |stage: &MeshStage| stage.part.folder().is_none_or(|name| Journal::exists(folder.join(name)));
     stages(case).into_iter().rev().find(begun)
 }
 

@@ -164,11 +164,16 @@ fn bad_options_are_refused_with_status_two() {
 #[test]
 fn bad_control_files_are_refused_with_status_two() {
     let outside = format!("[{}]", vec!["150.0"; 36].join(","));
+    // As many numbers as the scene has, in another grid.
+    let grid = format!("{:?}", [[100.0; 9]; 4]);
     for (name, text, words) in [
         ("count.json", "[1.0, 2.0]", vec!["2", "36"]),
         ("syntax.json", "[1.0, nonsense", vec!["syntax.json"]),
         ("nan.json", "[NaN]", vec!["nan.json"]),
         ("object.json", "{\"a\": 1}", vec!["object.json", "array"]),
+        ("uneven.json", "[[1.0, 2.0], [3.0]]", vec!["uneven.json", "different lengths", "6 arrays of 6 numbers"]),
+        ("mixed.json", "[[1.0, 2.0], 3.0]", vec!["mixed.json", "6 arrays of 6 numbers"]),
+        ("grid.json", grid.as_str(), vec!["grid.json", "4x9", "6x6"]),
         ("outside.json", outside.as_str(), vec!["admissible", "150"]),
     ] {
         let folder = kit::scratch();

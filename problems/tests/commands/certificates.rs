@@ -16,9 +16,9 @@ fn check(binary: &str, mut scene: scene::Scene) {
     let output = Command::new(binary).args(arguments).arg(&folder).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let certificate: Certificate = read(&folder.join("certificate.json"));
-    let controls: Vec<f64> = read(&folder.join("controls.json"));
+    let controls: Vec<Vec<f64>> = read(&folder.join("controls.json"));
     std::fs::remove_dir_all(&folder).unwrap();
-    assert_eq!(certificate.point.as_slice(), controls);
+    assert_eq!(certificate.point.as_slice(), controls.concat());
 
     (scene.mesh, scene.subdomains) = ([4; 3], [2; 3]);
     let problem = ContactProblem::new(scene).unwrap();

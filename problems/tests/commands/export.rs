@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 use testset::kit::step_file::{Surface, entities};
 use testset::kit::stl_file::{edges, triangles, volume};
-use testset::kit::{self, read_json, scratch, text};
+use testset::kit::{self, read_json, read_rows, scratch, text};
 
 const HERTZ: &str = env!("CARGO_BIN_EXE_hertz3d");
 const SIGNORINI: &str = env!("CARGO_BIN_EXE_signorini3d");
@@ -58,7 +58,7 @@ fn the_files_hold_the_surface_and_the_bodies() {
         std::fs::write(&file, json!(controls).to_string()).unwrap();
         let command = ["export", "--json", "--controls", text(&file), "--out", text(&out)];
         let printed = kit::json(program, &[&command, &options[..]].concat());
-        assert_eq!(read_json(&out.join("controls.json")), json!(controls));
+        assert_eq!(read_rows(&out.join("controls.json")), json!(controls));
         let names: Vec<&str> =
             printed["files"].as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
         let upper = scene.upper.as_ref().map(|_| "upper_body.stl");
@@ -153,7 +153,7 @@ fn shapes_come_from_runs_by_their_optimum_or_any_evaluation() {
     let export = |name: &str, options: &[&str]| {
         let out = at(name);
         let command = ["export", "--csv", "--json", "--mesh", "4", "--out", text(&out)];
-        (kit::json(SIGNORINI, &[&command, options].concat()), read_json(&out.join("controls.json")))
+        (kit::json(SIGNORINI, &[&command, options].concat()), read_rows(&out.join("controls.json")))
     };
     let (optimum, controls) = export("optimum", &["--run", text(&run)]);
     assert_eq!((&controls, &optimum["shape"]["objective"]), (&report["controls"], &report["objective"]));
@@ -208,7 +208,7 @@ fn a_part_of_a_run_is_named_where_it_has_several() {
     let export = |run: &Path, options: &[&str]| -> Value {
         let command = ["export", "--csv", "--json", "--overwrite", "--out", text(&out), "--run", text(run)];
         kit::json(SIGNORINI, &[&command, options].concat());
-        read_json(&out.join("controls.json"))
+        read_rows(&out.join("controls.json"))
     };
     assert_eq!(export(&meshes, &[]), report["controls"]);
     let words = ["--evaluation is allowed for one mesh or one start", "stage_2 or --run", "stage_4"];

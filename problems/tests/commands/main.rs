@@ -32,6 +32,7 @@ mod pins;
 mod processes;
 mod recheck;
 mod reports;
+mod run_folder;
 mod stages;
 mod study;
 mod terminal;

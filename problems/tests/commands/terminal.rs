@@ -21,6 +21,20 @@ fn the_help_has_defaults_and_ends_with_examples() {
     assert!(printed(HERTZ, &["--help"]).contains("Bricks per edge of each body [default: [12, 12, 12]]"));
 }
 
+/// Only words that cannot be broken are longer than the terminal is wide.
+#[test]
+fn the_help_fits_the_terminal() {
+    for program in [CONTACT, HERTZ] {
+        let output = command(program, &["--help"]).env("COLUMNS", "40").output().unwrap();
+        let help = String::from_utf8(output.stdout).unwrap();
+        for line in help.lines().filter(|line| line.chars().count() > 40) {
+            let longest = line.split_whitespace().map(|word| word.chars().count()).max().unwrap();
+            let indent = line.chars().take_while(|character| *character == ' ').count();
+            assert!(indent + longest > 40 || line.trim_start().starts_with('-'), "{line:?}");
+        }
+    }
+}
+
 #[test]
 fn shells_and_man_get_their_files() {
     for (shell, words) in [("bash", "complete -F"), ("zsh", "#compdef hertz3d"), ("fish", "complete -c hertz3d")] {

@@ -16,4 +16,4 @@ pub use documented_commands::run_commands;
 pub use mailbox::Mailbox;
 pub use numbers::{Random, jitter, jitters, numbers, relative_difference, wavy};
 pub use pins::{check_pins, rounds_alike};
-pub use program::{command, errors, json, parsed, read_json, refused, run, scratch, text};
+pub use program::{command, errors, json, parsed, read_json, read_rows, refused, run, scratch, text};

@@ -77,6 +77,15 @@ pub fn refused(program: &str, arguments: &[&str], words: &[&str]) {
     }
 }
 
+/// The numbers of a file of rows of numbers, one after the other.
+///
+/// # Panics
+/// When it cannot be read as one.
+pub fn read_rows(path: &Path) -> Value {
+    let rows: Vec<Vec<f64>> = serde_json::from_value(read_json(path)).unwrap_or_else(|error| panic!("{error}"));
+    rows.concat().into()
+}
+
 /// A JSON file.
 ///
 /// # Panics

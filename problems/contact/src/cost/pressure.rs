@@ -148,6 +148,22 @@ impl PressureCost {
         Some(ContactAreas { closed, smoothed: whole - open, whole })
     }
 
+    /// Why the value does not change with the pressures near those of a state, in words with a remedy: where σ₀ of the open area lies above
+    /// all pressures, or below those of all closed nodes. None for the other measures, and for other σ₀.
+    pub fn why_flat<S>(&self, state: &ContactState<S>) -> Option<String> {
+        let PressureMeasure::OpenArea { pressure: bound } = self.measure else { return None };
+        let pressures = self.pressures(state);
+        let largest = pressures.iter().copied().fold(0.0, f64::max);
+        let least = pressures.iter().copied().filter(|pressure| *pressure > 0.0).fold(f64::INFINITY, f64::min);
+        if largest < bound {
+            let reason = "every contact pressure is below objective.pressure, so that the value depends on the total force alone";
+            return Some(format!("{reason}: choose less than the largest pressure, {largest:.4e} MPa"));
+        }
+        let reason = "every closed contact node is above objective.pressure and gains nothing";
+        (least >= bound)
+            .then(|| format!("{reason}: choose more than the least pressure of a closed node, {least:.4e} MPa"))
+    }
+
     /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that carries
     /// this force is below it.
     ///

@@ -44,6 +44,8 @@ pub struct DirectState {
     pub(super) solution: CondensedSolution,
     /// Force that residuals are relative to, N; zero for bodies at rest.
     load: f64,
+    /// Displacements of the whole bodies, once they have been asked for.
+    pub(super) displacements: Vec<OnceLock<Vec<f64>>>,
 }
 
 /// The solution in physical units.
@@ -143,7 +145,8 @@ impl DirectSolver {
         } else {
             (contact.at_rest(), 0)
         };
-        let state = DirectState { block, contact, solution, load };
+        let displacements = contact.bodies.iter().map(|_| OnceLock::new()).collect();
+        let state = DirectState { block, contact, solution, load, displacements };
         let forces = state.forces();
         forces.residuals.check(tolerance)?;
         Ok(ContactState {
@@ -240,13 +243,13 @@ impl ContactSolver for DirectSolver {
         let adjoint = state.contact.adjoint(&solution.unknowns, &solution.linearizations, direction, &loads);
         let value_error = ValueError::from_terms(&adjoint.error_terms, direction, &solution.forces);
         let value_error = value_error.with_displacements(state.size_of(&loads));
-        let u = state.extend(0, &solution.displacement[..adjoint.displacement.len()], &solution.forces);
+        let u = state.displacement(0);
         let none = || vec![0.0; u.len()];
         let load = loads.into_iter().next().map_or_else(none, |load| load.full);
         let p = state.extend_under(0, &adjoint.displacement, &adjoint.multipliers, &load);
         let adjoint_seconds = clock.elapsed().as_secs_f64();
         Stage::ShapeDerivative.enter();
-        let heights = self.height_sensitivities(state, &u, &p, &adjoint.multipliers);
+        let heights = self.height_sensitivities(state, u, &p, &adjoint.multipliers);
         if heights.iter().any(|height| !height.is_finite()) {
             return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
         }
@@ -261,11 +264,10 @@ impl ContactSolver for DirectSolver {
         }
         Stage::Adjoint.enter();
         let (solution, lower) = (&state.solution, &state.contact.bodies[0]);
-        let size = lower.condensed.load.len();
-        let u = state.extend(0, &solution.displacement[..size], &solution.forces);
+        let u = state.displacement(0);
         let (grid, scene) = (&self.problem.grid, &self.problem.scene.lower);
         let whole = Subdomain::whole(grid);
-        let forces = shape_forces(&state.block, &whole, &scene.material, &scene.loads, &u, changes);
+        let forces = shape_forces(&state.block, &whole, &scene.material, &scene.loads, u, changes);
         let forces = Mat::from_fn(u.len(), changes.len(), |dof, column| forces[column][dof]);
         let loads = lower.condensed.condense_loads(forces, self.lower.held());
         let tangents = state.contact.tangents(&solution.linearizations, &loads, changes);
@@ -339,11 +341,10 @@ impl CompliantContact {
 impl DirectState {
     /// Σ|l_i u_i| of loads on all bodies.
     fn size_of(&self, loads: &[CondensedLoad]) -> f64 {
-        let contact = self.solution.displacement.chunks_exact(3 * self.contact.problem.boundary.points.len());
-        let products = loads.iter().zip(contact).enumerate().map(|(body, (load, contact))| {
-            let u = self.extend(body, contact, &self.solution.forces);
-            load.full.iter().zip(&u).map(|(l, u)| (l * u).abs()).sum::<f64>()
-        });
+        let products = loads
+            .iter()
+            .enumerate()
+            .map(|(body, load)| load.full.iter().zip(self.displacement(body)).map(|(l, u)| (l * u).abs()).sum::<f64>());
         products.sum()
     }
 

@@ -110,8 +110,8 @@ impl AdmissibleSet {
     pub fn active(&self, controls: &Vector) -> Vec<String> {
         let attained = |value: f64, side: f64| (value - side).abs() <= ADMISSIBLE * side.abs().max(f64::MIN_POSITIVE);
         let words = |(name, value, lower, upper): (String, f64, f64, f64)| match () {
-            () if attained(value, lower) => Some(format!("{name} = {lower}, its least value")),
-            () if attained(value, upper) => Some(format!("{name} = {upper}, its largest value")),
+            () if attained(value, lower) => Some(format!("{name} = {}, its least value", rounded(lower))),
+            () if attained(value, upper) => Some(format!("{name} = {}, its largest value", rounded(upper))),
             () => None,
         };
         self.expressions(controls).into_iter().filter_map(words).collect()
@@ -148,4 +148,9 @@ impl AdmissibleSet {
             None => Ok(()),
         }
     }
+}
+
+/// A number with seven digits, as people read them.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
 }

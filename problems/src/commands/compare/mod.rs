@@ -25,8 +25,13 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         return Err(session.arguments.blame(SceneError::out_of_range("friction", 0, allowed)).into());
     }
     let claimed = COMPARED.map(|part| format!("{part}/{REGISTER}"));
-    let (folder, initial_controls) =
-        begin(&optimized_objective(&loaded.case, &session.processes)?, loaded, None, (&claimed, 2), session)?;
+    let (folder, initial_controls) = begin(
+        &optimized_objective(&loaded.case, &session.processes)?,
+        loaded,
+        None,
+        (RunKind::Comparison, &claimed),
+        session,
+    )?;
     let folder = folder.as_ref();
     let continued = folder.map(|folder| resume_command(folder.folder().path(), RunKind::Comparison));
     let (as_json, parts) = (session.arguments.json, parts(loaded, folder)?);

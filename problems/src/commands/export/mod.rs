@@ -75,7 +75,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     problem.admissible.check_shape(&controls)?;
     let mut files = vec![OutputFile {
         name: "controls.json",
-        content: json(controls.as_slice())?.into_bytes(),
+        content: controls::written(controls.as_slice(), problem.scene.control_points)?.into_bytes(),
         what: "the control heights; --controls and --start-controls take the file".into(),
         triangles: None,
     }];

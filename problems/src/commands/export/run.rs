@@ -3,11 +3,10 @@
 use crate::commands::controls;
 use crate::commands::export::Origin;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{COMPARED, REPORT, SCENE, START, run_kind};
+use crate::commands::folder::{COMPARED, REPORT, SCENE, START};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::stages::stages;
-use crate::commands::register::names;
 use crate::commands::run_kind::RunKind;
 use contact::error::SceneError;
 use contact::scene::Scene;
@@ -25,8 +24,8 @@ pub struct KeptRun {
     /// The folders of the journals that have been begun.
     parts: Vec<PathBuf>,
     kind: Kind,
-    /// Number of controls.
-    dimension: usize,
+    /// Control points along x₁ and x₂.
+    control_points: [usize; 2],
 }
 
 /// What the journals of a run are.
@@ -49,8 +48,7 @@ impl KeptRun {
     /// [`Failure::Input`] for a folder without an optimization, for a comparison, and for a run of other surfaces.
     pub fn open(folder: &Path, scene: &Scene) -> Result<Self, Failure> {
         let refused = |reason: String| Err(Failure::Input(format!("--run {}: {reason}", folder.display())));
-        let kind = run_kind(&names(folder));
-        if kind != RunKind::Optimization {
+        if let Some(kind) = RunKind::of(folder)?.filter(|kind| *kind != RunKind::Optimization) {
             let parts = if kind == RunKind::Study { ["row_001", "row_002"] } else { COMPARED };
             let parts = parts.map(|part| folder.join(part).display().to_string());
             let words = format!("holds {}; name one of its optimizations, such as", kind.words());
@@ -68,8 +66,9 @@ impl KeptRun {
             return refused(format!("is a run of another surface: {field} is {found} there and {here} here; {hint}"));
         }
         let (kind, parts) = if root == folder {
-            let places =
-                stages(&own).into_iter().map(|stage| stage.name.map_or(root.to_owned(), |name| root.join(name)));
+            let places = stages(&own)
+                .into_iter()
+                .map(|stage| stage.part.folder().map_or(root.to_owned(), |name| root.join(name)));
             let kind = match () {
                 () if !own.optimizer.continuation.is_empty() => Kind::Meshes,
                 () if own.optimizer.starts > 1 => Kind::Starts,
@@ -79,8 +78,7 @@ impl KeptRun {
         } else {
             (Kind::Part, vec![folder.to_owned()])
         };
-        let dimension = own.scene.control_points.iter().product();
-        Ok(Self { folder: folder.to_owned(), parts, kind, dimension })
+        Ok(Self { folder: folder.to_owned(), parts, kind, control_points: own.scene.control_points })
     }
 
     /// The shape of an evaluation, or the one that the run has found.
@@ -98,10 +96,12 @@ impl KeptRun {
 
     /// The shape that an ended run reports.
     fn optimum(&self) -> Result<(Vector, Origin), Failure> {
-        let controls = controls::read(&self.folder.join("controls.json"), self.dimension)?;
+        let controls = controls::read(&self.folder.join("controls.json"), self.control_points)?;
         let report = read_text(&self.folder.join(REPORT), LARGEST_REPORT)?;
         let report: serde_json::Value = serde_json::from_str(&report).unwrap_or_default();
-        let source = format!("the optimum of {}", self.folder.display());
+        let confirmed = report["termination"]["confirmed"] == true;
+        let shape = if confirmed { "optimum" } else { "best shape" };
+        let source = format!("the {shape} of {}", self.folder.display());
         Ok((controls, Origin { source, evaluation: None, objective: report["objective"].as_f64() }))
     }
 
@@ -135,8 +135,9 @@ impl KeptRun {
     /// The controls of an evaluation.
     fn controls(&self, entry: &Entry) -> Result<Vector, SceneError> {
         let what = || format!("controls of evaluation {} in {}", entry.evaluation, self.folder.display());
-        if entry.point.len() != self.dimension {
-            return Err(SceneError::WrongCount { what: what(), expected: self.dimension, found: entry.point.len() });
+        let expected = self.control_points.iter().product();
+        if entry.point.len() != expected {
+            return Err(SceneError::WrongCount { what: what(), expected, found: entry.point.len() });
         }
         match entry.point.iter().find(|height| !height.is_finite()) {
             Some(height) => Err(SceneError::out_of_range(what(), height, "finite numbers (mm)")),

@@ -2,14 +2,14 @@
 
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, GRIDS, REPORT, SCENE, START, file_error, json, resume_command, run_kind};
+use crate::commands::folder::{Folder, REPORT, SCENE, START, file_error, json, resume_command};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::stages;
-use crate::commands::register::{JOURNAL, names};
-use crate::commands::run_kind::RunKind;
+use crate::commands::register::JOURNAL;
+use crate::commands::run_kind::{RUN, RunKind};
 use contact::error::SceneError;
 use nonsmooth::{Journal, JournalError, Journaled, NonsmoothObjective, Vector};
-use scene_file::{CounterSection, OptimizerSection, OutputSection, SceneFile, StartSection, WantedSection};
+use scene_file::{OptimizerSection, OutputSection, SceneFile, StartSection};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -45,18 +45,13 @@ impl Identity {
     fn new(loaded: &LoadedScene, initial_controls: &[f64]) -> Result<Self, Failure> {
         let mut scene = loaded.file.clone();
         let mut contents = BTreeMap::from([(START.to_owned(), hash(json(initial_controls)?.as_bytes()))]);
-        if let CounterSection::Grid { file } = &mut scene.counter_surface {
-            let grid = scene_file::read_grid(&loaded.folder().join(&*file))?;
-            contents.insert(GRIDS[0].to_owned(), hash(grid.as_bytes()));
-            *file = GRIDS[0].to_owned();
-        }
-        if let Some(WantedSection::Grid { file }) = &mut scene.objective.wanted {
-            let grid = scene_file::read_grid(&loaded.folder().join(&*file))?;
-            contents.insert(GRIDS[2].to_owned(), hash(grid.as_bytes()));
-            *file = GRIDS[2].to_owned();
-        }
         // The start is known by its controls.
         scene.surface.start = StartSection::Controls { heights: vec![] };
+        for (name, file) in scene.grids_mut() {
+            let grid = scene_file::read_grid(&loaded.folder().join(&*file))?;
+            contents.insert(name.to_owned(), hash(grid.as_bytes()));
+            *file = name.to_owned();
+        }
         (scene.optimizer, scene.output) = (OptimizerSection::default(), OutputSection::default());
         Ok(Self { version: env!("CARGO_PKG_VERSION").to_owned(), stage: None, contents, scene })
     }
@@ -83,7 +78,8 @@ impl RunFolder {
             let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
             return Err(file_error(folder, reason));
         }
-        let found = run_kind(&names(folder));
+        let unknown = || file_error(folder, format!("{RUN}, which says what the run is, is missing"));
+        let found = RunKind::of(folder)?.ok_or_else(unknown)?;
         if found != kind {
             let command = resume_command(folder, found);
             return Err(file_error(folder, format!("holds {}: continue it with `{command}`", found.words())));
@@ -96,11 +92,11 @@ impl RunFolder {
 
     /// Whether a folder holds a run, ended or not.
     pub fn is_one(folder: &Path) -> bool {
-        folder.join(START).exists() && folder.join(SCENE).exists()
+        [START, SCENE].iter().all(|name| folder.join(name).exists())
     }
 
-    /// Begins a run in a folder, with its scene and its initial controls. `claimed` are further files that will be written there; they
-    /// say what kind of run it is.
+    /// Begins a run in a folder, with what it is, its scene and its initial controls. `claimed` are further files that will be written
+    /// there.
     ///
     /// # Errors
     /// As [`Folder::create`].
@@ -108,26 +104,18 @@ impl RunFolder {
         folder: Folder,
         loaded: &LoadedScene,
         initial_controls: &Vector,
-        claimed: &[String],
+        (kind, claimed): (RunKind, &[String]),
     ) -> Result<Self, Failure> {
         claimed.iter().try_for_each(|name| folder.claim(name))?;
         let identity = Identity::new(loaded, initial_controls.as_slice())?;
         let mut scene = loaded.file.clone();
-        let copy = |file: &mut String, name: &str| {
-            let text = scene_file::read_grid(&loaded.folder().join(&*file))?;
+        for (name, file) in scene.grids_mut() {
+            folder.write(name, scene_file::read_grid(&loaded.folder().join(&*file))?)?;
             *file = name.to_owned();
-            folder.write(name, &text)
-        };
-        if let CounterSection::Grid { file } = &mut scene.counter_surface {
-            copy(file, GRIDS[0])?;
         }
-        if let StartSection::Grid { file } = &mut scene.surface.start {
-            copy(file, GRIDS[1])?;
-        }
-        if let Some(WantedSection::Grid { file }) = &mut scene.objective.wanted {
-            copy(file, GRIDS[2])?;
-        }
-        folder.write(START, json(initial_controls.as_slice())?)?;
+        folder.write(RUN, kind.file()?)?;
+        let counts = loaded.file.surface.control_points;
+        folder.write(START, controls::written(initial_controls.as_slice(), counts)?)?;
         // With its scene, the folder holds a run.
         keep_scene(&folder, scene)?;
         let initial_controls = initial_controls.clone();
@@ -140,12 +128,12 @@ impl RunFolder {
     /// [`Failure::Input`] for a journal of another scene or, unless `new_version`, of another version of the program, and for
     /// fewer evaluations than it holds; any [`Failure`] of the folder.
     pub fn reopen(folder: Folder, loaded: &LoadedScene, new_version: bool) -> Result<Self, Failure> {
-        let count = loaded.file.surface.control_points.iter().product();
-        let initial_controls = controls::read(&folder.path().join(START), count)?;
+        let counts = loaded.file.surface.control_points;
+        let initial_controls = controls::read(&folder.path().join(START), counts)?;
         let identity = Identity::new(loaded, initial_controls.as_slice())?;
         let this = Self { folder, identity, initial_controls, resumed: true, new_version };
         for stage in stages(&loaded.case) {
-            let (held, limit) = (this.held(stage.name.as_deref())?, stage.case.optimizer.max_evaluations);
+            let (held, limit) = (this.held(stage.part.folder().as_deref())?, stage.case.optimizer.max_evaluations);
             if held > limit {
                 let allowed = format!("at least the {held} evaluations that the folder holds");
                 return Err(SceneError::out_of_range("--max-evaluations", limit, allowed).into());

@@ -3,7 +3,7 @@
 use crate::commands::contact_objective::ContactObjective;
 use crate::commands::failure::Failure;
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
-use crate::commands::optimize::stages::MeshStage;
+use crate::commands::optimize::stages::{MeshStage, Part};
 use crate::commands::output::notice;
 use contact::contact_objective::mean_height_coordinates;
 use nonsmooth::{
@@ -21,8 +21,8 @@ pub struct MeshRun {
     pub report: Report,
     /// Number of evaluations that were answered from the journal.
     pub replayed: usize,
-    /// Name of the folder of its journal; none for a single run.
-    pub name: Option<String>,
+    /// What it is within its optimization.
+    pub part: Part,
     /// The controls that it started from.
     pub initial_controls: Vector,
     /// Whether its journal, if it has one, holds all evaluations.
@@ -71,8 +71,9 @@ pub fn run_on_mesh(
         scaling: VariableScaling::Linear(mean_height_coordinates(&initial_controls, first_step)),
         ..BundleTrustConfig::default()
     };
-    let label = stage.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
-    let journaled = folder.map(|folder| folder.journaled(&objective, stage.name.as_deref())).transpose()?;
+    let name = stage.part.folder();
+    let label = name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+    let journaled = folder.map(|folder| folder.journaled(&objective, name.as_deref())).transpose()?;
     let replayed = journaled.as_ref().map_or(0, Journaled::held);
     let progress = Progress::new(&label, config.max_evaluations, time_limit, replayed, status.clone());
     let set = objective.solver().problem().admissible.polyhedron().clone();
@@ -87,7 +88,7 @@ pub fn run_on_mesh(
     };
     let is_kept = journaled.as_ref().is_none_or(Journaled::is_complete);
     drop(journaled);
-    Ok(MeshRun { objective, report, replayed, name: stage.name.clone(), initial_controls, is_kept })
+    Ok(MeshRun { objective, report, replayed, part: stage.part, initial_controls, is_kept })
 }
 
 /// Says what the journal warns of as soon as it does.

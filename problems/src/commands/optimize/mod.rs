@@ -3,6 +3,7 @@
 pub mod mesh_run;
 pub mod run;
 pub mod stages;
+pub mod standstill;
 pub mod summary;
 mod vtk_history;
 
@@ -12,6 +13,7 @@ use crate::commands::folder::{Folder, REPORT, json, printed_with_files, resume_c
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS, interrupted};
 use crate::commands::optimize::run::{OptimizationRun, optimize};
+use crate::commands::optimize::standstill::standstill;
 use crate::commands::optimize::summary::{page, stages_page, summary};
 use crate::commands::report::files;
 use crate::commands::run_kind::RunKind;
@@ -49,7 +51,8 @@ pub fn report(
         SolvedShape::at(&last.objective, controls).map_err(|failure| failure.after(&last.report.to_string()))
     };
     let shapes = [solved(&first.initial_controls)?, solved(&last.report.solution)?];
-    let checks = checks(&last.objective, &shapes[1], session.arguments)?;
+    let mut checks = checks(&last.objective, &shapes[1], session.arguments)?;
+    checks.extend(standstill(runs, last, &shapes[1])?);
     let usage = session.processes.usage(shapes[1].state.solver)?;
     let mut text = page(last, &shapes, &checks, session.arguments) + &stages_page(runs, optimization.meshes);
     text += &usage.iter().map(|usage| format!("processes:   {usage}\n")).collect::<String>();

@@ -1,13 +1,15 @@
 //! An optimization from its beginning to its end: on one mesh or on growing ones, kept on disk if asked for.
 
-use crate::commands::contact_objective::{ContactObjective, optimized_objective};
+use crate::commands::contact_objective::{ContactObjective, check_objective, optimized_objective};
 use crate::commands::controls;
 use crate::commands::failure::{Failure, failed};
 use crate::commands::folder::Folder;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, interrupted, watch_interrupts};
 use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
-use crate::commands::optimize::stages::{MeshStage, stages};
+use crate::commands::optimize::stages::{MeshStage, Part, stages};
+use crate::commands::run_kind::RunKind;
+use contact::error::SceneError;
 use nonsmooth::qp::project;
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Termination, Vector};
@@ -32,15 +34,14 @@ pub struct OptimizationRun {
 impl OptimizationRun {
     /// The run that the optimization is reported by: the last one, or the best one of several starts.
     pub fn chosen(&self) -> Option<&MeshRun> {
-        let is_start = |run: &&MeshRun| run.name.as_ref().is_some_and(|name| name.starts_with("start_"));
+        let is_start = |run: &&MeshRun| matches!(run.part, Part::Start(_));
         let best = self.mesh_runs.iter().filter(is_start).min_by(|a, b| a.report.value.total_cmp(&b.report.value));
         best.or(self.mesh_runs.last())
     }
 
     /// The runs that lead to the one that it is reported by, this one included: all meshes in turn, or one start alone.
     pub fn reported(&self) -> Vec<&MeshRun> {
-        let is_mesh = |run: &&MeshRun| run.name.as_ref().is_some_and(|name| name.starts_with("stage_"));
-        if self.mesh_runs.iter().all(|run| is_mesh(&run)) {
+        if self.mesh_runs.iter().all(|run| matches!(run.part, Part::Mesh(_))) {
             return self.mesh_runs.iter().collect();
         }
         self.chosen().into_iter().collect()
@@ -81,7 +82,12 @@ pub fn optimize(
 ) -> Result<OptimizationRun, Failure> {
     let stages = stages(&loaded.case);
     let first = optimized_objective(&stages[0].case, &session.processes)?;
-    let (folder, mut controls) = begin(&first, loaded, given, (&[], 1), session)?;
+    // What is wrong on a later mesh is said before hours of work on the first.
+    for later in stages.iter().skip(1).filter(|stage| matches!(stage.part, Part::Mesh(_))) {
+        let within = |source| SceneError::InFile { file: on(later), source: Box::new(source) };
+        check_objective(&later.case).map_err(within)?;
+    }
+    let (folder, mut controls) = begin(&first, loaded, given, (RunKind::Optimization, &[]), session)?;
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
     }
@@ -94,7 +100,7 @@ pub fn optimize(
     for stage in &stages {
         let objective = first.take().map_or_else(|| optimized_objective(&stage.case, &session.processes), Ok)?;
         let left = |limit: f64| (limit - session.clock.elapsed().as_secs_f64()).max(f64::MIN_POSITIVE);
-        if let Some(seed) = stage.random_start {
+        if let Some(seed) = stage.part.random_start() {
             controls = random_start(&objective, &start, step, seed)?;
         }
         let beginning = (controls, step);
@@ -118,6 +124,12 @@ pub fn optimize(
     Ok(OptimizationRun { mesh_runs, meshes: stages.len(), folder })
 }
 
+/// "the mesh of 12x12x4 bricks"
+fn on(stage: &MeshStage) -> String {
+    let [n1, n2, n3] = stage.case.scene.mesh;
+    format!("the mesh of {n1}x{n2}x{n3} bricks")
+}
+
 /// Largest change of a control at a random start, in first steps: several times the length on which contact changes.
 const RANDOM_CHANGE: f64 = 4.0;
 
@@ -131,7 +143,7 @@ fn random_start(objective: &ContactObjective, start: &Vector, step: f64, seed: u
 
 /// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is continued,
 /// else those given, else those that the command line or the scene names. Everything is checked before the folder is touched.
-/// `claimed` are further files that will be written there; so many runs write theirs at once.
+/// `claimed` are further files that will be written there.
 ///
 /// # Errors
 /// [`Failure::Input`] for controls outside the admissible set; any [`Failure`] of the folder.
@@ -139,12 +151,12 @@ pub fn begin(
     objective: &ContactObjective,
     loaded: &LoadedScene,
     given: Option<&Vector>,
-    (claimed, runs): (&[String], u64),
+    (kind, claimed): (RunKind, &[String]),
     session: &Session<'_>,
 ) -> Result<(Option<RunFolder>, Vector), Failure> {
     let (shape, arguments) = (objective.solver(), session.arguments);
     let path = loaded.case.output.folder.as_deref().map(Path::new);
-    let bytes = room(&stages(&loaded.case)) * runs;
+    let bytes = room(&stages(&loaded.case), kind, arguments.vtk_history);
     if let Some(path) = path.filter(|path| arguments.resume.is_some() && RunFolder::is_one(path)) {
         let folder = RunFolder::reopen(Folder::reopen(path, bytes)?, loaded, arguments.new_version)?;
         shape.problem().admissible.check(folder.initial_controls())?;
@@ -156,7 +168,8 @@ pub fn begin(
         controls::load(shape.problem(), &loaded.case, file)
     };
     let controls = given.cloned().map_or_else(load, Ok)?;
-    let begin = |path| RunFolder::begin(Folder::create(path, bytes, arguments.overwrite)?, loaded, &controls, claimed);
+    let begin =
+        |path| RunFolder::begin(Folder::create(path, bytes, arguments.overwrite)?, loaded, &controls, (kind, claimed));
     Ok((path.map(begin).transpose()?, controls))
 }
 
@@ -172,9 +185,13 @@ const REPORT_BYTES: u64 = 3000;
 /// Jacobians that a run may keep, with the restart data behind each: twice as many as runs of the paper's examples need.
 const JACOBIANS: u64 = 40;
 
-/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states, figures,
-/// Jacobians of pressures and gaps, and the rest.
-fn room(stages: &[MeshStage]) -> u64 {
+/// Most shapes of a series for ParaView that room is looked for: more than twice as many serious steps as runs of the paper's examples have.
+const SERIES: u64 = 40;
+
+/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states, or of a
+/// series if it is asked for, figures, Jacobians of pressures and gaps, and the rest. A comparison writes two runs at once; the rows of a
+/// study prove their own room.
+fn room(stages: &[MeshStage], kind: RunKind, series: bool) -> u64 {
     let bytes = stages.iter().map(|stage| {
         let scene = &stage.case.scene;
         let torn = scene.mesh.iter().zip(&scene.subdomains).map(|(cells, count)| (cells + count) as u64);
@@ -187,7 +204,9 @@ fn room(stages: &[MeshStage]) -> u64 {
             MethodName::Composite => JACOBIANS * (restart_data + jacobian),
             MethodName::Bundle => 0,
         };
-        3 * restart_data + 2 * FIELD_BYTES * nodes + REPORT_BYTES * contact + kept
+        let shapes = 2 + if series { SERIES.min(stage.case.optimizer.max_evaluations as u64) } else { 0 };
+        3 * restart_data + shapes * FIELD_BYTES * nodes + REPORT_BYTES * contact + kept
     });
-    bytes.max().unwrap_or(0) + (4 << 20)
+    let runs = if kind == RunKind::Comparison { 2 } else { 1 };
+    runs * (bytes.max().unwrap_or(0) + (4 << 20))
 }

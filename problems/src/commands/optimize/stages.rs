@@ -2,15 +2,43 @@
 
 use scene_file::{Case, default_subdomains};
 
+/// What a run is within its optimization.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// All of it.
+    Whole,
+    /// One of several growing meshes, by its bricks along the axis that has most.
+    Mesh(usize),
+    /// One of several starts, counted from 1: that of the scene, then random ones.
+    Start(usize),
+}
+
+impl Part {
+    /// Name of the folder of its journal; none for a single run.
+    pub fn folder(self) -> Option<String> {
+        match self {
+            Self::Whole => None,
+            Self::Mesh(bricks) => Some(format!("stage_{bricks}")),
+            Self::Start(number) => Some(format!("start_{number}")),
+        }
+    }
+
+    /// Number of its random start; none for a run that begins at the start of the scene or where the one before it ended.
+    pub fn random_start(self) -> Option<u64> {
+        match self {
+            Self::Start(number @ 2..) => Some(number as u64),
+            _ => None,
+        }
+    }
+}
+
 /// One run of an optimization.
 #[derive(Debug, Clone)]
 pub struct MeshStage {
-    /// Name of the folder of its journal; none for a single run.
-    pub name: Option<String>,
+    /// What it is within the optimization.
+    pub part: Part,
     /// The case on its mesh.
     pub case: Case,
-    /// Number of its random start; none for a run that begins at the start of the scene or where the one before it ended.
-    pub random_start: Option<u64>,
 }
 
 /// The runs of a case, in order: one per mesh of its continuation, else one per start. On the meshes of a continuation, the axis
@@ -19,13 +47,10 @@ pub fn stages(case: &Case) -> Vec<MeshStage> {
     let meshes = &case.optimizer.continuation;
     let starts = case.optimizer.starts;
     if meshes.is_empty() && starts > 1 {
-        let random = |start: usize| (start > 1).then_some(start as u64);
-        let run =
-            |start| MeshStage { name: Some(format!("start_{start}")), case: case.clone(), random_start: random(start) };
-        return (1..=starts).map(run).collect();
+        return (1..=starts).map(|start| MeshStage { part: Part::Start(start), case: case.clone() }).collect();
     }
     if meshes.is_empty() {
-        return vec![MeshStage { name: None, case: case.clone(), random_start: None }];
+        return vec![MeshStage { part: Part::Whole, case: case.clone() }];
     }
     let longest = case.scene.mesh.iter().copied().max().unwrap_or(1);
     let stage = |&bricks: &usize| {
@@ -36,7 +61,7 @@ pub fn stages(case: &Case) -> Vec<MeshStage> {
         if !fits {
             case.scene.subdomains = case.scene.mesh.map(default_subdomains);
         }
-        MeshStage { name: Some(format!("stage_{bricks}")), case, random_start: None }
+        MeshStage { part: Part::Mesh(bricks), case }
     };
     meshes.iter().map(stage).collect()
 }
@@ -52,7 +77,7 @@ mod tests {
         let text = include_str!("../../../scenes/thin_layer.toml");
         let file = SceneFile::parse(text, "thin_layer.toml").expect("an example");
         let mut case = Case::new(&file, Path::new("")).expect("an example");
-        assert!(stages(&case).len() == 1 && stages(&case)[0].name.is_none());
+        assert!(stages(&case).len() == 1 && stages(&case)[0].part == Part::Whole);
         case.optimizer.continuation = vec![6, 12, 25];
         let meshes: Vec<_> =
             stages(&case).iter().map(|stage| (stage.case.scene.mesh, stage.case.scene.subdomains)).collect();

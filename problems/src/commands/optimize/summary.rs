@@ -4,6 +4,7 @@ use crate::commands::arguments::Arguments;
 use crate::commands::contact_objective::SolvedShape;
 use crate::commands::evaluate::said;
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::optimize::stages::Part;
 use crate::commands::output::pressure;
 use crate::commands::processes::Usage;
 use contact::contact_shape::SolverKind;
@@ -127,7 +128,7 @@ struct MeshRunJson<'a> {
 
 fn stages(runs: &[MeshRun]) -> Vec<MeshRunJson<'_>> {
     runs.iter()
-        .filter(|run| run.name.is_some())
+        .filter(|run| run.part != Part::Whole)
         .map(|run| MeshRunJson {
             mesh: run.objective.solver().problem().scene.mesh,
             objective_start: run.report.start_value,
@@ -145,27 +146,40 @@ pub fn ending(report: &Report) -> Ending<'_> {
     Ending { reason: termination, text: termination.to_string(), confirmed: termination.is_confirmed() }
 }
 
-/// Relative difference of Θ beyond which two ends are two optima.
+/// Difference of Θ beyond which two ends are two optima, relative to Θ where it lies between the next constant and 1 times the largest
+/// decrease of a run, else to this bound. A Θ that falls to zero, or that carries a constant, has the decrease alone as its scale.
 const SAME_OPTIMUM: f64 = 1e-5;
+/// Least scale of Θ in largest decreases.
+const LEAST_SCALE: f64 = 1e-3;
+/// Relative rounding of Θ.
+const ROUNDING: f64 = 1e-12;
 
 /// Number of different values of Θ at confirmed ends.
 fn optima(runs: &[MeshRun]) -> usize {
+    let decrease = runs.iter().map(|run| run.report.start_value - run.report.value).fold(0.0, f64::max);
     let confirmed = runs.iter().filter(|run| run.report.termination.is_confirmed());
-    let mut values: Vec<f64> = confirmed.map(|run| run.report.value).collect();
+    different(confirmed.map(|run| run.report.value).collect(), decrease)
+}
+
+/// Number of values that differ by more than runs with this largest decrease resolve.
+fn different(mut values: Vec<f64>, decrease: f64) -> usize {
     values.sort_by(f64::total_cmp);
-    values.dedup_by(|b, a| (*b - *a).abs() <= SAME_OPTIMUM * a.abs());
+    values.dedup_by(|b, a| {
+        let scale = a.abs().clamp(LEAST_SCALE * decrease, decrease);
+        (*b - *a).abs() <= SAME_OPTIMUM * scale + ROUNDING * a.abs()
+    });
     values.len()
 }
 
 /// One line per mesh or start; nothing for a single run.
 pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
     let mut text = String::new();
-    for run in runs.iter().filter(|run| run.name.is_some()) {
+    for run in runs.iter().filter(|run| run.part != Part::Whole) {
         let [n1, n2, n3] = run.objective.solver().problem().scene.mesh;
         let report = &run.report;
         text += &format!(
             "{} on {n1}x{n2}x{n3}: {:.6e} -> {:.6e} in {} evaluations, {:.1} s; {}\n",
-            run.name.as_deref().unwrap_or_default().replace('_', " "),
+            run.part.folder().unwrap_or_default().replace('_', " "),
             report.start_value,
             report.value,
             report.counts.evaluations,
@@ -173,7 +187,7 @@ pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
             report.termination
         );
     }
-    if runs.iter().any(|run| run.name.as_ref().is_some_and(|name| name.starts_with("start_"))) {
+    if runs.iter().any(|run| matches!(run.part, Part::Start(_))) {
         text += &format!("optima:      {} different values at confirmed ends\n", optima(runs));
     }
     if runs.len() < meshes {
@@ -222,7 +236,7 @@ pub fn summary<'a>(
         contact_areas: contact_areas(last, shapes),
         residuals: shapes.each_ref().map(|shape| shape.state.forces.residuals),
         kinks: shapes.each_ref().map(|shape| shape.state.forces.kink),
-        optima: (runs.iter().filter(|run| run.name.is_some()).count() > 1).then(|| optima(runs)),
+        optima: (runs.iter().filter(|run| run.part != Part::Whole).count() > 1).then(|| optima(runs)),
         stages: stages(runs),
         solver: shapes[1].state.solver,
         solver_reason: shapes[1].state.reason.as_deref(),
@@ -247,14 +261,19 @@ pub fn all_warnings(report: &Report, checks: &[Warning]) -> Vec<Warning> {
 /// Reduction of Θ from which on what is left of it is rounding.
 const MEANINGLESS_REDUCTION: f64 = 1e12;
 
+/// Θ at the start over Θ at the end; none where that says nothing: a compliance may change its sign, and a deviation may vanish up to
+/// rounding.
+pub fn reduction(start: f64, end: f64) -> Option<f64> {
+    Some(start / end).filter(|ratio| *ratio > 0.0 && *ratio < MEANINGLESS_REDUCTION)
+}
+
 /// The one-page report.
 pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], arguments: &Arguments) -> String {
     let MeshRun { report, objective, .. } = last;
     let at_solution = &shapes[1].state.forces;
     let scene = &objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
-    // A compliance may change its sign, and a deviation may vanish up to rounding.
-    let ratio = Some(shapes[0].value / report.value).filter(|ratio| *ratio > 0.0 && *ratio < MEANINGLESS_REDUCTION);
+    let ratio = reduction(shapes[0].value, report.value);
     let reduction = ratio.map_or_else(|| "no ratio".into(), |ratio| format!("{ratio:.4} times"));
     let areas = contact_areas(last, shapes).map_or_else(String::new, |[start, end]| {
         format!("contact:     at the start {start}\n             at the end   {end}\n")
@@ -287,4 +306,30 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], argum
         checks.iter().map(|warning| format!("warning:     {warning}\n")).collect::<String>(),
         arguments.left_out(objective.solver()).join("; "),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn optima_are_told_apart_on_the_scale_of_their_decrease() {
+        for (values, decrease, expected) in [
+            (vec![1.0, 1.0 + 1e-7, 1.1], 10.0, 2),
+            // Deviations that vanish up to rounding.
+            (vec![1e-14, 3e-12, 0.0], 1.0, 1),
+            (vec![0.0, 1e-4], 1.0, 2),
+            // Two ends that a large constant would hide.
+            (vec![1e6, 1e6 + 0.5], 1.0, 2),
+            (vec![-1e-9, 1e-9], 5.0, 1),
+            // Nothing can be gained, and values are equal up to rounding.
+            (vec![7.0, 7.0 * (1.0 + 1e-15)], 0.0, 1),
+            (vec![], 0.0, 0),
+        ] {
+            for unit in [1e-20, 1.0, 1e20] {
+                let scaled = values.iter().map(|value| unit * value).collect();
+                assert_eq!(different(scaled, unit * decrease), expected, "{values:?} in units of {unit:e}");
+            }
+        }
+    }
 }

@@ -21,7 +21,7 @@ pub fn write(folder: &Folder, runs: &[&MeshRun]) -> Result<(), Failure> {
     let vtk = folder.within(VTK)?;
     let (mut entries, mut before) = (Vec::new(), 0);
     for run in runs {
-        let place = run.name.as_ref().map_or_else(|| folder.path().to_owned(), |name| folder.path().join(name));
+        let place = run.part.folder().map_or_else(|| folder.path().to_owned(), |name| folder.path().join(name));
         let journal = Journal::read(&place)?.map(|journal| journal.entries).unwrap_or_default();
         let steps =
             run.report.history.iter().filter(|record| [StepKind::Start, StepKind::Serious].contains(&record.kind));

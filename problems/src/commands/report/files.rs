@@ -2,12 +2,14 @@
 
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
+use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::all_warnings;
 use crate::commands::report::folder::ReportFolder;
+use crate::commands::report::sections::found_label;
 use crate::commands::report::{captions, gallery, pages, tables};
 use contact::plausibility::Warning;
 
@@ -22,11 +24,13 @@ pub fn write_optimization(
 ) -> Result<(), Failure> {
     let MeshRun { objective, report, .. } = last;
     let mut out = ReportFolder::new(folder, loaded, objective);
-    out.write("controls.json", &json(report.solution.as_slice())?, "the control heights found")?;
+    let counts = objective.solver().problem().scene.control_points;
+    let heights = controls::written(report.solution.as_slice(), counts)?;
+    out.write("controls.json", &heights, "the control heights found, a row per control point along x₁")?;
     let what = "all cuts and multipliers behind the certificate, for recheck";
     out.write("certificate.json", &json(&report.certificate)?, what)?;
     out.write("history.csv", &tables::history(report), "one line per evaluation")?;
-    let shown = [("initial", "start", &shapes[0]), ("optimal", "optimum", &shapes[1])];
+    let shown = [("initial", "start", &shapes[0]), ("optimal", found_label(report), &shapes[1])];
     out.show(&shown)?;
     if out.wanted().pictures {
         let figure = gallery::convergence(objective, report, &shapes[1]).map_err(Failure::computation)?;

@@ -10,6 +10,7 @@ use crate::commands::report::gallery::ShownShape;
 use crate::commands::report::key_numbers::KeyNumbers;
 use crate::commands::report::stamp::stamp;
 use crate::commands::report::{bodies, captions, gallery, sections, setup, tables};
+use crate::commands::run_kind::RUN;
 use contact::fields::{FieldState, vtk_files};
 use contact::plausibility::Warning;
 use figures::page::{Block, File, Page, Section};
@@ -180,7 +181,7 @@ impl<'a> ReportFolder<'a> {
             self.announce(REPORT, "the same as one JSON object");
         }
         for name in self.folder.names() {
-            if [SCENE, START].contains(&name.as_str()) || name.ends_with(JOURNAL) {
+            if [SCENE, START, RUN].contains(&name.as_str()) || name.ends_with(JOURNAL) {
                 self.announce(&name, "the run itself, for --resume; restart data lie beside it");
             }
         }

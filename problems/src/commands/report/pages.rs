@@ -3,9 +3,11 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::optimize::stages::Part;
+use crate::commands::optimize::summary::reduction;
 use crate::commands::output::pressure;
 use crate::commands::report::folder::Parts;
-use crate::commands::report::sections::{certificate, course, pictures, states};
+use crate::commands::report::sections::{certificate, course, found_label, pictures, states};
 use contact::equilibrium::StageSeconds;
 use figures::page::{Block, Page, Section};
 
@@ -17,9 +19,8 @@ pub fn optimization(parts: Parts, runs: &[MeshRun], last: &MeshRun, shapes: &[So
     } else {
         "It is the best shape found; the run ended without a proof of optimality."
     };
-    // A compliance may change its sign.
-    let ratio = Some(shapes[0].value / report.value).filter(|ratio| *ratio > 0.0);
-    let times = ratio.map_or_else(String::new, |ratio| format!(", {ratio:.3} times less"));
+    let times = reduction(shapes[0].value, report.value);
+    let times = times.map_or_else(String::new, |ratio| format!(", {ratio:.3} times less"));
     let lead = format!(
         "From the start to the shape found, Θ goes from {:.4e} to {:.4e}{times}; the peak pressure from {} to {} MPa, after {}. {confirmed}",
         shapes[0].value,
@@ -31,7 +32,7 @@ pub fn optimization(parts: Parts, runs: &[MeshRun], last: &MeshRun, shapes: &[So
     let sections = vec![
         parts.numbers,
         pictures(parts.pictures),
-        states(objective, &[("start", &shapes[0]), ("optimum", &shapes[1])]),
+        states(objective, &[("start", &shapes[0]), (found_label(report), &shapes[1])]),
         stages(runs),
         course(report, &last.active_constraints()),
         certificate(report.certificate.as_ref()),
@@ -112,7 +113,7 @@ fn evaluations(runs: &[MeshRun]) -> String {
 
 /// The meshes of a coarse-to-fine optimization, or the starts; empty for a single run.
 fn stages(runs: &[MeshRun]) -> Section {
-    if runs.iter().all(|run| run.name.is_none()) {
+    if runs.iter().all(|run| run.part == Part::Whole) {
         return Section::default();
     }
     let rows = runs.iter().map(|run| {

@@ -9,6 +9,11 @@ pub fn pictures(blocks: Vec<Block>) -> Section {
     Section::new("Pictures", blocks)
 }
 
+/// What the shape that an optimization ended at is called.
+pub fn found_label(report: &Report) -> &'static str {
+    if report.termination.is_confirmed() { "optimum" } else { "best found" }
+}
+
 /// Rows that objectives without a least value do not have.
 const LEAST: &str = "least value for this total force";
 const OVER_LEAST: &str = "Θ over that";

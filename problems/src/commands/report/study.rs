@@ -6,6 +6,7 @@ use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::report::bodies::above_mean;
 use crate::commands::report::sections;
 use crate::commands::report::stamp::stamp;
+use crate::commands::run_kind::RUN;
 use crate::commands::study::row::{Outcome, Picture, Row, Solved};
 use crate::commands::study::table::{StudyJson, row_folder, values};
 use figures::page::{Block, File, Page, Section};
@@ -51,6 +52,7 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
         (SCENE, "the scene"),
         (START, "the control heights at which rows begin, if they were given"),
         (STUDY, "what is varied, for --resume"),
+        (RUN, "that this is a study, for --resume"),
         ("rows.json", "the rows so far, with controls, pressures and heights"),
     ] {
         files.push(File { path: path.into(), what: what.into() });
@@ -70,7 +72,12 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     }
     let page = Page {
         title: format!("{}: study of {}", loaded.case.scene.name, varied.join(", ")),
-        lead: format!("{} rows of {}, {failed} without a result.", study.rows().len(), study.rows_in_all()),
+        lead: format!(
+            "{} rows of {}, {failed} without a result.{}",
+            study.rows().len(),
+            study.rows_in_all(),
+            unconfirmed(study)
+        ),
         origin: stamp(),
         warnings: vec![],
         sections: vec![
@@ -83,15 +90,23 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     folder.write("report.html", page.html())
 }
 
-/// The table; the reason of a failed row stands in its first cell after the values.
+/// How many optimizations have no proof, in a sentence; nothing where all have one.
+fn unconfirmed(study: &StudyJson) -> String {
+    let runs = study.rows().iter().filter_map(|row| Shown::of(row)?.solved.optimization.as_ref());
+    let (all, open) = runs.fold((0, 0), |(all, open), run| (all + 1, open + usize::from(!run.confirmed)));
+    match open {
+        0 => String::new(),
+        _ => format!(
+            " {open} of {all} optimizations ended without a proof; their rows hold the best shape found, and the column \"ended\" says why."
+        ),
+    }
+}
+
+/// The table; the reason of a failed row stands in the cell after the values.
 fn table(study: &StudyJson) -> Block {
     let head = study.head();
-    let rows = study.rows().iter().map(|row| {
-        let mut cells = study.cells(row);
-        cells.resize(head.len(), String::new());
-        cells
-    });
-    Block::table(head.clone(), rows.collect::<Vec<_>>())
+    let rows: Vec<Vec<String>> = study.rows().iter().map(|row| study.cells(row)).collect();
+    Block::table(head, rows)
 }
 
 /// A row that has a result.
@@ -163,15 +178,21 @@ fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureEr
         figure("peak_pressure", "peak pressure", "MPa", |solved| solved.peak_pressure),
         figure("contact_area", "contact area", "mm²", |solved| solved.contact_area),
     ];
-    // Values of different objectives have different units.
-    if study.vary().iter().all(|varied| varied.name() != "objective") {
-        figures.insert(0, figure("objective", "Θ", "", |solved| solved.objective));
+    // Values of different units have no axis in common.
+    let unit = &shown[0].solved.objective_unit;
+    if shown.iter().all(|shown| shown.solved.objective_unit == *unit) {
+        // Figures set what stands in braces higher.
+        let unit = unit.split_once('^').map_or_else(|| unit.clone(), |(base, power)| format!("{base}^{{{power}}}"));
+        figures.insert(0, figure("objective", "Θ", &unit, |solved| solved.objective));
     }
     figures
 }
 
+/// The options of a row, and whether its shape is only the best one found.
 fn caption(row: &Row) -> String {
-    row.options.iter().map(|option| option.trim_start_matches("--").replace('=', " ")).collect::<Vec<_>>().join(", ")
+    let options = row.options.iter().map(|option| option.trim_start_matches("--").replace('=', " "));
+    let found = Shown::of(row).and_then(|shown| shown.solved.optimization.as_ref()).filter(|run| !run.confirmed);
+    options.chain(found.map(|_| "best found".to_owned())).collect::<Vec<_>>().join(", ")
 }
 
 fn pressures(name: String, title: String, rows: &[Shown<'_>]) -> Result<Figure, FigureError> {

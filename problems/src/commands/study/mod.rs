@@ -83,12 +83,11 @@ fn started(
     count: usize,
 ) -> Result<(Option<RunFolder>, Vector), Failure> {
     let rows = (1..=if plan.optimize { count } else { 0 }).map(|number| format!("{}/{REGISTER}", row_folder(number)));
-    // The plan is claimed first: it says what kind of run the folder holds. Every row proves its own room.
     let claimed: Vec<String> = std::iter::once(STUDY.to_owned()).chain(rows).collect();
     let objective = objective_among(&loaded.case, &session.processes)?;
     let load = |file| controls::load(objective.solver().problem(), &loaded.case, ("--controls", Some(file)));
     let given = session.arguments.controls.as_deref().map(load).transpose()?;
-    let (folder, controls) = begin(&objective, loaded, given.as_ref(), (&claimed, 1), session)?;
+    let (folder, controls) = begin(&objective, loaded, given.as_ref(), (RunKind::Study, &claimed), session)?;
     let optimizer = &loaded.case.optimizer;
     if plan.optimize && !optimizer.continuation.is_empty() && plan.vary.iter().any(|varied| varied.name() == "mesh") {
         folder.iter().for_each(RunFolder::abandon);

@@ -7,9 +7,10 @@ use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
+use crate::commands::optimize::standstill::standstill;
 use crate::commands::study::plan::options;
 use contact::equilibrium::StatusCounts;
-use nonsmooth::{StateSolver, Vector};
+use nonsmooth::Vector;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::time::Instant;
@@ -41,6 +42,8 @@ pub enum Outcome {
 pub struct Solved {
     /// Θ.
     pub objective: f64,
+    /// The unit of Θ.
+    pub objective_unit: String,
     /// Largest contact pressure, MPa.
     pub peak_pressure: f64,
     /// Tributary area of the closed contact nodes, mm².
@@ -124,6 +127,10 @@ pub fn computed(
         let mut file = options.apply(loaded.file.clone())?;
         file.output.folder = out.map(|path| path.display().to_string());
         let part = loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?;
+        if start.is_some() {
+            let given = loaded.case.scene.control_points;
+            controls::check_grid(given, part.case.scene.control_points, "the study, at which its rows begin")?;
+        }
         Ok((part, options))
     });
     let outcome = match part {
@@ -151,8 +158,6 @@ fn evaluated(
     let objective = objective_among(&part.case, &session.processes)?;
     let controls = match start {
         Some(start) => {
-            let expected = objective.solver().control_dimension();
-            controls::check_count(start.len(), expected, "--controls")?;
             objective.solver().problem().admissible.check_shape(start)?;
             start.clone()
         }
@@ -187,7 +192,9 @@ fn optimum(
         can_continue: run.can_continue(),
     };
     let objective = chosen.report.value;
-    Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved(&chosen.objective, &last, session)? }))
+    let mut solved = solved(&chosen.objective, &last, session)?;
+    solved.warnings.extend(standstill(&run.mesh_runs, chosen, &last)?.map(|warning| warning.code.to_owned()));
+    Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved }))
 }
 
 /// What a row keeps of a solved shape.
@@ -197,6 +204,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
     let block = problem.lower_block(shape.controls.as_slice()).map_err(Failure::computation)?;
     Ok(Solved {
         objective: shape.value,
+        objective_unit: objective.unit().replace(['{', '}'], ""),
         peak_pressure: shape.peak_pressure,
         contact_area: problem.boundary.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),

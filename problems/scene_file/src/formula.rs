@@ -1,0 +1,371 @@
+//! Formulas in x1 and x2 with the precedence of mathematics.
+//!
+//! ```text
+//! sum     = product { ("+" | "-") product }
+//! product = factor { ("*" | "/") factor }
+//! factor  = ("+" | "-") factor | power
+//! power   = operand [ "^" factor ]            2^3^2 = 2^(3^2),  -x1^2 = -(x1^2),  2^-1 = 0.5
+//! operand = number | "x1" | "x2" | "PI" | function "(" sum { "," sum } ")" | "(" sum ")"
+//! ```
+
+use std::f64::consts::PI;
+use std::fmt;
+
+/// Longest formula, characters.
+const LONGEST: usize = 1000;
+/// Most parentheses, signs and powers inside each other.
+const DEEPEST: usize = 100;
+
+/// A function by its number of arguments.
+#[derive(Debug, Clone, Copy)]
+enum Function {
+    One(fn(f64) -> f64),
+    Two(fn(f64, f64) -> f64),
+}
+use Function::{One, Two};
+
+/// The functions by their names.
+const FUNCTIONS: [(&str, Function); 19] = [
+    ("abs", One(f64::abs)),
+    ("sqrt", One(f64::sqrt)),
+    ("exp", One(f64::exp)),
+    ("ln", One(f64::ln)),
+    ("log10", One(f64::log10)),
+    ("sin", One(f64::sin)),
+    ("cos", One(f64::cos)),
+    ("tan", One(f64::tan)),
+    ("asin", One(f64::asin)),
+    ("acos", One(f64::acos)),
+    ("atan", One(f64::atan)),
+    ("sinh", One(f64::sinh)),
+    ("cosh", One(f64::cosh)),
+    ("tanh", One(f64::tanh)),
+    ("floor", One(f64::floor)),
+    ("ceil", One(f64::ceil)),
+    ("round", One(f64::round)),
+    ("max", Two(|a, b| chosen(a, b, a >= b))),
+    ("min", Two(|a, b| chosen(a, b, a <= b))),
+];
+
+/// One of two numbers; none of them where one is not a number.
+fn chosen(a: f64, b: f64, first: bool) -> f64 {
+    if a.is_nan() || first { a } else { b }
+}
+
+/// A formula in x1 and x2.
+#[derive(Debug, Clone)]
+pub struct Formula {
+    /// What is done to a stack of numbers, in order.
+    steps: Vec<Step>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    Number(f64),
+    /// The coordinate of this index.
+    Coordinate(usize),
+    One(fn(f64) -> f64),
+    Two(fn(f64, f64) -> f64),
+}
+
+/// Why a text is no formula.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FormulaError {
+    /// What stands there, with its place.
+    pub found: String,
+    /// What may stand there.
+    pub allowed: String,
+}
+
+impl fmt::Display for FormulaError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}; allowed: {}", self.found, self.allowed)
+    }
+}
+
+impl Formula {
+    /// Reads a formula.
+    ///
+    /// # Errors
+    /// [`FormulaError`] with the first place that cannot be understood.
+    pub fn parse(text: &str) -> Result<Self, FormulaError> {
+        let characters: Vec<char> = text.chars().collect();
+        if characters.len() > LONGEST {
+            let found = format!("a formula of {} characters", characters.len());
+            return Err(FormulaError { found, allowed: format!("at most {LONGEST} characters") });
+        }
+        let mut parser = Parser { characters, at: 0, steps: Vec::new(), depth: 0 };
+        parser.sum()?;
+        if parser.peek().is_some() {
+            return Err(parser.error("an operator (+ - * / ^) or the end"));
+        }
+        Ok(Self { steps: parser.steps })
+    }
+
+    /// Its value at a place; not a number where it has none.
+    pub fn value(&self, place: [f64; 2]) -> f64 {
+        let mut stack = Vec::new();
+        for step in &self.steps {
+            let value = match *step {
+                Step::Number(number) => number,
+                Step::Coordinate(axis) => place[axis],
+                Step::One(function) => function(stack.pop().unwrap_or(f64::NAN)),
+                Step::Two(function) => {
+                    let second = stack.pop().unwrap_or(f64::NAN);
+                    function(stack.pop().unwrap_or(f64::NAN), second)
+                }
+            };
+            stack.push(value);
+        }
+        stack.pop().unwrap_or(f64::NAN)
+    }
+}
+
+/// A text that is being read.
+struct Parser {
+    characters: Vec<char>,
+    at: usize,
+    steps: Vec<Step>,
+    depth: usize,
+}
+
+impl Parser {
+    fn sum(&mut self) -> Result<(), FormulaError> {
+        self.product()?;
+        while let Some(sign @ ('+' | '-')) = self.peek() {
+            self.at += 1;
+            self.product()?;
+            self.steps.push(Step::Two(if sign == '+' { |a, b| a + b } else { |a, b| a - b }));
+        }
+        Ok(())
+    }
+
+    fn product(&mut self) -> Result<(), FormulaError> {
+        self.factor()?;
+        while let Some(sign @ ('*' | '/')) = self.peek() {
+            self.at += 1;
+            self.factor()?;
+            self.steps.push(Step::Two(if sign == '*' { |a, b| a * b } else { |a, b| a / b }));
+        }
+        Ok(())
+    }
+
+    fn factor(&mut self) -> Result<(), FormulaError> {
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            return Err(self.error(&format!("at most {DEEPEST} parentheses, signs and powers inside each other")));
+        }
+        if let Some(sign @ ('+' | '-')) = self.peek() {
+            self.at += 1;
+            self.factor()?;
+            self.steps.extend((sign == '-').then_some(Step::One(|a| -a)));
+        } else {
+            self.operand()?;
+            if self.peek() == Some('^') {
+                self.at += 1;
+                self.factor()?;
+                self.steps.push(Step::Two(f64::powf));
+            }
+        }
+        self.depth -= 1;
+        Ok(())
+    }
+
+    fn operand(&mut self) -> Result<(), FormulaError> {
+        let expected = "a number, x1, x2, PI, a function or a parenthesis";
+        match self.peek() {
+            Some('(') => {
+                self.at += 1;
+                self.sum()?;
+                self.expect(')', "an operator (+ - * / ^) or )")
+            }
+            Some(first) if first.is_ascii_digit() || first == '.' => self.number(),
+            Some(first) if first.is_alphabetic() => self.name(),
+            _ => Err(self.error(expected)),
+        }
+    }
+
+    /// Digits with a point, with an exponent such as e-3.
+    fn number(&mut self) -> Result<(), FormulaError> {
+        let start = self.at;
+        self.digits();
+        if self.characters.get(self.at) == Some(&'.') {
+            self.at += 1;
+            self.digits();
+        }
+        if let Some('e' | 'E') = self.characters.get(self.at) {
+            let before = self.at;
+            self.at += 1;
+            if let Some('+' | '-') = self.characters.get(self.at) {
+                self.at += 1;
+            }
+            if self.digits() == 0 {
+                self.at = before;
+            }
+        }
+        let text: String = self.characters[start..self.at].iter().collect();
+        let number = text.parse().map_err(|_| {
+            self.at = start;
+            self.error("a number such as 2.5e-3")
+        })?;
+        self.steps.push(Step::Number(number));
+        Ok(())
+    }
+
+    fn digits(&mut self) -> usize {
+        let rest = &self.characters[self.at..];
+        let count = rest.iter().take_while(|character| character.is_ascii_digit()).count();
+        self.at += count;
+        count
+    }
+
+    /// A coordinate, π, or a function with its arguments.
+    fn name(&mut self) -> Result<(), FormulaError> {
+        let name = self.word();
+        match name.as_str() {
+            "x1" => self.steps.push(Step::Coordinate(0)),
+            "x2" => self.steps.push(Step::Coordinate(1)),
+            "PI" => self.steps.push(Step::Number(PI)),
+            _ => {
+                let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
+                    let names: Vec<&str> = FUNCTIONS.iter().map(|(name, _)| *name).collect();
+                    return Err(self.error(&format!("the names x1, x2, PI and the functions {}", names.join(", "))));
+                };
+                self.at += name.chars().count();
+                return self.call(&name, *function);
+            }
+        }
+        self.at += name.chars().count();
+        Ok(())
+    }
+
+    fn call(&mut self, name: &str, function: Function) -> Result<(), FormulaError> {
+        self.expect('(', &format!("a parenthesis after {name}, as in {name}(…)"))?;
+        self.sum()?;
+        let step = match function {
+            One(function) => Step::One(function),
+            Two(function) => {
+                self.expect(',', &format!("a comma and a second argument of {name}"))?;
+                self.sum()?;
+                Step::Two(function)
+            }
+        };
+        self.steps.push(step);
+        self.expect(')', &format!("an operator (+ - * / ^) or the ) of {name}"))
+    }
+
+    /// The next character that is no blank; the place moves there.
+    fn peek(&mut self) -> Option<char> {
+        let blanks = self.characters[self.at..].iter().take_while(|character| character.is_whitespace()).count();
+        self.at += blanks;
+        self.characters.get(self.at).copied()
+    }
+
+    fn expect(&mut self, character: char, allowed: &str) -> Result<(), FormulaError> {
+        if self.peek() != Some(character) {
+            return Err(self.error(allowed));
+        }
+        self.at += 1;
+        Ok(())
+    }
+
+    /// Letters, digits and underscores from here on.
+    fn word(&self) -> String {
+        let is_part = |character: &char| character.is_alphanumeric() || *character == '_';
+        self.characters[self.at..].iter().copied().take_while(is_part).collect()
+    }
+
+    /// What stands here, and what may.
+    fn error(&mut self, allowed: &str) -> FormulaError {
+        let found = match self.peek() {
+            None => "the end".to_owned(),
+            Some(character) => {
+                let word = self.word();
+                let text = if word.is_empty() { character.to_string() } else { word };
+                format!("{text:?} at character {}", self.at + 1)
+            }
+        };
+        FormulaError { found, allowed: allowed.to_owned() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn value(text: &str) -> f64 {
+        Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error}")).value([2.0, 3.0])
+    }
+
+    #[test]
+    fn precedence_is_that_of_mathematics() {
+        for (text, expected) in [
+            ("2^3^2", 512.0),
+            ("(2^3)^2", 64.0),
+            ("-x1^2", -4.0),
+            ("2^-1", 0.5),
+            ("2*-x1", -4.0),
+            ("x1 - -x2^2", 11.0),
+            ("--x1", 2.0),
+            ("2^-x1^2", 0.0625),
+            ("8/2/2", 2.0),
+            ("8/2*x1", 8.0),
+            ("1 - 2 - 3", -4.0),
+            ("2 + 3*x2^2", 29.0),
+            (".5 + 1. + 2.5e-3 + 1E+1", 11.5025),
+            ("max(x1, min(7, x2)) + abs(-1)", 4.0),
+            ("sin (PI/2) + log10(100) + exp(0)", 4.0),
+            ("round(2.5) + ceil(0.2) + floor(-0.2)", 3.0),
+        ] {
+            let found = value(text);
+            assert!((found - expected).abs() < 1e-12, "{text}: {found}");
+        }
+        assert!(value("max(sqrt(x1 - x2), 0)").is_nan() && value("min(0, ln(-1))").is_nan());
+    }
+
+    #[test]
+    fn everything_else_is_refused_with_its_place() {
+        for (text, found, allowed) in [
+            ("", "the end", "a number, x1, x2"),
+            ("sin x1", "\"x1\" at character 5", "a parenthesis after sin"),
+            ("sin", "the end", "a parenthesis after sin"),
+            ("2 x1", "\"x1\" at character 3", "an operator"),
+            ("2x1", "\"x1\" at character 2", "an operator"),
+            ("x1(2)", "\"(\" at character 3", "an operator"),
+            ("(x1", "the end", "an operator (+ - * / ^) or )"),
+            ("x1)", "\")\" at character 3", "an operator"),
+            ("max(1)", "\")\" at character 6", "a second argument of max"),
+            ("sin(1, 2)", "\",\" at character 6", "the ) of sin"),
+            ("x1 + * 2", "\"*\" at character 6", "a number, x1, x2"),
+            ("3 + height", "\"height\" at character 5", "the names x1, x2, PI and the functions abs"),
+            ("pi", "\"pi\" at character 1", "PI"),
+            ("1..2", "\".\" at character 3", "an operator"),
+            (".", "\".\" at character 1", "a number such as"),
+            ("2e*3", "\"e\" at character 2", "an operator"),
+            ("2 − x1", "\"−\" at character 3", "an operator"),
+            ("é", "\"é\" at character 1", "the names"),
+        ] {
+            let refusal = Formula::parse(text).expect_err(text);
+            assert!(refusal.found == found && refusal.allowed.contains(allowed), "{text}: {refusal}");
+        }
+        let long = Formula::parse(&"x1+".repeat(400)).expect_err("too long").to_string();
+        assert!(long.contains("at most 1000"), "{long}");
+    }
+
+    #[test]
+    fn deep_nesting_is_refused_before_the_stack_ends() {
+        for text in ["(".repeat(999), "-".repeat(999), "sin(".repeat(249), "2^".repeat(499), "max(1,".repeat(166)] {
+            assert!(Formula::parse(&text).expect_err(&text).allowed.contains("inside each other"), "{text}");
+        }
+        assert!((value(&("(".repeat(99) + "x1" + &")".repeat(99))) - 2.0).abs() < 1e-15);
+        assert!((value(&("1+".repeat(499) + "1")) - 500.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_page_names_every_function() {
+        let page = include_str!("../../../docs/scenes.md");
+        for (name, _) in FUNCTIONS {
+            assert!(page.contains(&format!("`{name}`")), "{name}");
+        }
+    }
+}
