@@ -129,7 +129,7 @@ fn the_table_of_the_result_says_what_the_files_say() {
     let page = read(scratch, "run/report.html");
     let table = kit::read_json(&scratch.join("run/key_numbers.json"));
     let rows = table["rows"].as_array().unwrap();
-    assert_eq!((rows.len(), &table["columns"][1]), (11, &Value::from("optimum")));
+    assert_eq!((rows.len(), &table["columns"][1]), (11, &Value::from("best found")));
     for row in rows {
         let values: Vec<f64> = row["values"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
         let shown = cells(&page, row["quantity"].as_str().unwrap());
