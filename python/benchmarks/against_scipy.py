@@ -2,10 +2,12 @@
 
 `python against_scipy.py` prints for each function and method f - f* at the end, relative to 1 + |f*|, and the evaluations to
 1e-6 (or all that were used, in brackets), and marks a claimed success that is none with `!`. A second table has the methods of
-NLopt, CMA-ES and nsopy that are installed.
+NLopt, CMA-ES, nsopy and PyGRANSO that are installed.
 """
 
+import contextlib
 import importlib.util
+import io
 import warnings
 
 import numpy as np
@@ -16,7 +18,13 @@ import nonsmooth
 
 METHODS = ["BFGS", "L-BFGS-B", "SLSQP", "trust-constr", "COBYLA"]
 # Column, package of the index.
-OTHERS = [("NLopt MMA", "nlopt"), ("NLopt SLSQP", "nlopt"), ("CMA-ES", "cma"), ("nsopy subgradient", "nsopy")]
+OTHERS = [
+    ("NLopt MMA", "nlopt"),
+    ("NLopt SLSQP", "nlopt"),
+    ("CMA-ES", "cma"),
+    ("nsopy subgradient", "nsopy"),
+    ("PyGRANSO", "pygranso"),
+]
 LEVEL = 1e-6
 EVALUATIONS = 1500
 
@@ -144,6 +152,35 @@ def nsopy_claims(fun, start):
         method.dual_step()
 
 
+def pygranso_claims(fun, start, sets):
+    """Whether PyGRANSO says that it has converged; bounds [0, 1] and rows are constraints that it may violate by 1e-10."""
+    import torch
+    from pygranso.pygranso import pygranso
+    from pygranso.pygransoStruct import pygransoStruct
+
+    def column(values):
+        return torch.tensor(np.atleast_2d(values).reshape(len(values), -1), dtype=torch.double)
+
+    def combined(variables):
+        x = variables.x.detach().numpy().ravel().copy()
+        value, subgradient = fun(x)
+        if not sets:
+            return [value, column(subgradient), None, None, None, None]
+        one, row = np.eye(len(x)), sets["constraints"].A[0]
+        outside, slopes = np.r_[-x, x - 1], np.hstack([-one, one])
+        return [value, column(subgradient), column(outside), column(slopes), column([row @ x - 1]), column(row)]
+
+    options = pygransoStruct()
+    options.x0, options.globalAD, options.print_level, options.QPsolver = column(start), False, 0, "osqp"
+    options.maxit, options.opt_tol, options.quadprog_info_msg = EVALUATIONS, 1e-8, False
+    if sets:
+        options.viol_ineq_tol = options.viol_eq_tol = 1e-10
+    torch.set_default_dtype(torch.double)
+    # It prints whatever the function raises, and ends the program.
+    with contextlib.redirect_stdout(io.StringIO()):
+        return pygranso({"x": [len(start), 1]}, combined, options).termination_code in (0, 1)
+
+
 def run(method, fun, start, least, sets, convex):
     """Relative error, evaluations, whether 1e-6 was reached, whether success was claimed."""
     values = []
@@ -170,13 +207,15 @@ def run(method, fun, start, least, sets, convex):
                 claimed = cma_claims(counted, start)
             elif method == "nsopy subgradient":
                 nsopy_claims(counted, start)
+            elif method == "PyGRANSO":
+                claimed = pygranso_claims(counted, start, sets)
             elif method == "COBYLA":
                 value = lambda x: counted(x)[0]
                 claimed = scipy.optimize.minimize(value, start, method=method, options={"maxiter": EVALUATIONS}, **sets).success
             else:
                 options = {"maxiter": EVALUATIONS}
                 claimed = scipy.optimize.minimize(counted, start, jac=True, method=method, options=options, **sets).success
-    except StopIteration:
+    except (StopIteration, SystemExit):
         pass
     best = min(values)
     hits = [index + 1 for index, value in enumerate(values) if value <= LEVEL]
@@ -187,7 +226,7 @@ def table(methods=METHODS):
     """Lines of the table, and (reached, claimed, claimed wrongly) per method."""
     lines = ["| error / evaluations | nonsmooth | " + " | ".join(methods) + " |", "|---" * (len(methods) + 2) + "|"]
     totals = {method: [0, 0, 0] for method in ["nonsmooth", *methods]}
-    unconstrained = {"BFGS", "L-BFGS-B", *(name for name, _ in OTHERS)}
+    unconstrained = {"BFGS", "L-BFGS-B", *(name for name, _ in OTHERS if name != "PyGRANSO")}
     for name, fun, start, least, sets, convex in functions():
         cells = []
         for method, total in totals.items():

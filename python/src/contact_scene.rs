@@ -73,7 +73,7 @@ impl ContactScene {
         };
         merge(&mut table, serde_json::from_str(fields).map_err(|error| bad(&error))?);
         let text = toml::to_string(&table).map_err(|error| bad(&error))?;
-        let file = SceneFile::parse(&text, name).map_err(|error| bad(&error))?;
+        let file = SceneFile::parse(&text, name).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let folder = path.and_then(|path| Path::new(path).parent()).unwrap_or(Path::new(""));
         let case = Case::new(&file, folder).map_err(input)?;
         Ok(Self { file, case, objective: OnceLock::new() })

@@ -1,9 +1,11 @@
 //! Numbers, vectors and matrices of Python objects.
 
 use nonsmooth::{Matrix, Vector};
-use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods, ToPyArray};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods, ToPyArray};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::type_object::PyTypeCheck;
 
 /// A new numpy array of the entries.
 pub fn array<'py>(py: Python<'py>, vector: &Vector) -> Bound<'py, PyArray1<f64>> {
@@ -21,15 +23,12 @@ pub fn array2<'py>(
     flat.to_pyarray(py).reshape([rows, columns])
 }
 
-/// A vector of `expected` entries from anything that numpy makes a one-dimensional array of numbers of.
+/// A vector of `expected` entries from anything that numpy makes a one-dimensional array of real numbers of.
 pub fn vector(object: &Bound<'_, PyAny>, what: &str, expected: Option<usize>) -> PyResult<Vector> {
+    let form = "a one-dimensional array of real numbers";
     let entries = match object.cast::<PyArray1<f64>>() {
         Ok(array) => array.try_readonly()?.as_array().to_vec(),
-        Err(_) => {
-            let array: PyArrayLike1<'_, f64, AllowTypeChange> =
-                object.extract().map_err(|_| not_numbers(object, what, "a one-dimensional array"))?;
-            array.as_array().to_vec()
-        }
+        Err(_) => real::<PyArray1<f64>>(object, what, form)?.try_readonly()?.as_array().to_vec(),
     };
     match expected {
         Some(expected) if expected != entries.len() => {
@@ -39,22 +38,52 @@ pub fn vector(object: &Bound<'_, PyAny>, what: &str, expected: Option<usize>) ->
     }
 }
 
-/// A matrix from anything that numpy makes a two-dimensional array of numbers of, or from a sparse matrix.
+/// A matrix from anything that numpy makes a two-dimensional array of real numbers of, or from a sparse matrix.
 pub fn matrix(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Matrix> {
     let dense = if object.hasattr("toarray")? { object.call_method0("toarray")? } else { object.clone() };
-    let array: PyArrayLike2<'_, f64, AllowTypeChange> =
-        dense.extract().map_err(|_| not_numbers(object, what, "a two-dimensional array"))?;
+    let array = real::<PyArray2<f64>>(&dense, what, "a two-dimensional array of real numbers")?.try_readonly()?;
     let view = array.as_array();
     Ok(Matrix::from_row_iterator(view.nrows(), view.ncols(), view.iter().copied()))
 }
 
-/// A number.
+/// A real number, also as an array of one entry, which scipy's methods take too.
 pub fn number(object: &Bound<'_, PyAny>, what: &str) -> PyResult<f64> {
-    object.extract().map_err(|_| not_numbers(object, what, "a number"))
+    let is_array = object.cast::<PyUntypedArray>().is_ok_and(|array| array.len() == 1);
+    let number = if is_array { object.call_method0(intern!(object.py(), "item"))? } else { object.clone() };
+    number.extract().map_err(|error| refused(Some(error), object, what, "a real number"))
 }
 
-fn not_numbers(object: &Bound<'_, PyAny>, what: &str, expected: &str) -> PyErr {
+/// An array of doubles of an object. Complex numbers, whose imaginary parts numpy would drop with no more than a warning, texts and
+/// dates are refused.
+fn real<'py, A: PyTypeCheck>(object: &Bound<'py, PyAny>, what: &str, form: &str) -> PyResult<Bound<'py, A>> {
+    let numpy = object.py().import(intern!(object.py(), "numpy"))?;
+    let refuse = |error| refused(Some(error), object, what, form);
+    let array = numpy.call_method1("asarray", (object,)).map_err(refuse)?;
+    let kind: char = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    // Booleans, integers, floats, and Python objects, which may be numbers.
+    if !"biufO".contains(kind) {
+        return Err(refused(None, object, what, form));
+    }
+    let array = numpy.call_method1("asarray", (array, "float64")).map_err(refuse)?;
+    array.cast_into().map_err(|_| refused(None, object, what, form))
+}
+
+/// What is said of an object that has no numbers of this form. What the object itself raised while it was converted, an interrupt
+/// or a failed computation for example, comes back unchanged.
+fn refused(error: Option<PyErr>, object: &Bound<'_, PyAny>, what: &str, form: &str) -> PyErr {
+    let py = object.py();
+    if let Some(error) = &error {
+        let of_form = error.is_instance_of::<PyTypeError>(py) || error.is_instance_of::<PyValueError>(py);
+        // PyTorch raises this for tensors that carry a gradient; its text names the remedy.
+        let is_attached = error.is_instance_of::<PyRuntimeError>(py) && error.to_string().contains("detach()");
+        if !of_form && !is_attached {
+            return error.clone_ref(py);
+        }
+    }
     let kind = object.get_type().name().map_or_else(|_| "?".to_owned(), |name| name.to_string());
     let shape = object.getattr("shape").map_or_else(|_| String::new(), |shape| format!(" of shape {shape}"));
-    PyTypeError::new_err(format!("{what} is {kind}{shape}, expected {expected} of real numbers"))
+    let dtype = object.getattr("dtype").map_or_else(|_| String::new(), |dtype| format!(" of {dtype}"));
+    let refusal = PyTypeError::new_err(format!("{what} is {kind}{shape}{dtype}, expected {form}"));
+    refusal.set_cause(py, error);
+    refusal
 }

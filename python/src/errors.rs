@@ -4,7 +4,7 @@ use nonsmooth::verify::VerifyError;
 use nonsmooth::{InputError, JournalError, OptimizeError};
 use pyo3::PyErr;
 use pyo3::create_exception;
-use pyo3::exceptions::{PyException, PyOSError, PyValueError};
+use pyo3::exceptions::{PyException, PyValueError};
 
 create_exception!(
     nonsmooth,
@@ -27,10 +27,10 @@ pub fn optimize(error: OptimizeError) -> PyErr {
     }
 }
 
-/// A journal that cannot be continued: `OSError` where the system refuses, else `ValueError`.
+/// A journal that cannot be continued: `OSError` of the kind `PermissionError` for example where the system refuses, else `ValueError`.
 pub fn journal(error: JournalError) -> PyErr {
-    match error {
-        JournalError::File { .. } => PyOSError::new_err(error.to_string()),
+    match &error {
+        JournalError::File { source, .. } => std::io::Error::new(source.kind(), error.to_string()).into(),
         _ => PyValueError::new_err(error.to_string()),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::convert;
 use crate::failure::Failure;
+use crate::oracle::parts;
 use nonsmooth::composite::{Epigraph, EuclideanNorm, Maximum, OuterFunction, SumOfPowers};
 use nonsmooth::{Matrix, Vector};
 use pyo3::exceptions::PyValueError;
@@ -80,8 +81,9 @@ impl PythonOuter {
     fn call(&self, outputs: &Vector) -> PyResult<(f64, Vector)> {
         Python::attach(|py| {
             let answer = self.function.bind(py).call1((convert::array(py, outputs),))?;
-            let (value, subgradient): (Bound<'_, PyAny>, Bound<'_, PyAny>) = answer.extract()?;
-            let value = convert::number(&value, "the value that outer returns")?;
+            let parts = parts(&answer, "outer", "(value, subgradient)", false)?;
+            let value = convert::number(&parts.get_item(0)?, "the value that outer returns")?;
+            let subgradient = parts.get_item(1)?;
             let subgradient = convert::vector(&subgradient, "the subgradient that outer returns", Some(outputs.len()))?;
             Ok((value, subgradient))
         })

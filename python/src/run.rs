@@ -9,9 +9,10 @@ use crate::outer::Outer;
 use crate::setup::Setup;
 use crate::watched::Watched;
 use nonsmooth::{
-    BundleTrust, BundleTrustConfig, Journaled, NonsmoothObjective, Observer, OptimizeError, Polyhedron, Report, Run,
-    TablePrinter, Termination, Vector,
+    BundleTrust, BundleTrustConfig, Journal, Journaled, NonsmoothObjective, Observer, OptimizeError, Polyhedron,
+    Report, Run, TablePrinter, Termination, Vector,
 };
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -78,6 +79,8 @@ pub enum RunError {
     Optimize(OptimizeError),
     /// The journal refuses.
     Journal(nonsmooth::JournalError),
+    /// The journal of this folder began at another point.
+    OtherStart(String),
 }
 
 impl From<RunError> for PyErr {
@@ -85,6 +88,10 @@ impl From<RunError> for PyErr {
         match error {
             RunError::Optimize(error) => errors::optimize(error),
             RunError::Journal(error) => errors::journal(error),
+            RunError::OtherStart(folder) => PyValueError::new_err(format!(
+                "{folder}: the journal began at another x0, so that none of its evaluations would be of use: pass that x0, or another \
+                 folder as journal"
+            )),
         }
     }
 }
@@ -110,10 +117,28 @@ pub fn journaled<O>(plan: Plan, objective: &O, folder: &str, identity: &str) -> 
 where
     O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>,
 {
+    check_start(folder, &plan)?;
     let watched = Watched::new(Journaled::open(objective, folder, identity).map_err(RunError::Journal)?);
     let (mut report, set) = drive(plan, &watched).map_err(RunError::Optimize)?;
     watched.inner.complete(&mut report);
     Ok(watched.outcome(report, set))
+}
+
+/// Refuses to continue from another start: the run would drop every evaluation of the journal, and they may be dear.
+fn check_start(folder: &str, plan: &Plan) -> Result<(), RunError> {
+    let journal = Journal::read(folder).map_err(RunError::Journal)?;
+    let first = journal.as_ref().and_then(|journal| journal.entries.first());
+    // Coordinates of the run round.
+    let same =
+        |point: &[f64]| point.iter().zip(plan.start.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * plan.start.amax());
+    match first {
+        // A journal of other size is refused as such; an inadmissible start is moved, so that it need not be the first point.
+        Some(entry) if entry.point.len() == plan.start.len() && plan.set.dimension() == plan.start.len() => {
+            let is_other = plan.set.violation(&plan.start) == 0.0 && !same(&entry.point);
+            if is_other { Err(RunError::OtherStart(folder.to_owned())) } else { Ok(()) }
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Drives the run to its end, to an exception, or to the callback's word.

@@ -1,5 +1,9 @@
 """Contact scenes from Python give the numbers of the binaries."""
 
+import copy
+import multiprocessing
+import os
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -95,6 +99,8 @@ def test_a_run_is_resumed(tmp_path):
         ({"frictio": 0.3}, "friction"),
         ({"friction": -0.3}, "friction = -0.3 is not allowed"),
         ({"mesh": {"bricks": [0, 4, 4]}}, "mesh.bricks"),
+        ({"friction": np.nan}, "friction = nan is not allowed"),
+        ({"surface": {"start": {"height": float("inf")}}}, "surface.start.height = inf"),
     ],
 )
 def test_bad_fields_are_named(fields, words):
@@ -103,9 +109,51 @@ def test_bad_fields_are_named(fields, words):
 
 
 def test_bad_shapes_and_missing_files_are_refused(signorini):
-    with pytest.raises(OSError, match="nowhere.toml"):
+    with pytest.raises(FileNotFoundError, match="nowhere.toml"):
         contact.Scene.from_toml("nowhere.toml")
+    with pytest.raises(TypeError, match="friction is NoneType.*leave out"):
+        contact.Scene.from_toml(SCENES / "signorini.toml", friction=None)
+    with pytest.raises(ValueError, match=r"signorini.toml: there is no field `frictio`") as caught:
+        contact.Scene.from_toml(SCENES / "signorini.toml", frictio=0.3)
+    assert str(caught.value).count("signorini.toml") == 1
+    with pytest.raises(ValueError, match=r"heights has shape \(9, 4\), expected \(6, 6\)"):
+        signorini.evaluate(np.full((9, 4), 100.0))
+    with pytest.raises(TypeError, match="heights is .* expected real numbers"):
+        signorini.evaluate(signorini.start + 0j)
     with pytest.raises(ValueError, match="heights has 3 entries, expected 36"):
         signorini.evaluate([1.0, 2.0, 3.0])
     with pytest.raises(ValueError, match="admissible|outside|violat"):
         signorini.optimize(start=np.full(36, 10.0))
+
+
+def theta_there(scene, heights, answers):
+    answers.put(scene.evaluate(heights).theta)
+
+
+def test_scenes_go_to_other_processes():
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, friction=0.1)
+    assert copy.deepcopy(scene).to_toml() == scene.to_toml()
+    spawned = multiprocessing.get_context("spawn")
+    answers = spawned.Queue()
+    process = spawned.Process(target=theta_there, args=(scene, scene.start, answers))
+    process.start()
+    assert answers.get(timeout=60) == scene.evaluate().theta
+    process.join()
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
+def test_a_forked_process_says_that_it_cannot_solve():
+    """The threads of the solver are not there: without a word, it would wait for them without end."""
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    scene.evaluate()
+    with warnings.catch_warnings():
+        # Newer versions of Python warn of a fork beside threads.
+        warnings.simplefilter("ignore")
+        child = os.fork()
+    if child == 0:
+        try:
+            scene.evaluate()
+        except RuntimeError as error:
+            os._exit(7 if "spawn" in str(error) else 1)
+        os._exit(2)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7

@@ -169,14 +169,16 @@ impl BundleTrustConfig {
     /// [`InputError::OutOfRange`] naming the first field that is not admissible; [`InputError::Dimension`] or
     /// [`InputError::NotFinite`] for a matrix of [`VariableScaling::Linear`] that is not square or not finite.
     pub fn validate(&self) -> Result<(), InputError> {
-        let positive = |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
+        let positive = |setting, value: Option<f64>| {
+            value.map_or(Ok(()), |value| check_setting(setting, value, "> 0", value > 0.0 && value.is_finite()))
+        };
         check_setting("tolerance", self.tolerance, "0 < x < 1", self.tolerance > 0.0 && self.tolerance < 1.0)?;
-        check_setting("objective_scale", self.objective_scale, "> 0", positive(self.objective_scale))?;
+        positive("objective_scale", self.objective_scale)?;
         check_setting("max_evaluations", self.max_evaluations, "≥ 1", self.max_evaluations >= 1)?;
         check_setting("max_iterations", self.max_iterations, "≥ 1", self.max_iterations >= 1)?;
-        check_setting("max_seconds", self.max_seconds, "> 0", positive(self.max_seconds))?;
-        check_setting("first_step", self.first_step, "> 0", positive(self.first_step))?;
-        check_setting("bundle_size", self.bundle_size, "≥ 2", self.bundle_size.is_none_or(|size| size >= 2))?;
+        positive("max_seconds", self.max_seconds)?;
+        positive("first_step", self.first_step)?;
+        self.bundle_size.map_or(Ok(()), |size| check_setting("bundle_size", size, "≥ 2", size >= 2))?;
         let serious = self.serious_fraction > 0.0 && self.serious_fraction < 0.5;
         check_setting("serious_fraction", self.serious_fraction, "0 < x < 0.5", serious)?;
         let good = self.good_fraction >= self.serious_fraction && self.good_fraction < 1.0;

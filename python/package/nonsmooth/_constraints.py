@@ -3,6 +3,8 @@
 import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
 
+from ._numbers import real
+
 
 def read(bounds, constraints, n):
     """The admissible set as arrays: box, rows, sides of the rows."""
@@ -28,9 +30,11 @@ def read(bounds, constraints, n):
 
 def _side(value, n, what):
     """One side of n intervals; a single number stands for all."""
-    side = np.asarray(value, dtype=float)
+    side = real(value, what)
     if side.ndim > 1 or side.size not in (1, n):
         raise ValueError(f"{what} has shape {side.shape}, expected one number or {n}")
+    if np.isnan(side).any():
+        raise ValueError(f"{what} has entries that are NaN; infinity leaves a side open")
     return np.broadcast_to(side, (n,)).astype(float)
 
 
@@ -39,15 +43,18 @@ def _box(bounds, n):
         return np.full(n, -np.inf), np.full(n, np.inf)
     if isinstance(bounds, Bounds):
         return _side(bounds.lb, n, "bounds.lb"), _side(bounds.ub, n, "bounds.ub")
+    expected = f"bounds must be scipy.optimize.Bounds or {n} pairs (lower, upper), one per variable; None leaves a side open"
+    if not np.iterable(bounds):
+        raise TypeError(f"{expected}; found {type(bounds).__name__}")
     pairs = list(bounds)
-    if len(pairs) != n or any(np.shape(pair) != (2,) for pair in pairs):
-        raise ValueError(
-            f"bounds must be scipy.optimize.Bounds or {n} pairs (lower, upper), one per variable; None leaves a side "
-            f"open; found {len(pairs)} entries"
-        )
-    lower = [-np.inf if low is None else float(low) for low, _ in pairs]
-    upper = [np.inf if high is None else float(high) for _, high in pairs]
-    return np.array(lower), np.array(upper)
+    for index, pair in enumerate(pairs):
+        if np.shape(pair) != (2,):
+            raise ValueError(f"{expected}; entry {index} is {pair!r}")
+    if len(pairs) != n:
+        raise ValueError(f"{expected}; found {len(pairs)} pairs")
+    lower = [-np.inf if low is None else low for low, _ in pairs]
+    upper = [np.inf if high is None else high for _, high in pairs]
+    return _side(lower, n, "the lower bound"), _side(upper, n, "the upper bound")
 
 
 def _list(constraints):
@@ -85,5 +92,6 @@ def _refused(constraint):
             "scipy.optimize.LinearConstraint(A, lb, ub) for A x, or add a penalty rho*max(0, g(x)) to the function"
         )
     return TypeError(
-        f"a constraint is {type(constraint).__name__}, expected scipy.optimize.LinearConstraint or (A, lower, upper)"
+        f"a constraint is {type(constraint).__name__}, expected scipy.optimize.LinearConstraint or (A, lower, upper), where A is a "
+        "list of rows, an array or a sparse matrix, not a tuple"
     )

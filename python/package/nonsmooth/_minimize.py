@@ -3,11 +3,17 @@
 import inspect
 import json
 import os
+import threading
 
 import numpy as np
 from scipy.optimize import OptimizeResult
 
 from . import _constraints, _engine, _options, _result
+from ._numbers import real
+
+#: Runs within runs. A function that calls itself without end must not run out of stack in the engine, which would kill the process.
+_DEEPEST = 20
+_depth = threading.local()
 
 
 def minimize(
@@ -31,7 +37,7 @@ def minimize(
         True if ``fun`` returns the subgradient too, or ``jac(x, *args)``, which returns it. Differences of values are
         no subgradients of a nonsmooth function and are not offered.
     args : tuple
-        Further arguments of ``fun`` and ``jac``.
+        Further arguments of ``fun`` and ``jac``; anything but a tuple is one argument, as for scipy.
     bounds : scipy.optimize.Bounds or sequence of pairs, optional
         ``(lower, upper)`` for every variable; None or infinity leaves a side open.
     constraints : scipy.optimize.LinearConstraint, (A, lower, upper), or a list of these
@@ -98,7 +104,7 @@ def minimize(
     >>> result.success, round(result.fun, 6)
     (True, 1.0)
     """
-    joined = _joined(fun, jac, tuple(args))
+    joined = _joined(fun, jac, args)
     return _run(joined, fun, x0, bounds, constraints, options, callback, journal, resume)
 
 
@@ -127,14 +133,21 @@ def minimize_composite(
         a function ``outer(c)`` that returns its value and one subgradient.
     fun : callable
         ``fun(x, *args)`` returns ``(outputs, jacobian)``: m outputs and the m × n matrix of their derivatives.
+    x0, args, bounds, constraints, options, callback : optional
+        As for `minimize`; `x0` is needed.
     exponent : float
         The exponent of ``'power'``, at least 1.
-    x0, args, bounds, constraints, options, callback, journal, resume
+    journal, resume : path, optional
         As for `minimize`.
 
     Returns
     -------
     Result
+        As of `minimize`; ``recheck()`` computes the outer function again.
+
+    Notes
+    -----
+    ``taylor_test(lambda x: (fun(x)[0] @ w, fun(x)[1].T @ w), x)`` tests a Jacobian along weights w of the outputs.
 
     Examples
     --------
@@ -148,11 +161,12 @@ def minimize_composite(
     if isinstance(outer, str):
         if outer not in ("max", "l1", "power", "norm"):
             raise ValueError(f"outer = {outer!r} is unknown; allowed: 'max', 'l1', 'power', 'norm', or a function")
-        if outer == "power" and not (np.isfinite(exponent) and exponent >= 1):
-            raise ValueError(f"exponent = {exponent!r} is not allowed; allowed: a finite number ≥ 1")
+        exponent = real(exponent, "exponent")
+        if outer == "power" and not (exponent.ndim == 0 and np.isfinite(exponent) and exponent >= 1):
+            raise ValueError(f"exponent = {exponent} is not allowed; allowed: a finite number ≥ 1")
     elif not callable(outer):
         raise TypeError(f"outer is {type(outer).__name__}, expected a name or a function")
-    joined = _joined(fun, True, tuple(args))
+    joined = _joined(fun, True, args)
     return _run(
         joined, fun, x0, bounds, constraints, options, callback, journal, resume, outer=(outer, float(exponent))
     )
@@ -163,7 +177,21 @@ def bundle_trust(
 ):
     """The method for ``scipy.optimize.minimize(fun, x0, jac=True, method=nonsmooth.bundle_trust)``.
 
-    Options are those of `minimize`; scipy's ``tol`` is ``tolerance``. ``hess`` and ``hessp`` are refused.
+    Parameters
+    ----------
+    fun, x0, args, jac : as `scipy.optimize.minimize` passes them
+        As for `minimize`. ``jac=True``, or a function, is needed: scipy passes on all else as None.
+    hess, hessp : None
+        Second derivatives are refused.
+    bounds, constraints, callback : optional
+        As for `minimize`.
+    **options
+        Those of `minimize`; scipy's ``tol`` is ``tolerance``. Journals are for `minimize` alone.
+
+    Returns
+    -------
+    Result
+        As of `minimize`.
 
     Examples
     --------
@@ -186,6 +214,8 @@ def _joined(fun, jac, args):
     """One function of x alone that returns value and subgradient."""
     if not callable(fun):
         raise TypeError(f"fun is {type(fun).__name__}, expected a function")
+    if not isinstance(args, tuple):
+        args = (args,)
     if callable(jac):
         informed = takes_accuracy(jac)
         return lambda x, **accuracy: (fun(x, *args, **accuracy), jac(x, *args, **(accuracy if informed else {})))
@@ -207,7 +237,7 @@ def takes_accuracy(fun):
 
 
 def _run(joined, fun, x0, bounds, constraints, options, callback, journal, resume, outer=None):
-    x0 = np.atleast_1d(np.asarray(x0, dtype=float))
+    x0 = np.atleast_1d(real(x0, "x0"))
     if x0.ndim != 1 or x0.size == 0:
         raise ValueError(f"x0 has shape {x0.shape}, expected one dimension with at least one entry")
     accepts = takes_accuracy(fun)
@@ -221,11 +251,23 @@ def _run(joined, fun, x0, bounds, constraints, options, callback, journal, resum
         "constraints": _constraints.read(bounds, constraints, x0.size),
         "options": config,
         "scaling": scaling,
-        "callback": _told(callback) if callback is not None else None,
+        "callback": told(callback),
         "disp": disp,
-        "journal": _journal(journal, resume, getattr(fun, "__qualname__", type(fun).__qualname__)),
+        "journal": journal_of(journal, resume, getattr(fun, "__qualname__", type(fun).__qualname__)),
     }
-    outcome, error = _engine.minimize(setup)
+    return drive(_engine.minimize, setup, outer)
+
+
+def drive(run, setup, outer=None):
+    """Runs the engine; an exception of the user's code is raised again, with the best point."""
+    depth = getattr(_depth, "runs", 0)
+    if depth >= _DEEPEST:
+        raise RecursionError(f"the function minimises within itself, more than {_DEEPEST} times")
+    _depth.runs = depth + 1
+    try:
+        outcome, error = run(setup)
+    finally:
+        _depth.runs = depth
     result = None if outcome is None else _result.build(outcome, outer)
     if error is None:
         return result
@@ -233,8 +275,12 @@ def _run(joined, fun, x0, bounds, constraints, options, callback, journal, resum
     raise error
 
 
-def _told(callback):
-    """The callback as the engine calls it: true ends the run."""
+def told(callback):
+    """The callback as the engine calls it, if there is one: true ends the run."""
+    if callback is None:
+        return None
+    if not callable(callback):
+        raise TypeError(f"callback is {type(callback).__name__}, expected a function")
     # scipy.optimize.minimize hands over a wrapper that takes the result, whatever the user's callback takes.
     wrapped = hasattr(callback, "stop_iteration")
     try:
@@ -242,7 +288,7 @@ def _told(callback):
     except (TypeError, ValueError):
         by_name = False
 
-    def told(x, value, record):
+    def tell(x, value, record):
         try:
             if not wrapped and not by_name:
                 callback(x)
@@ -254,17 +300,17 @@ def _told(callback):
             return True
         return False
 
-    return told
+    return tell
 
 
-def _journal(journal, resume, identity):
+def journal_of(journal, resume, identity):
     """Folder and identity for the engine."""
     if journal is not None and resume is not None:
         raise ValueError("pass journal to begin a run, or resume to continue one, not both")
     folder = journal if journal is not None else resume
     if folder is None:
         return None
-    folder = os.fspath(folder)
+    folder = os.fsdecode(folder)
     # A path of the journal itself is as good as that of its folder.
     if os.path.basename(folder) == "journal.jsonl":
         folder = os.path.dirname(folder) or "."
@@ -280,8 +326,8 @@ def _attach(error, result):
     """The best point so far for whoever handles the exception."""
     try:
         error.best = result
-    except AttributeError:
-        return  # An exception with __slots__ takes no attribute.
+    except Exception:
+        return  # An exception with __slots__, or with a property `best` of its own, takes no attribute.
     if result is not None and hasattr(error, "add_note"):
         error.add_note(
             f"nonsmooth: the best value before was {result.fun:.10g}, after {result.nfev} evaluations; the attribute "

@@ -1,4 +1,4 @@
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, TypedDict, type_check_only
 
@@ -40,16 +40,17 @@ class _Options(TypedDict, total=False):
     exploration: bool | dict[str, Any]
 
 _Path = str | PathLike[str]
+_Constraints = LinearConstraint | Bounds | Sequence[Any]
 _Bounds = Bounds | Sequence[tuple[float | None, float | None]] | NDArray[float64]
 
 def minimize(
     fun: Callable[..., Any],
     x0: ArrayLike,
     jac: Literal[True] | Callable[..., ArrayLike] = True,
-    args: tuple[Any, ...] = (),
+    args: Any = (),
     bounds: _Bounds | None = None,
-    constraints: LinearConstraint | Sequence[Any] | None = (),
-    options: _Options | None = None,
+    constraints: _Constraints | None = (),
+    options: _Options | Mapping[str, Any] | None = None,
     callback: Callable[..., Any] | None = None,
     *,
     journal: _Path | None = None,
@@ -59,26 +60,30 @@ def minimize_composite(
     outer: Literal["max", "l1", "power", "norm"] | Callable[[NDArray[float64]], tuple[float, ArrayLike]],
     fun: Callable[..., Any],
     x0: ArrayLike,
-    args: tuple[Any, ...] = (),
+    args: Any = (),
     bounds: _Bounds | None = None,
-    constraints: LinearConstraint | Sequence[Any] | None = (),
-    options: _Options | None = None,
+    constraints: _Constraints | None = (),
+    options: _Options | Mapping[str, Any] | None = None,
     callback: Callable[..., Any] | None = None,
     *,
     exponent: float = 2.0,
     journal: _Path | None = None,
     resume: _Path | None = None,
 ) -> Result: ...
+# scipy's stubs ask for their own type of the start, and for a type of the result that is not scipy.optimize.OptimizeResult.
 def bundle_trust(
     fun: Callable[..., Any],
-    x0: ArrayLike,
-    args: tuple[Any, ...] = (),
+    x0: Any,
+    args: Any = (),
     jac: Literal[True] | Callable[..., ArrayLike] | None = None,
     hess: None = None,
     hessp: None = None,
     bounds: _Bounds | None = None,
-    constraints: LinearConstraint | Sequence[Any] | None = (),
+    constraints: _Constraints | None = (),
     callback: Callable[..., Any] | None = None,
     **options: Any,
-) -> Result: ...
+) -> Any: ...
 def takes_accuracy(fun: Callable[..., Any]) -> bool: ...
+def told(callback: Callable[..., Any] | None) -> Callable[..., bool] | None: ...
+def journal_of(journal: _Path | None, resume: _Path | None, identity: str) -> tuple[str, str] | None: ...
+def drive(run: Callable[..., Any], setup: dict[str, Any], outer: tuple[Any, float] | None = None) -> Result: ...

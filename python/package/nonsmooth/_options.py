@@ -4,11 +4,17 @@ import difflib
 import json
 import math
 import numbers
+from collections.abc import Mapping
 
 import numpy as np
 
+from ._numbers import real
+
 #: Names under which scipy's methods know an option.
 SCIPY_NAMES = {"tol": "tolerance", "maxfev": "max_evaluations", "maxfun": "max_evaluations", "maxiter": "max_iterations"}
+
+#: What the engine counts up to.
+_NO_LIMIT = 2**63 - 1
 
 _REAL, _COUNT, _FLAG = "a number", "an integer", "True or False"
 
@@ -42,15 +48,19 @@ NAMES = (*PLAIN, *SPECIAL)
 
 def read(options, accepts_accuracy):
     """The options as the engine takes them: JSON, scaling, whether a table is printed."""
+    if options is not None and not isinstance(options, Mapping):
+        raise TypeError(f"options is {type(options).__name__}, expected a dict")
     known = {}
-    for given, value in dict(options or {}).items():
+    for given, value in (options or {}).items():
         name = SCIPY_NAMES.get(given, given)
         if name not in NAMES:
             raise ValueError(_unknown(given))
         if name in known:
             raise ValueError(f"option {name!r} is given twice, once as {given!r}")
         known[name] = value
-    config = {name: _plain(name, known[name]) for name in PLAIN if known.get(name) is not None}
+    # None stands for the default.
+    known = {name: value for name, value in known.items() if value is not None}
+    config = {name: _plain(name, known[name]) for name in PLAIN if name in known}
     config["convexity"] = "convex" if _flag("convex", known.get("convex", False)) else "unknown"
     config["accuracy"] = _accuracy(known.get("accuracy", "on_demand" if accepts_accuracy else "tightest"))
     for name in ("curved_model", "exploration"):
@@ -84,7 +94,7 @@ def _plain(name, value):
         # 1e4 is what many write for a limit.
         if not math.isfinite(value) or int(value) != value or value < 0:
             raise _wrong(name, value, "an integer ≥ 0")
-        return int(value)
+        return min(int(value), _NO_LIMIT)
     if not math.isfinite(value):
         raise _wrong(name, value, "a finite number")
     return float(value)
@@ -94,8 +104,8 @@ def _accuracy(value):
     if value in ("tightest", "on_demand") if isinstance(value, str) else False:
         return value if value == "tightest" else {"on_demand": {"tightest": 1e-12, "coarsest": 1e-2, "factor": 0.1}}
     if isinstance(value, (tuple, list)) and len(value) == 3:
-        keys = ("tightest", "coarsest", "factor")
-        return {"on_demand": {key: float(part) for key, part in zip(keys, value)}}
+        parts = real(value, "option accuracy").tolist()
+        return {"on_demand": dict(zip(("tightest", "coarsest", "factor"), parts))}
     raise _wrong("accuracy", value, "'tightest', 'on_demand' or (tightest, coarsest, factor)")
 
 
@@ -108,7 +118,7 @@ def _proposer(name, value):
 def _scaling(value):
     if value is None:
         return None
-    sizes = np.asarray(value, dtype=float)
+    sizes = real(value, "option scaling")
     if sizes.ndim not in (1, 2):
         raise _wrong("scaling", value, "one size per variable, or a regular matrix")
     return sizes

@@ -31,6 +31,8 @@ _MORE = {
     "time_limit": "the option is max_seconds",
 }
 
+_STUCK = "the later half of the evaluations brought no decrease: nonsmooth.taylor_test(fun, result.x) shows whether the subgradient is right"
+
 
 class History(list):
     """One dict per evaluation: number, kind of step, values, predicted decrease, seconds."""
@@ -69,7 +71,18 @@ class Recheck:
     agrees: bool
 
     def proves(self, norm_tolerance, error_tolerance):
-        """Whether the point is stationary up to these tolerances."""
+        """Whether the point is stationary up to these tolerances.
+
+        Parameters
+        ----------
+        norm_tolerance, error_tolerance : float
+            Largest norm and error of the aggregate subgradient.
+
+        Returns
+        -------
+        bool
+            True if the numbers agree with the certificate and lie within the tolerances.
+        """
         return (
             self.agrees and self.aggregate_norm <= norm_tolerance and self.aggregate_error <= error_tolerance
         )
@@ -114,20 +127,18 @@ class Result(OptimizeResult):
         Returns
         -------
         Recheck
+            The numbers, and whether they agree with the certificate.
         """
         certificate = self.certificate
         if certificate is None:
             raise ValueError("there is no certificate: the run ended before its first subproblem")
         numbers = json.loads(certificate.recheck())
-        outer, exponent = self.get("_outer", (None, 1.0))
+        outer, exponent = self._outer
         difference = None if outer is None else certificate.recheck_composite(outer, exponent)
         return Recheck(**numbers, composite_difference=difference, agrees=_agrees(certificate, numbers, difference))
 
     def __dir__(self):
         return [*super().__dir__(), "recheck"]
-
-    def __repr__(self):
-        return OptimizeResult.__repr__(OptimizeResult({k: v for k, v in self.items() if not k.startswith("_")}))
 
 
 def _agrees(certificate, numbers, difference):
@@ -148,8 +159,10 @@ def build(outcome, outer=None):
     """The result of a run of the engine."""
     counts = json.loads(outcome.counts)
     reason = outcome.reason
-    more = _MORE.get(reason)
-    return Result(
+    history = History(json.loads(outcome.history))
+    is_stuck = reason in ("evaluation_limit", "iteration_limit", "time_limit") and _is_stuck(history)
+    more = _STUCK if is_stuck else _MORE.get(reason)
+    result = Result(
         message=f"{outcome.message}; {more}" if more else outcome.message,
         success=outcome.confirmed,
         status=STATUS[reason],
@@ -162,11 +175,18 @@ def build(outcome, outer=None):
         njev=counts["evaluations"],
         gap=outcome.gap,
         certificate=outcome.certificate,
-        history=History(json.loads(outcome.history)),
+        history=history,
         counts=counts,
         largest_violation=outcome.largest_violation,
         start_value=outcome.start_value,
         seconds=outcome.seconds,
         warnings=outcome.warnings,
-        _outer=outer or (None, 1.0),
     )
+    # No entry of the dict: it is not for users.
+    object.__setattr__(result, "_outer", outer or (None, 1.0))
+    return result
+
+
+def _is_stuck(history):
+    """Whether the later half of many evaluations brought no decrease."""
+    return len(history) >= 100 and history[-1]["center_value"] == history[len(history) // 2]["center_value"]

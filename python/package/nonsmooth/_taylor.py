@@ -3,8 +3,11 @@
 import json
 from dataclasses import dataclass
 
+import numpy as np
+
 from . import _engine
 from ._minimize import _joined, takes_accuracy
+from ._numbers import real
 
 #: A relative error of the best difference quotient below this, or remainders that fall this fast, show a right subgradient.
 _RIGHT_ERROR, _RIGHT_SLOPE = 1e-5, 1.7
@@ -45,18 +48,23 @@ def taylor_test(fun, x, jac=True, args=(), direction=None, seed=1, disp=True):
 
     Parameters
     ----------
-    fun, jac, args
+    fun : callable
         As for `minimize`.
     x : array_like
         A point where the function is smooth, which nearly every point is.
+    jac, args : optional
+        As for `minimize`.
     direction : array_like, optional
         Direction of the test; by default a random one that `seed` determines.
+    seed : int
+        Seed of the random direction, at least 0.
     disp : bool
         Whether the table is printed.
 
     Returns
     -------
     TaylorTest
+        The verdict ``right`` and its numbers.
 
     Examples
     --------
@@ -66,10 +74,17 @@ def taylor_test(fun, x, jac=True, args=(), direction=None, seed=1, disp=True):
     >>> nonsmooth.taylor_test(lambda x: (x @ x, 3 * x), [1.0, -3.0], disp=False).right
     False
     """
-    joined = _joined(fun, jac, tuple(args))
+    joined = _joined(fun, jac, args)
+    x = np.atleast_1d(real(x, "x"))
+    if direction is not None:
+        direction = real(direction, "direction")
+        if not direction.any():
+            raise ValueError("direction is zero, expected one along which the function is tested")
     numbers, table = _engine.taylor_test(joined, x, direction, seed, takes_accuracy(fun))
     numbers = json.loads(numbers)
     slope, error = numbers["fitted_slope"], numbers["best_derivative_error"]
+    if error is None:
+        raise ValueError("fun is not finite at x or next to it, so that there is nothing to compare")
     right = error <= _RIGHT_ERROR or (slope is not None and slope >= _RIGHT_SLOPE)
     test = TaylorTest(right, numbers["directional_derivative"], slope, error, table)
     if disp:

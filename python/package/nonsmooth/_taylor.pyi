@@ -16,7 +16,7 @@ def taylor_test(
     fun: Callable[..., Any],
     x: ArrayLike,
     jac: Literal[True] | Callable[..., ArrayLike] = True,
-    args: tuple[Any, ...] = (),
+    args: Any = (),
     direction: ArrayLike | None = None,
     seed: int = 1,
     disp: bool = True,

@@ -1,14 +1,16 @@
 """Contact scenes: 3D contact with Coulomb friction as an objective. Units: N, mm, MPa."""
 
 import json
+import math
 import os
 from dataclasses import dataclass
 
 import numpy as np
 
-from . import _options, _result
+from . import _options
 from ._engine import OutsideDomain
-from ._minimize import _attach, _journal, _told
+from ._minimize import drive, journal_of, told
+from ._numbers import real
 
 try:
     from ._engine import ContactScene as _ContactScene
@@ -88,13 +90,36 @@ class Scene:
     """
 
     def __init__(self, **fields):
-        self._scene = _ContactScene(None, json.dumps(fields, default=_plain))
+        self._open(None, fields)
+
+    def _open(self, path, fields):
+        """The engine's scene, and what it is made of, for copies in other processes."""
+        self._made_of = path, json.dumps(_plain(fields, ""))
+        self._scene = _ContactScene(*self._made_of)
+
+    def __reduce__(self):
+        return _again, self._made_of
 
     @classmethod
     def from_toml(cls, path, **fields):
-        """The scene of a file, with fields changed: ``Scene.from_toml("hertz.toml", friction=0.5, mesh={"bricks": [6, 6, 6]})``."""
+        """The scene of a file, with fields changed: ``Scene.from_toml("hertz.toml", friction=0.5, mesh={"bricks": [6, 6, 6]})``.
+
+        Parameters
+        ----------
+        path : path
+            The scene file. Files that it names lie beside it.
+        **fields
+            Fields that differ from the file, as for `Scene`.
+
+        Returns
+        -------
+        Scene
+            The scene.
+        """
+        path = os.path.abspath(os.fsdecode(path))
+        os.stat(path)  # FileNotFoundError
         scene = cls.__new__(cls)
-        scene._scene = _ContactScene(os.fspath(path), json.dumps(fields, default=_plain))
+        scene._open(path, fields)
         return scene
 
     @property
@@ -112,6 +137,7 @@ class Scene:
         """Admissible heights, flattened: ``(bounds, constraint)`` as scipy's objects, for `nonsmooth.minimize`."""
         from scipy.optimize import Bounds, LinearConstraint
 
+        _check_process()
         arrays = self._scene.constraints()
         rows = LinearConstraint(arrays["rows"], arrays["row_lower"], arrays["row_upper"])
         return Bounds(arrays["lower"], arrays["upper"]), rows
@@ -121,7 +147,7 @@ class Scene:
         return self._scene.toml()
 
     def evaluate(self, heights=None):
-        """Solve the contact problem of a shape.
+        """Solve the contact problem of a shape. An interrupt takes effect when it is solved.
 
         Parameters
         ----------
@@ -131,9 +157,10 @@ class Scene:
         Returns
         -------
         Evaluation
+            Objective and contact state.
         """
-        heights = self.start if heights is None else np.asarray(heights, dtype=float)
-        found = self._scene.evaluate(heights.ravel())
+        _check_process()
+        found = self._scene.evaluate(self._flat(heights, "heights"))
         return Evaluation(
             theta=found["value"],
             gradient=found["gradient"],
@@ -152,6 +179,16 @@ class Scene:
         """Theta and one subgradient, flattened: a function for `nonsmooth.minimize`.
 
         A shape without a solution raises `nonsmooth.OutsideDomain`, which shortens the step.
+
+        Parameters
+        ----------
+        heights : array_like
+            Control heights, mm, flattened or in the shape of the control points.
+
+        Returns
+        -------
+        tuple of float and ndarray
+            Theta and its subgradient.
         """
         try:
             found = self.evaluate(heights)
@@ -166,7 +203,7 @@ class Scene:
         ----------
         start : array_like, optional
             Control heights to begin with; by default those of the scene.
-        options, callback, journal, resume
+        options, callback, journal, resume : optional
             As for `nonsmooth.minimize`. By default, ``max_evaluations``, ``tolerance`` and the limits are those of the
             scene, first step and scaling those of the command ``contact3d optimize``.
 
@@ -175,7 +212,8 @@ class Scene:
         Result
             ``x`` has the shape of the control points in row-major order, flattened.
         """
-        start = (self.start if start is None else np.asarray(start, dtype=float)).ravel()
+        _check_process()
+        start = self._flat(start, "start")
         given = self._scene.options()
         config, scaling, disp = _options.read({**json.loads(given), **(options or {})}, False)
         nothing = np.zeros(0)
@@ -189,23 +227,63 @@ class Scene:
             "constraints": unused,
             "options": config,
             "scaling": scaling,
-            "callback": _told(callback) if callback is not None else None,
+            "callback": told(callback),
             "disp": disp,
-            "journal": _journal(journal, resume, self.to_toml()),
+            "journal": journal_of(journal, resume, self.to_toml()),
         }
-        outcome, error = self._scene.optimize(setup)
-        result = None if outcome is None else _result.build(outcome)
-        if error is None:
-            return result
-        _attach(error, result)
-        raise error
+        return drive(self._scene.optimize, setup)
+
+    def _flat(self, heights, what):
+        """Control heights in row-major order; by default those of the start."""
+        if heights is None:
+            return self.start.ravel()
+        heights = real(heights, what)
+        shape = tuple(self._scene.control_points)
+        if heights.shape not in (shape, (shape[0] * shape[1],)):
+            raise ValueError(
+                f"{what} has {heights.size} entries, expected {shape[0] * shape[1]}"
+                if heights.ndim == 1
+                else f"{what} has shape {heights.shape}, expected {shape} or flattened ({shape[0] * shape[1]},)"
+            )
+        return heights.ravel()
 
     def __repr__(self):
         return f"<Scene {self.name!r}>"
 
 
-def _plain(value):
-    """Numpy's numbers and arrays in fields."""
+def _again(path, fields):
+    """A scene in another process."""
+    scene = Scene.__new__(Scene)
+    scene._open(path, json.loads(fields))
+    return scene
+
+
+def _plain(value, path):
+    """A field as JSON has it; `path` names it in messages."""
     if isinstance(value, (np.ndarray, np.generic)):
-        return value.tolist()
-    raise TypeError(f"a field of a scene is {type(value).__name__}, expected numbers, text, lists and dicts")
+        value = value.tolist()
+    if isinstance(value, dict):
+        return {name: _plain(entry, f"{path}.{name}" if path else str(name)) for name, entry in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(entry, f"{path}[{index}]") for index, entry in enumerate(value)]
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"{path} = {value} is not allowed; allowed: finite numbers")
+    if not isinstance(value, (bool, int, float, str)):
+        raise TypeError(f"{path} is {type(value).__name__}, expected numbers, text, lists and dicts; leave out a field for its default")
+    return value
+
+
+#: The process in which scenes are solved.
+_process = None
+
+
+def _check_process():
+    """Refuses to solve scenes in a process that was forked from one that did: the threads of the solver are not there."""
+    global _process
+    if _process is None:
+        _process = os.getpid()
+    if _process != os.getpid():
+        raise RuntimeError(
+            "contact scenes were solved before this process was forked, and the threads that solve them were not copied: start "
+            "processes by multiprocessing.get_context('spawn')"
+        )

@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any
@@ -44,7 +44,7 @@ class Scene:
     def optimize(
         self,
         start: ArrayLike | None = None,
-        options: _Options | None = None,
+        options: _Options | Mapping[str, Any] | None = None,
         callback: Callable[..., Any] | None = None,
         *,
         journal: str | PathLike[str] | None = None,
