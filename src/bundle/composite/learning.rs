@@ -93,6 +93,7 @@ impl Run<'_, '_> {
             composite.learn(trial.proposal, Some(ratio), trial.serious);
         }
         if trial.serious {
+            composite.polished = false;
             self.rebase(point, value, known);
         } else if own && correcting {
             composite.bends = true;

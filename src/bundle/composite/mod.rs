@@ -72,6 +72,8 @@ pub(crate) struct Composite {
     /// Weights of the outputs at the last subproblem's solution.
     weights: Option<Vector>,
     excursion: Option<Excursion>,
+    /// Whether the center is the end of a last step that has brought a small decrease only.
+    polished: bool,
 }
 
 /// Where the model is built.
@@ -100,6 +102,7 @@ impl Composite {
             kinks: Kinks::default(),
             weights: None,
             excursion: None,
+            polished: false,
         }
     }
 
@@ -135,7 +138,7 @@ impl Run<'_, '_> {
                 continue;
             };
             if let Some(word) = self.composite_word(&proposal) {
-                return self.leave(Proof { word, base, step, proposal });
+                return self.leave(Proof { word, base, step, proposal: proposal.clone() }, proposal);
             }
             let longest = self.composite.as_ref().map_or(0.0, |composite| composite.longest);
             if proposal.predicted_decrease > self.small() {
@@ -152,7 +155,11 @@ impl Run<'_, '_> {
                     composite.longest = f64::INFINITY;
                 }
             } else if last.is_some_and(|last| proposal.predicted_decrease < LEAST_GAIN * last.predicted_decrease) {
-                // A lower weight changes nothing: the step promises little, but the model may prove the point at its end stationary.
+                // A lower weight promises no more. What is small already may be proved to be all that is left.
+                if let Some(proof) = self.lighter_proof(&base, weight)? {
+                    return self.leave(proof, proposal);
+                }
+                // The step promises little, but the model may prove the point at its end stationary.
                 let seen = proposal.predicted_decrease > self.state.rounding() && longest == f64::INFINITY;
                 return Continue(Some(proposal).filter(|_| seen));
             }
