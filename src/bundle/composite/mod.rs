@@ -28,6 +28,7 @@ use crate::{Accuracy, Vector};
 use curvature::Memory;
 use excursion::Excursion;
 use kinks::Kinks;
+use learning::MAX_PAUSE;
 use std::ops::ControlFlow::{self, Continue};
 
 pub(crate) use model::CompositeStep;
@@ -149,22 +150,27 @@ impl Run<'_, '_> {
                 continue;
             }
             weight /= FACTOR;
-            if std::mem::take(&mut raised) {
-                // Steps within the limit of length promise little. Only a longer one can tell whether the point is stationary.
-                if let Some(composite) = &mut self.composite {
-                    composite.longest = f64::INFINITY;
-                }
-            } else if last.is_some_and(|last| proposal.predicted_decrease < LEAST_GAIN * last.predicted_decrease) {
-                // A lower weight promises no more. What is small already may be proved to be all that is left.
+            let exhausted = last.is_some_and(|last| proposal.predicted_decrease < LEAST_GAIN * last.predicted_decrease);
+            if raised || exhausted {
+                // No step that has not been rejected promises more. What is small already may be proved to be all that is left.
                 if let Some(proof) = self.lighter_proof(&base, weight)? {
                     return self.leave(proof, proposal);
                 }
-                // The step promises little, but the model may prove the point at its end stationary.
-                let seen = proposal.predicted_decrease > self.state.rounding() && longest == f64::INFINITY;
-                return Continue(Some(proposal).filter(|_| seen));
+                return Continue(self.small_step(proposal).filter(|_| !raised));
             }
             last = Some(proposal);
         }
         Continue(None)
+    }
+
+    /// A step that promises little: the model may prove the point at its end stationary. None within a limit of length, where a longer step
+    /// has been rejected: the cuts go on.
+    fn small_step(&mut self, proposal: Proposal) -> Option<Proposal> {
+        let composite = self.composite.as_mut()?;
+        if composite.longest < f64::INFINITY {
+            composite.pause.fail(MAX_PAUSE);
+            return None;
+        }
+        Some(proposal).filter(|proposal| proposal.predicted_decrease > self.state.rounding())
     }
 }
