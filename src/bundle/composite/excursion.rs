@@ -1,7 +1,8 @@
 //! Steps away from a point that is proved stationary, whose proof stands if they find nothing lower.
 //!
 //! ```text
-//! predicted > small/10:      the model's own last step, which costs one evaluation: near a stationary point the model is at its best
+//! predicted > small/10:      the model's own last step, which costs one evaluation: near a stationary point the model is at its best;
+//!                            not once more from its end, unless it has brought more than a small decrease
 //! s_i + S_i d ≤ −s_i/2 for the inactive constraints next to the point      one composite step with these rows, then go on
 //! ```
 //! The linearization at a stationary point sees one piece of c alone. Where a constraint inside c (an open contact node) is all
@@ -49,15 +50,17 @@ impl Excursion {
 }
 
 impl Run<'_, '_> {
-    /// Ends the run with a proof, unless a last step is worth its evaluation or constraints next to the point are to be closed first.
-    pub(super) fn leave(&mut self, proof: Proof) -> ControlFlow<Termination, Option<Proposal>> {
+    /// Ends the run with a proof, unless the model's last step is worth its evaluation or constraints next to the point are to be closed
+    /// first.
+    pub(super) fn leave(&mut self, proof: Proof, last: Proposal) -> ControlFlow<Termination, Option<Proposal>> {
         let worth = (WORTH_A_STEP * self.small()).max(self.state.rounding());
-        if proof.proposal.predicted_decrease <= worth {
+        let polished = self.composite.as_ref().is_some_and(|composite| composite.polished);
+        if polished || last.predicted_decrease <= worth {
             return self.close(proof);
         }
-        let (proposal, weight) = (proof.proposal.clone(), proof.proposal.weight);
+        let weight = last.weight;
         self.depart(Excursion { proof: Box::new(proof), last_step: true, base: None, weight, left: 0 });
-        Continue(Some(proposal))
+        Continue(Some(last))
     }
 
     fn depart(&mut self, excursion: Excursion) {
@@ -149,11 +152,13 @@ impl Run<'_, '_> {
     }
 
     pub(super) fn learn_excursion(&mut self, trial: &Trial<'_>, value: f64, linearization: Option<Linearization>) {
+        let small = self.small();
         let Some(composite) = &mut self.composite else { return };
         let Some(excursion) = &mut composite.excursion else { return };
         let point = &trial.proposal.trial;
         if trial.serious {
             composite.weight = excursion.weight;
+            composite.polished = excursion.last_step && -trial.comparison.change <= small;
             composite.excursion = None;
             self.rebase(point, value, linearization);
         } else if excursion.base.as_ref().is_some_and(|base| value >= base.value) {

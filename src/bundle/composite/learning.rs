@@ -25,7 +25,7 @@ const BEND_FACTOR: f64 = 4.0;
 /// Largest length of the step after a rejected one, in lengths of the rejected step.
 const SHORTER: f64 = 0.3;
 /// Longest pause after failures, evaluations.
-const MAX_PAUSE: usize = 64;
+pub(super) const MAX_PAUSE: usize = 64;
 /// Rejected or failed steps in a row before a pause.
 const PATIENCE: usize = 3;
 
@@ -93,6 +93,7 @@ impl Run<'_, '_> {
             composite.learn(trial.proposal, Some(ratio), trial.serious);
         }
         if trial.serious {
+            composite.polished = false;
             self.rebase(point, value, known);
         } else if own && correcting {
             composite.bends = true;

@@ -28,6 +28,7 @@ use crate::{Accuracy, Vector};
 use curvature::Memory;
 use excursion::Excursion;
 use kinks::Kinks;
+use learning::MAX_PAUSE;
 use std::ops::ControlFlow::{self, Continue};
 
 pub(crate) use model::CompositeStep;
@@ -72,6 +73,8 @@ pub(crate) struct Composite {
     /// Weights of the outputs at the last subproblem's solution.
     weights: Option<Vector>,
     excursion: Option<Excursion>,
+    /// Whether the center is the end of a last step that has brought a small decrease only.
+    polished: bool,
 }
 
 /// Where the model is built.
@@ -100,6 +103,7 @@ impl Composite {
             kinks: Kinks::default(),
             weights: None,
             excursion: None,
+            polished: false,
         }
     }
 
@@ -135,7 +139,7 @@ impl Run<'_, '_> {
                 continue;
             };
             if let Some(word) = self.composite_word(&proposal) {
-                return self.leave(Proof { word, base, step, proposal });
+                return self.leave(Proof { word, base, step, proposal: proposal.clone() }, proposal);
             }
             let longest = self.composite.as_ref().map_or(0.0, |composite| composite.longest);
             if proposal.predicted_decrease > self.small() {
@@ -146,18 +150,27 @@ impl Run<'_, '_> {
                 continue;
             }
             weight /= FACTOR;
-            if std::mem::take(&mut raised) {
-                // Steps within the limit of length promise little. Only a longer one can tell whether the point is stationary.
-                if let Some(composite) = &mut self.composite {
-                    composite.longest = f64::INFINITY;
+            let exhausted = last.is_some_and(|last| proposal.predicted_decrease < LEAST_GAIN * last.predicted_decrease);
+            if raised || exhausted {
+                // No step that has not been rejected promises more. What is small already may be proved to be all that is left.
+                if let Some(proof) = self.lighter_proof(&base, weight)? {
+                    return self.leave(proof, proposal);
                 }
-            } else if last.is_some_and(|last| proposal.predicted_decrease < LEAST_GAIN * last.predicted_decrease) {
-                // A lower weight changes nothing: the step promises little, but the model may prove the point at its end stationary.
-                let seen = proposal.predicted_decrease > self.state.rounding() && longest == f64::INFINITY;
-                return Continue(Some(proposal).filter(|_| seen));
+                return Continue(self.small_step(proposal).filter(|_| !raised));
             }
             last = Some(proposal);
         }
         Continue(None)
+    }
+
+    /// A step that promises little: the model may prove the point at its end stationary. None within a limit of length, where a longer step
+    /// has been rejected: the cuts go on.
+    fn small_step(&mut self, proposal: Proposal) -> Option<Proposal> {
+        let composite = self.composite.as_mut()?;
+        if composite.longest < f64::INFINITY {
+            composite.pause.fail(MAX_PAUSE);
+            return None;
+        }
+        Some(proposal).filter(|proposal| proposal.predicted_decrease > self.state.rounding())
     }
 }

@@ -1,7 +1,7 @@
 //! Steps of the composite model: from a base, and on from a rejected trial point.
 
 use super::model::{CompositeModel, CompositeStep};
-use super::{Base, FACTOR};
+use super::{Base, FACTOR, MAX_WEIGHTS, Proof};
 use crate::bundle::proposers::aggregate::{aggregate_sizes, slack_error};
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::run::Run;
@@ -146,7 +146,40 @@ impl Run<'_, '_> {
         if proposal.predicted_decrease > self.small() {
             return None;
         }
-        let remaining = self.state.decrease_bound(proposal, &self.set);
-        self.word_at_point(remaining)
+        self.bounded_word(proposal)
+    }
+
+    /// The termination at a center where the multipliers of a subproblem bound the decrease within reach by enough; none if they do not.
+    fn bounded_word(&self, proposal: &Proposal) -> Option<Termination> {
+        self.word_at_point(self.state.decrease_bound(proposal, &self.set))
+    }
+
+    /// The proof that a center is stationary from a subproblem with a lower weight and without the curvature of the outputs, if there is one.
+    ///
+    /// Gᵀw = −(u W + B) d − Aᵀμ − ν: where weight and curvature hold the step, a lower weight lets the multipliers balance. The bound
+    /// of the decrease within reach is the same, whatever subproblem the multipliers come from.
+    pub(super) fn lighter_proof(&mut self, base: &Base, weight: f64) -> ControlFlow<Termination, Option<Proof>> {
+        let bends = self.composite.as_mut().is_some_and(|composite| std::mem::take(&mut composite.bends));
+        let found = self.proof_below(base, weight);
+        if let Some(composite) = &mut self.composite {
+            composite.bends = bends;
+        }
+        found
+    }
+
+    fn proof_below(&mut self, base: &Base, mut weight: f64) -> ControlFlow<Termination, Option<Proof>> {
+        let mut least = f64::INFINITY;
+        for _ in 0..MAX_WEIGHTS {
+            let Some((proposal, step)) = self.composite_step(base, weight, None, None)? else { break };
+            if let Some(word) = self.bounded_word(&proposal) {
+                return Continue(Some(Proof { word, base: base.clone(), step, proposal }));
+            }
+            let bound = self.state.decrease_bound(&proposal, &self.set);
+            if bound >= least {
+                break;
+            }
+            (least, weight) = (bound, weight / FACTOR);
+        }
+        Continue(None)
     }
 }
