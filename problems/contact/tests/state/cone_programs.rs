@@ -1,8 +1,11 @@
 //! The last resort of direct condensation, driven alone: cone programs lead to the states that Newton's method finds.
 
+use contact::body::elasticity::Material;
+use contact::body::mesh::Face;
 use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactProblem, ContactSolver};
-use contact::scene::{Scene, hertz, signorini};
+use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, hertz, signorini};
+use contact::shape::ShapeBounds;
 use std::sync::Arc;
 use testset::kit::wavy;
 
@@ -55,4 +58,36 @@ fn cone_programs_keep_within_their_work() {
         assert!(found.unknowns.is_none() && found.steps() <= steps, "{}", found.steps());
         assert_eq!(contact.constant(), before);
     }
+}
+
+/// Scene 1401 of seed 3 of the random study: a thin plate that contact holds against a push. Continuation ends at a fold.
+#[test]
+fn the_last_resort_finds_what_continuation_loses() {
+    let scene = Scene {
+        size: [1.0869691108670812e1, 1.5321819622461916e-1],
+        mesh: [8, 4, 8],
+        subdomains: [1; 3],
+        friction: 1.5489828758814062,
+        lower: BodyScene {
+            material: Material::new(2.625089606217722e5, 4.9751755389752494e-1).unwrap(),
+            supports: vec![Support { face: Face::X1Min, components: [true, true, false] }],
+            loads: vec![Load {
+                face: Face::Bottom,
+                traction: [-1.3464520863463144e-3, 4.64168935388694e-3, 1.2777216699740348e-2],
+            }],
+        },
+        counter_surface: CounterSurface::Plane { height: 1.9529823602574257 },
+        start_height: 1.9529823602574257,
+        control_points: [4, 4],
+        bounds: ShapeBounds { minimum_height: 0.19, slope: 1e9, volume: [0.0, 1e27] },
+        ..signorini().unwrap()
+    };
+    let controls = [scene.start_height; 16];
+    let solver = DirectSolver::new(Arc::new(ContactProblem::new(scene).unwrap())).unwrap();
+    let state = solver.solve(&controls, None, 1e-12).unwrap();
+    let reason = state.reason.clone().unwrap_or_default();
+    assert!(reason.contains("cone program"), "{reason}");
+    assert!(state.forces.residuals.largest() < 1e-8, "{}", state.forces.residuals);
+    let work = state.work();
+    assert!(work.dense_factorizations > work.newton_steps, "{work:?}");
 }

@@ -107,7 +107,6 @@ impl Examined {
             Ok((state, contraction))
         });
         let (state, contraction) = solved.map_err(|error| error.to_string())?;
-        if state.reason.as_deref().is_some_and(|r| r.contains("cone program")) { eprintln!("TEMP {} {kind:?} {:?}", self.problem.scene.name, state.reason); }
         Ok(Found {
             path: format!("{kind:?}, {:?}", state.solver),
             objective: self.objective(&state.forces.normal),
