@@ -210,7 +210,7 @@ impl AutoSolver {
         let reason = if similar { Some("a similar shape needed it".to_owned()) } else { self.direct_first.clone() };
         let Some(reason) = reason else { return self.torn_then_direct(controls, start, tolerance) };
         match self.direct()?.solve(controls, start, tolerance) {
-            Ok(state) => Ok(ContactState { reason: Some(reason), ..state.map(AnyState::from) }),
+            Ok(state) => Ok(condensed(state, reason)),
             Err(error) if error.is_about_the_problem() && !proves_friction_too_weak(&error) => Err(error),
             Err(error) => match self.torn()?.attempt(controls, None, tolerance, self.max_products) {
                 Ok(state) => {
@@ -253,15 +253,20 @@ impl AutoSolver {
         };
         match self.direct()?.solve(controls, None, tolerance) {
             Ok(state) => {
-                let (work, error) = (state.work.after(failed.work), failed.error);
-                let reason = Some(format!("total FETI failed: {error}"));
-                Ok(ContactState { work, reason, ..state.map(AnyState::from) })
+                let work = state.work.after(failed.work);
+                Ok(ContactState { work, ..condensed(state, format!("total FETI failed: {}", failed.error)) })
             }
             // Nothing proves that there is no state where one was found, be it to few digits.
             Err(error) if error.is_about_the_problem() && !(found && proves_friction_too_weak(&error)) => Err(error),
             Err(error) => Err(unsolved(failed, error)),
         }
     }
+}
+
+/// A state by direct condensation, with the reason for that solver before its own remark.
+fn condensed(state: ContactState<DirectState>, reason: String) -> ContactState<AnyState> {
+    let reason = std::iter::once(reason).chain(state.reason.clone()).collect::<Vec<_>>().join("; ");
+    ContactState { reason: Some(reason), ..state.map(AnyState::from) }
 }
 
 fn proves_friction_too_weak(error: &ContactError) -> bool {

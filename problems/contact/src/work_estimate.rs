@@ -71,10 +71,8 @@ impl WorkEstimate {
     /// Operations of the work behind a state that a solver found, attempts of total FETI before it included.
     pub fn operations(&self, solver: SolverKind, work: &Work) -> f64 {
         let torn = if work.dual_operator_applications > 0 { self.torn_factorization } else { 0.0 };
-        let condensed = match solver {
-            SolverKind::Direct => self.condensation + work.newton_steps as f64 * self.condensed_step,
-            _ => 0.0,
-        };
+        let condensation = if solver == SolverKind::Direct { self.condensation } else { 0.0 };
+        let condensed = condensation + work.dense_factorizations as f64 * self.condensed_step;
         torn + work.dual_operator_applications as f64 * self.product + condensed
     }
 }

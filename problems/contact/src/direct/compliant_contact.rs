@@ -15,7 +15,8 @@ use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// Relative singular value of R up to which a motion counts as untouched by contact.
+/// Singular value of R up to which a motion counts as untouched by contact. The motions of a body have length 1; the largest singular
+/// value is no measure, since it is rounding where contact touches no motion.
 const UNTOUCHED: f64 = 1e-10;
 
 /// The contact problem in forces and rigid motions, dimensionless. Its unknowns are one vector: the packed forces λ over the
@@ -212,7 +213,7 @@ fn touched_motions(bodies: &[Arc<CompliantBody>], rows: usize) -> [DMatrix<f64>;
     let decomposition = motions.clone().qr().r().svd(false, true);
     let values = &decomposition.singular_values;
     let Some(right) = &decomposition.v_t else { return none() };
-    let touched: Vec<usize> = (0..values.len()).filter(|&k| values[k] > UNTOUCHED * values.max()).collect();
+    let touched: Vec<usize> = (0..values.len()).filter(|&k| values[k] > UNTOUCHED).collect();
     let basis = DMatrix::from_fn(columns, touched.len(), |i, k| right[(touched[k], i)] / values[touched[k]]);
     let inverse = DMatrix::from_fn(touched.len(), columns, |k, i| right[(touched[k], i)] * values[touched[k]]);
     [motions * &basis, basis, inverse]

@@ -9,6 +9,7 @@ mod adjoint;
 mod compliant_body;
 mod compliant_contact;
 mod condensation;
+mod cone_programs;
 mod diagnosis;
 mod displacement_load;
 mod newton;
@@ -21,6 +22,7 @@ mod tangents;
 pub use compliant_body::CompliantBody;
 pub use compliant_contact::CompliantContact;
 pub use condensation::{CondensationPattern, CondensedBody};
+pub use cone_programs::Programs;
 #[cfg(feature = "interior-point")]
 pub use resistance::Resistance;
 pub use solver::{DirectSolver, DirectState};

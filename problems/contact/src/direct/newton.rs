@@ -10,8 +10,9 @@
 //! Once the residual comes near the rounding of d + R a, the bodies are moved by these motions: d := d + R a, a := 0.
 
 use crate::direct::compliant_contact::CompliantContact;
-use crate::equilibrium::Stage;
+use crate::direct::cone_programs::Programs;
 use crate::equilibrium::law::Linearization;
+use crate::equilibrium::{Stage, Work};
 use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::norm;
 use faer::Mat;
@@ -52,8 +53,10 @@ pub(super) struct Reached {
     pub(super) linearizations: Vec<Linearization>,
     /// Whether they solve the problem without a compliance of the contact nodes (δ = 0).
     pub(super) solved: bool,
-    /// Relative residual after every Newton step, at the compliance of the step.
+    /// Relative residual after every Newton step, at the compliance of the step; without those from cone programs.
     pub(super) history: Vec<f64>,
+    /// The last resort, where it was needed.
+    pub(super) programs: Option<Programs>,
 }
 
 /// How one Newton iteration is run.
@@ -73,12 +76,28 @@ pub(super) struct ActiveSystem {
     pub(super) matrix: Mat<f64>,
 }
 
+impl Reached {
+    /// Cone programs that were solved.
+    pub(super) fn program_count(&self) -> usize {
+        self.programs.as_ref().map_or(0, |programs| programs.count)
+    }
+
+    /// What was spent.
+    pub(super) fn work(&self) -> Work {
+        let programs = self.programs.as_ref().map_or([0; 2], |programs| [programs.iterations, programs.newton_steps]);
+        let newton_steps = self.history.len() + programs[1];
+        Work { newton_steps, dense_factorizations: newton_steps + programs[0], ..Work::default() }
+    }
+}
+
 impl CompliantContact {
-    /// The equilibrium from given unknowns or from the bonded problem, to a relative residual; or, after at most so many Newton
-    /// steps, the last state on the way.
+    /// The equilibrium from given unknowns, from the bonded problem, or from cone programs, to a relative residual; or, after at
+    /// most so many factorisations, the last state on the way.
     pub(super) fn equilibrium(&mut self, start: Option<&[f64]>, tolerance: f64, max_steps: usize) -> Reached {
         let mut history = Vec::new();
         let tolerance = tolerance.max(TIGHTEST);
+        let all_steps = max_steps;
+        let max_steps = max_steps - self.steps_for_programs(max_steps);
         let zero = vec![0.0; self.row_count() + self.resultant.len()];
         let problem = |delta, spring| Problem { delta, spring, tolerance, max_steps };
         let started = start.and_then(|start| self.newton(start.to_vec(), problem(0.0, SPRINGS[0]), &mut history));
@@ -95,15 +114,25 @@ impl CompliantContact {
                 }
             }
         }
-        let (unknowns, solved) = started.map_or(reached, |found| (found, true));
+        let (mut unknowns, mut solved) = started.map_or(reached, |found| (found, true));
+        let programs = (!solved).then(|| self.by_cone_programs(tolerance, all_steps.saturating_sub(history.len())));
+        if let Some(found) = programs.as_ref().and_then(|programs| programs.unknowns.clone()) {
+            (unknowns, solved) = (found, true);
+        }
         let linearizations = self.linearize(&self.residual(&unknowns, 0.0).1);
-        Reached { unknowns, linearizations, solved, history }
+        Reached { unknowns, linearizations, solved, history, programs }
     }
 
-    /// Newton's method from given unknowns; none where it does not converge.
-    pub fn newton_from(&mut self, unknowns: &[f64]) -> Option<Vec<f64>> {
-        let problem = Problem { delta: 0.0, spring: SPRINGS[0], tolerance: TIGHTEST, max_steps: MAX_STEPS };
-        self.newton(unknowns.to_vec(), problem, &mut Vec::new())
+    /// Newton's method from unknowns near an equilibrium, in so many steps; none where it does not converge. Also its steps.
+    pub(super) fn newton_near(
+        &mut self,
+        unknowns: &[f64],
+        tolerance: f64,
+        max_steps: usize,
+    ) -> (Option<Vec<f64>>, usize) {
+        let mut history = Vec::new();
+        let problem = Problem { delta: 0.0, spring: SPRINGS[0], tolerance: tolerance.max(TIGHTEST), max_steps };
+        (self.newton(unknowns.to_vec(), problem, &mut history), history.len())
     }
 
     /// Lowers the compliance from a solved problem; the last solved one, and whether its compliance is 0.

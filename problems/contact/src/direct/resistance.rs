@@ -14,7 +14,7 @@ use crate::direct::compliant_contact::CompliantContact;
 use crate::error::ContactError;
 use crate::linear::dense::{DenseCholesky, multiply};
 use crate::linear::vector::{add_scaled, dot};
-use crate::qp::{Cone, ConeProgram};
+use crate::qp::{Cone, ConeProgram, MAX_ITERATIONS};
 use faer::Mat;
 
 /// Normal part of an orthonormal motion that is rounding.
@@ -32,7 +32,7 @@ const LEAST_WORK: f64 = 1e-6;
 /// Largest difference of C_ij and C_ji, relative to the largest entry: more says that condensation has lost half of the digits.
 const LARGEST_SKEW: f64 = 1e-6;
 /// Most rows of a program: beyond, it would cost far more than the solvers that failed.
-const MAX_ROWS: usize = 900;
+pub(super) const MAX_ROWS: usize = 900;
 /// Programs for one bound, each for the share of the load that the last one allows.
 const MAX_PROGRAMS: usize = 2;
 /// Relative decrease of the share that ends them.
@@ -154,8 +154,8 @@ impl<'a> Bound<'a> {
             right_side: self.contact.resultant.iter().map(|e| share * e).collect(),
             cones: cones.collect(),
         };
-        let (forces, motion) = program.minimise()?;
-        self.proof(&motion, forces)
+        let minimiser = program.minimise(MAX_ITERATIONS).filter(|minimiser| minimiser.solved)?;
+        self.proof(&minimiser.multipliers, minimiser.entries)
     }
 
     /// The bound that a motion y and forces v prove, in double precision.

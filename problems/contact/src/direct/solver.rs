@@ -7,7 +7,7 @@ use crate::direct::compliant_body::CompliantBody;
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::condensation::{CondensationPattern, CondensedBody};
 use crate::direct::displacement_load::CondensedLoad;
-use crate::direct::newton::FLOOR_REACHED;
+use crate::direct::newton::{FLOOR_REACHED, Reached};
 use crate::equilibrium::certificate::law_residuals;
 use crate::equilibrium::law::Linearization;
 use crate::equilibrium::modes::RigidScene;
@@ -24,6 +24,12 @@ use faer::Mat;
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
+
+/// How states are found.
+const BY_NEWTON: &str = "semismooth Newton on condensed bodies, with continuation in the contact compliance";
+/// The same with its last resort.
+const BY_PROGRAMS: &str =
+    "semismooth Newton on condensed bodies, with continuation in the contact compliance, then from cone programs,";
 
 /// The direct solver of one problem.
 #[derive(Debug)]
@@ -134,7 +140,7 @@ impl DirectSolver {
     ) -> Result<ContactState<DirectState>, ContactError> {
         let (mut contact, block, load, factorizations) = self.condense(configuration)?;
         Stage::Contact.enter();
-        let (solution, newton_steps) = if load > 0.0 {
+        let (solution, work, programs) = if load > 0.0 {
             // Why there is no state is asked only where none was found.
             let found = Self::equilibrium(&mut contact, start, tolerance);
             found.map_err(|error| match error {
@@ -143,7 +149,7 @@ impl DirectSolver {
                 error => refusal(&contact).unwrap_or(error),
             })?
         } else {
-            (contact.at_rest(), 0)
+            (contact.at_rest(), Work::default(), 0)
         };
         let displacements = contact.bodies.iter().map(|_| OnceLock::new()).collect();
         let state = DirectState { block, contact, solution, load, displacements };
@@ -153,26 +159,27 @@ impl DirectSolver {
             forces,
             load,
             solver: SolverKind::Direct,
-            reason: None,
+            reason: (programs > 0).then(|| format!("{BY_NEWTON}, found no state; cone program {programs} led to it")),
             contraction: None,
             stages: None,
-            work: Work { newton_steps, factorizations, ..Work::default() },
+            work: Work { factorizations, ..work },
             adjoint_applications: AtomicUsize::new(0),
             solution: state,
             bodies: None,
         })
     }
 
-    /// The equilibrium of a condensed shape.
+    /// The equilibrium of a condensed shape, with the work and the cone programs that it took.
     fn equilibrium(
         contact: &mut CompliantContact,
         start: Option<&[f64]>,
         tolerance: f64,
-    ) -> Result<(CondensedSolution, usize), ContactError> {
+    ) -> Result<(CondensedSolution, Work, usize), ContactError> {
         let size: usize = contact.bodies.iter().map(|body| body.free.len()).sum();
         let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
         let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
         let reached = contact.equilibrium(start.as_deref(), tolerance, max_steps);
+        let (work, programs) = (reached.work(), reached.program_count());
         if !reached.solved {
             let residual = norm(&contact.residual(&reached.unknowns, 0.0).0);
             let floor = contact.rounding(&reached.unknowns);
@@ -182,19 +189,16 @@ impl DirectSolver {
                 return Err(ContactError::BeyondPrecision { what, floor, residual, tolerance });
             }
             return Err(ContactError::NotConverged {
-                solver: "semismooth Newton on condensed bodies, with continuation in the contact compliance",
+                solver: if programs > 0 { BY_PROGRAMS } else { BY_NEWTON },
                 residual,
                 tolerance,
-                iterations: reached.history.len(),
+                iterations: work.dense_factorizations,
                 history: reached.history,
             });
         }
         let (forces, displacement) = contact.dimensional(&reached.unknowns);
-        let linearizations = reached.linearizations;
-        Ok((
-            CondensedSolution { unknowns: reached.unknowns, displacement, forces, linearizations },
-            reached.history.len(),
-        ))
+        let Reached { unknowns, linearizations, .. } = reached;
+        Ok((CondensedSolution { unknowns, displacement, forces, linearizations }, work, programs))
     }
 }
 

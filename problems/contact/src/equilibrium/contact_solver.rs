@@ -63,7 +63,7 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     fn diagnose(&self, state: &Self::State) -> Result<Diagnosis, ContactError>;
 
     /// A rough estimate of the contraction of the slip bounds at a solved shape, for at most so many products with the dual
-    /// operator; 0 where no node slides (total FETI) or no node is closed (direct condensation). See method.md section 4.
+    /// operator; 0 where no closed node has a friction force (total FETI) or no node is closed (direct condensation). See method.md section 4.
     ///
     /// # Errors
     /// [`ContactError`] from the linear system.

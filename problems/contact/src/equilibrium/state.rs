@@ -26,6 +26,8 @@ pub struct Work {
     pub adjoint_applications: usize,
     /// Numeric factorisations of stiffness matrices (subdomains, interiors, bodies).
     pub factorizations: usize,
+    /// Dense factorisations on condensed bodies: one per Newton step, one per iteration of a cone program.
+    pub dense_factorizations: usize,
 }
 
 impl Work {
@@ -41,6 +43,7 @@ impl Work {
             dual_operator_applications: self.dual_operator_applications + other.dual_operator_applications,
             adjoint_applications: self.adjoint_applications + other.adjoint_applications,
             factorizations: self.factorizations + other.factorizations,
+            dense_factorizations: self.dense_factorizations + other.dense_factorizations,
         }
     }
 }

@@ -8,8 +8,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use faer::Mat;
 
-/// Iterations of the interior-point method.
-const MAX_ITERATIONS: u32 = 100;
+/// Iterations of the interior-point method that are worth while: a program takes some twenty.
+pub const MAX_ITERATIONS: usize = 100;
 
 /// A cone over some entries of x in a row: |the others| ≤ slope · the first; the half-line of the first where it is alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +37,19 @@ pub struct ConeProgram<'a> {
     pub cones: Vec<Cone>,
 }
 
+/// Where the method ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Minimiser {
+    /// x.
+    pub entries: Vec<f64>,
+    /// y.
+    pub multipliers: Vec<f64>,
+    /// Whether the method calls it a solution.
+    pub solved: bool,
+    /// Iterations, each of which factors a matrix of the size of H.
+    pub iterations: usize,
+}
+
 /// Columns of a sparse matrix in the order of the entries.
 fn sparse(rows: usize, columns: Vec<Vec<(usize, f64)>>) -> CscMatrix<f64> {
     let mut starts = vec![0];
@@ -52,8 +65,8 @@ fn sparse(rows: usize, columns: Vec<Vec<(usize, f64)>>) -> CscMatrix<f64> {
 }
 
 impl ConeProgram<'_> {
-    /// The minimiser x and the multipliers y, as nearly as the method gives them; none where it gives none.
-    pub fn minimise(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+    /// The minimiser x and the multipliers y, as nearly as the method gives them in so many iterations; none where it gives none.
+    pub fn minimise(&self, max_iterations: usize) -> Option<Minimiser> {
         let (count, motions) = (self.linear.len(), self.right_side.len());
         let upper = (0..count).map(|j| (0..=j).map(|i| (i, self.hessian[(i, j)])).collect()).collect();
         let mut columns: Vec<Vec<(usize, f64)>> =
@@ -73,11 +86,19 @@ impl ConeProgram<'_> {
             });
         }
         let (quadratic, constraints) = (sparse(count, upper), sparse(right.len(), columns));
-        let settings = DefaultSettingsBuilder::default().verbose(false).max_iter(MAX_ITERATIONS).build().ok()?;
+        let iterations = u32::try_from(max_iterations).unwrap_or(u32::MAX);
+        let settings = DefaultSettingsBuilder::default().verbose(false).max_iter(iterations).build().ok()?;
         let mut solver = DefaultSolver::new(&quadratic, &self.linear, &constraints, &right, &cones, settings).ok()?;
         solver.solve();
         let solution = &solver.solution;
-        let solved = matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved);
-        solved.then(|| (solution.x.clone(), solution.z[..motions].iter().map(|z| -z).collect()))
+        let entries = solution.x.clone();
+        let multipliers: Vec<f64> = solution.z[..motions].iter().map(|z| -z).collect();
+        let finite = entries.iter().chain(&multipliers).all(|entry| entry.is_finite());
+        finite.then_some(Minimiser {
+            entries,
+            multipliers,
+            solved: matches!(solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved),
+            iterations: solution.iterations as usize,
+        })
     }
 }

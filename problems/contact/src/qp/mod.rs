@@ -21,7 +21,7 @@ mod separable_set;
 pub mod smalse;
 
 #[cfg(feature = "interior-point")]
-pub use cone::{Cone, ConeProgram};
+pub use cone::{Cone, ConeProgram, MAX_ITERATIONS, Minimiser};
 pub use error::QpError;
 pub use face::Face;
 pub use lanczos::largest_eigenvalue;

@@ -107,7 +107,8 @@ fn an_obstacle_out_of_reach_holds_nothing() {
 #[test]
 fn a_refusal_without_proof_says_what_was_tried() {
     let text = refusal(pushed(4, 3.0, 0.3, waves(0.0), [8.0, 2.0, 0.0])).to_string();
-    let words = ["no state found", "Total FETI", "products with F", "Direct condensation", "continuation"];
+    let words =
+        ["no state found", "Total FETI", "products with F", "Direct condensation", "continuation", "cone programs"];
     assert!(words.iter().all(|word| text.contains(word)) && !text.contains("no equilibrium"), "{text}");
 }
 

@@ -4,6 +4,7 @@
 
 mod closed_forms;
 mod clusters;
+mod cone_programs;
 mod dual_qp;
 mod fields;
 mod flat_and_tall_bricks;

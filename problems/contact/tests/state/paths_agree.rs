@@ -1,9 +1,10 @@
 //! Independent paths give the same state: TFETI against direct condensation, different tearings, different numbers of threads.
 
+use contact::body::mesh::Face;
 use contact::communication::InProcess;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind, Wanted};
 use contact::equilibrium::ContactProblem;
-use contact::scene::{Scene, hertz, signorini};
+use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
 use contact::tfeti::{Precision, PreconditionerKind, TornSolver};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
 use std::sync::Arc;
@@ -138,4 +139,18 @@ fn warm_start_ends_at_the_same_state() {
         assert_same(&cold, &warm, "warm start");
         assert!(warm.work().newton_steps <= cold.work().newton_steps, "{:?} {:?}", warm.work(), cold.work());
     }
+}
+
+/// Supports leave a motion free that frictionless contact does not feel and no load drives: no force depends on it, and the
+/// rounding of its jumps must not be taken for a motion.
+#[test]
+fn a_motion_without_jumps_changes_no_force() {
+    let mut scene = Scene { friction: 0.0, ..signorini().unwrap() };
+    scene.lower.supports = vec![Support { face: Face::Bottom, components: [true, false, true] }];
+    scene.lower.loads = vec![Load { face: Face::X2Max, traction: [0.0, 0.0, 3000.0] }];
+    scene.counter_surface = CounterSurface::Sphere { apex: 100.1, radius: 1e4 };
+    let (_, torn) = solve(scene.clone(), SolverKind::Newton, 4, 2);
+    let (_, direct) = solve(scene, SolverKind::Direct, 4, 2);
+    assert!(torn.forces.total_normal_force() > 0.0);
+    assert_same(&torn, &direct, "free along x2");
 }

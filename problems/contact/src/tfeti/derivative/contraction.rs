@@ -76,7 +76,9 @@ impl TornContact<'_> {
         Ok(Diagnosis { contraction, condition: None })
     }
 
-    /// A rough |Φ′ Ψ|/|Ψ| at the slip bounds Ψ of the state, by at most so many products with F; 0 without sliding nodes.
+    /// A rough |Φ′ Ψ|/|Ψ| at the slip bounds Ψ of the state, by at most so many products with F; 0 without friction forces. Where no
+    /// node slides, Φ′ is that of all closed nodes sliding along their friction forces: where they stick, slip bounds change
+    /// nothing nearby, but nodes that only friction keeps closed may as well be open.
     ///
     /// # Errors
     /// [`ContactError::Unheld`] when the closed nodes leave a motion free.
@@ -86,14 +88,31 @@ impl TornContact<'_> {
         forces: &[f64],
         max_products: usize,
     ) -> Result<f64, ContactError> {
-        let sliding = self.sliding(linearizations);
+        let mut linearizations = linearizations.to_vec();
+        if self.sliding(&linearizations).is_empty() {
+            self.let_slide(&mut linearizations, forces);
+        }
+        let sliding = self.sliding(&linearizations);
         if sliding.is_empty() {
             return Ok(0.0);
         }
-        let active = self.active_set(linearizations.to_vec(), Friction::Tresca)?;
+        let active = self.active_set(linearizations, Friction::Tresca)?;
         let bounds: Vec<f64> = sliding.iter().map(|(start, ..)| self.boundary.friction * forces[*start]).collect();
         let (image, _) = self.bound_change(&active, &sliding, &bounds, ROUGH_REDUCTION, max_products.saturating_sub(1));
         Ok(norm(&image) / norm(&bounds))
+    }
+
+    /// Makes sticking nodes slide along their friction forces.
+    fn let_slide(&self, linearizations: &mut [Linearization], forces: &[f64]) {
+        for (point, linearization) in self.boundary.points.iter().zip(linearizations) {
+            let friction = &forces[point.rows()][1..];
+            let size = norm(friction);
+            if *linearization == Linearization::Stick && size > 0.0 {
+                let mut direction = [0.0; 2];
+                direction.iter_mut().zip(friction).for_each(|(entry, force)| *entry = force / size);
+                *linearization = Linearization::Slip { direction, ratio: 1.0 };
+            }
+        }
     }
 
     /// First row, number of tangential rows and direction of the sliding nodes.

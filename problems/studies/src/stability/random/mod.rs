@@ -1,6 +1,5 @@
 //! Random scenes: whether the default finds an equilibrium wherever any path does, never a wrong one, at a bounded cost.
 
-mod cone;
 mod paths;
 mod scenes;
 

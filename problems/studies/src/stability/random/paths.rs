@@ -1,6 +1,5 @@
 //! The paths to a state of a random scene, and what is found of each.
 
-use crate::stability::random::cone;
 use contact::WorkEstimate;
 use contact::communication::InProcess;
 use contact::contact_shape::{AnySolver, SolverKind, Wanted};
@@ -117,14 +116,15 @@ impl Examined {
         })
     }
 
-    /// The state by cone programs, brought to rounding by Newton's method from there.
+    /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without its limit
+    /// on work; what it has in common with the default is checked by the residuals, which are computed in another way.
     pub fn by_cone_programs(&self) -> Outcome {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));
         let contact = solver.and_then(|solver| solver.contact(&self.controls));
         let mut contact = contact.map_err(|error| error.to_string())?;
-        let near = cone::equilibrium(&contact).ok_or("the cone program was not solved")?;
-        let unknowns = contact.newton_from(&near).ok_or("Newton's method from the cone program did not converge")?;
+        let found = contact.by_cone_programs(TOLERANCE, usize::MAX);
+        let unknowns = found.unknowns.ok_or_else(|| format!("{} cone programs led to no state", found.count))?;
         let (forces, _) = contact.dimensional(&unknowns);
         let normal: Vec<f64> = self.problem.boundary.points.iter().map(|point| forces[point.start].max(0.0)).collect();
         let residual = norm(&contact.residual(&unknowns, 0.0).0);

@@ -1,0 +1,93 @@
+//! The last resort of direct condensation, driven alone: cone programs lead to the states that Newton's method finds.
+
+use contact::body::elasticity::Material;
+use contact::body::mesh::Face;
+use contact::direct::DirectSolver;
+use contact::equilibrium::{ContactProblem, ContactSolver};
+use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, hertz, signorini};
+use contact::shape::ShapeBounds;
+use std::sync::Arc;
+use testset::kit::wavy;
+
+/// Steps that no scene of these tests needs.
+const MANY_STEPS: usize = 10_000;
+
+fn problem(scene: Scene, mesh: usize, friction: f64) -> Arc<ContactProblem> {
+    Arc::new(ContactProblem::new(Scene { mesh: [mesh; 3], subdomains: [1; 3], friction, ..scene }).unwrap())
+}
+
+/// Σσ⁴ over the contact nodes.
+fn objective(problem: &ContactProblem, normal: impl Iterator<Item = f64>) -> f64 {
+    problem.boundary.points.iter().zip(normal).map(|(point, force)| (force.max(0.0) / point.area).powi(4)).sum()
+}
+
+#[test]
+fn cone_programs_lead_to_the_states_of_newtons_method() {
+    for (scene, name) in [(signorini().unwrap(), "signorini"), (hertz().unwrap(), "hertz")] {
+        for friction in [0.0, 0.3, 1.0] {
+            let problem = problem(scene.clone(), 5, friction);
+            let controls = wavy(problem.scene.start_height, 36);
+            let solver = DirectSolver::new(Arc::clone(&problem)).unwrap();
+            let state = solver.solve(&controls, None, 0.0).unwrap();
+            let mut contact = solver.contact(&controls).unwrap();
+            let found = contact.by_cone_programs(0.0, MANY_STEPS);
+            let (forces, _) = contact.dimensional(found.unknowns.as_ref().unwrap());
+            let expected = objective(&problem, state.forces.normal.iter().copied());
+            let normal = problem.boundary.points.iter().map(|point| forces[point.start]);
+            let difference = (objective(&problem, normal) / expected - 1.0).abs();
+            println!(
+                "{name}, friction {friction}: {} programs, {} steps, {difference:.1e}",
+                found.count,
+                found.steps()
+            );
+            assert!(difference < 1e-7, "{name}, friction {friction}: {difference:.1e}");
+            // Each program takes some iterations, and Newton's method some steps from the last one.
+            assert!(found.count >= 1 && found.steps() > 5 * found.count, "{} {}", found.count, found.steps());
+        }
+    }
+}
+
+/// Without a step nothing is tried, and the problem is left as it was.
+#[test]
+fn cone_programs_keep_within_their_work() {
+    let problem = problem(signorini().unwrap(), 4, 0.3);
+    let mut contact = DirectSolver::new(problem).unwrap().contact(&[100.0; 36]).unwrap();
+    let before = contact.constant().to_vec();
+    for steps in [0, 3] {
+        let found = contact.by_cone_programs(0.0, steps);
+        assert!(found.unknowns.is_none() && found.steps() <= steps, "{}", found.steps());
+        assert_eq!(contact.constant(), before);
+    }
+}
+
+/// Scene 1401 of seed 3 of the random study: a thin plate that contact holds against a push. Continuation ends at a fold.
+#[test]
+fn the_last_resort_finds_what_continuation_loses() {
+    let scene = Scene {
+        size: [1.0869691108670812e1, 1.5321819622461916e-1],
+        mesh: [8, 4, 8],
+        subdomains: [1; 3],
+        friction: 1.5489828758814062,
+        lower: BodyScene {
+            material: Material::new(2.625089606217722e5, 4.9751755389752494e-1).unwrap(),
+            supports: vec![Support { face: Face::X1Min, components: [true, true, false] }],
+            loads: vec![Load {
+                face: Face::Bottom,
+                traction: [-1.3464520863463144e-3, 4.64168935388694e-3, 1.2777216699740348e-2],
+            }],
+        },
+        counter_surface: CounterSurface::Plane { height: 1.9529823602574257 },
+        start_height: 1.9529823602574257,
+        control_points: [4, 4],
+        bounds: ShapeBounds { minimum_height: 0.19, slope: 1e9, volume: [0.0, 1e27] },
+        ..signorini().unwrap()
+    };
+    let controls = [scene.start_height; 16];
+    let solver = DirectSolver::new(Arc::new(ContactProblem::new(scene).unwrap())).unwrap();
+    let state = solver.solve(&controls, None, 1e-12).unwrap();
+    let reason = state.reason.clone().unwrap_or_default();
+    assert!(reason.contains("cone program"), "{reason}");
+    assert!(state.forces.residuals.largest() < 1e-8, "{}", state.forces.residuals);
+    let work = state.work();
+    assert!(work.dense_factorizations > work.newton_steps, "{work:?}");
+}
