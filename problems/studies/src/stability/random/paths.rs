@@ -117,7 +117,7 @@ impl Examined {
     }
 
     /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without its limit
-    /// on work; what it has in common with the default is checked by the residuals, which are computed in another way.
+    /// on work, and so is its residual; the residuals of the other paths are computed by a routine of the study.
     pub fn by_cone_programs(&self) -> Outcome {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));
