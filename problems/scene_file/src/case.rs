@@ -113,7 +113,7 @@ fn counter_surface(section: &CounterSection, size: [f64; 2], folder: &Path) -> R
     Ok(match section {
         &CounterSection::Plane { height } => CounterSurface::Plane { height },
         &CounterSection::Waves { base, first, second, period } => CounterSurface::Waves { base, first, second, period },
-        &CounterSection::Sphere { apex, radius } => CounterSurface::Sphere { apex, radius },
+        &CounterSection::Sphere { apex, radius } => CounterSurface::Sphere { apex, radius, centre: [0.0; 2] },
         CounterSection::Grid { file } => CounterSurface::Grid(grid_file::read(&folder.join(file), size, "mm")?),
     })
 }

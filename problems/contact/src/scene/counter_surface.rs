@@ -18,15 +18,8 @@ pub enum CounterSurface {
         /// Wave length, mm.
         period: f64,
     },
-    /// `apex + R − √(R² − x₁² − x₂²)`: a sphere that touches the height `apex` over the corner (0, 0).
+    /// `apex + R − √(R² − r²)` at the distance r from the centre: a sphere that touches the height `apex` there.
     Sphere {
-        /// Height of the lowest point, mm.
-        apex: f64,
-        /// Radius R, mm.
-        radius: f64,
-    },
-    /// As [`CounterSurface::Sphere`], touching over any point.
-    SphereAt {
         /// Height of the lowest point, mm.
         apex: f64,
         /// Radius R, mm.
@@ -66,8 +59,7 @@ impl CounterSurface {
                 let angle = 2.0 * std::f64::consts::PI / period;
                 first * (angle * x1).sin() + second * (angle * x2).cos() + base
             }
-            &Self::Sphere { apex, radius } => apex + rise(radius, [x1, x2]),
-            &Self::SphereAt { apex, radius, centre } => apex + rise(radius, [x1 - centre[0], x2 - centre[1]]),
+            &Self::Sphere { apex, radius, centre } => apex + rise(radius, [x1 - centre[0], x2 - centre[1]]),
             // Nodes on the edge belong to the face, whatever rounding says.
             &Self::Punch { height, half_width, relief } => {
                 height + if x1.abs() <= half_width * (1.0 + 1e-9) { 0.0 } else { relief }
@@ -93,8 +85,7 @@ impl CounterSurface {
                 let square = (2.0 * std::f64::consts::PI / period).powi(2);
                 (whole, [square * first.abs(), 0.0, square * second.abs()])
             }
-            &Self::Sphere { radius, .. } => (whole, sphere(radius, [0.0; 2])),
-            &Self::SphereAt { radius, centre, .. } => (whole, sphere(radius, centre)),
+            &Self::Sphere { radius, centre, .. } => (whole, sphere(radius, centre)),
             Self::Punch { .. } => return None,
             Self::Plane { .. } => (whole, [0.0; 3]),
             Self::Grid(grid) => return Some(grid.pieces()),
@@ -112,8 +103,8 @@ mod tests {
         let size = [10.0, 7.0];
         for surface in [
             CounterSurface::Waves { base: 3.0, first: -0.5, second: 0.7, period: 5.0 },
-            CounterSurface::Sphere { apex: 1.0, radius: 20.0 },
-            CounterSurface::SphereAt { apex: 1.0, radius: 30.0, centre: [4.0, 9.0] },
+            CounterSurface::Sphere { apex: 1.0, radius: 20.0, centre: [0.0; 2] },
+            CounterSurface::Sphere { apex: 1.0, radius: 30.0, centre: [4.0, 9.0] },
         ] {
             let [c11, c12, c22] = surface.pieces(size).expect("smooth").curvature;
             // Second differences: rounding is 1e-15/step², and their error of higher order is small on this step.

@@ -62,7 +62,7 @@ pub fn hertz() -> Result<Scene, SceneError> {
             },
             top: 20.0,
         }),
-        counter_surface: CounterSurface::Sphere { apex: 10.0, radius: 20.0 },
+        counter_surface: CounterSurface::Sphere { apex: 10.0, radius: 20.0, centre: [0.0; 2] },
         friction: 0.3,
         surface: SplineKind::BSpline(3),
         control_points: [6, 6],

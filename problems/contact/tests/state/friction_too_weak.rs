@@ -36,7 +36,7 @@ fn between_bodies(mut scene: Scene) -> Scene {
 }
 
 fn sphere(penetration: f64) -> CounterSurface {
-    CounterSurface::SphereAt { apex: 100.0 - penetration, radius: 2000.0, centre: [50.0, 50.0] }
+    CounterSurface::Sphere { apex: 100.0 - penetration, radius: 2000.0, centre: [50.0, 50.0] }
 }
 
 fn waves(penetration: f64) -> CounterSurface {

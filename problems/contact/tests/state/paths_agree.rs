@@ -148,7 +148,7 @@ fn a_motion_without_jumps_changes_no_force() {
     let mut scene = Scene { friction: 0.0, ..signorini().unwrap() };
     scene.lower.supports = vec![Support { face: Face::Bottom, components: [true, false, true] }];
     scene.lower.loads = vec![Load { face: Face::X2Max, traction: [0.0, 0.0, 3000.0] }];
-    scene.counter_surface = CounterSurface::Sphere { apex: 100.1, radius: 1e4 };
+    scene.counter_surface = CounterSurface::Sphere { apex: 100.1, radius: 1e4, centre: [0.0; 2] };
     let (_, torn) = solve(scene.clone(), SolverKind::Newton, 4, 2);
     let (_, direct) = solve(scene, SolverKind::Direct, 4, 2);
     assert!(torn.forces.total_normal_force() > 0.0);

@@ -46,7 +46,7 @@ pub fn cases() -> Vec<Case> {
 /// A quarter of a ball of some radius, pressed by some pressure on its top.
 fn ball(radius: f64, pressure: f64) -> Result<Scene, SceneError> {
     let mut scene = pair()?;
-    scene.counter_surface = CounterSurface::Sphere { apex: 10.0, radius };
+    scene.counter_surface = CounterSurface::Sphere { apex: 10.0, radius, centre: [0.0; 2] };
     scene.friction = 0.3;
     if let Some(upper) = &mut scene.upper {
         upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -pressure] }];

@@ -49,7 +49,7 @@ pub fn cases() -> Vec<Case> {
         cases.push(ContactCase::new(block()).at(controls).refused("InvertedElement").case(GROUP, label));
     }
     let scene = block().map(|mut scene| {
-        scene.counter_surface = CounterSurface::Sphere { apex: 100.0, radius: 50.0 };
+        scene.counter_surface = CounterSurface::Sphere { apex: 100.0, radius: 50.0, centre: [0.0; 2] };
         scene
     });
     cases.push(ContactCase::new(scene).refused("Scene").case(GROUP, "counter surface that ends above the base"));

@@ -33,9 +33,8 @@ fn rescaled(scene: &Scene, s: f64) -> Result<Scene, SceneError> {
         CounterSurface::Waves { base, first, second, period } => {
             CounterSurface::Waves { base: s * base, first: s * first, second: s * second, period: s * period }
         }
-        CounterSurface::Sphere { apex, radius } => CounterSurface::Sphere { apex: s * apex, radius: s * radius },
-        CounterSurface::SphereAt { apex, radius, centre } => {
-            CounterSurface::SphereAt { apex: s * apex, radius: s * radius, centre: centre.map(|x| s * x) }
+        CounterSurface::Sphere { apex, radius, centre } => {
+            CounterSurface::Sphere { apex: s * apex, radius: s * radius, centre: centre.map(|x| s * x) }
         }
         CounterSurface::Punch { height, half_width, relief } => {
             CounterSurface::Punch { height: s * height, half_width: s * half_width, relief: s * relief }

@@ -19,7 +19,7 @@ const POISSON: f64 = 0.3;
 
 fn indented(bricks: usize, depth: f64) -> Scene {
     let material = Material::new(MODULUS, POISSON).unwrap();
-    let sphere = CounterSurface::Sphere { apex: SIDE - depth, radius: RADIUS };
+    let sphere = CounterSurface::Sphere { apex: SIDE - depth, radius: RADIUS, centre: [0.0; 2] };
     let mut scene = block([SIDE, SIDE], SIDE, [bricks; 3], material, sphere);
     scene.subdomains = [2; 3];
     scene.lower.supports =

@@ -19,7 +19,7 @@ const FRICTION: f64 = 0.3;
 
 fn pushed(bricks: usize, traction: f64) -> Scene {
     let material = Material::new(1.0e4, 0.3).unwrap();
-    let sphere = CounterSurface::SphereAt { apex: SIDE - 0.15, radius: 100.0, centre: [SIDE, 0.0] };
+    let sphere = CounterSurface::Sphere { apex: SIDE - 0.15, radius: 100.0, centre: [SIDE, 0.0] };
     let mut scene = block([2.0 * SIDE, SIDE], SIDE, [2 * bricks, bricks, bricks], material, sphere);
     scene.subdomains = [4, 2, 2];
     scene.friction = FRICTION;
