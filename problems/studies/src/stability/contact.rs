@@ -7,6 +7,7 @@ use contact::error::{ContactError, SceneError};
 use contact::scene::Scene;
 use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
 use std::sync::Arc;
+use testset::kit::wavy;
 
 /// What a case is expected to end in.
 #[derive(Debug, Clone)]
@@ -55,6 +56,12 @@ impl ContactCase {
         self
     }
 
+    /// At a gently wavy surface below the start height.
+    #[must_use]
+    pub fn wavy(self) -> Self {
+        Self { controls: self.scene.as_ref().ok().map(wavy_controls), ..self }
+    }
+
     /// Expects a refusal of all paths.
     #[must_use]
     pub fn refused(mut self, kind: &'static str) -> Self {
@@ -85,6 +92,11 @@ impl ContactCase {
         self.paper = true;
         self
     }
+}
+
+/// Control heights of a gently wavy surface below the start height of a scene.
+pub fn wavy_controls(scene: &Scene) -> Vec<f64> {
+    wavy(scene.start_height, scene.control_points.iter().product())
 }
 
 /// A state found by one path.

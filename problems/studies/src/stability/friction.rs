@@ -2,7 +2,7 @@
 
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
-use crate::stability::scenes::{block, footed, pair, wavy};
+use crate::stability::scenes::{block, footed, pair};
 use contact::body::mesh::Face;
 use contact::scene::{Load, Scene};
 
@@ -13,8 +13,7 @@ pub fn cases() -> Vec<Case> {
     for friction in [0.0, 1e-12, 0.3, 0.9, 1.5, 5.0] {
         for (name, scene) in [("block", block()), ("two bodies", pair())] {
             let scene = scene.map(|scene| Scene { friction, ..scene });
-            let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
-            let case = ContactCase::new(scene).at(controls).with_paper();
+            let case = ContactCase::new(scene).wavy().with_paper();
             cases.push(case.case(GROUP, format!("𝓕 = {friction:?}, {name}")));
         }
     }

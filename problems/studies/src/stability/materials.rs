@@ -2,7 +2,7 @@
 
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
-use crate::stability::scenes::{block, pair, wavy, with_materials};
+use crate::stability::scenes::{block, pair, with_materials};
 use contact::body::elasticity::Formulation;
 
 const POISSON: &str = "Poisson's ratio";
@@ -26,8 +26,7 @@ pub fn cases() -> Vec<Case> {
                     }
                     scene
                 });
-                let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
-                let mut case = ContactCase::new(scene).at(controls);
+                let mut case = ContactCase::new(scene).wavy();
                 if ratio > 0.4985 && formulation == Formulation::Standard {
                     // Next to the rounding floor, the last bits decide whether the floor is seen.
                     case = case.limit([&["BeyondPrecision", "NotConverged"], &[]], LOCKED);
@@ -40,8 +39,7 @@ pub fn cases() -> Vec<Case> {
     for exponent in [-8, -6, -4, -2, 2, 4, 6, 8] {
         let ratio = 10.0_f64.powi(exponent);
         let scene = with_materials(pair(), &[(7.0e4, 0.35), (7.0e4 * ratio, 0.29)]);
-        let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
-        let mut case = ContactCase::new(scene).at(controls);
+        let mut case = ContactCase::new(scene).wavy();
         if exponent >= 6 {
             let cause =
                 "condensation rounds the rigid motion of the upper body at its own stiffness; TFETI keeps it apart";

@@ -19,12 +19,6 @@ pub fn pair() -> Result<Scene, SceneError> {
     Ok(Scene { mesh: [4; 3], subdomains: [2; 3], ..hertz()? })
 }
 
-/// Control heights of a gently wavy surface below the start height.
-pub fn wavy(scene: &Scene, amplitude: f64) -> Vec<f64> {
-    let count = scene.control_points[0] * scene.control_points[1];
-    (0..count).map(|index| scene.start_height * (1.0 - amplitude * (1.0 + (1.3 * index as f64).sin()))).collect()
-}
-
 /// Two flat blocks of 10 × 10 × 10 mm on each other in uniform stress: pressure `pressure`, shear `shear` along x₁ (MPa),
 /// carried by tractions on the top and on the sides; the lower block stands on its held base, the upper one is held by
 /// contact only. E = 1000 MPa, ν = 0. The exact state is λ_N = pressure·A, λ_T = −shear·A along x₁ at every node.

@@ -2,7 +2,7 @@
 
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;
-use crate::stability::scenes::{HELD, block, pair, wavy};
+use crate::stability::scenes::{HELD, block, pair};
 use contact::body::mesh::Face;
 use contact::scene::{Scene, Support};
 
@@ -20,8 +20,7 @@ pub fn cases() -> Vec<Case> {
     ] {
         for (name, scene) in [("block", block()), ("two bodies", pair())] {
             let scene = scene.map(|scene| Scene { subdomains, ..scene });
-            let controls = scene.as_ref().map(|scene| wavy(scene, 0.004)).unwrap_or_default();
-            cases.push(ContactCase::new(scene).at(controls).case(GROUP, format!("{label}, {name}")));
+            cases.push(ContactCase::new(scene).wavy().case(GROUP, format!("{label}, {name}")));
         }
     }
     let thin = block().map(|scene| Scene { mesh: [4, 4, 1], subdomains: [2, 2, 1], ..scene });
