@@ -1,7 +1,6 @@
-//! A case: its place in the matrix and how it is run; all cases.
+//! A case: its place in the matrix and how it is run.
 
 use crate::stability::record::Record;
-use crate::stability::{contacts, friction, geometry, loads, locking, materials, optimizer, tearing, units};
 use std::time::Instant;
 
 /// One line of the matrix.
@@ -39,21 +38,4 @@ impl Case {
         let record = (self.run)();
         Record { group: self.group, name: self.name.clone(), seconds: clock.elapsed().as_secs_f64(), ..record }
     }
-}
-
-/// The whole matrix, in the order of the page.
-pub fn all() -> Vec<Case> {
-    let groups = [
-        materials::cases(),
-        locking::cases(),
-        geometry::cases(),
-        friction::cases(),
-        contacts::cases(),
-        loads::cases(),
-        contacts::kinks(),
-        units::cases(),
-        tearing::cases(),
-        optimizer::cases(),
-    ];
-    groups.into_iter().flatten().collect()
 }

@@ -1,7 +1,7 @@
 //! The command line of the study.
 
 use crate::stability::record::{Outcome, Record, Report};
-use crate::stability::{case, optimizer_words, random, table};
+use crate::stability::{matrix, optimizer_words, random, table};
 use clap::Parser;
 use problems::commands::{Failure, Folder, arguments, finish, json, notice};
 use std::path::PathBuf;
@@ -71,7 +71,7 @@ fn at_random(arguments: &Arguments, count: usize) -> Result<String, Failure> {
 fn select(arguments: &Arguments) -> Result<Vec<Record>, Failure> {
     let wanted = |text: &str| arguments.only.as_deref().is_none_or(|only| text.contains(only));
     let mut records = Vec::new();
-    for case in case::all() {
+    for case in matrix::all() {
         if (wanted(case.group) || wanted(&case.name)) && (case.quick || !arguments.quick) {
             let record = case.run();
             notice(&table::progress(&record));
