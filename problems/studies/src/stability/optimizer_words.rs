@@ -4,6 +4,7 @@
 //! *confirmed* where the oracle is noisy and says so, or a *noise limit* of a convex function above ten times the noise. A failure
 //! is false if a run ends by a failure of the oracle or of the subproblem above the gap although the oracle answers at the best point.
 
+use crate::markdown::table;
 use crate::stability::optimizer_stationarity::is_clarke_stationary;
 use crate::stability::optimizer_variants::{Changed, Variant, variants};
 use nonsmooth::{
@@ -202,7 +203,7 @@ pub fn page(as_json: bool) -> Result<String, Failure> {
 
 /// Totals, and how the runs of each kind of change ended.
 fn markdown(report: &WordReport) -> String {
-    let mut text = format!(
+    let text = format!(
         "{} runs, {} false confirmed, {} false failures. As they are: {} of {} convex problems confirmed, {} of {} of all; \
          evaluations of the convex ones {:.3} × those to 1e-6.\n\n",
         report.runs,
@@ -214,9 +215,6 @@ fn markdown(report: &WordReport) -> String {
         report.all_confirmed.1,
         report.convex_cost
     );
-    text +=
-        "| change | runs | confirmed | unconfirmed | noise limit | step too short | failed | other limits | false |\n";
-    text += &format!("|{}\n", "---|".repeat(9));
     let mut groups: Vec<&str> = vec![];
     for record in &report.records {
         if !groups.contains(&record.variant.group()) {
@@ -224,11 +222,13 @@ fn markdown(report: &WordReport) -> String {
         }
     }
     let words = [Word::Confirmed, Word::Unconfirmed, Word::Noise, Word::Short, Word::Failed, Word::Limit];
-    for group in groups {
+    let rows = groups.into_iter().map(|group| {
         let of = || report.records.iter().filter(|r| r.variant.group() == group && r.word != Word::NoStart);
-        let counts = words.map(|word| of().filter(|record| record.word == word).count().to_string());
+        let counts = words.map(|word| of().filter(|record| record.word == word).count());
         let wrong = of().filter(|record| record.false_confirmed || record.false_failure).count();
-        text += &format!("| {group} | {} | {} | {wrong} |\n", of().count(), counts.join(" | "));
-    }
-    text
+        let numbers = [&[of().count()], &counts[..], &[wrong]].concat();
+        std::iter::once(group.to_owned()).chain(numbers.iter().map(usize::to_string)).collect()
+    });
+    let head = "change | runs | confirmed | unconfirmed | noise limit | step too short | failed | other limits | false";
+    text + &table(head, rows)
 }
