@@ -8,15 +8,10 @@ use crate::accuracy::extent::{Extent, case};
 use crate::accuracy::objective::{norm, objective_of};
 use crate::scaling::SceneName;
 use contact::contact_objective::mean_height_coordinates;
-use contact::contact_shape::ContactWarmStart;
 use contact::cost::PressureMeasure;
-use nonsmooth::{
-    AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, NonsmoothObjective, OracleError, Request, StateSolver,
-    VariableScaling, Vector,
-};
+use nonsmooth::{AccuracyPolicy, BundleTrust, BundleTrustConfig, VariableScaling, Vector};
 use problems::commands::{ContactObjective, Failure, SolvedShape};
 use serde::Serialize;
-use std::cell::RefCell;
 use std::time::Instant;
 
 /// What a course has come to.
@@ -96,32 +91,6 @@ struct Run {
     seconds: f64,
 }
 
-/// Θ that counts its products with the dual operator, evaluation by evaluation.
-struct Metered<'a> {
-    objective: &'a ContactObjective,
-    products: RefCell<Vec<usize>>,
-}
-
-impl NonsmoothObjective for Metered<'_> {
-    type WarmStart = ContactWarmStart;
-
-    fn dimension(&self) -> usize {
-        self.objective.dimension()
-    }
-
-    fn evaluate(&self, request: &Request<'_, ContactWarmStart>) -> Result<Answer<ContactWarmStart>, OracleError> {
-        let before = self.products.borrow().last().copied().unwrap_or(0);
-        // A failed evaluation has no count of its own.
-        self.products.borrow_mut().push(before);
-        let state = self.objective.solver().solve(request.point, request.warm_start, request.accuracy)?;
-        let evaluation = self.objective.differentiate(request.point, &state)?;
-        if let Some(last) = self.products.borrow_mut().last_mut() {
-            *last += state.work().dual_operator_applications;
-        }
-        Ok(Answer::Accurate(evaluation))
-    }
-}
-
 /// Runs all strategies on the levels of `extent`.
 ///
 /// # Errors
@@ -186,18 +155,18 @@ fn minimize(
     let config = BundleTrustConfig {
         max_evaluations,
         accuracy,
+        composite_model: false,
         first_step: Some(first_step),
         scaling: VariableScaling::Linear(mean_height_coordinates(&start, first_step)),
         ..BundleTrustConfig::default()
     };
-    let metered = Metered { objective, products: RefCell::default() };
     let set = objective.solver().problem().admissible.polyhedron().clone();
-    let report = BundleTrust::new(config)?.constraints(set).minimize(&metered, start)?;
-    let products = metered.products.borrow();
-    let mut best = f64::INFINITY;
-    let milestones = report.history.iter().zip(products.iter()).enumerate().map(|(index, (record, &products))| {
+    let report = BundleTrust::new(config)?.constraints(set).minimize(objective, start)?;
+    let (mut best, mut work) = (f64::INFINITY, 0.0);
+    let milestones = report.history.iter().enumerate().map(|(index, record)| {
         best = best.min(record.center_value);
-        Milestone { evaluations: index + 1, work: products as f64, seconds: record.seconds, best }
+        work += record.work as f64;
+        Milestone { evaluations: index + 1, work, seconds: record.seconds, best }
     });
     Ok(Run { controls: report.solution, history: milestones.collect(), seconds: clock.elapsed().as_secs_f64() })
 }
