@@ -3,6 +3,7 @@
 
 pub mod accuracy;
 pub mod headline;
+mod held_block;
 mod markdown;
 mod rates;
 pub mod scaling;

@@ -8,7 +8,8 @@
 //! the gradients are not better than elsewhere (at 2 × 2 × 2 they are). The stress recovered for pictures is compared where it
 //! is taken: at the centres of the bricks, and as a mean at the nodes.
 
-use contact::body::elasticity::brick::{self, DOFS, GaussPoint, Nodes};
+use crate::held_block::{THREE_POINTS, samples, solution};
+use contact::body::elasticity::brick::{self, DOFS};
 use contact::body::elasticity::hex8;
 use contact::body::elasticity::stress::{COMPONENTS, von_mises};
 use contact::body::elasticity::{Formulation, Material};
@@ -38,10 +39,6 @@ pub struct ManufacturedErrors {
 const AMPLITUDE: [f64; 3] = [1.0, -0.6, 0.8];
 const WAVE: [f64; 3] = [1.7, 2.3, -1.1];
 const PHASE: f64 = 0.4;
-/// Gauss points and weights on [−1, 1], exact to degree five.
-const GAUSS: [(f64, f64); 3] =
-    [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
-
 /// The smooth solution.
 struct Wave {
     force: [f64; 3],
@@ -74,29 +71,6 @@ impl Wave {
     }
 }
 
-/// Shape functions, their gradients and the weight at one point of a brick.
-struct Sample {
-    values: [f64; 8],
-    point: GaussPoint<f64>,
-    x: [f64; 3],
-}
-
-fn samples(nodes: &Nodes<f64>) -> Vec<Sample> {
-    let mut samples = Vec::with_capacity(27);
-    for (first, u) in GAUSS {
-        for (second, v) in GAUSS {
-            for (third, w) in GAUSS {
-                let values = brick::shape_values([first, second, third]);
-                let mut point = brick::sample(nodes, [first, second, third]);
-                point.volume *= u * v * w;
-                let x = std::array::from_fn(|axis| nodes.iter().zip(values).map(|(node, n)| n * node[axis]).sum());
-                samples.push(Sample { values, point, x });
-            }
-        }
-    }
-    samples
-}
-
 /// Solves on `bricks`³ bricks and integrates the errors.
 ///
 /// # Errors
@@ -111,7 +85,7 @@ pub fn manufactured_errors(bricks: usize) -> Result<ManufacturedErrors, Failure>
     for brick in pattern.bricks() {
         let dofs = pattern.brick_dofs(brick);
         let local: [f64; DOFS] = dofs.map(|dof| u[dof]);
-        for sample in samples(&block.brick(brick)) {
+        for sample in samples(&block.brick(brick), &THREE_POINTS) {
             let (exact, slope) = (Wave::displacement(sample.x), Wave::gradient(sample.x));
             let found = brick::displacement_gradient(&sample.point, &local);
             let difference = std::array::from_fn(|j| std::array::from_fn(|i| found[j][i] - slope[j][i]));
@@ -146,7 +120,9 @@ fn smooth(bricks: usize, material: &Material) -> Result<Smooth, Failure> {
     });
     let block = Block { grid, lower: vec![0.0; grid.column_count()], upper: upper.collect() };
     let pattern = LocalPattern::new(grid.cells, &[]);
-    let (free, u) = solution(&pattern, &block, material)?;
+    let wave = Wave::new(material);
+    let fields: (&dyn Fn(_) -> _, &dyn Fn(_) -> _) = (&|x| wave.body_force(x), &Wave::displacement);
+    let (free, u) = solution((&pattern, &block), material, &THREE_POINTS, fields)?;
     Ok(Smooth { block, pattern, free, u })
 }
 
@@ -199,50 +175,4 @@ pub fn manufactured_stress_errors(bricks: usize, formulation: Formulation) -> Re
 
 fn contraction(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> f64 {
     a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum()
-}
-
-/// Number of free dofs and the nodal solution: free part of K u = f − K u_D, boundary values from the smooth solution.
-fn solution(pattern: &LocalPattern, block: &Block, material: &Material) -> Result<(usize, Vec<f64>), Failure> {
-    let wave = Wave::new(material);
-    let mut values = pattern.assemble(material, |brick| block.brick(brick));
-    let size = pattern.shape.dof_count();
-    let mut right = vec![0.0; size];
-    for brick in pattern.bricks() {
-        let dofs = pattern.brick_dofs(brick);
-        for sample in samples(&block.brick(brick)) {
-            for (component, force) in wave.body_force(sample.x).into_iter().enumerate() {
-                for (a, value) in sample.values.iter().enumerate() {
-                    right[dofs[3 * a + component]] += sample.point.volume * value * force;
-                }
-            }
-        }
-    }
-    let cells = block.grid.cells;
-    let (mut prescribed, mut held) = (vec![0.0; size], vec![false; size]);
-    for node in 0..pattern.shape.node_count() {
-        let position = pattern.shape.local_position(node);
-        if position.iter().zip(cells).any(|(&index, cells)| index == 0 || index == cells) {
-            for (component, value) in Wave::displacement(block.coordinates(position)).into_iter().enumerate() {
-                (prescribed[3 * node + component], held[3 * node + component]) = (value, true);
-            }
-        }
-    }
-    let mut image = vec![0.0; size];
-    pattern.pattern.multiply(&values, &prescribed, &mut image);
-    for dof in 0..size {
-        right[dof] = if held[dof] { 0.0 } else { right[dof] - image[dof] };
-    }
-    let lower = &pattern.pattern;
-    for column in 0..size {
-        for position in lower.starts()[column] + 1..lower.starts()[column + 1] {
-            if held[column] || held[lower.rows()[position]] {
-                values[position] = 0.0;
-            }
-        }
-    }
-    let factor =
-        pattern.symbolic(&[]).and_then(|symbolic| symbolic.factorize(&values)).map_err(Failure::computation)?;
-    factor.solve_in_place(&mut right);
-    let free = held.iter().filter(|held| !**held).count();
-    Ok((free, right.iter().zip(&prescribed).map(|(free, prescribed)| free + prescribed).collect()))
 }

@@ -5,16 +5,14 @@
 //! ```
 //! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, bricks of mean dilatation keep it.
 
+use crate::held_block::{TWO_POINTS, solution};
 use crate::stability::case::Case;
 use crate::stability::record::{Outcome, Record};
-use contact::body::elasticity::brick::{DOFS, Nodes, gauss_points};
 use contact::body::elasticity::{Formulation, Material};
 use contact::body::local_pattern::LocalPattern;
 use contact::body::mesh::{Block, Grid};
-use contact::linear::cholesky::SymbolicFactor;
 use problems::commands::Failure;
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 const GROUP: &str = "locking";
 /// Meshes of a case.
@@ -43,56 +41,15 @@ pub fn field_error(cells: usize, poisson_ratio: f64, formulation: Formulation) -
     let columns = grid.column_count();
     let block = Block { grid, lower: vec![0.0; columns], upper: vec![1.0; columns] };
     let pattern = LocalPattern::new(grid.cells, &[]);
-    let mut values = pattern.assemble(&material, |brick| block.brick(brick));
-    let mut solution = vec![0.0; pattern.pattern.dimension()];
-    for brick in pattern.bricks() {
-        let forces = brick_load(&block.brick(brick), material.shear_modulus());
-        for (dof, force) in pattern.brick_dofs(brick).into_iter().zip(forces) {
-            solution[dof] += force;
-        }
-    }
-    let position = |dof: usize| pattern.shape.local_position(dof / 3);
-    let held = |dof: usize| position(dof).iter().any(|&index| index == 0 || index == cells);
-    for column in 0..pattern.pattern.dimension() {
-        for entry in pattern.pattern.starts()[column] + 1..pattern.pattern.starts()[column + 1] {
-            if held(column) || held(pattern.pattern.rows()[entry]) {
-                values[entry] = 0.0;
-            }
-        }
-        if held(column) {
-            solution[column] = 0.0;
-        }
-    }
-    let symbolic = SymbolicFactor::new(Arc::clone(&pattern.pattern), pattern.elimination_order(&[]));
-    let solved = symbolic.and_then(|symbolic| Arc::new(symbolic).solve_refined(&values, &mut solution));
-    solved.map_err(Failure::computation)?;
+    let force = |x| field(x).1.map(|f| material.shear_modulus() * f);
+    let (_, solution) = solution((&pattern, &block), &material, &TWO_POINTS, (&force, &|_| [0.0; 3]))?;
     let (mut error, mut size) = (0.0, 0.0);
     for (dof, value) in solution.iter().enumerate() {
-        let exact = field(block.coordinates(position(dof))).0[dof % 3];
+        let exact = field(block.coordinates(pattern.shape.local_position(dof / 3))).0[dof % 3];
         error += (value - exact).powi(2);
         size += exact.powi(2);
     }
     Ok((error / size).sqrt())
-}
-
-/// ∫ N_a f dV at the Gauss points.
-fn brick_load(nodes: &Nodes<f64>, shear_modulus: f64) -> [f64; DOFS] {
-    let mut forces = [0.0; DOFS];
-    for (index, point) in gauss_points(nodes).iter().enumerate() {
-        let abscissa = 1.0 / 3.0_f64.sqrt();
-        let sign = |bit: usize| if bit == 1 { 1.0 } else { -1.0 };
-        let shape: [f64; 8] = std::array::from_fn(|a| {
-            (0..3)
-                .map(|axis| 0.5 * (1.0 + sign(a >> (2 - axis) & 1) * sign(index >> (2 - axis) & 1) * abscissa))
-                .product()
-        });
-        let place: [f64; 3] = std::array::from_fn(|axis| shape.iter().zip(nodes).map(|(n, x)| n * x[axis]).sum());
-        let load = field(place).1;
-        for (dof, force) in forces.iter_mut().enumerate() {
-            *force += shear_modulus * load[dof % 3] * shape[dof / 3] * point.volume;
-        }
-    }
-    forces
 }
 
 fn record(poisson_ratio: f64, formulation: Formulation) -> Record {
