@@ -1,9 +1,12 @@
 //! The command line of the study, and all that was measured.
 
-use crate::accuracy::extent::SCENES;
-use crate::accuracy::{AlgebraStudy, ManufacturedErrors, MeshStudy, OptimizationStudy, SubgradientStudy};
-use crate::accuracy::{Extent, Part, algebra, discretisation, manufactured_errors, optimization};
-use crate::accuracy::{pictures, subgradient, tables};
+use crate::accuracy::algebra::{self, AlgebraStudy};
+use crate::accuracy::discretisation::{self, MeshStudy};
+use crate::accuracy::extent::{Extent, Part, SCENES};
+use crate::accuracy::manufactured::{ManufacturedErrors, manufactured_errors};
+use crate::accuracy::optimization::{self, OptimizationStudy};
+use crate::accuracy::subgradient::{self, SubgradientStudy};
+use crate::accuracy::{pictures, tables};
 use crate::scaling::SceneName;
 use clap::Parser;
 use problems::commands::{Failure, Folder, arguments, finish, json, notice};

@@ -1,9 +1,10 @@
 //! The pictures of a report.
 
-use crate::accuracy::discretisation::QUANTITIES;
-use crate::accuracy::{
-    AlgebraRow, AlgebraStudy, Course, MeshStudy, Milestone, OptimizationStudy, Report, SubgradientStudy, TaylorStudy,
-};
+use crate::accuracy::algebra::{AlgebraRow, AlgebraStudy};
+use crate::accuracy::cli::Report;
+use crate::accuracy::discretisation::{MeshStudy, QUANTITIES};
+use crate::accuracy::optimization::{Course, Milestone, OptimizationStudy};
+use crate::accuracy::subgradient::{SubgradientStudy, TaylorStudy};
 use crate::scaling::word;
 use figures::{Figure, FigureError, LogPlot, Series};
 

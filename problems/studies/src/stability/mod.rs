@@ -35,10 +35,10 @@ mod table;
 mod tearing;
 mod units;
 
-pub use case::{Case, all};
-pub use cli::{Arguments, run};
+pub use case::Case;
+pub use cli::run;
 pub use locking::field_error;
 pub use matrix::all;
 pub use optimizer_words::{Word, words};
 pub use random::run as random_scenes;
-pub use record::{Counts, Outcome, Path, Record, Report};
+pub use record::{Counts, Outcome, Report};
