@@ -151,20 +151,15 @@ impl NumericFactor {
         self.symbolic.solve(self.single_values(), column(b));
     }
 
-    /// The values of L.
-    pub(super) fn values(&self) -> &[f64] {
-        &self.values
-    }
-
     /// The values of L rounded to single precision.
-    pub(super) fn single_values(&self) -> &[f32] {
+    fn single_values(&self) -> &[f32] {
         self.single.get_or_init(|| self.values.iter().map(|&value| value as f32).collect())
     }
 
     /// Solves A X = B in place for a block of columns by rows, in the precision of the block.
     pub(crate) fn solve_rows_in_place<E: Real, const N: usize>(&self, b: &mut [Row<E, N>]) {
         let mut ordered: Vec<Row<E, N>> = self.symbolic.order.iter().map(|&old| b[old]).collect();
-        supernodal::solve(self.supernodes(), E::factor_values(self), &mut ordered);
+        supernodal::solve(self.supernodes(), E::chosen(&self.values, || self.single_values()), &mut ordered);
         for (&old, row) in self.symbolic.order.iter().zip(ordered) {
             b[old] = row;
         }

@@ -1,6 +1,5 @@
 //! Floating point numbers of blocks of columns: single or double precision.
 
-use crate::linear::cholesky::NumericFactor;
 use num_traits::Float;
 use std::fmt::Debug;
 
@@ -15,8 +14,8 @@ pub trait Real: Float + Debug + Send + Sync + 'static {
     /// In double precision.
     fn double(self) -> f64;
 
-    /// The values of a Cholesky factor in this precision.
-    fn factor_values(factor: &NumericFactor) -> &[Self];
+    /// The numbers of this precision, of numbers that are there in both.
+    fn chosen<'a>(double: &'a [f64], single: impl FnOnce() -> &'a [f32]) -> &'a [Self];
 }
 
 impl Real for f64 {
@@ -32,8 +31,8 @@ impl Real for f64 {
         self
     }
 
-    fn factor_values(factor: &NumericFactor) -> &[Self] {
-        factor.values()
+    fn chosen<'a>(double: &'a [f64], _single: impl FnOnce() -> &'a [f32]) -> &'a [Self] {
+        double
     }
 }
 
@@ -50,7 +49,7 @@ impl Real for f32 {
         f64::from(self)
     }
 
-    fn factor_values(factor: &NumericFactor) -> &[Self] {
-        factor.single_values()
+    fn chosen<'a>(_double: &'a [f64], single: impl FnOnce() -> &'a [f32]) -> &'a [Self] {
+        single()
     }
 }
