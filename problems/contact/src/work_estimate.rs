@@ -59,12 +59,12 @@ impl WorkEstimate {
     }
 
     /// Products with F that cost as much as a state by direct condensation.
-    pub fn products_per_condensed_state(&self) -> usize {
+    pub(crate) fn products_per_condensed_state(&self) -> usize {
         ((self.condensation + EXPECTED_STEPS * self.condensed_step) / self.product) as usize
     }
 
     /// Newton steps on condensed bodies that cost as much as so many products with F; at least those of an ordinary state.
-    pub fn condensed_steps_per_products(&self, products: usize) -> usize {
+    pub(crate) fn condensed_steps_per_products(&self, products: usize) -> usize {
         ((products as f64 * self.product / self.condensed_step) as usize).max(MIN_STEPS)
     }
 

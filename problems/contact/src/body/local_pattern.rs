@@ -54,7 +54,7 @@ impl LocalPattern {
     }
 
     /// Mean of the diagonal of a matrix, given by its values.
-    pub fn mean_diagonal(&self, values: &[f64]) -> f64 {
+    pub(crate) fn mean_diagonal(&self, values: &[f64]) -> f64 {
         let (starts, dimension) = (self.pattern.starts(), self.pattern.dimension());
         (0..dimension).map(|column| values[starts[column]]).sum::<f64>() / dimension as f64
     }
@@ -116,7 +116,7 @@ impl LocalPattern {
 }
 
 /// Three corners of a box of `cells` bricks that span a large triangle: enough to hold all rigid motions.
-pub fn fixing_nodes(cells: [usize; 3]) -> [usize; 3] {
+pub(crate) fn fixing_nodes(cells: [usize; 3]) -> [usize; 3] {
     let shape = Subdomain { first_cell: [0; 3], cells };
     let [c1, c2, c3] = cells;
     [shape.local_node([0, 0, 0]), shape.local_node([c1, c2, 0]), shape.local_node([c1, 0, c3])]

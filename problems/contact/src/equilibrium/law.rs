@@ -93,7 +93,7 @@ pub fn project<T: Scalar>(x: &[T], friction: f64, result: &mut [T]) {
 }
 
 /// Projection of a tangential vector onto the disc of a given radius.
-pub fn project_onto_disc<T: Scalar>(x: &[T], radius: T, result: &mut [T]) {
+fn project_onto_disc<T: Scalar>(x: &[T], radius: T, result: &mut [T]) {
     let mut square = T::constant(0.0);
     for &entry in x {
         square += entry * entry;

@@ -73,7 +73,7 @@ impl RigidScene {
     }
 
     /// Contact displacements (three components per node) of the motions that the supports of one body leave free.
-    pub fn own_motions(&self, body: usize) -> Vec<Vec<f64>> {
+    pub(crate) fn own_motions(&self, body: usize) -> Vec<Vec<f64>> {
         let held = self.held.iter().filter(|(holder, ..)| *holder == body);
         let own = Self { bodies: 1, held: Vec::new(), loads: Vec::new(), contact: Vec::new(), ..*self };
         let free = kernel(held.map(|&(_, point, component)| own.row(0, point, component, 1.0)), 1);
@@ -93,7 +93,7 @@ impl RigidScene {
     ///
     /// # Errors
     /// [`ContactError::NoEquilibrium`] naming the motion and the resultant that cannot be carried.
-    pub fn analyse(&self, boundary: &ContactBoundary) -> Result<Vec<Motion>, ContactError> {
+    pub(crate) fn analyse(&self, boundary: &ContactBoundary) -> Result<Vec<Motion>, ContactError> {
         let free = kernel(self.held_rows(), self.bodies);
         if free.is_empty() {
             return Ok(Vec::new());

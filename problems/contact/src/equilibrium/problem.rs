@@ -62,7 +62,7 @@ impl ContactProblem {
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for entries of another mesh.
-    pub fn parts_of<'d>(&self, direction: &'d [f64]) -> Result<(&'d [f64], Option<&'d [f64]>), ContactError> {
+    pub(crate) fn parts_of<'d>(&self, direction: &'d [f64]) -> Result<(&'d [f64], Option<&'d [f64]>), ContactError> {
         let (rows, displacements) = (self.boundary.row_count, self.displacement_count());
         match direction.len() {
             found if found == rows => Ok((direction, None)),
@@ -81,7 +81,7 @@ impl ContactProblem {
     }
 
     /// Longest over shortest edge of the bricks, where it is extreme.
-    pub fn extreme_aspect(&self) -> Option<f64> {
+    pub(crate) fn extreme_aspect(&self) -> Option<f64> {
         let [a, b, height] = self.brick_edges();
         let aspect = a.max(b).max(height) / a.min(b).min(height);
         (aspect >= EXTREME_BRICK).then_some(aspect)
@@ -89,7 +89,7 @@ impl ContactProblem {
 
     /// The height of the bricks over both edges of their plan, or both edges over the height, where that is extreme: bricks
     /// are plates or rods along x₃ then.
-    pub fn flat_or_tall(&self) -> Option<f64> {
+    pub(crate) fn flat_or_tall(&self) -> Option<f64> {
         let [a, b, height] = self.brick_edges();
         let ratio = (height / a.max(b)).max(a.min(b) / height);
         (ratio >= EXTREME_BRICK).then_some(ratio)
@@ -108,7 +108,7 @@ impl ContactProblem {
     ///
     /// # Errors
     /// [`ContactError::InvertedElement`].
-    pub fn upper_block(&self) -> Result<Option<Block>, ContactError> {
+    pub(crate) fn upper_block(&self) -> Result<Option<Block>, ContactError> {
         let Some(upper) = &self.scene.upper else { return Ok(None) };
         let (lower, upper) = (self.counter_heights.clone(), vec![upper.top; self.grid.column_count()]);
         Block { grid: self.grid, lower, upper }.checked(2).map(Some)

@@ -31,7 +31,7 @@ const ROUNDING: f64 = 1e-14;
 
 impl ValueError {
     /// From the terms t_i, and packed ∂J/∂λ and λ for the level of rounding.
-    pub fn from_terms(terms: &[f64], direction: &[f64], forces: &[f64]) -> Self {
+    pub(crate) fn from_terms(terms: &[f64], direction: &[f64], forces: &[f64]) -> Self {
         Self::from_sums(terms.iter().sum(), terms.iter().map(|term| term.abs()).sum(), direction, forces)
     }
 
@@ -42,7 +42,7 @@ impl ValueError {
     }
 
     /// From Σ t_i and Σ|t_i|.
-    pub fn from_sums(first_order: f64, absolute: f64, direction: &[f64], forces: &[f64]) -> Self {
+    pub(crate) fn from_sums(first_order: f64, absolute: f64, direction: &[f64], forces: &[f64]) -> Self {
         let sizes = |values: &[f64]| values.iter().map(|value| value.abs()).collect::<Vec<_>>();
         let rounding = ROUNDING * dot(&sizes(direction), &sizes(forces));
         Self { first_order, bound: first_order.abs() + REMAINDER * absolute + rounding }

@@ -141,13 +141,13 @@ impl NumericFactor {
     }
 
     /// Solves A X = B in place, all columns at once.
-    pub fn solve_columns_in_place(&self, b: &mut Mat<f64>) {
+    pub(crate) fn solve_columns_in_place(&self, b: &mut Mat<f64>) {
         self.symbolic.solve(&self.values, b.as_mut());
     }
 
     /// As [`NumericFactor::solve_in_place`], with factor and vector in single precision. The rounded factor is made at the
     /// first call and kept.
-    pub fn solve_in_place_single(&self, b: &mut [f32]) {
+    pub(crate) fn solve_in_place_single(&self, b: &mut [f32]) {
         self.symbolic.solve(self.single_values(), column(b));
     }
 

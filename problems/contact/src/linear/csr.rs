@@ -17,7 +17,7 @@ const PARALLEL_NUMBERS: usize = 4096;
 
 impl Csr {
     /// A matrix with `column_count` columns from its rows of (column, value).
-    pub fn from_rows(column_count: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Self {
+    pub(crate) fn from_rows(column_count: usize, rows: impl IntoIterator<Item = Vec<(usize, f64)>>) -> Self {
         let mut matrix = Self { starts: vec![0], column_count, ..Self::default() };
         matrix.extend(rows);
         matrix
@@ -92,7 +92,7 @@ impl Csr {
     }
 
     /// The rows of A x from `first` on, as many as y has, on this thread.
-    pub fn multiply_rows<V: Entry>(&self, first: usize, x: &[V], y: &mut [V]) {
+    pub(crate) fn multiply_rows<V: Entry>(&self, first: usize, x: &[V], y: &mut [V]) {
         vectorized(
             #[inline(always)]
             || {

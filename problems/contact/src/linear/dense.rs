@@ -61,7 +61,7 @@ impl DenseLu {
     }
 
     /// Solves A X = B in place, all columns at once.
-    pub fn solve_columns_in_place(&self, b: &mut Mat<f64>) {
+    pub(crate) fn solve_columns_in_place(&self, b: &mut Mat<f64>) {
         self.solve_columns(b.as_mut());
     }
 
@@ -99,7 +99,7 @@ impl DenseLu {
     }
 
     /// Solves Aᵀ x = b in place.
-    pub fn solve_transpose_in_place(&self, b: &mut [f64]) {
+    pub(crate) fn solve_transpose_in_place(&self, b: &mut [f64]) {
         let scratch = lu::solve::solve_transpose_in_place_scratch::<usize, f64>(b.len(), 1, SEQUENTIAL);
         let mut memory = MemBuffer::new(scratch);
         let (factors, permutation) = (self.factors.as_ref(), self.permutation.as_ref());

@@ -145,7 +145,7 @@ impl SymmetricBlock {
 
     /// y += factor·A_RC x for the values of the lower triangle; to be called inside `entry::vectorized`.
     #[inline(always)]
-    pub fn add_product<V: Entry>(&self, values: &[f64], factor: f64, x: &[V], y: &mut [V]) {
+    pub(crate) fn add_product<V: Entry>(&self, values: &[f64], factor: f64, x: &[V], y: &mut [V]) {
         for (y, range) in y.iter_mut().zip(self.starts.windows(2)) {
             let mut sum = V::ZERO;
             for &(column, position) in &self.entries[range[0]..range[1]] {

@@ -68,12 +68,12 @@ impl Face {
     }
 
     /// Multiplies the circles' entries of v by `factor(κ)`.
-    pub fn scale_circles(&self, v: &mut [f64], factor: impl Fn(f64) -> f64) {
+    pub(crate) fn scale_circles(&self, v: &mut [f64], factor: impl Fn(f64) -> f64) {
         self.for_circles(|entry, curvature| v[entry] *= factor(curvature));
     }
 
     /// v += `factor(κ)`·d on the circles.
-    pub fn add_on_circles(&self, d: &[f64], v: &mut [f64], factor: impl Fn(f64) -> f64) {
+    pub(crate) fn add_on_circles(&self, d: &[f64], v: &mut [f64], factor: impl Fn(f64) -> f64) {
         self.for_circles(|entry, curvature| v[entry] += factor(curvature) * d[entry]);
     }
 

@@ -134,7 +134,7 @@ impl SeparableSet {
     }
 
     /// The largest t ≤ `limit` with x + t·d in the set, for x in the set.
-    pub fn feasible_step(&self, x: &[f64], direction: &[f64], limit: f64) -> f64 {
+    pub(crate) fn feasible_step(&self, x: &[f64], direction: &[f64], limit: f64) -> f64 {
         let mut step = limit;
         for block in &self.blocks {
             match *block {

@@ -45,7 +45,7 @@ pub fn shape_values(xi: [f64; 3]) -> [f64; 8] {
 }
 
 /// The eight Gauss points of a brick. A `volume` ≤ 0 marks an inverted element.
-pub fn gauss_points<T: Scalar>(nodes: &Nodes<T>) -> [GaussPoint<T>; 8] {
+pub(crate) fn gauss_points<T: Scalar>(nodes: &Nodes<T>) -> [GaussPoint<T>; 8] {
     std::array::from_fn(|point| sample(nodes, [2, 1, 0].map(|shift| sign(point >> shift & 1) * ABSCISSA)))
 }
 

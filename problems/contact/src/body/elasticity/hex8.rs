@@ -78,7 +78,7 @@ pub fn height_derivative(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS
 
 /// ∂(K u)/∂x₃ of each of the eight nodes: one row of 24 nodal forces per node that moves, N per mm; the same derivative as
 /// [`height_derivative`], for all q at once.
-pub fn height_forces(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS]) -> [[f64; DOFS]; 8] {
+pub(crate) fn height_forces(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS]) -> [[f64; DOFS]; 8] {
     let mut result = [[0.0; DOFS]; 8];
     let (lambda, mu) = (pointwise_lambda(material), material.shear_modulus());
     let points = gauss_points(nodes);

@@ -85,7 +85,7 @@ impl Material {
     }
 
     /// Bulk modulus κ = λ + ⅔μ in MPa.
-    pub fn bulk_modulus(&self) -> f64 {
+    pub(crate) fn bulk_modulus(&self) -> f64 {
         self.young_modulus / (3.0 * (1.0 - 2.0 * self.poisson_ratio))
     }
 }

@@ -38,7 +38,7 @@ impl<'a> BrickStress<'a> {
     }
 
     /// Stress at the centre, MPa.
-    pub fn at_centre(&self) -> SymmetricTensor {
+    pub(crate) fn at_centre(&self) -> SymmetricTensor {
         self.at(&sample(self.nodes, [0.0; 3]))
     }
 

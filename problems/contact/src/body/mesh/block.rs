@@ -94,7 +94,7 @@ impl Grid {
     }
 
     /// Lumped tributary area of column (i, j) on the projected grid: h₁h₂ inside, half on edges, quarter in corners; mm².
-    pub fn tributary_area(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn tributary_area(&self, i: usize, j: usize) -> f64 {
         let share = |index: usize, cells: usize| if index == 0 || index == cells { 0.5 } else { 1.0 };
         let cell = self.size[0] / self.cells[0] as f64 * self.size[1] / self.cells[1] as f64;
         cell * share(i, self.cells[0]) * share(j, self.cells[1])
@@ -113,7 +113,7 @@ impl Grid {
     }
 
     /// Whether node (i, j, k) lies on a face.
-    pub fn is_on(&self, face: Face, node: [usize; 3]) -> bool {
+    pub(crate) fn is_on(&self, face: Face, node: [usize; 3]) -> bool {
         let (axis, level) = self.side(face);
         node[axis] == level
     }

@@ -34,7 +34,7 @@ impl Subdomain {
     }
 
     /// Local index of local node (i, j, k).
-    pub fn local_node(&self, node: [usize; 3]) -> usize {
+    pub(crate) fn local_node(&self, node: [usize; 3]) -> usize {
         lattice::index(self.nodes(), node)
     }
 
@@ -44,7 +44,7 @@ impl Subdomain {
     }
 
     /// Block node (i, j, k) of a local index.
-    pub fn block_position(&self, node: usize) -> [usize; 3] {
+    pub(crate) fn block_position(&self, node: usize) -> [usize; 3] {
         lattice::add(self.local_position(node), self.first_cell)
     }
 }
