@@ -43,17 +43,12 @@ impl dyn Communication + '_ {
         counts.iter().map(|&count| values.by_ref().take(count).collect()).collect()
     }
 
-    /// The value that process 0 has: what depends on time, files or the user is decided there.
-    pub fn of_first(&self, value: f64) -> f64 {
-        let counts: Vec<usize> = (0..self.size()).map(|rank| usize::from(rank == 0)).collect();
-        self.gather(&[value][..counts[self.rank()]], &counts)[0]
-    }
-
-    /// The values that process 0 has; what the others give is ignored.
+    /// The values that process 0 has; what the others give is ignored. What depends on time, files or the user is decided there.
     pub fn all_of_first(&self, values: Vec<f64>) -> Vec<f64> {
-        let count = self.of_first(values.len() as f64) as usize;
-        let counts: Vec<usize> = (0..self.size()).map(|rank| if rank == 0 { count } else { 0 }).collect();
-        self.gather(if self.rank() == 0 { &values } else { &[] }, &counts)
+        let counts = |count: usize| (0..self.size()).map(|rank| if rank == 0 { count } else { 0 }).collect::<Vec<_>>();
+        let own: fn(&[f64]) -> &[f64] = if self.rank() == 0 { |values| values } else { |_| &[] };
+        let count = self.gather(own(&[values.len() as f64]), &counts(1))[0] as usize;
+        self.gather(own(&values), &counts(count))
     }
 
     /// The failure of the first process that reports one, known to all; none if no process has failed. A process that fails

@@ -155,7 +155,7 @@ fn the_first_failure_is_known_to_all() {
             (
                 communication.agree(None),
                 communication.agree(failure(number > 0)),
-                communication.of_first(number as f64 + 0.5),
+                communication.all_of_first(vec![number as f64 + 0.5])[0],
                 communication.gather_any(&vec![number as f64; number]),
             )
         })
