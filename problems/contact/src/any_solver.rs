@@ -18,6 +18,7 @@ use crate::memory;
 use crate::solver_kind::SolverKind;
 use crate::tfeti::{DualMethod, PreconditionerKind, Recycling, TornState, TotalFeti};
 use crate::work_estimate::WorkEstimate;
+use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
 
 /// Estimated bytes up to which bodies are condensed without being asked for. A constant: what the machine has free must not
@@ -37,7 +38,7 @@ const LOCKING: f64 = 0.499;
 const MAX_PRODUCTS_WITH_JACOBIANS: usize = 1000;
 
 /// What a solver will be asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Wanted {
     /// States and adjoints.
     States,

@@ -47,15 +47,8 @@ pub struct Plan {
     pub kind: SolverKind,
     /// Its preconditioner.
     pub preconditioner: PreconditionerKind,
-    /// Whether Jacobians will be asked for.
-    pub jacobians: bool,
-}
-
-impl Plan {
     /// What the solver will be asked for.
-    pub fn wanted(&self) -> Wanted {
-        if self.jacobians { Wanted::Jacobians } else { Wanted::States }
-    }
+    pub wanted: Wanted,
 }
 
 /// A shape to be solved.
@@ -151,7 +144,7 @@ mod tests {
         let shape = |controls| Shape { controls, start: start.clone(), tolerance: f64::INFINITY };
         let plan = |scene: Scene| {
             let (kind, preconditioner) = (SolverKind::Newton, PreconditionerKind::Lumped);
-            Box::new(Plan { scene, kind, preconditioner, jacobians: true })
+            Box::new(Plan { scene, kind, preconditioner, wanted: Wanted::Jacobians })
         };
         let tasks = [
             Task::Threads(3),

@@ -143,7 +143,6 @@ impl Leader {
 
 /// A solver as a plan describes it.
 pub fn prepared(plan: Plan, communication: Arc<Counted>) -> Result<AnySolver, SceneError> {
-    let wanted = plan.wanted();
-    let Plan { scene, kind, preconditioner, .. } = plan;
+    let Plan { scene, kind, preconditioner, wanted } = plan;
     ContactShape::for_use(scene, kind, preconditioner, wanted, communication).map(ContactShape::into_solver)
 }

@@ -29,7 +29,7 @@ use scene_file::Case;
 use std::sync::Arc;
 
 /// The processes of a run, as the one sees them that runs the command.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Processes(Option<Arc<Leader>>);
 
 impl Processes {
@@ -55,8 +55,7 @@ impl Processes {
                 SharedSolver::from(shape.into_solver())
             }
             Some(leader) => {
-                let jacobians = wanted == Wanted::Jacobians;
-                let (own, id) = leader.prepare(Plan { scene, kind, preconditioner, jacobians })?;
+                let (own, id) = leader.prepare(Plan { scene, kind, preconditioner, wanted })?;
                 SharedSolver::led(own, id, Arc::clone(leader))
             }
         };
