@@ -28,6 +28,11 @@ const SCALE: [[u8; 3]; 17] = [
 /// Colours of curves: dark enough on white, different in lightness, red and green not side by side.
 pub(super) const CURVES: [&str; 7] = ["#1b5fa8", "#d1622b", "#2f8f6b", "#8a4fa3", "#b8912b", "#444444", "#c65a92"];
 
+/// The colour of the curve of a number.
+pub(super) fn curve(index: usize) -> &'static str {
+    CURVES[index % CURVES.len()]
+}
+
 /// Colour of a share 0 … 1 of the scale; smaller and larger shares get the colours of its ends.
 pub(super) fn colour(share: f64) -> String {
     let position = share.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;

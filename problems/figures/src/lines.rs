@@ -2,7 +2,7 @@
 
 use super::canvas::{Canvas, LABEL, Place, Stroke, TITLE, text_width};
 use super::chart::{Frame, Parts, ROOM_BELOW};
-use super::colours::CURVES;
+use super::colours::curve;
 use super::error::{FigureError, finite, some};
 use super::figure::Figure;
 use super::marks::{self, Sign, legend_width};
@@ -96,7 +96,7 @@ impl Lines {
         let legend: Vec<(Sign, String)> = names
             .iter()
             .enumerate()
-            .map(|(index, name)| (Sign::Line(Stroke::solid(colour(index), 1.6)), (*name).to_owned()))
+            .map(|(index, name)| (Sign::Line(Stroke::solid(curve(index), 1.6)), (*name).to_owned()))
             .collect();
         let right = 8.0 + columns as f64 * wide;
         let width = (right + legend_width(&legend)).max(text_width(&self.title, TITLE) + 32.0);
@@ -121,20 +121,16 @@ impl Lines {
     }
 }
 
-fn colour(index: usize) -> &'static str {
-    CURVES[index % CURVES.len()]
-}
-
 impl LinePanel {
     fn draw(&self, canvas: &mut Canvas, frame: Frame, up: &Axis, names: &[&str]) {
         let places = self.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0));
         let across = Axis::linear(&self.across, "", places, 0.02, 6);
         frame.axes(canvas, &across, up, Parts { left: Some(ROOM_LEFT - 8.0), grid: true });
-        for curve in &self.curves {
-            let index = names.iter().position(|name| *name == curve.name).unwrap_or(0);
+        for line in &self.curves {
+            let index = names.iter().position(|name| *name == line.name).unwrap_or(0);
             let place = |(x, y): &(f64, f64)| Some(frame.place([across.share(*x)?, up.share(*y)?]));
-            let places: Vec<Place> = curve.points.iter().filter_map(place).collect();
-            canvas.line(&places, Stroke::solid(colour(index), 1.6));
+            let places: Vec<Place> = line.points.iter().filter_map(place).collect();
+            canvas.line(&places, Stroke::solid(curve(index), 1.6));
             if places.len() <= MAX_MARKED {
                 places.into_iter().for_each(|at| marks::point(canvas, "point", index, at));
             }
@@ -145,6 +141,7 @@ impl LinePanel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::colours::CURVES;
 
     fn lines(names: [&str; 3]) -> Lines {
         let curve = |name: &str| Curve { name: name.into(), points: vec![(0.0, 1.0), (1.0, 4.0)] };

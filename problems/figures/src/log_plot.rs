@@ -2,7 +2,7 @@
 
 use super::canvas::{Canvas, Place, Stroke, TITLE, text_width};
 use super::chart::{Frame, Parts, ROOM_BELOW};
-use super::colours::CURVES;
+use super::colours::curve;
 use super::error::{FigureError, finite};
 use super::figure::Figure;
 use super::marks::{self, Sign, legend_width};
@@ -86,7 +86,7 @@ impl LogPlot {
             for (index, series) in self.series.iter().enumerate() {
                 let places: Vec<Place> = series.visible().filter_map(|(x, y)| place(x, y)).collect();
                 if series.joined {
-                    canvas.line(&places, Stroke::solid(CURVES[index % CURVES.len()], 1.2));
+                    canvas.line(&places, Stroke::solid(curve(index), 1.2));
                 }
                 places.into_iter().for_each(|at| marks::point(canvas, "point", index, at));
             }

@@ -1,7 +1,7 @@
 //! Marks of curves and paths, and the legend that explains them.
 
 use super::canvas::{Canvas, INK, LABEL, Place, Stroke, escaped, text_width};
-use super::colours::CURVES;
+use super::colours::{CURVES, curve};
 
 /// Half the size of a mark, points.
 const MARK: f64 = 3.8;
@@ -102,7 +102,7 @@ pub(super) fn mark(canvas: &mut Canvas, class: &str, index: usize, colour: &str,
 
 /// A point of a series.
 pub(super) fn point(canvas: &mut Canvas, class: &str, index: usize, [x, y]: Place) {
-    let colour = CURVES[index % CURVES.len()];
+    let colour = curve(index);
     canvas.raw(&format!("<circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2.8\" fill=\"{colour}\"/>\n"));
 }
 

@@ -1,7 +1,7 @@
 //! Bodies in space with arrows and supports at them, and a legend with what these stand for.
 
 use super::canvas::{Canvas, INK, LABEL, Place, Stroke, TITLE, TITLE_ROOM, text_width};
-use super::colours::CURVES;
+use super::colours::curve;
 use super::error::{FigureError, cells, count, finite, some};
 use super::figure::Figure;
 use super::levels::ColourScale;
@@ -133,8 +133,8 @@ impl Sketch {
             canvas.rimmed([x + 4.0, y], LABEL, &letter(index));
             let line = [[x + 16.0, y], [x + 38.0, y]];
             match mark.sign {
-                Sign::Arrow => canvas.arrow(line, Stroke::solid(colour(index), 1.8)),
-                Sign::Support => triangle(canvas, [[x + 27.0, y + 6.0], [x + 27.0, y - 5.0]], colour(index)),
+                Sign::Arrow => canvas.arrow(line, Stroke::solid(curve(index), 1.8)),
+                Sign::Support => triangle(canvas, [[x + 27.0, y + 6.0], [x + 27.0, y - 5.0]], curve(index)),
             }
             canvas.text([x + 48.0, y + 0.34 * LABEL], LABEL, &mark.text);
             y += ROW;
@@ -150,10 +150,6 @@ impl Sketch {
 fn letter(index: usize) -> String {
     let letter = char::from(b'A' + (index % 26) as u8);
     if index < 26 { letter.to_string() } else { format!("{letter}{}", index / 26) }
-}
-
-fn colour(index: usize) -> &'static str {
-    CURVES[index % CURVES.len()]
 }
 
 /// A triangle with its tip at the second place.
@@ -178,8 +174,8 @@ impl SketchMark {
         for line in &self.lines {
             let line = line.map(|point| view.place(point));
             match self.sign {
-                Sign::Arrow => canvas.arrow(line, Stroke::solid(colour(index), 1.8)),
-                Sign::Support => triangle(canvas, line, colour(index)),
+                Sign::Arrow => canvas.arrow(line, Stroke::solid(curve(index), 1.8)),
+                Sign::Support => triangle(canvas, line, curve(index)),
             }
         }
     }
