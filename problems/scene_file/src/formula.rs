@@ -8,8 +8,8 @@
 //! operand = number | "x1" | "x2" | "PI" | function "(" sum { "," sum } ")" | "(" sum ")"
 //! ```
 
+use contact::error::SceneError;
 use std::f64::consts::PI;
-use std::fmt;
 
 /// Longest formula, characters.
 const LONGEST: usize = 1000;
@@ -68,33 +68,18 @@ enum Step {
     Two(fn(f64, f64) -> f64),
 }
 
-/// Why a text is no formula.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FormulaError {
-    /// What stands there, with its place.
-    pub found: String,
-    /// What may stand there.
-    pub allowed: String,
-}
-
-impl fmt::Display for FormulaError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}; allowed: {}", self.found, self.allowed)
-    }
-}
-
 impl Formula {
-    /// Reads a formula.
+    /// Reads the formula of a field.
     ///
     /// # Errors
-    /// [`FormulaError`] with the first place that cannot be understood.
-    pub fn parse(text: &str) -> Result<Self, FormulaError> {
+    /// [`SceneError::OutOfRange`] with the first place that cannot be understood.
+    pub fn parse(field: &'static str, text: &str) -> Result<Self, SceneError> {
         let characters: Vec<char> = text.chars().collect();
         if characters.len() > LONGEST {
             let found = format!("a formula of {} characters", characters.len());
-            return Err(FormulaError { found, allowed: format!("at most {LONGEST} characters") });
+            return Err(SceneError::out_of_range(field, found, format!("at most {LONGEST} characters")));
         }
-        let mut parser = Parser { characters, at: 0, steps: Vec::new(), depth: 0 };
+        let mut parser = Parser { field, characters, at: 0, steps: Vec::new(), depth: 0 };
         parser.sum()?;
         if parser.peek().is_some() {
             return Err(parser.error("an operator (+ - * / ^) or the end"));
@@ -123,6 +108,7 @@ impl Formula {
 
 /// A text that is being read.
 struct Parser {
+    field: &'static str,
     characters: Vec<char>,
     at: usize,
     steps: Vec<Step>,
@@ -130,7 +116,7 @@ struct Parser {
 }
 
 impl Parser {
-    fn sum(&mut self) -> Result<(), FormulaError> {
+    fn sum(&mut self) -> Result<(), SceneError> {
         self.product()?;
         while let Some(sign @ ('+' | '-')) = self.peek() {
             self.at += 1;
@@ -140,7 +126,7 @@ impl Parser {
         Ok(())
     }
 
-    fn product(&mut self) -> Result<(), FormulaError> {
+    fn product(&mut self) -> Result<(), SceneError> {
         self.factor()?;
         while let Some(sign @ ('*' | '/')) = self.peek() {
             self.at += 1;
@@ -150,7 +136,7 @@ impl Parser {
         Ok(())
     }
 
-    fn factor(&mut self) -> Result<(), FormulaError> {
+    fn factor(&mut self) -> Result<(), SceneError> {
         self.depth += 1;
         if self.depth > DEEPEST {
             return Err(self.error(&format!("at most {DEEPEST} parentheses, signs and powers inside each other")));
@@ -171,7 +157,7 @@ impl Parser {
         Ok(())
     }
 
-    fn operand(&mut self) -> Result<(), FormulaError> {
+    fn operand(&mut self) -> Result<(), SceneError> {
         let expected = "a number, x1, x2, PI, a function or a parenthesis";
         match self.peek() {
             Some('(') => {
@@ -186,7 +172,7 @@ impl Parser {
     }
 
     /// Digits with a point, with an exponent such as e-3.
-    fn number(&mut self) -> Result<(), FormulaError> {
+    fn number(&mut self) -> Result<(), SceneError> {
         let start = self.at;
         self.digits();
         if self.characters.get(self.at) == Some(&'.') {
@@ -220,7 +206,7 @@ impl Parser {
     }
 
     /// A coordinate, π, or a function with its arguments.
-    fn name(&mut self) -> Result<(), FormulaError> {
+    fn name(&mut self) -> Result<(), SceneError> {
         let name = self.word();
         match name.as_str() {
             "x1" => self.steps.push(Step::Coordinate(0)),
@@ -239,7 +225,7 @@ impl Parser {
         Ok(())
     }
 
-    fn call(&mut self, name: &str, function: Function) -> Result<(), FormulaError> {
+    fn call(&mut self, name: &str, function: Function) -> Result<(), SceneError> {
         self.expect('(', &format!("a parenthesis after {name}, as in {name}(…)"))?;
         self.sum()?;
         let step = match function {
@@ -261,7 +247,7 @@ impl Parser {
         self.characters.get(self.at).copied()
     }
 
-    fn expect(&mut self, character: char, allowed: &str) -> Result<(), FormulaError> {
+    fn expect(&mut self, character: char, allowed: &str) -> Result<(), SceneError> {
         if self.peek() != Some(character) {
             return Err(self.error(allowed));
         }
@@ -276,7 +262,7 @@ impl Parser {
     }
 
     /// What stands here, and what may.
-    fn error(&mut self, allowed: &str) -> FormulaError {
+    fn error(&mut self, allowed: &str) -> SceneError {
         let found = match self.peek() {
             None => "the end".to_owned(),
             Some(character) => {
@@ -285,7 +271,7 @@ impl Parser {
                 format!("{text:?} at character {}", self.at + 1)
             }
         };
-        FormulaError { found, allowed: allowed.to_owned() }
+        SceneError::out_of_range(self.field, found, allowed)
     }
 }
 
@@ -293,8 +279,12 @@ impl Parser {
 mod tests {
     use super::*;
 
+    fn parse(text: &str) -> Result<Formula, SceneError> {
+        Formula::parse("f", text)
+    }
+
     fn value(text: &str) -> f64 {
-        Formula::parse(text).unwrap_or_else(|error| panic!("{text}: {error}")).value([2.0, 3.0])
+        parse(text).unwrap_or_else(|error| panic!("{text}: {error}")).value([2.0, 3.0])
     }
 
     #[test]
@@ -345,17 +335,18 @@ mod tests {
             ("2 − x1", "\"−\" at character 3", "an operator"),
             ("é", "\"é\" at character 1", "the names"),
         ] {
-            let refusal = Formula::parse(text).expect_err(text);
-            assert!(refusal.found == found && refusal.allowed.contains(allowed), "{text}: {refusal}");
+            let refusal = parse(text).expect_err(text).to_string();
+            let (before, after) = refusal.split_once(" is not allowed; allowed: ").expect("both");
+            assert!(before == format!("f = {found}") && after.contains(allowed), "{text}: {refusal}");
         }
-        let long = Formula::parse(&"x1+".repeat(400)).expect_err("too long").to_string();
+        let long = parse(&"x1+".repeat(400)).expect_err("too long").to_string();
         assert!(long.contains("at most 1000"), "{long}");
     }
 
     #[test]
     fn deep_nesting_is_refused_before_the_stack_ends() {
         for text in ["(".repeat(999), "-".repeat(999), "sin(".repeat(249), "2^".repeat(499), "max(1,".repeat(166)] {
-            assert!(Formula::parse(&text).expect_err(&text).allowed.contains("inside each other"), "{text}");
+            assert!(parse(&text).expect_err(&text).to_string().contains("inside each other"), "{text}");
         }
         assert!((value(&("(".repeat(99) + "x1" + &")".repeat(99))) - 2.0).abs() < 1e-15);
         assert!((value(&("1+".repeat(499) + "1")) - 500.0).abs() < 1e-12);

@@ -20,7 +20,7 @@ pub enum WantedPressure {
 impl WantedPressure {
     /// A formula.
     pub(crate) fn formula(text: &str) -> Result<Self, SceneError> {
-        parse(text)?;
+        Formula::parse(FIELD, text)?;
         Ok(Self::Formula(text.to_owned()))
     }
 
@@ -33,16 +33,11 @@ impl WantedPressure {
         match self {
             Self::Grid(values) => Ok(places.map(|[x1, x2]| values.height(x1, x2)).collect()),
             Self::Formula(text) => {
-                let formula = parse(text)?;
+                let formula = Formula::parse(FIELD, text)?;
                 places.map(|place| pressure(&formula, place)).collect()
             }
         }
     }
-}
-
-/// Refuses everything that is no formula in x1 and x2.
-fn parse(text: &str) -> Result<Formula, SceneError> {
-    Formula::parse(text).map_err(|error| SceneError::out_of_range(FIELD, error.found, error.allowed))
 }
 
 fn pressure(formula: &Formula, place @ [x1, x2]: [f64; 2]) -> Result<f64, SceneError> {
