@@ -1,6 +1,7 @@
 //! Minimises the toy from many starts and says how far each run ended from the known minimiser.
 
 use super::{Kink, LOWER, MINIMUM, UPPER, minimiser, toy_objective, trace};
+use nonsmooth::verify::seeded_direction;
 use nonsmooth::{OptimizeError, Termination, Vector};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -42,16 +43,9 @@ pub struct ToyStudy {
 
 /// `count` reproducible pseudo-random starts in the admissible box.
 pub fn random_starts(seed: u64, count: usize) -> Vec<[f64; 2]> {
-    let mut state = seed;
-    // SplitMix64: a Weyl sequence through a mixing function.
-    let mut uniform = || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (mixed ^ (mixed >> 31)) as f64 / u64::MAX as f64
-    };
-    let mut coordinate = || LOWER + (UPPER - LOWER) * uniform();
-    (0..count).map(|_| [coordinate(), coordinate()]).collect()
+    let place = |unit: f64| 0.5 * (LOWER + UPPER) + 0.5 * (UPPER - LOWER) * unit;
+    let units = seeded_direction(2 * count, seed);
+    units.as_slice().chunks_exact(2).map(|pair| [place(pair[0]), place(pair[1])]).collect()
 }
 
 /// Runs the engine on the toy from every start; none if there is no start.
