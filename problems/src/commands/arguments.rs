@@ -1,7 +1,7 @@
 //! The command and the options of the contact binaries.
 
 use crate::commands::ascii::shown;
-use crate::commands::export::ExportOptions;
+use crate::commands::export::options::ExportOptions;
 use crate::commands::failure::{Failure, refused};
 use crate::commands::processes::SharedSolver;
 use crate::commands::run_kind::RunKind;

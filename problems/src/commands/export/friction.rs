@@ -50,11 +50,11 @@ pub fn check(problem: &ContactProblem) -> Result<(), SceneError> {
 /// [`Failure::Input`] for an inverted brick.
 pub fn matrices(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<OutputFile>, Failure> {
     let matrices = FrictionProblem::new(problem, controls).map_err(|error| Failure::Input(error.to_string()))?;
-    let (unknowns, rows) = (matrices.unknowns.len(), ROWS * matrices.gaps.len());
+    let (unknowns, nodes) = (matrices.unknowns.len(), matrices.gaps.len());
     let words = format!("{}: stiffness K, N/mm; lower triangle", problem.scene.name);
     let stiffness = symmetric(unknowns, &matrices.stiffness, &words).map_err(failure)?;
     let words = format!("{}: contact matrix H; rows per contact node: normal, x1, x2", problem.scene.name);
-    let contact = general([rows, unknowns], &matrices.contact, &words).map_err(failure)?;
+    let contact = general([ROWS * nodes, unknowns], &matrices.contact, &words).map_err(failure)?;
     let lists = FrictionJson {
         equations: EQUATIONS,
         units: UNITS,
@@ -68,11 +68,13 @@ pub fn matrices(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<Output
         unknowns: &matrices.unknowns,
     };
     let lists = serde_json::to_string(&lists).map_err(Failure::computation)? + "\n";
-    let written =
-        |name, content: String, what: String| OutputFile { name, content: content.into_bytes(), what, triangles: None };
     Ok(vec![
-        written("friction/stiffness.mtx", stiffness, format!("stiffness matrix K of {unknowns} displacements")),
-        written("friction/contact.mtx", contact, format!("contact matrix H of {} contact nodes", matrices.gaps.len())),
-        written("friction/problem.json", lists, "loads, gaps, friction coefficients, and what they mean".into()),
+        OutputFile::text(
+            "friction/stiffness.mtx",
+            stiffness,
+            format!("stiffness matrix K of {unknowns} displacements"),
+        ),
+        OutputFile::text("friction/contact.mtx", contact, format!("contact matrix H of {nodes} contact nodes")),
+        OutputFile::text("friction/problem.json", lists, "loads, gaps, friction coefficients, and what they mean"),
     ])
 }

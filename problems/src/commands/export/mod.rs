@@ -1,11 +1,9 @@
 //! `export`: a shape as files for other programs. Nothing is solved for it.
 
 mod friction;
-mod options;
+pub mod options;
 mod run;
 mod shape;
-
-pub use options::ExportOptions;
 
 use crate::commands::controls;
 use crate::commands::export::run::KeptRun;
@@ -41,6 +39,13 @@ pub struct OutputFile {
     pub triangles: Option<usize>,
 }
 
+impl OutputFile {
+    /// A file of text.
+    fn text(name: &'static str, content: String, what: impl Into<String>) -> Self {
+        Self { name, content: content.into_bytes(), what: what.into(), triangles: None }
+    }
+}
+
 /// The keys of the JSON of `export`.
 #[derive(Debug, Serialize)]
 struct ExportJson {
@@ -73,12 +78,9 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         None => start(&problem, loaded, arguments.controls.as_deref())?,
     };
     problem.admissible.check_shape(&controls)?;
-    let mut files = vec![OutputFile {
-        name: "controls.json",
-        content: controls::written(controls.as_slice(), problem.scene.control_points)?.into_bytes(),
-        what: "the control heights; --controls and --start-controls take the file".into(),
-        triangles: None,
-    }];
+    let heights = controls::written(controls.as_slice(), problem.scene.control_points)?;
+    let what = "the control heights; --controls and --start-controls take the file";
+    let mut files = vec![OutputFile::text("controls.json", heights, what)];
     if options.writes_stl() {
         files.extend(shape::triangles(&problem, controls.as_slice(), options.tolerance())?);
     }

@@ -75,16 +75,11 @@ pub fn splines(problem: &ContactProblem, controls: &[f64]) -> Result<Vec<OutputF
     let (scene, surface) = (&problem.scene, problem.scene.spline_surface()?);
     let knots = surface.knots().map(<[f64]>::to_vec);
     let spline = SplineHeights::new(surface.degrees(), knots, scene.size, controls.to_vec()).map_err(failure)?;
-    let written = |name, what: &str, text: String| OutputFile {
-        name,
-        content: text.into_bytes(),
-        what: what.into(),
-        triangles: None,
-    };
+    let face = step::surface(&scene.name, &spline);
     let body = step::solid(&format!("{}: lower body", scene.name), &spline, BASE).map_err(failure)?;
     Ok(vec![
-        written("surface.step", "the optimized surface as an exact B-spline face", step::surface(&scene.name, &spline)),
-        written("lower_body.step", "the lower body as a solid with that face", body),
+        OutputFile::text("surface.step", face, "the optimized surface as an exact B-spline face"),
+        OutputFile::text("lower_body.step", body, "the lower body as a solid with that face"),
     ])
 }
 
@@ -99,14 +94,9 @@ pub fn table(problem: &ContactProblem, controls: &[f64]) -> Result<OutputFile, F
     let heights = heights(problem, controls, [line(0), line(1)])?;
     let [h1, h2] = size.map(|length| length / last);
     let spacing = format!("spacing {h1} mm along x1, {h2} mm along x2");
-    Ok(OutputFile {
-        name: "surface.csv",
-        content: heights
-            .csv(&format!("{}: heights of the optimized surface\n{spacing}", problem.scene.name))
-            .into_bytes(),
-        what: format!("heights of the surface at {TABLE_POINTS} x {TABLE_POINTS} points, {spacing}"),
-        triangles: None,
-    })
+    let table = heights.csv(&format!("{}: heights of the optimized surface\n{spacing}", problem.scene.name));
+    let what = format!("heights of the surface at {TABLE_POINTS} x {TABLE_POINTS} points, {spacing}");
+    Ok(OutputFile::text("surface.csv", table, what))
 }
 
 /// What the option says is bad input; so is a shape that makes no file.
