@@ -4,7 +4,7 @@ use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
 use crate::commands::processes::{Processes, SharedSolver, SharedState};
 use contact::contact_objective::{self, ContactCost};
-use contact::contact_shape::{ContactState, Wanted};
+use contact::contact_shape::{ContactState, SolverKind, Wanted};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::fields::Fields;
@@ -100,6 +100,16 @@ impl SolvedShape {
     }
 }
 
+
+/// A solver and why it was taken.
+pub fn solver_in_words(solver: SolverKind, reason: Option<&str>) -> String {
+    let name = match solver {
+        SolverKind::Direct => "direct condensation",
+        SolverKind::AugmentedLagrangian => "total FETI, successive approximations",
+        _ => "total FETI, semismooth Newton",
+    };
+    reason.map_or_else(|| name.into(), |reason| format!("{name}; {reason}"))
+}
 /// What is implausible about a state; nothing where the checks are left out.
 pub fn checks(
     objective: &ContactObjective,

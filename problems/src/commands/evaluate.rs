@@ -1,6 +1,6 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
-use crate::commands::contact_objective::{SolvedShape, checks, objective_among};
+use crate::commands::contact_objective::{self, SolvedShape, checks, solver_in_words};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
@@ -101,16 +101,6 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     printed_with_files(printed, arguments.json, folder.as_ref(), write)
 }
 
-/// A solver and why it was taken.
-pub fn said(solver: SolverKind, reason: Option<&str>) -> String {
-    let name = match solver {
-        SolverKind::Direct => "direct condensation",
-        SolverKind::AugmentedLagrangian => "total FETI, successive approximations",
-        _ => "total FETI, semismooth Newton",
-    };
-    reason.map_or_else(|| name.into(), |reason| format!("{name}; {reason}"))
-}
-
 impl fmt::Display for EvaluationJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // Squares of entries above 1e154 are no doubles.
@@ -139,7 +129,7 @@ impl fmt::Display for EvaluationJson {
         )?;
         let r = &self.residuals;
         writeln!(f, "relative residuals   {r}")?;
-        writeln!(f, "solver               {}", said(self.solver, self.solver_reason.as_deref()))?;
+        writeln!(f, "solver               {}", solver_in_words(self.solver, self.solver_reason.as_deref()))?;
         let work = &self.work;
         writeln!(
             f,

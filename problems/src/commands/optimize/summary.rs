@@ -1,8 +1,7 @@
 //! The report of an optimization as text and as JSON.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::SolvedShape;
-use crate::commands::evaluate::said;
+use crate::commands::contact_objective::{SolvedShape, solver_in_words};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
 use crate::commands::output::pressure;
@@ -301,7 +300,7 @@ pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], argum
         at_solution.residuals,
         at_solution.kink.smallest_margin,
         at_solution.kink.weakly_active,
-        said(shapes[1].state.solver, shapes[1].state.reason.as_deref()),
+        solver_in_words(shapes[1].state.solver, shapes[1].state.reason.as_deref()),
         last.active_constraints(),
         checks.iter().map(|warning| format!("warning:     {warning}\n")).collect::<String>(),
         arguments.left_out(objective.solver()).join("; "),
