@@ -1,7 +1,8 @@
 //! `contact3d`: contact shape optimization of any scene file; see `--help`.
 
+use problems::commands::processes::Processes;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    problems::commands::run_any()
+    problems::commands::run_any_among("contact3d", &Processes::alone())
 }

@@ -47,11 +47,6 @@ pub fn run(binary: &'static str, scene: &str) -> ExitCode {
     finish(execute(|| Ok((scene?, None)), &arguments), arguments.kept())
 }
 
-/// Runs the binary that takes any scene, in a single process.
-pub fn run_any() -> ExitCode {
-    run_any_among("contact3d", &Processes::alone())
-}
-
 /// Runs a binary of this name that takes any scene, in the first of its processes.
 pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
     let command = AnyScene::command().name(binary).after_help(examples(binary, "SCENE.toml "));

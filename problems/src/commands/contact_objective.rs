@@ -15,19 +15,11 @@ use scene_file::{Case, MethodName};
 /// Θ of a scene, by all processes together.
 pub type ContactObjective = contact_objective::ContactObjective<SharedSolver>;
 
-/// Θ of a case, for single shapes, in a single process.
-///
-/// # Errors
-/// [`Failure::Input`] naming the field.
-pub fn objective(case: &Case) -> Result<ContactObjective, Failure> {
-    objective_among(case, &Processes::alone())
-}
-
 /// Θ of a case, for single shapes.
 ///
 /// # Errors
 /// [`Failure::Input`] naming the field.
-pub fn objective_among(case: &Case, processes: &Processes) -> Result<ContactObjective, Failure> {
+pub fn objective(case: &Case, processes: &Processes) -> Result<ContactObjective, Failure> {
     objective_for(case, Wanted::States, processes)
 }
 
@@ -100,6 +92,14 @@ impl SolvedShape {
     }
 }
 
+/// What is implausible about a state; nothing where the checks are left out.
+pub fn checks(
+    objective: &ContactObjective,
+    shape: &SolvedShape,
+    arguments: &Arguments,
+) -> Result<Vec<Warning>, Failure> {
+    if arguments.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
+}
 
 /// A solver and why it was taken.
 pub fn solver_in_words(solver: SolverKind, reason: Option<&str>) -> String {
@@ -109,12 +109,4 @@ pub fn solver_in_words(solver: SolverKind, reason: Option<&str>) -> String {
         _ => "total FETI, semismooth Newton",
     };
     reason.map_or_else(|| name.into(), |reason| format!("{name}; {reason}"))
-}
-/// What is implausible about a state; nothing where the checks are left out.
-pub fn checks(
-    objective: &ContactObjective,
-    shape: &SolvedShape,
-    arguments: &Arguments,
-) -> Result<Vec<Warning>, Failure> {
-    if arguments.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
 }

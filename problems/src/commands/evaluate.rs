@@ -55,7 +55,7 @@ struct Seconds {
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
-    let (objective, arguments) = (&objective_among(&loaded.case, &session.processes)?, session.arguments);
+    let (objective, arguments) = (&contact_objective::objective(&loaded.case, &session.processes)?, session.arguments);
     let solver = objective.solver();
     let controls = controls::load(solver.problem(), &loaded.case, ("--controls", arguments.controls.as_deref()))?;
     let controls = controls::as_made(controls, arguments);

@@ -1,6 +1,6 @@
 //! `verify`: Taylor test of the subgradient on the smooth piece around one shape.
 
-use crate::commands::contact_objective::{ContactObjective, objective_among};
+use crate::commands::contact_objective::{self, ContactObjective};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
@@ -41,7 +41,7 @@ struct VerificationJson {
 
 /// The command.
 pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
-    let (objective, arguments) = (&objective_among(case, &session.processes)?, session.arguments);
+    let (objective, arguments) = (&contact_objective::objective(case, &session.processes)?, session.arguments);
     let shape = objective.solver();
     let control = controls::load(shape.problem(), case, ("--controls", arguments.controls.as_deref()))?;
     let folder = Folder::of_command(case, arguments)?;

@@ -2,8 +2,9 @@
 
 use contact::contact_shape::SolverKind;
 use nonsmooth::{Accuracy, StateSolver};
-use problems::commands::long_run::StageLayer;
+use problems::commands::StageLayer;
 use problems::commands::objective;
+use problems::commands::processes::Processes;
 use scene_file::{Case, SceneFile};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -15,7 +16,7 @@ fn heard(solver: SolverKind) -> Vec<String> {
     file.mesh.bricks = [4; 3];
     let mut case = Case::new(&file, Path::new("")).unwrap();
     case.solver = solver;
-    let theta = objective(&case).unwrap();
+    let theta = objective(&case, &Processes::alone()).unwrap();
     let words = Arc::new(Mutex::new(Vec::new()));
     let sink = Arc::clone(&words);
     let layer = StageLayer(move |stage| sink.lock().unwrap().push(stage));

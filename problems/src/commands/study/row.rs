@@ -1,7 +1,7 @@
 //! One row of a study.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::{ContactObjective, SolvedShape, checks, objective_among};
+use crate::commands::contact_objective::{self, ContactObjective, SolvedShape, checks};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
@@ -155,7 +155,7 @@ fn evaluated(
     options: &Arguments,
     session: &Session<'_>,
 ) -> Result<Solved, Failure> {
-    let objective = objective_among(&part.case, &session.processes)?;
+    let objective = contact_objective::objective(&part.case, &session.processes)?;
     let controls = match start {
         Some(start) => {
             objective.solver().problem().admissible.check_shape(start)?;
