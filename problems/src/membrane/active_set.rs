@@ -5,13 +5,27 @@
 //! ```
 //! A is an M-matrix: from the second step on u ≥ ψ, u grows and the active set only shrinks, so that the method ends.
 
-use crate::membrane::{MembraneGrid, MembraneState};
+use crate::membrane::grid::MembraneGrid;
 use contact::linear::FactorizationError;
 use contact::linear::cholesky::{NumericFactor, SymbolicFactor};
 use contact::linear::ordering::nested_dissection;
 use contact::linear::symmetric::LowerPattern;
 use nonsmooth::OracleError;
 use std::sync::Arc;
+
+/// A state; its dual is (u*, λ*), the inner nodes of u first.
+#[derive(Debug)]
+pub struct MembraneState {
+    /// u at the inner nodes.
+    pub displacement: Vec<f64>,
+    /// λ at the inner nodes, load per area.
+    pub reaction: Vec<f64>,
+    /// Nodes on which the obstacle presses.
+    pub active: Vec<bool>,
+    /// Number of linear systems solved.
+    pub steps: usize,
+    pub(super) factor: NumericFactor,
+}
 
 /// The matrix with active rows and columns replaced by the identity.
 #[derive(Debug)]

@@ -4,7 +4,8 @@
 //! J(α, u, λ) = ½ h² Σ (u − u_d)² + (ν/2) w Σ α_k² + κ h² Σ λ          w: area of a patch
 //! ```
 
-use crate::membrane::{MembraneGrid, MembraneState};
+use crate::membrane::active_set::MembraneState;
+use crate::membrane::grid::MembraneGrid;
 use nonsmooth::{Cost, CostGradient, Vector};
 
 /// The cost J.

@@ -15,29 +15,15 @@ mod cost;
 mod grid;
 mod problem;
 
+pub use active_set::MembraneState;
 pub use cost::MembraneCost;
 pub use grid::MembraneGrid;
-pub use problem::{MembraneControl, MembraneData, MembraneState};
+pub use problem::{MembraneControl, MembraneData, MembraneError};
 
-use contact::error::SceneError;
-use contact::linear::FactorizationError;
 use nonsmooth::{Polyhedron, ReducedObjective, Vector};
-use thiserror::Error;
 
 /// Θ of a membrane problem.
 pub type MembraneObjective = ReducedObjective<MembraneControl, MembraneCost>;
-
-/// Why there is no membrane problem.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum MembraneError {
-    /// The data describe no membrane.
-    #[error(transparent)]
-    Data(#[from] SceneError),
-    /// The matrix could not be analysed or factored.
-    #[error(transparent)]
-    Matrix(#[from] FactorizationError),
-}
 
 /// Number of load patches per edge in the example.
 pub const PATCHES: usize = 4;

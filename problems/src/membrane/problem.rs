@@ -7,11 +7,24 @@
 //! λ is a density (load per area). A node on the kink, u = ψ and λ = 0, counts as inactive: for independent loads at all nodes
 //! this is a limit of Jacobians nearby; for loads by patches it is an element of the set that the chain rule yields.
 
-use crate::membrane::active_set::ReducedMembrane;
-use crate::membrane::{MembraneError, MembraneGrid};
+use crate::membrane::active_set::{MembraneState, ReducedMembrane};
+use crate::membrane::grid::MembraneGrid;
 use contact::error::SceneError;
-use contact::linear::cholesky::NumericFactor;
+use contact::linear::FactorizationError;
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
+use thiserror::Error;
+
+/// Why there is no membrane problem.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum MembraneError {
+    /// The data describe no membrane.
+    #[error(transparent)]
+    Data(#[from] SceneError),
+    /// The matrix could not be analysed or factored.
+    #[error(transparent)]
+    Matrix(#[from] FactorizationError),
+}
 
 /// A function of the position.
 pub type Field = Box<dyn Fn([f64; 2]) -> f64 + Send + Sync>;
@@ -37,20 +50,6 @@ pub struct MembraneControl {
     obstacle: Vec<f64>,
     patch_of_node: Vec<usize>,
     patches: usize,
-}
-
-/// A state; its dual is (u*, λ*), the inner nodes of u first.
-#[derive(Debug)]
-pub struct MembraneState {
-    /// u at the inner nodes.
-    pub displacement: Vec<f64>,
-    /// λ at the inner nodes, load per area.
-    pub reaction: Vec<f64>,
-    /// Nodes on which the obstacle presses.
-    pub active: Vec<bool>,
-    /// Number of linear systems solved.
-    pub steps: usize,
-    pub(super) factor: NumericFactor,
 }
 
 impl MembraneControl {

@@ -1,6 +1,6 @@
 //! The friction problem of a shape as matrices (Matrix Market) and lists (JSON).
 
-use crate::commands::export::OutputFile;
+use crate::commands::export::files::OutputFile;
 use crate::commands::export::shape::failure;
 use crate::commands::failure::Failure;
 use contact::equilibrium::ContactProblem;

@@ -1,11 +1,13 @@
 //! `export`: a shape as files for other programs. Nothing is solved for it.
 
+mod files;
 mod friction;
 pub mod options;
 mod run;
 mod shape;
 
 use crate::commands::controls;
+use crate::commands::export::files::{Origin, OutputFile};
 use crate::commands::export::run::KeptRun;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
@@ -15,36 +17,6 @@ use nonsmooth::Vector;
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
-
-/// Where an exported shape comes from.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Origin {
-    /// In words.
-    pub source: String,
-    /// Number of the evaluation in its run, if it is known by one.
-    pub evaluation: Option<usize>,
-    /// Θ in that run, if it is known.
-    pub objective: Option<f64>,
-}
-
-/// A file that is to be written.
-pub struct OutputFile {
-    /// Name below the folder.
-    pub name: &'static str,
-    /// Its bytes.
-    pub content: Vec<u8>,
-    /// What it holds, in words.
-    pub what: String,
-    /// Triangles, in a file of triangles.
-    pub triangles: Option<usize>,
-}
-
-impl OutputFile {
-    /// A file of text.
-    fn text(name: &'static str, content: String, what: impl Into<String>) -> Self {
-        Self { name, content: content.into_bytes(), what: what.into(), triangles: None }
-    }
-}
 
 /// The keys of the JSON of `export`.
 #[derive(Debug, Serialize)]

@@ -1,7 +1,7 @@
 //! The shape of an optimization in its folder: the optimum, the best one so far, or that of any evaluation.
 
 use crate::commands::controls;
-use crate::commands::export::Origin;
+use crate::commands::export::files::Origin;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, REPORT, SCENE, START};
 use crate::commands::loaded_scene::LoadedScene;

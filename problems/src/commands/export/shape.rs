@@ -1,6 +1,6 @@
 //! The shape as triangles, as B-splines, and as a table.
 
-use crate::commands::export::OutputFile;
+use crate::commands::export::files::OutputFile;
 use crate::commands::failure::Failure;
 use contact::equilibrium::ContactProblem;
 use contact::shape::Pieces;

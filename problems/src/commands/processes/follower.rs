@@ -1,9 +1,8 @@
 //! Every process but the first: it does what the first announces, until the run ends.
 
 use crate::commands::processes::announcement::{Announcement, Id, Shape, Task};
-use crate::commands::processes::leader::prepared;
+use crate::commands::processes::leader::{prepared, use_threads};
 use crate::commands::processes::traffic::Counted;
-use crate::commands::processes::use_threads;
 use contact::communication::Communication;
 use contact::contact_shape::{AnySolver, AnyState};
 use contact::equilibrium::{ContactSolver, SolverState};

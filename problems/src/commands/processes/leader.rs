@@ -146,3 +146,9 @@ pub fn prepared(plan: Plan, communication: Arc<Counted>) -> Result<AnySolver, Sc
     let Plan { scene, kind, preconditioner, wanted } = plan;
     ContactShape::for_use(scene, kind, preconditioner, wanted, communication).map(ContactShape::into_solver)
 }
+
+/// Sets the number of threads of this process.
+pub fn use_threads(threads: usize) {
+    // A second call in one process keeps the first pool; results do not depend on it.
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+}

@@ -24,7 +24,7 @@ use contact::communication::Communication;
 use contact::communication::InProcess;
 use contact::contact_shape::{ContactShape, SolverKind, Wanted};
 use contact::error::SceneError;
-use leader::Leader;
+use leader::{Leader, use_threads};
 use scene_file::Case;
 use std::sync::Arc;
 
@@ -82,12 +82,6 @@ impl Processes {
     pub fn usage(&self, solver: SolverKind) -> Result<Option<Usage>, Failure> {
         self.0.as_ref().map(|leader| leader.measure(solver)).transpose()
     }
-}
-
-/// Sets the number of threads of this process.
-fn use_threads(threads: usize) {
-    // A second call in one process keeps the first pool; results do not depend on it.
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
 }
 
 /// Runs a command in one of several processes: the first does what `lead` says, with the others at its hands, and the others follow

@@ -1,16 +1,12 @@
-//! The command line of the study, and all that was measured.
+//! The command line of the study.
 
-use crate::accuracy::algebra::{self, AlgebraStudy};
-use crate::accuracy::discretisation::{self, MeshStudy};
 use crate::accuracy::extent::{Extent, Part, SCENES};
-use crate::accuracy::manufactured::{ManufacturedErrors, manufactured_errors};
-use crate::accuracy::optimization::{self, OptimizationStudy};
-use crate::accuracy::subgradient::{self, SubgradientStudy};
-use crate::accuracy::{pictures, tables};
+use crate::accuracy::manufactured::manufactured_errors;
+use crate::accuracy::report::Report;
+use crate::accuracy::{algebra, discretisation, optimization, pictures, subgradient, tables};
 use crate::scaling::SceneName;
 use clap::Parser;
 use problems::commands::{Failure, Folder, arguments, finish, json, notice};
-use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -37,25 +33,6 @@ pub struct Arguments {
     /// Folder for report.json, report.md and the pictures (SVG; PNG as well with the feature `png`).
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-}
-
-/// The study; parts that were not asked for are empty.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Report {
-    /// Threads of the machine.
-    pub machine_threads: usize,
-    /// Seconds of the whole study.
-    pub seconds: f64,
-    /// Smooth solution.
-    pub smooth: Vec<ManufacturedErrors>,
-    /// Meshes.
-    pub discretisation: Vec<MeshStudy>,
-    /// Contact solvers.
-    pub algebra: Vec<AlgebraStudy>,
-    /// Taylor tables and kinks.
-    pub subgradient: Option<SubgradientStudy>,
-    /// Optimizations.
-    pub optimization: Vec<OptimizationStudy>,
 }
 
 impl Arguments {

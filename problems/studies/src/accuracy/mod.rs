@@ -19,6 +19,7 @@ mod manufactured;
 mod objective;
 mod optimization;
 mod pictures;
+mod report;
 mod subgradient;
 mod tables;
 

@@ -1,9 +1,9 @@
 //! The pictures of a report.
 
 use crate::accuracy::algebra::{AlgebraRow, AlgebraStudy};
-use crate::accuracy::cli::Report;
 use crate::accuracy::discretisation::{MeshStudy, QUANTITIES};
 use crate::accuracy::optimization::{Course, Milestone, OptimizationStudy};
+use crate::accuracy::report::Report;
 use crate::accuracy::subgradient::{SubgradientStudy, TaylorStudy};
 use crate::scaling::word;
 use figures::{Figure, FigureError, LogPlot, Series};

@@ -1,12 +1,12 @@
 //! The report as Markdown tables.
 
 use crate::accuracy::algebra::AlgebraStudy;
-use crate::accuracy::cli::Report;
 use crate::accuracy::discretisation::MeshStudy;
 use crate::accuracy::discretisation::QUANTITIES;
 use crate::accuracy::manufactured::ManufacturedErrors;
 use crate::accuracy::optimization::OptimizationStudy;
 use crate::accuracy::optimization::TARGETS;
+use crate::accuracy::report::Report;
 use crate::accuracy::subgradient::SubgradientStudy;
 use crate::markdown::{or_dash, seconds, section, yes_or_no};
 use crate::rates::observed;
