@@ -15,10 +15,7 @@ use std::time::Instant;
 #[derive(Debug, Clone, Parser)]
 #[command(name = "accuracy", version)]
 pub struct Arguments {
-    /// About two minutes (the default).
-    #[arg(long, conflicts_with_all = ["full", "smoke"])]
-    pub quick: bool,
-    /// Meshes up to 35 bricks per edge, optimization up to 24.
+    /// Meshes up to 35 bricks per edge, optimization up to 24, instead of a study of about two minutes.
     #[arg(long, conflicts_with = "smoke")]
     pub full: bool,
     /// A few seconds on the smallest meshes: shows that everything works, not what is true.

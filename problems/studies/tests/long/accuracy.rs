@@ -33,7 +33,7 @@ fn the_smallest_study_holds_what_it_promises() {
 /// The quick study's kinks: four of each scene, and the toy's.
 #[test]
 fn one_sided_slopes_at_kinks_bracket_the_product_with_the_returned_element() {
-    let report = kit::json(env!("CARGO_BIN_EXE_accuracy"), &["--quick", "--part", "subgradient", "--json"]);
+    let report = kit::json(env!("CARGO_BIN_EXE_accuracy"), &["--part", "subgradient", "--json"]);
     let kinks = rows(&report["subgradient"]["kinks"]);
     assert_eq!(kinks.len(), 11);
     assert!(kinks.iter().all(|kink| kink["bracketed"] == true), "{kinks:?}");

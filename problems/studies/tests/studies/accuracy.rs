@@ -25,7 +25,7 @@ fn no_solver_reports_a_bound_below_its_error() {
 
 #[test]
 fn contradictory_options_are_refused() {
-    for (arguments, word) in [(["--quick", "--full"], "--full"), (["--part", "nothing"], "nothing")] {
+    for (arguments, word) in [(["--smoke", "--full"], "--full"), (["--part", "nothing"], "nothing")] {
         kit::refused(ACCURACY, &arguments, &[word]);
     }
 }
