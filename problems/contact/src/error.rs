@@ -281,7 +281,7 @@ impl From<FactorizationError> for ContactError {
 
 impl ContactError {
     /// Whether every solver would say the same: the scene or the shape is at fault.
-    pub(crate) fn is_about_the_problem(&self) -> bool {
+    pub fn is_about_the_problem(&self) -> bool {
         matches!(self, Self::InvertedElement { .. } | Self::NoEquilibrium { .. } | Self::FrictionTooWeak { .. })
     }
 
