@@ -325,7 +325,8 @@ impl TornSolver {
         contact.tangents(surface, changes, tolerance)
     }
 
-    /// All bodies of a solved shape, lower first; torn copies of a node averaged. Where there are several processes, all of them call it.
+    /// All bodies of a solved shape, lower first; torn copies of a node averaged. Where there are several processes, all of them call it,
+    /// and the first one alone gets the bodies, the others none.
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for a state of another mesh.

@@ -7,7 +7,7 @@
 //! A process adds up the largest branches of the tree that lie within its range and sends their sums, some 2·log₂ of the number of
 //! subdomains; everybody adds those in the order of the tree.
 
-use crate::communication::Communication;
+use crate::communication::{Communication, Parcel};
 use crate::error::ContactError;
 use crate::linear::entry::Entry;
 use std::iter::Peekable;
@@ -118,6 +118,23 @@ impl Distribution {
             .collect();
         let mut values = self.communication.gather(&own.concat(), &counts).into_iter();
         lengths.iter().map(|&length| values.by_ref().take(length as usize).collect()).collect()
+    }
+
+    /// Values of all subdomains at process 0, `each` per subdomain, from those of the own ones; none at the others.
+    pub fn at_first(&self, own: &[f64], each: usize) -> Option<Vec<f64>> {
+        let parcel = |rank: usize, outgoing: &[f64], count: usize| Parcel {
+            rank,
+            outgoing: outgoing.to_vec(),
+            incoming: vec![0.0; each * count],
+        };
+        if self.communication.rank() > 0 {
+            self.communication.exchange(&mut [parcel(0, own, 0)]);
+            return None;
+        }
+        let mut parcels: Vec<Parcel> =
+            (1..self.communication.size()).map(|rank| parcel(rank, &[], self.of(rank).len())).collect();
+        self.communication.exchange(&mut parcels);
+        Some(own.iter().copied().chain(parcels.into_iter().flat_map(|parcel| parcel.incoming)).collect())
     }
 
     /// Entries of all subdomains, `each` per subdomain, from those of the own ones.

@@ -7,11 +7,15 @@ use crate::tfeti::torn::model::TornModel;
 use crate::tfeti::torn::vectors::TornVector;
 
 /// All bodies of a shape, lower first, from the displacements over the torn dofs of this process; the copies of a node are averaged.
+/// Process 0 alone has them: nobody else needs the memory that whole bodies take.
 pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> Vec<SolvedBody> {
     let size = model.pattern.pattern.dimension();
     let own = &torn.0[..model.interface.owned_count()];
-    let pieces = model.distribution.complete(own.chunks_exact(size).map(<[f64]>::to_vec).collect());
-    blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, &pieces)).collect()
+    let all = model.distribution.at_first(own, size).unwrap_or_default();
+    if all.is_empty() {
+        return Vec::new();
+    }
+    blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, &all)).collect()
 }
 
 /// The transposed map: from three entries per node of every body, lower first, to the torn dofs of this process. Each of the c copies of
@@ -38,11 +42,11 @@ pub fn torn_loads(model: &TornModel, loads: &[f64]) -> TornVector {
     torn
 }
 
-fn whole_body(model: &TornModel, body: usize, block: &Block, torn: &[Vec<f64>]) -> SolvedBody {
-    let grid = &block.grid;
+fn whole_body(model: &TornModel, body: usize, block: &Block, torn: &[f64]) -> SolvedBody {
+    let (grid, size) = (&block.grid, model.pattern.pattern.dimension());
     let copies = || {
         model.numbering.of_body(body).flat_map(|(number, place)| {
-            let displacements = torn[number].as_chunks::<3>().0.iter().copied();
+            let displacements = torn[size * number..][..size].as_chunks::<3>().0.iter().copied();
             (0..place.node_count()).map(|local| grid.node(place.block_position(local))).zip(displacements)
         })
     };
