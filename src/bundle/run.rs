@@ -11,6 +11,7 @@ use super::proposers::proposal::{Proposal, SubproblemError};
 use super::proposers::proposer::Position;
 use super::state::State;
 use crate::composite::OuterFunction;
+use crate::interruption::interrupted;
 use crate::qp::{EpigraphQpSolver, QpCounts};
 use crate::report::{IterationRecord, Origin, StepKind, Termination};
 use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
@@ -167,6 +168,7 @@ impl Run<'_, '_> {
         for _ in 0..MAX_SUBPROBLEM_TRIALS {
             match self.try_subproblem() {
                 Ok(proposal) => return Continue(proposal),
+                Err(_) if interrupted() => return Break(Termination::StoppedByObserver),
                 Err(error) => last = error,
             }
             let weight = self.state.weight * self.method.config.weight_increase;

@@ -3,11 +3,13 @@
 use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
 use crate::commands::processes::{Processes, SharedSolver, SharedState};
+use contact::communication::InProcess;
 use contact::contact_objective::{self, ContactCost};
 use contact::contact_shape::{ContactState, Wanted};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::fields::Fields;
+use contact::memory;
 use contact::plausibility::Warning;
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName};
@@ -36,14 +38,15 @@ pub fn objective_among(case: &Case, processes: &Processes) -> Result<ContactObje
 /// # Errors
 /// [`Failure::Input`] naming the field.
 pub fn optimized_objective(case: &Case, processes: &Processes) -> Result<ContactObjective, Failure> {
-    objective_for(
-        case,
-        match case.method {
-            MethodName::Composite => Wanted::Jacobians,
-            MethodName::Bundle => Wanted::States,
-        },
-        processes,
-    )
+    objective_for(case, wanted(case), processes)
+}
+
+/// What an optimization of a case asks of the contact solver.
+pub fn wanted(case: &Case) -> Wanted {
+    match case.method {
+        MethodName::Composite => Wanted::Jacobians,
+        MethodName::Bundle => Wanted::States,
+    }
 }
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
@@ -52,11 +55,16 @@ fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<C
     Ok(ContactObjective::new(shape, measure)?)
 }
 
-/// Refuses a case whose objective has no value on its mesh, without preparing a solver for it.
+/// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without preparing a solver for it. What
+/// each of several processes needs is looked at when they begin the case.
 ///
 /// # Errors
 /// [`SceneError`] naming the field.
-pub fn check_objective(case: &Case) -> Result<(), SceneError> {
+pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result<(), SceneError> {
+    if processes.is_alone() {
+        let columns = if wanted == Wanted::Jacobians { case.scene.control_points.iter().product() } else { 0 };
+        memory::check(&case.scene, case.solver, case.preconditioner, columns, &InProcess)?;
+    }
     let problem = ContactProblem::new(case.scene.clone())?;
     ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
 }
