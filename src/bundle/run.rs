@@ -167,8 +167,9 @@ impl Run<'_, '_> {
         let mut last = SubproblemError::Unusable;
         for _ in 0..MAX_SUBPROBLEM_TRIALS {
             match self.try_subproblem() {
+                // What an interrupted subproblem leaves says nothing about the objective.
+                _ if interrupted() => return Break(Termination::StoppedByObserver),
                 Ok(proposal) => return Continue(proposal),
-                Err(_) if interrupted() => return Break(Termination::StoppedByObserver),
                 Err(error) => last = error,
             }
             let weight = self.state.weight * self.method.config.weight_increase;

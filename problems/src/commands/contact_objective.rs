@@ -11,6 +11,7 @@ use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::memory;
 use contact::plausibility::Warning;
+use contact::vtk::{Note, NoteValue};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName};
 
@@ -67,6 +68,15 @@ pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result
     }
     let problem = ContactProblem::new(case.scene.clone())?;
     ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
+}
+
+/// What a file of fields says of the objective: its value, and the units of all that it holds.
+pub fn objective_notes(objective: &ContactObjective, value: f64) -> [Note; 2] {
+    let unit = objective.unit().replace(['{', '}'], "");
+    [
+        Note::new("objective", NoteValue::Number(value)),
+        Note::new("units", NoteValue::Text(format!("objective {unit}; lengths mm; stresses MPa"))),
+    ]
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.
