@@ -50,7 +50,9 @@ fn relief(heights: &Heights) -> String {
     let (low, high) = heights
         .points()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), [.., height]| (height.min(low), height.max(high)));
-    format!("whose heights differ by {:.3e} mm", high - low)
+    let rounding = 16.0 * f64::EPSILON * high.abs();
+    let relief = if high - low > rounding { high - low } else { 0.0 };
+    format!("whose heights differ by {relief:.3e} mm")
 }
 
 /// Lines on which triangles keep their distance.
