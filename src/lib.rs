@@ -174,6 +174,7 @@
 //! | [`verify`] | Taylor tests of any objective |
 //! | [`journal`] | [`Journaled`]: an objective whose evaluations survive the run |
 //! | [`qp`] | the subproblem as a convex QP of its own, with certificate; projection onto a polyhedron |
+//! | [`interruption`] | how long loops hear that nobody waits for their result |
 //! | [`error`], [`linalg`] | error types; the vector and matrix types |
 
 /// The version of this crate, for reports.
@@ -184,6 +185,7 @@ pub mod composite;
 pub mod composite_objective;
 pub mod constraints;
 pub mod error;
+pub mod interruption;
 pub mod journal;
 pub mod linalg;
 pub mod objective;

@@ -19,8 +19,8 @@ WEIGHT = 3e-4
 
 def model():
     h = 1 / (NODES + 1)
-    line = sparse.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(NODES, NODES)) / h**2
-    laplace = sparse.kron(line, sparse.eye_array(NODES)) + sparse.kron(sparse.eye_array(NODES), line)
+    line = sparse.diags([-1.0, 2.0, -1.0], [-1, 0, 1], shape=(NODES, NODES)) / h**2
+    laplace = sparse.kron(line, sparse.identity(NODES)) + sparse.kron(sparse.identity(NODES), line)
     x = np.arange(1, NODES + 1) * h
     patch = np.minimum((x * PATCHES).astype(int), PATCHES - 1)
     belongs = (patch[:, None] == np.arange(PATCHES)).astype(float)

@@ -3,7 +3,7 @@
 use crate::convert;
 use crate::failure::Failure;
 use crate::outcome::Outcome;
-use crate::run::{Plan, RunError, drive, journaled};
+use crate::run::{Plan, RunError, drive, journaled, signal};
 use crate::setup::Setup;
 use crate::watched::Watched;
 use contact::communication::InProcess;
@@ -11,6 +11,7 @@ use contact::contact_objective::{ContactObjective, mean_height_coordinates};
 use contact::contact_shape::{ContactShape, Wanted};
 use contact::equilibrium::ContactStatus;
 use contact::error::SceneError;
+use nonsmooth::interruption::watched;
 use nonsmooth::{Accuracy, Matrix, OracleError, StateSolver, VariableScaling};
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
@@ -108,13 +109,18 @@ impl ContactScene {
     fn evaluate<'py>(&self, py: Python<'py>, heights: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
         let heights = convert::vector(heights, "heights", Some(self.case.scene.control_points.iter().product()))?;
         let objective = self.objective(py)?;
-        let (state, evaluation) = py
-            .detach(|| {
-                let state = objective.solver().solve(&heights, None, Accuracy::TIGHTEST)?;
-                let evaluation = objective.differentiate(&heights, &state)?;
-                Ok((state, evaluation))
-            })
-            .map_err(computation)?;
+        let solve = || {
+            let state = objective.solver().solve(&heights, None, Accuracy::TIGHTEST)?;
+            let evaluation = objective.differentiate(&heights, &state)?;
+            Ok((state, evaluation))
+        };
+        let failure = Failure::default();
+        let watch = failure.clone();
+        let solved = py.detach(|| watched(move || signal(&watch), solve));
+        let (state, evaluation) = match (solved, failure.take()) {
+            (_, Some(error)) => return Err(error),
+            (solved, None) => solved.map_err(computation)?,
+        };
         let problem = objective.solver().problem();
         let (scene, points) = (&problem.scene, &problem.boundary.points);
         let forces = &state.forces;

@@ -8,6 +8,7 @@ use crate::outcome::Outcome;
 use crate::outer::Outer;
 use crate::setup::Setup;
 use crate::watched::Watched;
+use nonsmooth::interruption::watched;
 use nonsmooth::{
     BundleTrust, BundleTrustConfig, Journal, Journaled, NonsmoothObjective, Observer, OptimizeError, Polyhedron,
     Report, Run, TablePrinter, Termination, Vector,
@@ -141,8 +142,21 @@ fn check_start(folder: &str, plan: &Plan) -> Result<(), RunError> {
     }
 }
 
-/// Drives the run to its end, to an exception, or to the callback's word.
+/// Drives the run to its end, to an exception, to a signal, or to the callback's word.
 pub fn drive<O: NonsmoothObjective>(plan: Plan, objective: &O) -> Result<(Report, Polyhedron), OptimizeError> {
+    let failure = plan.failure.clone();
+    watched(move || signal(&failure), || drive_watched(plan, objective))
+}
+
+/// Whether an exception is to end what the engine does: one that is kept already, or that of a signal which has arrived.
+pub fn signal(failure: &Failure) -> bool {
+    if let Err(error) = Python::attach(|py| py.check_signals()) {
+        failure.set(error);
+    }
+    failure.is_set()
+}
+
+fn drive_watched<O: NonsmoothObjective>(plan: Plan, objective: &O) -> Result<(Report, Polyhedron), OptimizeError> {
     let mut method = BundleTrust::new(plan.config)?.constraints(plan.set.clone());
     if plan.disp {
         let mut table = TablePrinter::new(PythonStdout);

@@ -1,5 +1,10 @@
 """Helpers of the tests. The wheel under test is built with the feature `collection`, by .ci/python."""
 
+import os
+import signal
+import threading
+import time
+
 import numpy as np
 import pytest
 
@@ -26,3 +31,17 @@ def collection():
     """The problems of the collection by name."""
     problem = _engine.CollectionProblem
     return {name: problem(name) for name in problem.names()}
+
+
+@pytest.fixture
+def interruptible():
+    """Ctrl-C raises KeyboardInterrupt, also where whoever started the tests ignores the signal, as shells do in the background."""
+    kept = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, kept)
+
+
+def interrupt_after(seconds):
+    timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    return time.perf_counter() + seconds

@@ -3,6 +3,7 @@
 import copy
 import multiprocessing
 import os
+import time
 import warnings
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 
 import nonsmooth
-from conftest import same_bits
+from conftest import interrupt_after, same_bits
 
 contact = pytest.importorskip("nonsmooth.contact", reason="built without the feature contact")
 
@@ -128,6 +129,22 @@ def test_bad_shapes_and_missing_files_are_refused(signorini):
 
 def theta_there(scene, heights, answers):
     answers.put(scene.evaluate(heights).theta)
+
+
+def test_an_interrupt_ends_a_state(interruptible):
+    scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh={"bricks": [16, 16, 16]})
+    whole = scene.evaluate().theta
+    sent = interrupt_after(0.3)
+    with pytest.raises(KeyboardInterrupt):
+        while time.perf_counter() < sent + 10:
+            scene.evaluate()
+    assert time.perf_counter() - sent < 0.5
+    assert scene.evaluate().theta == whole
+    sent = []
+    with pytest.raises(KeyboardInterrupt) as caught:
+        scene.optimize(callback=lambda x: sent.append(interrupt_after(0.2) if not sent else None))
+    assert time.perf_counter() - sent[0] < 0.5
+    assert caught.value.best.fun <= whole and caught.value.best.nfev == len(sent)
 
 
 def test_scenes_go_to_other_processes():

@@ -1,6 +1,7 @@
 """What users do by habit or by mistake: it works as in scipy, or is refused by name."""
 
 import copy
+import importlib.metadata
 import json
 import os
 import pickle
@@ -201,6 +202,11 @@ def test_a_taylor_test_that_tests_nothing_is_refused():
         nonsmooth.taylor_test(l1, START, direction=[0, 0])
     with pytest.raises(ValueError, match="not finite at x or next to it"):
         nonsmooth.taylor_test(lambda x: (np.nan, x), START)
+
+
+def test_the_installed_package_brings_its_licences():
+    names = {path.name for path in importlib.metadata.files("nonsmooth")}
+    assert {"LICENSE-MIT", "LICENSE-APACHE"} <= names
 
 
 def test_records_are_plain_data():

@@ -1,7 +1,5 @@
 """Functions that fail, are interrupted, answer roughly, or run in several threads; journals."""
 
-import os
-import signal
 import threading
 import time
 
@@ -9,7 +7,7 @@ import numpy as np
 import pytest
 
 import nonsmooth
-from conftest import l1, same_bits, without_times
+from conftest import interrupt_after, l1, same_bits, without_times
 
 
 def crescent(x):
@@ -141,20 +139,6 @@ def test_accuracy_is_asked_for_on_demand():
     assert max(asked) == 1e-2 and apart.fun - 1 < 1e-2
 
 
-@pytest.fixture
-def interruptible():
-    """Ctrl-C raises KeyboardInterrupt, also where whoever started the tests ignores the signal, as shells do in the background."""
-    kept = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, kept)
-
-
-def interrupt_after(seconds):
-    timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
-    timer.start()
-    return time.perf_counter() + seconds
-
-
 def endless(x):
     """A function that takes 5 ms and has no end: the run creeps along a slope that never vanishes."""
     end = time.perf_counter() + 0.005
@@ -186,6 +170,21 @@ def test_keyboard_interrupt_in_a_function_without_bytecode(collection, interrupt
     assert time.perf_counter() - sent < 0.5
     # Between two runs it is raised by this test, within a run it carries the best point.
     assert runs > 0 or caught.value.best is not None
+
+
+def test_keyboard_interrupt_in_a_long_subproblem(interruptible):
+    rng = np.random.default_rng(1)
+    matrix, right = rng.normal(size=(1200, 120)), rng.normal(size=1200)
+    sent = []
+
+    def residuals(x):
+        sent.append(interrupt_after(0.2) if not sent else None)
+        return matrix @ x - right, matrix
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        nonsmooth.minimize_composite("l1", residuals, np.ones(120), options={"max_seconds": 30.0})
+    assert time.perf_counter() - sent[0] < 0.5
+    assert caught.value.best.nfev == len(sent) == 1
 
 
 def test_two_runs_at_once_in_threads(collection):

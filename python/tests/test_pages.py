@@ -115,6 +115,8 @@ def test_jax_function():
 
 
 def test_against_scipy():
+    # Older versions of COBYLA take no equations, and the table has another column.
+    pytest.importorskip("scipy", minversion="1.16")
     benchmark = importlib.import_module("against_scipy")
     for name, *problem in benchmark.functions():
         error, _, reached, _ = benchmark.run("nonsmooth", *problem)

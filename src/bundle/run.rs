@@ -11,6 +11,7 @@ use super::proposers::proposal::{Proposal, SubproblemError};
 use super::proposers::proposer::Position;
 use super::state::State;
 use crate::composite::OuterFunction;
+use crate::interruption::interrupted;
 use crate::qp::{EpigraphQpSolver, QpCounts};
 use crate::report::{IterationRecord, Origin, StepKind, Termination};
 use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
@@ -166,6 +167,8 @@ impl Run<'_, '_> {
         let mut last = SubproblemError::Unusable;
         for _ in 0..MAX_SUBPROBLEM_TRIALS {
             match self.try_subproblem() {
+                // What an interrupted subproblem leaves says nothing about the objective.
+                _ if interrupted() => return Break(Termination::StoppedByObserver),
                 Ok(proposal) => return Continue(proposal),
                 Err(error) => last = error,
             }

@@ -11,6 +11,7 @@
 use super::kernels::{add_scaled, norm};
 use super::pricing::Violation;
 use super::working_set::{Active, Member, Place, Side, WorkingSet};
+use crate::interruption::interrupted;
 
 /// How a run of the active-set method ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +23,7 @@ pub(super) enum Outcome {
         /// Relative violation of that side.
         violation: f64,
     },
-    /// The cap on the pivots was reached or v is no longer finite.
+    /// The cap on the pivots was reached, v is no longer finite, or nobody waits for the answer any more.
     Stalled,
 }
 
@@ -98,7 +99,7 @@ impl WorkingSet<'_> {
         let mut skipped = Vec::new();
         self.settle();
         loop {
-            if !self.epigraph.is_finite() || self.pivots > limit {
+            if !self.epigraph.is_finite() || self.pivots > limit || interrupted() {
                 return Outcome::Stalled;
             }
             let Some(violation) = self.most_violated(&skipped) else { return Outcome::Solved };

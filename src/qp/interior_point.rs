@@ -10,6 +10,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, SupportedConeT, ZeroConeT,
 };
 
+use crate::interruption::interrupted;
 use crate::{Matrix, Vector};
 
 use super::answer::assemble;
@@ -84,6 +85,7 @@ fn solve_scaled(qp: &EpigraphQp<'_>, weights: &Vector, length: f64) -> Result<(I
     let quadratic = scaled_metric(qp, weights);
     let mut solver = DefaultSolver::new(&quadratic, &linear, &side_matrix(&sides, n + 1), &bounds, &cones, settings())
         .map_err(|_| QpError::NotSolved { kkt_residual: f64::INFINITY })?;
+    solver.set_termination_callback(|_| interrupted());
     solver.solve();
     let found = &solver.solution;
     if matches!(found.status, SolverStatus::PrimalInfeasible) {

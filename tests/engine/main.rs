@@ -14,6 +14,7 @@ mod feasibility;
 mod fits;
 mod generic_use;
 mod inexact_oracle;
+mod interruption;
 mod kinks;
 mod linear_scaling;
 mod many_variables;

@@ -13,6 +13,8 @@ const PERMISSIVE: [&str; 8] =
 
 /// Licences of data inside single packages: fonts that may be embedded, and must not be sold by themselves.
 const FONTS: [(&str, &str); 2] = [("epaint_default_fonts", "OFL-1.1"), ("epaint_default_fonts", "Ubuntu-font-1.0")];
+/// The licences of the project, one file each.
+const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
 
 /// The categories in use; all of them exist in the registry.
 const CATEGORIES: [&str; 6] = ["algorithms", "config", "mathematics", "science", "simulation", "visualization"];
@@ -103,7 +105,7 @@ fn six_packages_with_all_that_a_registry_asks_for() {
             let title = if name == "contact" { "problems" } else { name };
             assert!(readme.starts_with(&format!("# {title}\n")), "{name}: README");
         }
-        for file in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        for file in LICENCES {
             let own = fs::read(folder.join(file)).unwrap_or_else(|error| panic!("{name}: {file}: {error}"));
             assert_eq!(own, fs::read(root.join(file)).expect("the licence"), "{name}: {file}");
         }
@@ -114,6 +116,16 @@ fn six_packages_with_all_that_a_registry_asks_for() {
         assert!(!keywords.is_empty() && keywords.len() <= 5, "{name}: {keywords:?}");
         let plain = |word: &&str| word.len() <= 20 && word.chars().all(|c| c.is_ascii_lowercase() || c == '-');
         assert!(keywords.iter().all(plain), "{name}: {keywords:?}");
+    }
+}
+
+/// A wheel has the licences that its metadata name.
+#[test]
+fn the_python_package_brings_its_licences() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for file in LICENCES {
+        let own = fs::read(root.join("python/licenses").join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+        assert_eq!(own, fs::read(root.join(file)).expect("the licence"), "{file}");
     }
 }
 

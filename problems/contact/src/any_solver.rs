@@ -213,7 +213,7 @@ impl AutoSolver {
         let Some(reason) = reason else { return self.torn_then_direct(controls, start, tolerance) };
         match self.direct()?.solve(controls, start, tolerance) {
             Ok(state) => Ok(condensed(state, reason)),
-            Err(error) if error.is_about_the_problem() && !proves_friction_too_weak(&error) => Err(error),
+            Err(error) if error.ends_the_search() && !proves_friction_too_weak(&error) => Err(error),
             Err(error) => match self.torn()?.attempt(controls, None, tolerance, self.max_products) {
                 Ok(state) => {
                     let reason = Some(format!("direct condensation failed: {error}"));
@@ -248,7 +248,7 @@ impl AutoSolver {
                     _ => return Ok(state.map(AnyState::from)),
                 }
             }
-            Err(failed) if self.max_products.is_none() || failed.error.is_about_the_problem() => {
+            Err(failed) if self.max_products.is_none() || failed.error.ends_the_search() => {
                 return Err(*failed.error);
             }
             Err(failed) => failed,
@@ -259,7 +259,7 @@ impl AutoSolver {
                 Ok(ContactState { work, ..condensed(state, format!("total FETI failed: {}", failed.error)) })
             }
             // Nothing proves that there is no state where one was found, be it to few digits.
-            Err(error) if error.is_about_the_problem() && !(found && proves_friction_too_weak(&error)) => Err(error),
+            Err(error) if error.ends_the_search() && !(found && proves_friction_too_weak(&error)) => Err(error),
             Err(error) => Err(unsolved(failed, error)),
         }
     }

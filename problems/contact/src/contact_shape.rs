@@ -19,6 +19,7 @@ use crate::plausibility::{self, Warning};
 use crate::scene::Scene;
 use crate::tfeti::PreconditionerKind;
 use nonsmooth::composite::{InactiveConstraints, Linearization};
+use nonsmooth::interruption::interrupted;
 use nonsmooth::{Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJacobian, StateSolver, Vector};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -340,6 +341,8 @@ impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
 /// Mechanics' reasons in the framework's words.
 fn oracle(error: ContactError) -> OracleError {
     match error {
+        // Loops that were ended say no more than that they did not converge.
+        _ if interrupted() => OracleError::Interrupted,
         ContactError::InvertedElement { .. } => OracleError::OutsideDomain { reason: error.to_string() },
         ContactError::NotConverged { solver, residual, iterations, .. } => {
             OracleError::NotConverged { solver, residual, iterations }

@@ -244,6 +244,9 @@ pub enum ContactError {
     /// A state was handed to another kind of solver than the one that found it.
     #[error("the state was found by another kind of contact solver")]
     OtherSolver,
+    /// Nobody waits for the state any more ([`nonsmooth::interruption`]).
+    #[error("the contact problem was interrupted")]
+    Interrupted,
     /// Another process failed where this one did not.
     #[error("{reason}")]
     OtherProcess {
@@ -280,9 +283,15 @@ impl From<FactorizationError> for ContactError {
 }
 
 impl ContactError {
-    /// Whether every solver would say the same: the scene or the shape is at fault.
-    pub fn is_about_the_problem(&self) -> bool {
-        matches!(self, Self::InvertedElement { .. } | Self::NoEquilibrium { .. } | Self::FrictionTooWeak { .. })
+    /// Whether every solver would say the same: the scene or the shape is at fault, or the wish for an end.
+    pub fn ends_the_search(&self) -> bool {
+        matches!(
+            self,
+            Self::InvertedElement { .. }
+                | Self::NoEquilibrium { .. }
+                | Self::FrictionTooWeak { .. }
+                | Self::Interrupted
+        )
     }
 
     /// The kind of the error: the name of its variant.

@@ -1,6 +1,6 @@
 //! A rectangle with axes at its left and lower side: ticks, labels, titles, grid lines.
 
-use super::canvas::{Anchor, Canvas, INK, LABEL, Place, Stroke};
+use super::canvas::{Anchor, Canvas, INK, LABEL, Place, Stroke, text_width};
 use super::scale::Axis;
 
 /// Room below a frame for the labels and the title of its horizontal axis, points.
@@ -9,6 +9,8 @@ pub(super) const ROOM_BELOW: f64 = 42.0;
 const TICK: f64 = 3.5;
 /// Distance of the labels from the frame, points.
 const GAP: f64 = 7.0;
+/// Least distance between labels, points.
+const APART: f64 = 3.0;
 /// Width of frame and ticks, points.
 const LINE: f64 = 0.8;
 /// Height of a digit above the baseline, relative to the size of the text.
@@ -52,10 +54,16 @@ impl Frame {
                 canvas.line(&[0.0, 1.0].map(|end| self.place([end, tick.share])), grid);
             }
         }
+        let mut free = f64::NEG_INFINITY;
         for tick in &across.ticks {
             let [x, y] = self.place([tick.share, 0.0]);
             canvas.line(&[[x, y], [x, y + TICK]], ink);
-            canvas.anchored([x, y + GAP + DIGIT * LABEL], LABEL, Anchor::Middle, &tick.label);
+            // On a slim frame, labels give way to those before them.
+            let half = 0.5 * text_width(&tick.label, LABEL);
+            if x - half >= free {
+                canvas.anchored([x, y + GAP + DIGIT * LABEL], LABEL, Anchor::Middle, &tick.label);
+                free = x + half + APART;
+            }
         }
         canvas.anchored([middle, foot + ROOM_BELOW - 3.0], LABEL, Anchor::Middle, &across.title);
         if let Some(room) = parts.left {

@@ -117,7 +117,7 @@ impl Map {
             let (frame, scale) = (plan.frames[index], &scales[index.min(scales.len() - 1)]);
             panel.draw(&mut canvas, frame, scale, self, plan.labelled[index]);
             if self.scales == ColourScales::Own {
-                scale.bar(&mut canvas, [frame.left + frame.width + 16.0, frame.top], frame.height);
+                scale.bar(&mut canvas, [plan.ends[index] + 16.0, frame.top], frame.height);
             }
         }
         if self.scales == ColourScales::Common {

@@ -19,6 +19,8 @@ pub(super) struct Plan {
     pub frames: Vec<Frame>,
     /// Room for the labels of the vertical axis; none where the panel before has the same axis.
     pub labelled: Vec<Option<f64>>,
+    /// Where each panel ends, and its captions.
+    pub ends: Vec<f64>,
     /// Where the panels end, with a distance.
     pub right: f64,
     /// Lower side of the tallest panel.
@@ -33,6 +35,7 @@ impl Plan {
         let (mut left, mut foot) = (16.0, TOP);
         let mut frames = Vec::new();
         let mut labelled = Vec::new();
+        let mut ends = Vec::new();
         for (index, (grid, captions)) in grids.iter().zip(captions).enumerate() {
             let room = (index == 0 || !same).then_some(ROOM_LEFT);
             left += room.unwrap_or(0.0);
@@ -40,10 +43,11 @@ impl Plan {
             frames.push(Frame { left, top: TOP, width, height });
             labelled.push(room);
             let text = captions.iter().fold(0.0_f64, |width, text| width.max(text_width(text, LABEL)));
-            left += (width + behind).max(text) + if behind > 0.0 { 20.0 } else { 36.0 };
+            ends.push(left + width.max(text));
+            left += width.max(text) + behind + if behind > 0.0 { 20.0 } else { 36.0 };
             foot = foot.max(TOP + height);
         }
-        Self { frames, labelled, right: left, foot }
+        Self { frames, labelled, ends, right: left, foot }
     }
 
     /// The captions above the panels. Every panel is a part of the figure, and so is what stands right of all panels

@@ -249,3 +249,54 @@ fn png_is_refused_for_impossible_scales_and_text_that_is_no_svg() {
     figure.svg.truncate(100);
     assert!(matches!(figure.png(1.0), Err(figures::FigureError::Drawing(_))));
 }
+
+/// A map eight times as tall as wide, with a colour bar behind every panel.
+#[test]
+fn texts_of_a_slim_map_do_not_overlap() {
+    let panel = |caption: &str| MapPanel {
+        caption: caption.into(),
+        counts: [6, 3],
+        origin: [0.0; 2],
+        size: [1.0, 8.0],
+        values: (0..18).map(|value| 100.0 * f64::from(value)).collect(),
+    };
+    for scales in [ColourScales::Common, ColourScales::Own] {
+        let map = Map {
+            name: "slim".into(),
+            title: title(),
+            quantity: "pressure".into(),
+            unit: "MPa".into(),
+            axes: axes(),
+            scales,
+            contours: false,
+            panels: vec![panel("start, Θ = 4.2917e3"), panel("optimum, Θ = 2.8297e2")],
+        };
+        let figure = map.figure().expect("numbers");
+        let document = roxmltree::Document::parse(&figure.svg).expect("XML");
+        let number = |node: &roxmltree::Node, name: &str| node.attribute(name).and_then(|text| text.parse().ok());
+        let mut spans: Vec<(i64, f64, f64)> = document
+            .descendants()
+            .filter(|node| node.has_tag_name("text") && node.attribute("transform").is_none())
+            .map(|node| {
+                let written = node.descendants().filter(roxmltree::Node::is_text).filter_map(|part| part.text());
+                let letters = written.map(|text| text.chars().count());
+                let size: f64 = number(&node, "font-size").expect("a size");
+                // Digits are not narrower than half of their height.
+                let width = 0.5 * size * letters.sum::<usize>() as f64;
+                let share = match node.attribute("text-anchor") {
+                    Some("middle") => 0.5,
+                    Some("end") => 1.0,
+                    _ => 0.0,
+                };
+                let x: f64 = number(&node, "x").expect("a place");
+                let y: f64 = number(&node, "y").expect("a place");
+                (y.round() as i64, x - share * width, x + (1.0 - share) * width)
+            })
+            .collect();
+        spans.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        assert!(spans.len() > 20);
+        for pair in spans.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+            assert!(pair[0].2 <= pair[1].1, "{scales:?}: {pair:?}");
+        }
+    }
+}

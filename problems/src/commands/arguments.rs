@@ -49,9 +49,9 @@ pub struct Arguments {
     /// With recheck: the folder that an optimization of this scene has left.
     #[arg(value_name = "DIR")]
     pub certified: Option<PathBuf>,
-    /// Bricks per edge of each body.
-    #[arg(long, value_name = "N", value_parser = count("mesh.bricks"))]
-    pub mesh: Option<usize>,
+    /// Bricks of each body: per edge, or along x1, x2 and x3.
+    #[arg(long, value_name = "N|N1xN2xN3", value_parser = parse_mesh)]
+    pub mesh: Option<[usize; 3]>,
     /// Subdomains per edge of each body; must divide the mesh. Where neither this option nor the scene says it: 2, or, where 2
     /// does not divide the mesh, the divisor that leaves closest to 6 bricks per subdomain and edge.
     #[arg(long, value_name = "S", value_parser = count("mesh.subdomains"))]
@@ -116,7 +116,8 @@ pub struct Arguments {
     /// Longest time of this run in seconds; the evaluation under way is finished [default: that of the scene, or none].
     #[arg(long, value_name = "SECONDS", value_parser = real("optimizer.time_limit"))]
     pub time_limit: Option<f64>,
-    /// Optimize on growing meshes with so many bricks per edge, each starting from the last optimum.
+    /// Optimize on growing meshes with so many bricks along the axis that has most, the others in proportion, each starting from the last
+    /// optimum.
     #[arg(long, value_name = "N1,N2,...", value_delimiter = ',', value_parser = count("optimizer.continuation"))]
     pub continuation: Option<Vec<usize>>,
     /// Optimize from so many starts: that of the scene, then random surfaces near it; reports how many optima they reach.
@@ -304,6 +305,15 @@ fn parse_surface(text: &str) -> Result<SplineKind, String> {
     }
 }
 
+fn parse_mesh(text: &str) -> Result<[usize; 3], String> {
+    let bricks: Vec<usize> = text.split('x').map(count("mesh.bricks")).collect::<Result<_, _>>()?;
+    match bricks[..] {
+        [all] => Ok([all; 3]),
+        [first, second, third] => Ok([first, second, third]),
+        _ => Err("allowed: one number, or three such as 12x12x6".into()),
+    }
+}
+
 fn parse_counts(text: &str) -> Result<[usize; 2], String> {
     let (first, second) = text.split_once('x').ok_or("allowed: two numbers such as 6x6")?;
     let count = count("surface.control_points");
@@ -376,6 +386,10 @@ mod tests {
         assert_eq!(parse_surface("bspline:3"), Ok(SplineKind::BSpline(3)));
         assert_eq!(parse_surface("bezier"), Ok(SplineKind::Bezier));
         assert!(parse_surface("spline").is_err() && parse_surface("bspline:x").is_err());
+        assert_eq!((parse_mesh("6"), parse_mesh("12x10x4")), (Ok([6; 3]), Ok([12, 10, 4])));
+        for bad in ["", "6x", "6x6", "6x6x0", "6x6x6x6", "6x6x401"] {
+            assert!(parse_mesh(bad).is_err(), "{bad}");
+        }
         assert_eq!(parse_counts("6x8"), Ok([6, 8]));
         for bad in ["6", "6x", "1x6", "6x41", "-6x6", "axb"] {
             assert!(parse_counts(bad).is_err(), "{bad}");

@@ -3,12 +3,15 @@
 use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
 use crate::commands::processes::{Processes, SharedSolver, SharedState};
+use contact::communication::InProcess;
 use contact::contact_objective::{self, ContactCost};
 use contact::contact_shape::{ContactState, SolverKind, Wanted};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::fields::Fields;
+use contact::memory;
 use contact::plausibility::Warning;
+use contact::vtk::{Note, NoteValue};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName};
 
@@ -28,14 +31,15 @@ pub fn objective(case: &Case, processes: &Processes) -> Result<ContactObjective,
 /// # Errors
 /// [`Failure::Input`] naming the field.
 pub fn optimized_objective(case: &Case, processes: &Processes) -> Result<ContactObjective, Failure> {
-    objective_for(
-        case,
-        match case.method {
-            MethodName::Composite => Wanted::Jacobians,
-            MethodName::Bundle => Wanted::States,
-        },
-        processes,
-    )
+    objective_for(case, wanted(case), processes)
+}
+
+/// What an optimization of a case asks of the contact solver.
+pub fn wanted(case: &Case) -> Wanted {
+    match case.method {
+        MethodName::Composite => Wanted::Jacobians,
+        MethodName::Bundle => Wanted::States,
+    }
 }
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
@@ -44,13 +48,27 @@ fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<C
     Ok(ContactObjective::new(shape, measure)?)
 }
 
-/// Refuses a case whose objective has no value on its mesh, without preparing a solver for it.
+/// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without preparing a solver for it. What
+/// each of several processes needs is looked at when they begin the case.
 ///
 /// # Errors
 /// [`SceneError`] naming the field.
-pub fn check_objective(case: &Case) -> Result<(), SceneError> {
+pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result<(), SceneError> {
+    if processes.is_alone() {
+        let columns = if wanted == Wanted::Jacobians { case.scene.control_points.iter().product() } else { 0 };
+        memory::check(&case.scene, case.solver, case.preconditioner, columns, &InProcess)?;
+    }
     let problem = ContactProblem::new(case.scene.clone())?;
     ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
+}
+
+/// What a file of fields says of the objective: its value, and the units of all that it holds.
+pub fn objective_notes(objective: &ContactObjective, value: f64) -> [Note; 2] {
+    let unit = objective.unit().replace(['{', '}'], "");
+    [
+        Note::new("objective", NoteValue::Number(value)),
+        Note::new("units", NoteValue::Text(format!("objective {unit}; lengths mm; stresses MPa"))),
+    ]
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.

@@ -19,6 +19,8 @@ use std::time::Instant;
 #[derive(Debug, Serialize)]
 struct EvaluationJson {
     objective: f64,
+    /// The unit of the objective, or of its root.
+    objective_unit: String,
     /// log₁₀ of the objective, of Σσ^p where its root is given.
     log10_objective: Option<f64>,
     /// p where objective and subgradient are those of (Σσ^p)^{1/p}, since those of Σσ^p are no doubles; else 1.
@@ -74,8 +76,10 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let representable = power.is_normal() && (slope * evaluation.subgradient.amax()).is_finite();
     let (value, slope, objective_root) =
         if representable { (power, slope, 1.0) } else { (evaluation.value, 1.0, root) };
+    let objective_unit = if objective_root == root { objective.unit() } else { format!("MPa^{root}") };
     let result = EvaluationJson {
         objective: value,
+        objective_unit: objective_unit.replace(['{', '}'], ""),
         log10_objective: (evaluation.value > 0.0).then(|| root * evaluation.value.log10()),
         objective_root,
         subgradient: (&evaluation.subgradient * slope).as_slice().to_vec(),
@@ -113,7 +117,7 @@ impl fmt::Display for EvaluationJson {
                 format!(" = (Σσ^{root})^(1/{root}); Σσ^{root} = 10^{exponent}")
             }
         };
-        writeln!(f, "objective            {:.10e}{power}", self.objective)?;
+        writeln!(f, "objective            {:.10e} {}{power}", self.objective, self.objective_unit)?;
         writeln!(f, "|subgradient|        {norm:.6e} ({} controls)", self.subgradient.len())?;
         writeln!(f, "peak pressure        {:.6} MPa", self.peak_pressure)?;
         writeln!(f, "total normal force   {:.10e} N", self.total_normal_force)?;

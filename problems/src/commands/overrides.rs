@@ -64,11 +64,10 @@ impl Arguments {
     pub fn apply(&self, mut file: SceneFile) -> Result<SceneFile, SceneError> {
         let mesh = &mut file.mesh;
         if let Some(bricks) = self.mesh {
-            mesh.bricks = [bricks; 3];
+            mesh.bricks = bricks;
             // Subdomains of the file that do not fit the new mesh give way to those that do.
-            let fits = |counts: [usize; 3]| counts.iter().all(|&count| count > 0 && bricks % count == 0);
-            mesh.subdomains =
-                Some(mesh.subdomains.filter(|&counts| fits(counts)).unwrap_or([default_subdomains(bricks); 3]));
+            let fits = |counts: &[usize; 3]| bricks.iter().zip(counts).all(|(n, &count)| count > 0 && n % count == 0);
+            mesh.subdomains = Some(mesh.subdomains.filter(fits).unwrap_or(bricks.map(default_subdomains)));
         }
         mesh.subdomains = self.subdomains.map(|count| [count; 3]).or(mesh.subdomains);
         file.friction = self.friction.unwrap_or(file.friction);

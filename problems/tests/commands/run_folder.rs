@@ -36,7 +36,7 @@ fn a_file_says_what_the_run_in_a_folder_is() {
         std::fs::write(&file, "{\"kind\": \"dream\"}").unwrap();
         refused(SIGNORINI, &[word, "--resume", text(&folder)], &["run.json", "dream"]);
         std::fs::remove_file(&file).unwrap();
-        refused(SIGNORINI, &[word, "--resume", text(&folder)], &["run.json", "is missing"]);
+        refused(SIGNORINI, &[word, "--resume", text(&folder)], &["run.json", "is missing", "export --run"]);
     }
 }
 

@@ -50,6 +50,22 @@ fn a_row_that_fails_is_a_row_with_its_reason() {
     assert!(errors(&output).contains("every row has failed") && !output.stdout.is_empty());
 }
 
+/// Whatever the machine has, it has less memory than 64 million bricks need.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_mesh_beyond_the_memory_is_named_before_the_first_row() {
+    let output = kit::run(SIGNORINI, &["study", "--vary", "mesh=2,400,4x4x2"]);
+    let said = errors(&output);
+    assert!(
+        said.contains("row 2 will fail: mesh.bricks = 400x400x400 bricks") && !said.contains("row 3 will fail"),
+        "{said}"
+    );
+    assert!(String::from_utf8_lossy(&output.stdout).contains("rows:        3 of 3, 1 failed"), "{said}");
+    let output = kit::run(SIGNORINI, &["--continuation", "2,400", "--max-evaluations", "2"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(errors(&output).contains("the mesh of 400x400x400 bricks"), "{}", errors(&output));
+}
+
 #[test]
 fn an_optimized_study_goes_on_where_it_was_cut_short() {
     let scratch = kit::scratch();

@@ -20,7 +20,7 @@ fn the_help_has_defaults_and_ends_with_examples() {
     }
     // Lines break where the terminal ends.
     let help = printed(HERTZ, &["--help"]).split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(help.contains("Bricks per edge of each body [default: [12, 12, 12]]"), "{help}");
+    assert!(help.contains("Bricks of each body: per edge, or along x1, x2 and x3 [default: [12, 12, 12]]"), "{help}");
 }
 
 /// Only words that cannot be broken are longer than the terminal is wide.

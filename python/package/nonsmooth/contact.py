@@ -147,7 +147,7 @@ class Scene:
         return self._scene.toml()
 
     def evaluate(self, heights=None):
-        """Solve the contact problem of a shape. An interrupt takes effect when it is solved.
+        """Solve the contact problem of a shape. An interrupt takes effect between its steps.
 
         Parameters
         ----------

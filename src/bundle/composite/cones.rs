@@ -14,6 +14,7 @@
 use super::model::CompositeModel;
 use crate::bundle::proposers::subproblem::Room;
 use crate::composite::Epigraph;
+use crate::interruption::interrupted;
 use crate::qp::interior_point::{ScaledSide, compressed, equalities_first, push_set, settings};
 use crate::{Matrix, Vector};
 use clarabel::solver::{
@@ -83,6 +84,7 @@ pub(super) fn solve(model: &CompositeModel<'_>, epigraph: Epigraph) -> Option<Co
     let mut solver =
         DefaultSolver::new(&quadratic, &linear, &matrix, &constraints.sides, &constraints.cones, scaled_settings())
             .ok()?;
+    solver.set_termination_callback(|_| interrupted());
     solver.solve();
     let (x, z) = (&solver.solution.x, &solver.solution.z[of_set.len()..]);
     let step = Vector::from_column_slice(&x[..n]).component_mul(&units.steps);

@@ -18,6 +18,7 @@ use crate::bundle::proposers::subproblem::{self, Cuts};
 #[cfg(feature = "interior-point")]
 use crate::composite::Epigraph;
 use crate::composite::{Linearization, OuterFunction};
+use crate::interruption::interrupted;
 #[cfg(feature = "interior-point")]
 use crate::panics::without_panic;
 use crate::qp::{EpigraphQpSolver, Metric, QpSolution, project};
@@ -220,6 +221,7 @@ impl CompositeModel<'_> {
         let mut step = project(self.set, self.base)? - self.base;
         let mut merit = self.merit(&step);
         for _ in 0..MAX_NEWTON {
+            still_wanted()?;
             let at = OuterCut::at(self.outer, self.outputs(&step))?;
             self.error(&at)?;
             let Some(curvature) = self.outer.curvature(&at.outputs, jacobian) else { break };
@@ -267,6 +269,7 @@ impl CompositeModel<'_> {
         cuts.push(OuterCut::at(self.outer, linearization.outputs.clone()).map_err(SubproblemError::at_base)?);
         let (mut slopes, mut offsets, mut ids) = (vec![], vec![], vec![]);
         loop {
+            still_wanted()?;
             for newest in &cuts[slopes.len()..] {
                 slopes.push(linearization.jacobian.tr_mul(&newest.subgradient) + &pull);
                 offsets.push(self.error(newest)?);
@@ -306,6 +309,11 @@ impl CompositeModel<'_> {
         let decrease = self.value - self.outer.value(&self.outputs(&step)) - 0.5 * self.bend(&step);
         CompositeStep { decrease, step, cuts, row_multipliers: sides.0, bound_multipliers: sides.1 }
     }
+}
+
+/// Fails where nobody waits for the answer any more.
+fn still_wanted() -> Result<(), SubproblemError> {
+    if interrupted() { Err(SubproblemError::Interrupted) } else { Ok(()) }
 }
 
 /// Multipliers of the rows and of the bounds.

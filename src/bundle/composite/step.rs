@@ -55,6 +55,7 @@ impl Run<'_, '_> {
         let step = solved.unwrap_or_else(|message| Err(SubproblemError::OuterPanicked { message }));
         self.count_solves(before);
         match step.and_then(|step| Ok((self.composite_proposal(base, &step, weight)?, step))) {
+            Err(SubproblemError::Interrupted) => Break(Termination::StoppedByObserver),
             Err(error) if error.blames_outer() => Break(Termination::SubproblemFailed { reason: error.to_string() }),
             Err(_) => Continue(None),
             Ok(found) => Continue(Some(found)),

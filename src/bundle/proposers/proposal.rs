@@ -66,6 +66,8 @@ pub(crate) enum SubproblemError {
     OuterPanicked { message: String },
     #[error("its solution is not finite or contradicts itself")]
     Unusable,
+    #[error("it was interrupted")]
+    Interrupted,
 }
 
 impl SubproblemError {

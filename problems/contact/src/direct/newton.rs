@@ -16,6 +16,7 @@ use crate::equilibrium::{Stage, Work};
 use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::norm;
 use faer::Mat;
+use nonsmooth::interruption::interrupted;
 
 /// Compliances that the first problem is tried with, one after the other until Newton's method converges.
 const FIRST_COMPLIANCES: [f64; 6] = [0.0, 1.0, 1e2, 1e4, 1e6, 1e8];
@@ -102,8 +103,8 @@ impl CompliantContact {
         let problem = |delta, spring| Problem { delta, spring, tolerance, max_steps };
         let started = start.and_then(|start| self.newton(start.to_vec(), problem(0.0, SPRINGS[0]), &mut history));
         let mut reached = (zero.clone(), false);
-        for spring in SPRINGS.into_iter().take_while(|_| started.is_none()) {
-            let first = FIRST_COMPLIANCES.into_iter().find_map(|delta| {
+        for spring in SPRINGS.into_iter().take_while(|_| started.is_none() && !interrupted()) {
+            let first = FIRST_COMPLIANCES.into_iter().take_while(|_| !interrupted()).find_map(|delta| {
                 let bonded = self.bonded(&zero, problem(delta, spring));
                 self.newton(bonded, problem(delta, spring), &mut history).map(|found| (delta, found))
             });
@@ -115,7 +116,8 @@ impl CompliantContact {
             }
         }
         let (mut unknowns, mut solved) = started.map_or(reached, |found| (found, true));
-        let programs = (!solved).then(|| self.by_cone_programs(tolerance, all_steps.saturating_sub(history.len())));
+        let programs = (!solved && !interrupted())
+            .then(|| self.by_cone_programs(tolerance, all_steps.saturating_sub(history.len())));
         if let Some(found) = programs.as_ref().and_then(|programs| programs.unknowns.clone()) {
             (unknowns, solved) = (found, true);
         }
@@ -172,7 +174,7 @@ impl CompliantContact {
             (residual, arguments) = self.residual(&unknowns, problem.delta);
             size = norm(&residual);
             history.push(size);
-            Stage::Contact.reached(history.len(), size);
+            Stage::Contact.reached(history.len(), size).ok()?;
             if size <= ACCEPTABLE && size > 0.5 * previous {
                 break;
             }

@@ -21,6 +21,7 @@ use crate::scene::BodyScene;
 use crate::solver_kind::SolverKind;
 use crate::work_estimate::{MAX_PRODUCTS, WorkEstimate};
 use faer::Mat;
+use nonsmooth::interruption::interrupted;
 use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -97,7 +98,7 @@ impl DirectSolver {
     /// Condenses all bodies of a shape; also its lower block, the load (zero for bodies at rest) and the number of
     /// factorisations done.
     fn condense(&self, configuration: Configuration) -> Result<(CompliantContact, Block, f64, usize), ContactError> {
-        Stage::Factorization.enter();
+        Stage::Factorization.enter()?;
         let lower = self.lower.condense(&configuration.blocks[0], &self.problem.scene.lower)?;
         let lower = Arc::new(self.compliant(lower, &configuration.rigid, 0));
         let (upper, factorizations) = self.upper_body(&configuration)?;
@@ -139,13 +140,13 @@ impl DirectSolver {
         tolerance: f64,
     ) -> Result<ContactState<DirectState>, ContactError> {
         let (mut contact, block, load, factorizations) = self.condense(configuration)?;
-        Stage::Contact.enter();
+        Stage::Contact.enter()?;
         let (solution, work, programs) = if load > 0.0 {
             // Why there is no state is asked only where none was found.
             let found = Self::equilibrium(&mut contact, start, tolerance);
             found.map_err(|error| match error {
                 // Where rounding hides the state, it hides a proof as well.
-                ContactError::BeyondPrecision { .. } => error,
+                ContactError::BeyondPrecision { .. } | ContactError::Interrupted => error,
                 error => refusal(&contact).unwrap_or(error),
             })?
         } else {
@@ -180,6 +181,9 @@ impl DirectSolver {
         let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
         let reached = contact.equilibrium(start.as_deref(), tolerance, max_steps);
         let (work, programs) = (reached.work(), reached.program_count());
+        if interrupted() {
+            return Err(ContactError::Interrupted);
+        }
         if !reached.solved {
             let residual = norm(&contact.residual(&reached.unknowns, 0.0).0);
             let floor = contact.rounding(&reached.unknowns);
@@ -241,7 +245,7 @@ impl ContactSolver for DirectSolver {
             return Ok(Sensitivities::at_rest(self.problem.grid.column_count()));
         }
         let clock = Instant::now();
-        Stage::Adjoint.enter();
+        Stage::Adjoint.enter()?;
         let solution = &state.solution;
         let loads = displacements.map_or_else(Vec::new, |displacements| self.condensed_loads(state, displacements));
         let adjoint = state.contact.adjoint(&solution.unknowns, &solution.linearizations, direction, &loads);
@@ -252,7 +256,7 @@ impl ContactSolver for DirectSolver {
         let load = loads.into_iter().next().map_or_else(none, |load| load.full);
         let p = state.extend_under(0, &adjoint.displacement, &adjoint.multipliers, &load);
         let adjoint_seconds = clock.elapsed().as_secs_f64();
-        Stage::ShapeDerivative.enter();
+        Stage::ShapeDerivative.enter()?;
         let heights = self.height_sensitivities(state, u, &p, &adjoint.multipliers);
         if heights.iter().any(|height| !height.is_finite()) {
             return Err(ContactError::NotFinite { what: "adjoint of the condensed state" });
@@ -266,7 +270,7 @@ impl ContactSolver for DirectSolver {
         if state.load == 0.0 {
             return Ok(Tangents::at_rest(rows, changes));
         }
-        Stage::Adjoint.enter();
+        Stage::Adjoint.enter()?;
         let (solution, lower) = (&state.solution, &state.contact.bodies[0]);
         let u = state.displacement(0);
         let (grid, scene) = (&self.problem.grid, &self.problem.scene.lower);

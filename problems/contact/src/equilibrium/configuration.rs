@@ -32,7 +32,7 @@ impl Configuration {
     /// # Errors
     /// [`ContactError::NoEquilibrium`].
     pub fn of(problem: &ContactProblem, blocks: Vec<Block>) -> Result<Self, ContactError> {
-        Stage::Equilibrium.enter();
+        Stage::Equilibrium.enter()?;
         let rigid = problem.rigid_scene(&blocks);
         let grounded = rigid.analyse(&problem.boundary)?;
         let gaps = problem.gaps(&blocks[0]);

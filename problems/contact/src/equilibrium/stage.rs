@@ -1,6 +1,8 @@
 //! What a contact solver is doing, told as `tracing` events: a log or a status line follows them, and without a listener they
-//! cost nothing.
+//! cost nothing. These are also the places where a state that nobody waits for any more is given up.
 
+use crate::error::ContactError;
+use nonsmooth::interruption::interrupted;
 use std::fmt;
 
 /// Target of the events: entering a stage has the level debug, a step of an iteration the level trace.
@@ -28,14 +30,26 @@ pub enum Stage {
 
 impl Stage {
     /// Says that the stage begins.
-    pub fn enter(self) {
+    ///
+    /// # Errors
+    /// [`ContactError::Interrupted`].
+    pub fn enter(self) -> Result<(), ContactError> {
         tracing::debug!(target: TARGET, stage = %self);
+        still_wanted()
     }
 
     /// Says how far its iteration has come: steps so far, relative residual.
-    pub fn reached(self, steps: usize, residual: f64) {
+    ///
+    /// # Errors
+    /// [`ContactError::Interrupted`].
+    pub fn reached(self, steps: usize, residual: f64) -> Result<(), ContactError> {
         tracing::trace!(target: TARGET, stage = %self, steps, residual);
+        still_wanted()
     }
+}
+
+fn still_wanted() -> Result<(), ContactError> {
+    if interrupted() { Err(ContactError::Interrupted) } else { Ok(()) }
 }
 
 impl fmt::Display for Stage {

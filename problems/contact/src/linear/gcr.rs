@@ -11,6 +11,7 @@ use crate::linear::entry::Row;
 use crate::linear::gmres::MAX_STALLED_ITERATIONS;
 use crate::linear::real::Real;
 use crate::linear::sums::Sums;
+use nonsmooth::interruption::interrupted;
 
 /// Directions, payloads and their coefficients: X = Σ coefficients∘directions.
 pub struct ColumnCombination<E, P, const N: usize> {
@@ -46,7 +47,7 @@ pub fn gcr<E: Real, P, const N: usize>(
         ColumnCombination { directions: Vec::new(), payloads: Vec::new(), coefficients: Vec::new(), residuals };
     let (mut images, mut squares) = (Vec::<Vec<Row<E, N>>>::new(), Vec::<Row<f64, N>>::new());
     let (mut triangle, mut history) = (Vec::new(), vec![largest_share(&result.residuals, targets)]);
-    while !reached(&result.residuals, targets) && result.directions.len() < max_iterations {
+    while !reached(&result.residuals, targets) && result.directions.len() < max_iterations && !interrupted() {
         let direction = precondition(&residual);
         let (mut image, payload) = apply(&direction);
         let earlier: Vec<&[Row<E, N>]> = images.iter().map(Vec::as_slice).collect();

@@ -8,6 +8,7 @@
 
 use crate::linear::sums::Sums;
 use crate::linear::vector::norm;
+use nonsmooth::interruption::interrupted;
 
 /// Directions, payloads and their coefficients: x = Σ coefficients·directions.
 #[derive(Debug)]
@@ -26,7 +27,7 @@ pub struct Combination<P> {
 pub const MAX_STALLED_ITERATIONS: usize = 40;
 
 /// Minimises |r − A x| over growing Krylov spaces until the norm falls to `target`, `max_iterations` is reached, or the norm
-/// does not halve in `patience` iterations; the caller judges the residual.
+/// does not halve in `patience` iterations, or nobody waits for it any more; the caller judges the residual.
 ///
 /// `sums`: inner products; `precondition(v)` returns z = M v; `apply(z)` returns (A z, payload).
 pub fn gmres<P>(
@@ -47,7 +48,7 @@ pub fn gmres<P>(
     let mut basis = vec![residual.iter().map(|r| r / start).collect::<Vec<f64>>()];
     let mut triangle = Triangle::new(start);
     let mut history = vec![start];
-    while result.residual > target && result.directions.len() < max_iterations {
+    while result.residual > target && result.directions.len() < max_iterations && !interrupted() {
         let direction = precondition(&basis[basis.len() - 1]);
         let (mut image, payload) = apply(&direction);
         result.directions.push(direction);

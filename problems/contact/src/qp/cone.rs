@@ -7,6 +7,7 @@
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use faer::Mat;
+use nonsmooth::interruption::interrupted;
 
 /// Iterations of the interior-point method that are worth while: a program takes some twenty.
 pub const MAX_ITERATIONS: usize = 100;
@@ -89,6 +90,7 @@ impl ConeProgram<'_> {
         let iterations = u32::try_from(max_iterations).unwrap_or(u32::MAX);
         let settings = DefaultSettingsBuilder::default().verbose(false).max_iter(iterations).build().ok()?;
         let mut solver = DefaultSolver::new(&quadratic, &self.linear, &constraints, &right, &cones, settings).ok()?;
+        solver.set_termination_callback(|_| interrupted());
         solver.solve();
         let solution = &solver.solution;
         let entries = solution.x.clone();

@@ -167,16 +167,16 @@ impl TornSolver {
         let mut seconds = StageSeconds::default();
         let configuration = Configuration::new(self.problem(), controls)?;
         seconds.equilibrium = clock.lap();
-        Stage::Factorization.enter();
+        Stage::Factorization.enter()?;
         let system = self.model.factorize(&configuration.blocks)?;
         seconds.factorization = clock.lap();
-        Stage::CoarseSpace.enter();
+        Stage::CoarseSpace.enter()?;
         let grounded = self.model.grounded_amplitudes(&system, &configuration);
         let space = CoarseSpace::new(&self.model, &system, grounded)?;
         let stiffness = STIFFNESS_SHARE * self.flat_or_tall_share() * self.model.contact_stiffness(&system);
         let load = configuration.load(stiffness);
         seconds.coarse_space = clock.lap();
-        Stage::Contact.enter();
+        Stage::Contact.enter()?;
         let scales = [stiffness, if load > 0.0 { load } else { 1.0 }];
         let contact = self.contact(&system, &space, &configuration.gaps, scales);
         let work = |newton_steps| Work {
@@ -189,7 +189,7 @@ impl TornSolver {
         let (solution, returned) = solved.map_err(|error| Failed { error: Box::new(error), work: work(0) })?;
         seconds.coarse_space += contact.space.seconds();
         seconds.newton = clock.lap() - contact.space.seconds();
-        Stage::Recovery.enter();
+        Stage::Recovery.enter()?;
         let (operator, iterate) = (&contact.operator, &solution.iterate);
         let loaded = operator.loaded_displacement();
         let displacement = operator.displacement(loaded, &iterate.multipliers, &iterate.amplitudes);
@@ -278,7 +278,7 @@ impl TornSolver {
         let Some(contact) = self.contact_of(state)? else {
             return Ok(Sensitivities::at_rest(self.problem().grid.column_count()));
         };
-        Stage::Adjoint.enter();
+        Stage::Adjoint.enter()?;
         let constraints = &self.model.constraints;
         let mut scaled = constraints.zeros();
         let scales = constraints.contact_scales(contact.boundary);
@@ -297,7 +297,7 @@ impl TornSolver {
         let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, load.as_ref(), tolerance, natural)?;
         let value_error = contact.value_error(iterate, &adjoint, &scaled).with_displacements(size);
         let adjoint_seconds = clock.lap();
-        Stage::ShapeDerivative.enter();
+        Stage::ShapeDerivative.enter()?;
         let heights = height_sensitivities(&self.model, &state.blocks[0], &state.displacement, &adjoint);
         let (applications, shape_seconds) = (contact.operator.applications(), clock.lap());
         Ok(Sensitivities { heights, applications, adjoint_seconds, shape_seconds, value_error })
@@ -316,7 +316,7 @@ impl TornSolver {
         let Some(contact) = self.contact_of(state)? else {
             return Ok(Tangents::at_rest(self.problem().boundary.row_count, changes));
         };
-        Stage::Adjoint.enter();
+        Stage::Adjoint.enter()?;
         let surface = MovedSurface {
             lower: &state.blocks[0],
             displacement: &state.displacement,

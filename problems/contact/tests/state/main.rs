@@ -10,6 +10,7 @@ mod fields;
 mod flat_and_tall_bricks;
 mod friction_problem;
 mod friction_too_weak;
+mod interruption;
 mod nearly_incompressible;
 mod paths_agree;
 mod scene_structure;

@@ -28,7 +28,7 @@ pub fn triangles(problem: &ContactProblem, controls: &[f64], tolerance: f64) -> 
         Ok::<_, Failure>(OutputFile { name, content, what, triangles: Some(count) })
     };
     let mut files = vec![
-        written("surface.stl", "the optimized surface alone", sheet(&heights))?,
+        written("surface.stl", &format!("the optimized surface alone, {}", relief(&heights)), sheet(&heights))?,
         written("lower_body.stl", "the lower body, closed", solid(&heights, BASE).map_err(failure)?)?,
     ];
     if let Some(upper) = &scene.upper {
@@ -43,6 +43,16 @@ pub fn triangles(problem: &ContactProblem, controls: &[f64], tolerance: f64) -> 
         files.push(written("upper_body.stl", "the upper body, closed", body)?);
     }
     Ok(files)
+}
+
+/// How much the surface rises in all: a tolerance that is not far below hides it.
+fn relief(heights: &Heights) -> String {
+    let (low, high) = heights
+        .points()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), [.., height]| (height.min(low), height.max(high)));
+    let rounding = 16.0 * f64::EPSILON * high.abs();
+    let relief = if high - low > rounding { high - low } else { 0.0 };
+    format!("whose heights differ by {relief:.3e} mm")
 }
 
 /// Lines on which triangles keep their distance.

@@ -78,7 +78,15 @@ impl RunFolder {
             let reason = format!("holds no run to resume ({SCENE}, {START} and a journal)");
             return Err(file_error(folder, reason));
         }
-        let unknown = || file_error(folder, format!("{RUN}, which says what the run is, is missing"));
+        let unknown = || {
+            let place = folder.display();
+            let hint =
+                format!("`export --run {place}` writes its shape, from which {} begins anew", controls::START_OPTION);
+            file_error(
+                folder,
+                format!("{RUN}, which says what the run is, is missing: older versions wrote none; {hint}"),
+            )
+        };
         let found = RunKind::of(folder)?.ok_or_else(unknown)?;
         if found != kind {
             let command = resume_command(folder, found);

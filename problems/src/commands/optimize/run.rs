@@ -1,6 +1,6 @@
 //! An optimization from its beginning to its end: on one mesh or on growing ones, kept on disk if asked for.
 
-use crate::commands::contact_objective::{ContactObjective, check_objective, optimized_objective};
+use crate::commands::contact_objective::{ContactObjective, check_ahead, optimized_objective, wanted};
 use crate::commands::controls;
 use crate::commands::failure::{Failure, failed};
 use crate::commands::folder::Folder;
@@ -85,7 +85,7 @@ pub fn optimize(
     // What is wrong on a later mesh is said before hours of work on the first.
     for later in stages.iter().skip(1).filter(|stage| matches!(stage.part, Part::Mesh(_))) {
         let within = |source| SceneError::InFile { file: on(later), source: Box::new(source) };
-        check_objective(&later.case).map_err(within)?;
+        check_ahead(&later.case, wanted(&later.case), &session.processes).map_err(within)?;
     }
     let (folder, mut controls) = begin(&first, loaded, given, (RunKind::Optimization, &[]), session)?;
     if let Some(folder) = &folder {

@@ -1,6 +1,6 @@
 //! `--vtk-history`: the shapes that an optimization came through, as a series for ParaView.
 
-use crate::commands::contact_objective::SolvedShape;
+use crate::commands::contact_objective::{SolvedShape, objective_notes};
 use crate::commands::failure::Failure;
 use crate::commands::folder::Folder;
 use crate::commands::optimize::mesh_run::MeshRun;
@@ -34,12 +34,9 @@ pub fn write(folder: &Folder, runs: &[&MeshRun]) -> Result<(), Failure> {
             let solved = SolvedShape::at(&run.objective, &Vector::from_column_slice(&entry.point))?;
             let fields = solved.fields(&run.objective, true)?;
             let evaluation = before + record.evaluation;
-            let unit = run.objective.unit().replace(['{', '}'], "");
-            let notes = [
-                Note::new("objective", NoteValue::Number(solved.value)),
-                Note::new("evaluation", NoteValue::Integer(i32::try_from(evaluation).unwrap_or(i32::MAX))),
-                Note::new("units", NoteValue::Text(format!("objective {unit}; lengths mm; stresses MPa"))),
-            ];
+            let [objective, units] = objective_notes(&run.objective, solved.value);
+            let number = NoteValue::Integer(i32::try_from(evaluation).unwrap_or(i32::MAX));
+            let notes = [objective, Note::new("evaluation", number), units];
             let name = format!("history_{evaluation:04}");
             let state = FieldState { time: evaluation as f64, name: &name, fields: &fields, notes: &notes };
             let files = state_files(entries.len() / 2, &state).map_err(Failure::computation)?;

@@ -1,6 +1,6 @@
 //! The folder of a report while it is filled: its files with what they hold, and the parts of the page so far.
 
-use crate::commands::contact_objective::{ContactObjective, SolvedShape};
+use crate::commands::contact_objective::{ContactObjective, SolvedShape, objective_notes};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, json};
 use crate::commands::loaded_scene::LoadedScene;
@@ -13,6 +13,7 @@ use crate::commands::report::{bodies, captions, gallery, sections, setup, tables
 use crate::commands::run_kind::RUN;
 use contact::fields::{FieldState, vtk_files};
 use contact::plausibility::Warning;
+use contact::vtk::Note;
 use figures::page::{Block, File, Page, Section};
 use figures::{ColourScales, Figure};
 use scene_file::OutputSection;
@@ -149,10 +150,12 @@ impl<'a> ReportFolder<'a> {
 
     /// Fields of shapes for ParaView.
     fn write_fields(&mut self, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
+        let notes: Vec<[Note; 2]> =
+            shapes.iter().map(|shape| objective_notes(self.objective, shape.solved.value)).collect();
         let mut states = Vec::new();
-        for (index, shape) in shapes.iter().enumerate() {
+        for (index, (shape, notes)) in shapes.iter().zip(&notes).enumerate() {
             let fields = shape.fields.iter();
-            states.extend(fields.map(|fields| FieldState { time: index as f64, name: shape.name, fields, notes: &[] }));
+            states.extend(fields.map(|fields| FieldState { time: index as f64, name: shape.name, fields, notes }));
         }
         let folder = self.folder.within(VTK)?;
         for (name, text) in vtk_files(&states).map_err(Failure::computation)? {

@@ -38,6 +38,9 @@ def show(source, view, array, association, title):
     bar = simple.GetScalarBar(simple.GetColorTransferFunction(array), view)
     bar.Title, bar.ComponentTitle, bar.HorizontalTitle = title, "", 1
     bar.TitleFontSize = bar.LabelFontSize = 12
+    bar.RangeLabelFormat = "%.4g"
+    # Shadows would change the colours.
+    display.Ambient, display.Diffuse, display.EdgeColor = 0.7, 0.3, [0.3, 0.3, 0.3]
     return display
 
 

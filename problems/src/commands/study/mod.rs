@@ -18,6 +18,7 @@ use crate::commands::folder::{Folder, REPORT, STUDY, file_error, json, printed_w
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, STATUS, interrupted, watch_interrupts};
 use crate::commands::optimize::run::begin;
+use crate::commands::output::notice;
 use crate::commands::register::REGISTER;
 use crate::commands::report::study::write_study;
 use crate::commands::run_kind::RunKind;
@@ -47,6 +48,11 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let folder = folder.as_ref();
     watch_interrupts(session.processes.is_alone());
     let mut rows: Vec<Row> = kept(folder, &combinations)?;
+    for (index, options) in combinations.iter().enumerate().skip(rows.len()) {
+        // What is known now is said now, not after hours of other rows.
+        let failure = row::refusal(loaded, (options, &plan.fixed), (plan.optimize, plan.same_start), session);
+        failure.iter().for_each(|failure| notice(&format!("row {} will fail: {failure}", index + 1)));
+    }
     let mut cut = None;
     for (index, options) in combinations.iter().enumerate() {
         if rows.get(index).is_some_and(|row| !row.is_to_be_continued(session.arguments.max_evaluations.is_some())) {

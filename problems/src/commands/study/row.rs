@@ -1,7 +1,7 @@
 //! One row of a study.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::{self, ContactObjective, SolvedShape, checks};
+use crate::commands::contact_objective::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
@@ -9,6 +9,7 @@ use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
 use crate::commands::optimize::standstill::standstill;
 use crate::commands::study::plan::options;
+use contact::contact_shape::Wanted;
 use contact::equilibrium::StatusCounts;
 use nonsmooth::Vector;
 use serde::{Deserialize, Serialize};
@@ -123,17 +124,7 @@ pub fn computed(
     session: &Session<'_>,
 ) -> Result<Result<Row, String>, Failure> {
     let clock = Instant::now();
-    let part = options(&[words, fixed].concat()).and_then(|options| {
-        let mut file = options.apply(loaded.file.clone())?;
-        file.output.folder = out.map(|path| path.display().to_string());
-        let part = loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?;
-        if start.is_some() {
-            let given = loaded.case.scene.control_points;
-            controls::check_grid(given, part.case.scene.control_points, "the study, at which its rows begin")?;
-        }
-        Ok((part, options))
-    });
-    let outcome = match part {
+    let outcome = match stated(loaded, (words, fixed), (start.is_some(), out)) {
         Ok((part, _)) if optimized => optimum(&part, start, session),
         Ok((part, options)) => evaluated(&part, start, &options, session).map(Ok),
         Err(failure) => Err(failure),
@@ -146,6 +137,37 @@ pub fn computed(
         Err(failure) => Outcome::Failed(failure.to_string()),
     };
     Ok(Ok(Row { options: words.to_vec(), outcome, seconds: clock.elapsed().as_secs_f64() }))
+}
+
+/// Why a row is known to fail before anything is computed, if it is: its options, its memory, its objective.
+pub fn refusal(
+    loaded: &LoadedScene,
+    words: (&[String], &[String]),
+    (optimized, has_start): (bool, bool),
+    session: &Session<'_>,
+) -> Option<Failure> {
+    let checked = stated(loaded, words, (has_start, None)).and_then(|(part, _)| {
+        let wanted = if optimized { wanted(&part.case) } else { Wanted::States };
+        Ok(check_ahead(&part.case, wanted, &session.processes)?)
+    });
+    checked.err()
+}
+
+/// The scene of a row, with the options that it has; `has_start`: whether it is to take the controls of the study.
+fn stated(
+    loaded: &LoadedScene,
+    (words, fixed): (&[String], &[String]),
+    (has_start, out): (bool, Option<&Path>),
+) -> Result<(LoadedScene, Arguments), Failure> {
+    let options = options(&[words, fixed].concat())?;
+    let mut file = options.apply(loaded.file.clone())?;
+    file.output.folder = out.map(|path| path.display().to_string());
+    let part = loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?;
+    if has_start {
+        let given = loaded.case.scene.control_points;
+        controls::check_grid(given, part.case.scene.control_points, "the study, at which its rows begin")?;
+    }
+    Ok((part, options))
 }
 
 /// The state at one shape.

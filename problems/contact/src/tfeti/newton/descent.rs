@@ -60,7 +60,7 @@ impl TornContact<'_> {
                     replaced = residual;
                 }
                 history.push(residual);
-                Stage::Contact.reached(history.len() - 1, residual);
+                Stage::Contact.reached(history.len() - 1, residual)?;
                 let done =
                     residual <= settings.tolerance || stagnates(history, patience) || self.products_left(settings) == 0;
                 if done || residual <= renewal || !same_status(&held, &self.linearize(iterate)) {

@@ -91,7 +91,7 @@ impl TornContact<'_> {
                 return Err(ContactError::NotFinite { what: "contact residual" });
             }
             history.push(residual);
-            Stage::Contact.reached(history.len() - 1, residual);
+            Stage::Contact.reached(history.len() - 1, residual)?;
             forcing = eisenstat_walker(residual, previous, length);
         }
         Ok(iterate)

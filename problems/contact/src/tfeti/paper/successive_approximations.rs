@@ -160,7 +160,7 @@ impl TornContact<'_> {
             let solution = self.tresca(dual, linear, settings, state)?;
             let residual = self.coulomb_residual(&solution);
             history.push(residual);
-            Stage::Contact.reached(history.len(), residual);
+            Stage::Contact.reached(history.len(), residual)?;
             let exhausted = !solution.converged && residual <= settings.tolerance.max(TIGHTEST_ACCEPTABLE);
             let target = TARGET_SHARE * settings.tolerance;
             state.counts.fixed_point_steps += 1;
