@@ -9,7 +9,7 @@ use crate::equilibrium::{
     StageSeconds, Tangents, Work,
 };
 use crate::error::ContactError;
-use crate::linear::vector::{add_scaled, dot, norm};
+use crate::linear::vector::dot;
 use crate::tfeti::derivative::{DisplacementLoad, MovedSurface, height_sensitivities};
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::NewtonSettings;
@@ -258,8 +258,7 @@ impl TornSolver {
     /// [`ContactError::Unheld`], [`ContactError::ForeignState`] for a state of another mesh.
     pub fn estimate_contraction(&self, state: &TornState, max_products: usize) -> Result<f64, ContactError> {
         let Some(contact) = self.contact_of(state)? else { return Ok(0.0) };
-        let forces = state.solution.iterate.multipliers.contact();
-        contact.estimate_contraction(&state.solution.linearizations, forces, max_products)
+        contact.estimate_contraction(&state.solution, max_products)
     }
 
     /// Sensitivities of the column heights for a dual: j = ∂J/∂λ in packed physical rows, then l = ∂J/∂u over the nodes of all bodies where
@@ -359,10 +358,8 @@ fn forces(contact: &TornContact<'_>, solution: &TornSolution) -> ContactForces {
         *force /= nu;
         *jump *= nu;
     }
-    let mut defect = contact.space.resultant(&iterate.multipliers);
-    add_scaled(&mut defect, -1.0, contact.space.resultants());
     let residuals = Residuals {
-        equilibrium: norm(&defect) / contact.load,
+        equilibrium: contact.imbalance(&iterate.multipliers),
         newton: solution.residual,
         ..law_residuals(boundary, &forces, &jumps, contact.stiffness, contact.load)
     };
