@@ -57,7 +57,7 @@ def test_args_that_are_no_tuple_are_one_argument():
         (dict(options={"scaling": "x"}), TypeError, "option scaling is 'x'"),
         (dict(options={"accuracy": (1, 2, "a")}), TypeError, "option accuracy is"),
         (dict(options={"max_seconds": 0}), ValueError, "max_seconds = 0.0 is not allowed; allowed: > 0"),
-        (dict(options={"bundle_size": 1}), ValueError, "bundle_size = 1 is not allowed; allowed: ≥ 2"),
+        (dict(options={"bundle_size": 2}), ValueError, "bundle_size = 2 is not allowed; allowed: ≥ 3"),
         (dict(callback=3), TypeError, "callback is int, expected a function"),
     ],
 )

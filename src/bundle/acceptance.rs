@@ -75,10 +75,11 @@ impl Run<'_, '_> {
     pub(super) fn add_cut(&mut self, point: Vector, evaluation: &Evaluation<()>, certified: bool) {
         let size = self.method.config.bundle_size.unwrap_or_else(|| (point.len() + EXTRA_CUTS).min(MAX_CUTS));
         let state = &mut self.state;
-        state.bundle.make_room(size, state.center_id);
+        state.bundle.make_room(size, state.center_id, &mut state.next_id, &state.norm);
         let cut = Cut {
             id: state.next_id,
             point,
+            radius: 0.0,
             value: evaluation.value,
             subgradient: evaluation.subgradient.clone(),
             error_bound: evaluation.error_bound,

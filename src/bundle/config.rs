@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Convexity {
-    /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex.
+    /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex. Where more cuts than variables agree
+    /// with a convex Θ and the active ones are not far, the end is confirmed without a restart.
     #[default]
     Unknown,
     /// Θ is convex. The cuts bound how far Θ can still fall within reach of the variables, this bound decides the end, and no
@@ -64,6 +65,9 @@ impl AccuracyPolicy {
     pub const ON_DEMAND: Self = Self::OnDemand { tightest: 1e-12, coarsest: 1e-2, factor: 0.1 };
 }
 
+/// Sizes of the bundle that the method can work with, and why.
+const BUNDLE_SIZES: &str = "≥ 3: the best point's cut, the newest one, and one for all others together";
+
 /// Settings of [`BundleTrust`](crate::BundleTrust). The defaults are one setting for all problems.
 ///
 /// ```
@@ -96,8 +100,8 @@ pub struct BundleTrustConfig {
     pub scaling: VariableScaling,
     /// Accuracy asked of the oracle. Default always the tightest; an oracle that ignores the request is not affected.
     pub accuracy: AccuracyPolicy,
-    /// Largest number of cuts. Default none: n + 15, at most 500. ≥ 2. A large bundle remembers cuts that mislead a
-    /// nonconvex run; a small one forgets kinks.
+    /// Largest number of cuts. Default none: n + 15, at most 500. ≥ 3: the cut of the center, the newest one, and one for all others
+    /// together. A large bundle remembers cuts that mislead a nonconvex run; a small one merges active cuts, and needs more evaluations.
     pub bundle_size: Option<usize>,
     /// Share m_S of the predicted decrease that makes a step serious. Default 0.02; in (0, 0.5).
     pub serious_fraction: f64,
@@ -178,7 +182,7 @@ impl BundleTrustConfig {
         check_setting("max_iterations", self.max_iterations, "≥ 1", self.max_iterations >= 1)?;
         positive("max_seconds", self.max_seconds)?;
         positive("first_step", self.first_step)?;
-        self.bundle_size.map_or(Ok(()), |size| check_setting("bundle_size", size, "≥ 2", size >= 2))?;
+        self.bundle_size.map_or(Ok(()), |size| check_setting("bundle_size", size, BUNDLE_SIZES, size >= 3))?;
         let serious = self.serious_fraction > 0.0 && self.serious_fraction < 0.5;
         check_setting("serious_fraction", self.serious_fraction, "0 < x < 0.5", serious)?;
         let good = self.good_fraction >= self.serious_fraction && self.good_fraction < 1.0;

@@ -16,22 +16,25 @@ use std::cell::Cell;
 /// A smaller multiplier is rounding of the subproblem: the cut is idle, and the longest idle cut leaves the bundle first.
 pub(crate) const LEAST_ACTIVE_MULTIPLIER: f64 = 1e-9;
 
-/// One evaluation kept in the bundle.
+/// One evaluation kept in the bundle, or several merged into one cut.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Cut {
-    /// Number of the evaluation that made the cut; unique in a run.
+    /// Number of the cut in the order in which cuts were made; unique in a run.
     pub id: u64,
-    /// Where Θ was evaluated, y.
+    /// Where Θ was evaluated, y; of merged cuts, the point of the one with the larger multiplier.
     pub point: Vector,
+    /// Largest distance from `point` of a point that the cut stems from; 0 for a cut that is not merged.
+    #[serde(default)]
+    pub radius: f64,
     /// Θ(y), or a lower bound of it.
     pub value: f64,
     /// One subgradient of Θ at y.
     pub subgradient: Vector,
     /// Bound or estimate of the error of `value` that the oracle promised, in units of Θ.
     pub error_bound: f64,
-    /// Whether the oracle certified the cut to lie below Θ (an answer [`NoDescent`](crate::Answer::NoDescent)): the
-    /// cut holds, but its value bounds Θ(y) from below only.
+    /// Whether the oracle certified the cut to lie below Θ (an answer [`NoDescent`](crate::Answer::NoDescent)), or the cut is
+    /// merged: it holds, but its value bounds Θ(y) from below only.
     pub certified: bool,
     /// Multiplier λ ≥ 0 in the last subproblem; Σ λ = 1 over all cuts.
     pub multiplier: f64,
@@ -43,6 +46,33 @@ impl Cut {
     /// Whether the multiplier is more than rounding of the subproblem: above 1e-9.
     pub fn is_active(&self) -> bool {
         self.multiplier > LEAST_ACTIVE_MULTIPLIER
+    }
+
+    /// How far the points behind the cut lie from a point at most.
+    pub(crate) fn farthest_from(&self, x: &Vector, norm: &ScaledNorm) -> f64 {
+        norm.squared_distance(x, &self.point).sqrt() + self.radius
+    }
+
+    /// The mean of two cuts, weighted by their multipliers. The last subproblem has the same answer with it as with both.
+    fn merged(&self, lighter: &Self, id: u64, norm: &ScaledNorm) -> Self {
+        let multiplier = self.multiplier + lighter.multiplier;
+        let share = lighter.multiplier / multiplier;
+        let distance = norm.squared_distance(&self.point, &lighter.point).sqrt();
+        let here = |cut: &Self| {
+            let slope = cut.subgradient.as_slice();
+            cut.value - cut.excess() + difference_dot(slope, self.point.as_slice(), cut.point.as_slice())
+        };
+        Self {
+            id,
+            point: self.point.clone(),
+            radius: self.radius.max(distance + lighter.radius),
+            value: (1.0 - share) * here(self) + share * here(lighter),
+            subgradient: &self.subgradient * (1.0 - share) + &lighter.subgradient * share,
+            error_bound: 0.0,
+            certified: true,
+            multiplier,
+            idle: 0,
+        }
     }
 
     /// How far the cut may lie above a convex Θ: the promised error of its value, 0 if it is certified.
@@ -66,6 +96,9 @@ struct ConcavePair {
     allowance: f64,
 }
 
+/// Rounding of the error of a pair relative to its terms.
+const PAIR_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 /// ‖g‖* and ‖y‖ of a cut, and how far its linearization varies, with the center for which this spread was formed.
 #[derive(Debug, Clone)]
 struct Sizes {
@@ -87,6 +120,7 @@ pub(crate) struct Bundle {
     cuts: Vec<Cut>,
     sizes: Vec<Sizes>,
     concave: Vec<ConcavePair>,
+    contradicts_convexity: bool,
     pairs: Pairs,
 }
 
@@ -131,14 +165,26 @@ impl Bundle {
         }
     }
 
-    /// Removes cuts until one more fits into `size`: the one idle longest, or else that of smallest multiplier; never the protected one.
-    pub(crate) fn make_room(&mut self, size: usize, protected: u64) {
-        while self.cuts.len() >= size.max(2) {
+    /// Makes one more cut fit into `size` without touching the protected one. The cut idle longest leaves. Where every cut is active, the
+    /// two of smallest multipliers become one, so that the model keeps its minimiser; it is numbered by `next_id`.
+    pub(crate) fn make_room(&mut self, size: usize, protected: u64, next_id: &mut u64, norm: &ScaledNorm) {
+        while self.cuts.len() >= size {
             let candidates = || self.cuts.iter().enumerate().filter(|(_, cut)| cut.id != protected);
             let idle = candidates().filter(|(_, cut)| cut.idle > 0).max_by_key(|(i, cut)| (cut.idle, usize::MAX - i));
-            let weakest = || candidates().min_by(|a, b| a.1.multiplier.total_cmp(&b.1.multiplier));
-            let Some((index, _)) = idle.or_else(weakest) else { return };
-            self.remove(index);
+            let mut weakest: Vec<usize> = candidates().map(|(index, _)| index).collect();
+            weakest.sort_by(|&a, &b| self.cuts[a].multiplier.total_cmp(&self.cuts[b].multiplier));
+            match (idle, weakest.as_slice()) {
+                (Some((index, _)), _) => self.remove(index),
+                (None, &[lighter, heavier, ..]) if self.cuts[lighter].is_active() => {
+                    let merged = self.cuts[heavier].merged(&self.cuts[lighter], *next_id, norm);
+                    *next_id += 1;
+                    self.remove(lighter.max(heavier));
+                    self.remove(lighter.min(heavier));
+                    self.push(merged, norm);
+                }
+                (None, &[index, ..]) => self.remove(index),
+                (None, []) => return,
+            }
         }
     }
 
@@ -174,8 +220,11 @@ impl Bundle {
             for (i, j) in [(i, newest), (newest, i)].into_iter().filter(|(_, j)| !self.cuts[*j].certified) {
                 let (error, from, to) = (self.pair_error(i, j), &self.cuts[i], &self.cuts[j]);
                 if error < 0.0 {
-                    let allowance = from.error_bound + to.error_bound + 1e-9 * (from.value.abs() + to.value.abs());
-                    self.concave.push(ConcavePair { ids: (from.id, to.id), error, squared_distance, allowance });
+                    let (promised, values) = (from.error_bound + to.error_bound, from.value.abs() + to.value.abs());
+                    let terms = self.sizes[i].dual_length * (self.sizes[i].point_length + self.sizes[j].point_length);
+                    self.contradicts_convexity |= -error > promised + PAIR_ROUNDING * (values + terms);
+                    let (ids, allowance) = ((from.id, to.id), promised + 1e-9 * values);
+                    self.concave.push(ConcavePair { ids, error, squared_distance, allowance });
                 }
             }
         }
@@ -194,6 +243,11 @@ impl Bundle {
     /// The position of a cut.
     pub(crate) fn position(&self, id: u64) -> Option<usize> {
         self.cuts.iter().position(|cut| cut.id == id)
+    }
+
+    /// Whether a cut ever lay above the point of another one by more than promised errors and rounding.
+    pub(crate) fn contradicts_convexity(&self) -> bool {
+        self.contradicts_convexity
     }
 
     /// Curvatures −E_ij/‖y_i − y_j‖², ascending, proven by pairs that are farther apart than `resolution` and whose error exceeds its

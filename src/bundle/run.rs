@@ -3,6 +3,7 @@
 use super::builder::BundleTrust;
 use super::composite::{Composite, Proof};
 use super::config::AccuracyPolicy;
+use super::cut::Cut;
 use super::finish::Event;
 use super::oracle::{Oracle, Outcome, evaluate};
 use super::proposers::cuts::model::Model;
@@ -26,6 +27,8 @@ const SHORTEST_MOVE: f64 = 4.0 * f64::EPSILON;
 const CLOSE: f64 = 1e-6;
 /// A subgradient this many times longer than all before cannot be held beside them in double precision.
 const MAX_RELATIVE_SLOPE: f64 = 1e15;
+/// Known trial points in a row after which no weight leads away from them.
+const MAX_KNOWN_TRIALS: usize = 100;
 /// Weights tried before a subproblem counts as unsolvable.
 const MAX_SUBPROBLEM_TRIALS: usize = 4;
 
@@ -98,6 +101,9 @@ impl Run<'_, '_> {
         if let Break(word) = self.check_length(&proposal) {
             return Break(self.end_excursion().unwrap_or(word));
         }
+        if self.is_known(&proposal) {
+            return self.leave_known_point(&proposal);
+        }
         let accuracy = self.wanted_accuracy(proposal.predicted_decrease);
         let target = self.state.center_value - self.method.config.serious_fraction * proposal.predicted_decrease;
         // The correction of a rejected step of the composite model needs the Jacobian at the rejected point.
@@ -131,16 +137,47 @@ impl Run<'_, '_> {
         if moved.into_iter().any(|(y, x)| (y - x).abs() > SHORTEST_MOVE * x.abs()) {
             return Continue(());
         }
-        Break(if self.noise_level() > 0.0 {
+        Break(self.too_short(proposal))
+    }
+
+    /// Why the run ends at a step that brings nothing although the model promises a decrease.
+    fn too_short(&self, proposal: &Proposal) -> Termination {
+        if self.noise_level() > 0.0 {
             Termination::NoiseLimit { estimate: self.noise_level().max(self.state.decrease_bound(proposal, &self.set)) }
         } else {
             Termination::StepTooShort { predicted_decrease: proposal.predicted_decrease }
-        })
+        }
+    }
+
+    /// Whether a cut knows the trial point as accurately as it would be asked for: an evaluation would tell nothing new.
+    fn is_known(&self, proposal: &Proposal) -> bool {
+        let accurate = |cut: &Cut| match self.method.config.accuracy {
+            AccuracyPolicy::Tightest => true,
+            AccuracyPolicy::OnDemand { factor, .. } => cut.error_bound <= factor * proposal.predicted_decrease,
+        };
+        let cuts = self.state.bundle.cuts().iter().filter(|cut| !cut.certified);
+        cuts.into_iter().any(|cut| cut.point == proposal.trial && accurate(cut))
+    }
+
+    /// Shortens the step to a known point without an evaluation. The run ends where the weight cannot rise any more, or does not lead
+    /// away: values and subgradients contradict each other, since the cuts of exact ones would predict what is known.
+    fn leave_known_point(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
+        let before = self.state.weight;
+        self.state.known_trials += 1;
+        self.proposers.shorten(&mut self.state, &self.method.config, proposal);
+        self.shorten_composite(proposal);
+        self.proposal = None;
+        let stuck = proposal.origin == Origin::Cuts && self.state.weight == before;
+        if stuck || self.state.known_trials >= MAX_KNOWN_TRIALS {
+            return Break(self.end_excursion().unwrap_or_else(|| self.too_short(proposal)));
+        }
+        Continue(())
     }
 
     /// Evaluates Θ, with a descent target if there is one; `below` is the value of Θ up to which a Jacobian is wanted.
     fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> Outcome {
         self.state.counts.evaluations += 1;
+        self.state.known_trials = 0;
         let linearization = self.composite.is_some().then(|| Composite::request(below));
         let request = Request { point, warm_start: None, accuracy, descent_target: target, linearization };
         match evaluate(self.oracle.as_mut(), &request) {

@@ -15,9 +15,10 @@
 
 use super::config::BundleTrustConfig;
 use super::cut::Spread;
+use super::proposers::aggregate::aggregate_sizes;
 use super::proposers::proposal::Proposal;
 use super::state::State;
-use crate::qp::kernels::dot_terms;
+use crate::qp::kernels::{dot_terms, two_dot_terms};
 use crate::{Polyhedron, Vector};
 use std::rc::Rc;
 
@@ -98,10 +99,8 @@ impl State {
     fn spread(&self, position: usize, lengths: &Lengths) -> Spread {
         self.bundle.spread(position, self.center_id, |cut| {
             let slope = cut.subgradient.as_slice();
-            Spread {
-                size: dot_terms(slope, lengths.size.as_slice()),
-                reach: dot_terms(slope, lengths.reach.as_slice()),
-            }
+            let [size, reach] = two_dot_terms(slope, lengths.size.as_slice(), lengths.reach.as_slice());
+            Spread { size, reach }
         })
     }
 
@@ -131,11 +130,25 @@ impl State {
         cuts.map(|(i, cut)| cut.multiplier * self.spread(i, &lengths).reach).sum()
     }
 
+    /// |z̃| of the subgradients as they are, entry by entry, plus what rounding of the sum can hide.
+    fn aggregate_sizes(&self, proposal: &Proposal, set: &Polyhedron) -> Vector {
+        let sides = (&proposal.row_multipliers, &proposal.bound_multipliers);
+        match &proposal.composite_aggregate {
+            Some(aggregate) => aggregate_sizes(std::iter::once((1.0, aggregate)), sides, set),
+            None => {
+                let cuts = self.bundle.cuts().iter().zip(&proposal.cut_multipliers);
+                let active = cuts.filter(|(_, multiplier)| **multiplier > 0.0);
+                aggregate_sizes(active.map(|(cut, &multiplier)| (multiplier, &cut.subgradient)), sides, set)
+            }
+        }
+    }
+
     /// ẽ + Σ |z̃_i| reach_i: what a convex Θ can still fall within reach and in the box.
     pub(crate) fn decrease_bound(&self, proposal: &Proposal, set: &Polyhedron) -> f64 {
         let farthest = |i: usize| (set.upper()[i] - self.center[i]).max(self.center[i] - set.lower()[i]);
         let reach = self.reach();
-        let falls = proposal.aggregate_sizes.iter().enumerate().map(|(i, slope)| slope * reach[i].min(farthest(i)));
+        let sizes = self.aggregate_sizes(proposal, set);
+        let falls = sizes.iter().enumerate().map(|(i, slope)| slope * reach[i].min(farthest(i)));
         proposal.cut_error + proposal.slack_error + falls.sum::<f64>()
     }
 }

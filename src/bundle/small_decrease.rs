@@ -2,17 +2,19 @@
 //!
 //! A small predicted decrease at a large weight is not stationarity (a flat valley), and one that rests on cuts far from
 //! the center is none either (a nonconvex function): both are checked before a run ends. For a function declared convex the cuts
-//! bound Θ(x̂) − Θ(y) within reach, wherever they lie: the bound decides, and no restart is made.
+//! bound Θ(x̂) − Θ(y) within reach, wherever they lie: the bound decides, and no restart is made. Nor is one made where all that was seen
+//! agrees with a convex function and the active cuts are not far.
 
 use super::config::{AccuracyPolicy, Convexity};
 use super::cut::{Cut, LEAST_ACTIVE_MULTIPLIER};
 use super::proposers::proposal::Proposal;
 use super::run::Run;
-use crate::report::Termination;
+use crate::report::{CONFIRMING_RADIUS, Termination};
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// Active cuts within this relative distance confirm stationarity.
-const CONFIRMING_RADIUS: f64 = 1e-5;
+/// Active cuts within this relative distance confirm stationarity where all that was seen agrees with a convex function. Nonconvex
+/// functions have cuts that agree farther out: of 1542 runs, 20 would end falsely confirmed, by cuts within 0.06 to 120.
+const AGREEING_RADIUS: f64 = 5e-3;
 /// The weight is lowered until the step has this relative length.
 const LEAST_STEP_LENGTH: f64 = 1e-2;
 /// What may be left within reach at a confirmed end, in small decreases: a decrease that is small at the least step length is at
@@ -47,7 +49,7 @@ impl Run<'_, '_> {
             if self.center_is_too_coarse(&proposal) {
                 return Continue(proposal);
             }
-            if self.method.config.convexity == Convexity::Convex {
+            if self.is_declared_convex() {
                 return self.bound_decrease(proposal);
             }
             if proposal.predicted_decrease > self.small() {
@@ -64,6 +66,16 @@ impl Run<'_, '_> {
                 return Continue(proposal);
             }
         }
+    }
+
+    fn is_declared_convex(&self) -> bool {
+        self.method.config.convexity == Convexity::Convex
+    }
+
+    /// Whether all that was seen agrees with a convex Θ: no cut ever lay above the point of another one, and the bundle has more cuts
+    /// than variables. Fewer cuts have not looked into every direction.
+    fn agrees_with_convexity(&self) -> bool {
+        self.state.bundle.cuts().len() > self.state.center.len() && !self.state.bundle.contradicts_convexity()
     }
 
     /// Predicted decrease that counts as small: the noise of the oracle where it is not negligible, otherwise the tolerance.
@@ -103,7 +115,7 @@ impl Run<'_, '_> {
     /// Why the run may end at a point where a model that is exact at this point leaves at most `remaining` within reach; none if this is
     /// too much.
     pub(super) fn word_at_point(&self, remaining: f64) -> Option<Termination> {
-        let convex = self.method.config.convexity == Convexity::Convex;
+        let convex = self.is_declared_convex();
         let allowed = if convex { MAX_BOUND_DECREASES } else { MAX_REMAINING_DECREASES };
         let confirmed = Termination::Stationary { radius: 0.0, gap: convex.then_some(remaining) };
         self.word((remaining, allowed), confirmed)
@@ -167,7 +179,8 @@ impl Run<'_, '_> {
         if !certified {
             return Continue(proposal);
         }
-        let confirmed = Termination::Stationary { radius: self.relative_radius(&proposal), gap: Some(found.bound) };
+        let gap = self.is_declared_convex().then_some(found.bound);
+        let confirmed = Termination::Stationary { radius: self.relative_radius(&proposal), gap };
         let uncertain = Termination::NoiseLimit { estimate: found.bound.max(self.state.rounding()) };
         Break(self.word((found.bound, MAX_BOUND_DECREASES), confirmed).unwrap_or(uncertain))
     }
@@ -219,7 +232,9 @@ impl Run<'_, '_> {
             None => self.state.decrease_bound(proposal, &self.set),
         };
         if let Some(word) = self.word((remaining, MAX_REMAINING_DECREASES), confirmed)
-            && (near || matches!(word, Termination::NoiseLimit { .. }))
+            && (near
+                || radius <= AGREEING_RADIUS && self.agrees_with_convexity()
+                || matches!(word, Termination::NoiseLimit { .. }))
         {
             return Break(word);
         }
@@ -235,12 +250,11 @@ impl Run<'_, '_> {
         self.active_radius(proposal) / self.state.local_length().max(f64::MIN_POSITIVE)
     }
 
-    /// Largest distance of an active cut from the center.
+    /// Largest distance from the center of a point behind an active cut.
     pub(super) fn active_radius(&self, proposal: &Proposal) -> f64 {
         let cuts = self.state.bundle.cuts().iter().zip(&proposal.cut_multipliers);
         let active = cuts.filter(|(_, multiplier)| **multiplier > LEAST_ACTIVE_MULTIPLIER);
-        let distances = active.map(|(cut, _)| self.state.norm.squared_distance(&self.state.center, &cut.point));
-        distances.fold(0.0, f64::max).sqrt()
+        active.map(|(cut, _)| cut.farthest_from(&self.state.center, &self.state.norm)).fold(0.0, f64::max)
     }
 
     /// Forgets the cuts far from the center and raises the weight for a short next step; false if there was nothing to forget.
@@ -252,7 +266,7 @@ impl Run<'_, '_> {
         let state = &mut self.state;
         let before = state.bundle.cuts().len();
         let (center, center_id, norm) = (&state.center, state.center_id, &state.norm);
-        state.bundle.retain(|cut| cut.id == center_id || norm.squared_distance(center, &cut.point) <= radius * radius);
+        state.bundle.retain(|cut| cut.id == center_id || cut.farthest_from(center, norm) <= radius);
         if state.bundle.cuts().len() == before {
             return false;
         }

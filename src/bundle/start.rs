@@ -12,7 +12,7 @@ use super::run::Run;
 use super::state::State;
 use crate::checks::{check_finite, check_size};
 use crate::composite::{Linearization, OuterFunction};
-use crate::qp::{EpigraphQpSolver, QpError, project};
+use crate::qp::{EpigraphQpSolver, QpError, is_only_point, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{Accuracy, Evaluation, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector};
 use std::cell::RefCell;
@@ -91,6 +91,9 @@ impl<'o> BundleTrust<'o> {
         }
         if let Break(termination) = run.after_evaluation() {
             run.termination = Some(termination);
+        } else if is_only_point(&run.set, &start, run.state.length_scale().max(run.state.first_step)) {
+            // Every subgradient is balanced by the constraints: nothing is left to find.
+            run.termination = run.word_at_point(0.0);
         }
         Ok(run)
     }
@@ -141,7 +144,8 @@ fn first_evaluation(
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
     let point = start.clone();
-    let cut = Cut { id: 1, point, value, subgradient, error_bound, certified: false, multiplier: 0.0, idle: 0 };
+    let cut =
+        Cut { id: 1, point, radius: 0.0, value, subgradient, error_bound, certified: false, multiplier: 0.0, idle: 0 };
     let mut state = State {
         norm,
         start: start.clone(),
@@ -161,6 +165,7 @@ fn first_evaluation(
         nonconvex: false,
         noise: 0.0,
         failures: 0,
+        known_trials: 0,
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],
         output_scales: None,

@@ -38,6 +38,8 @@ pub(crate) struct State {
     pub noise: f64,
     /// Failed evaluations in a row.
     pub failures: usize,
+    /// Trial points in a row that were known, so that nothing was evaluated.
+    pub known_trials: usize,
     pub counts: Counts,
     pub history: Vec<IterationRecord>,
     /// What the outputs behind Θ tell about its scale, if they are known at the center.

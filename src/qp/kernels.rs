@@ -15,7 +15,7 @@ fn sum_of<const K: usize>(vectors: [&[f64]; K], term: impl Fn([f64; K]) -> f64) 
             *sum += term(block.map(|block| block[k]));
         }
     }
-    tail + ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
+    total(tail, sums)
 }
 
 /// xᵀ y.
@@ -30,25 +30,39 @@ pub(crate) fn difference_dot(g: &[f64], x: &[f64], y: &[f64]) -> f64 {
 
 /// gᵀ(y − x), hᵀ(y − x), gᵀr and |y − x|² in one pass, with four independent sums each.
 pub(crate) fn pair_sums(g: &[f64], x: &[f64], h: &[f64], y: &[f64], r: &[f64]) -> [f64; 4] {
-    let mut sums = [[0.0; 4]; 4];
-    let mut add = |lane: usize, g: f64, x: f64, h: f64, y: f64, r: f64| {
+    let rests = [g, x, h, y, r].map(|vector| vector.as_chunks::<4>().1);
+    let mut sums = pair_lanes([g, x, h, y, r].map(|vector| vector.as_chunks().0));
+    for i in 0..rests[0].len() {
+        let [g, x, h, y, r] = rests.map(|rest| rest[i]);
         let s = y - x;
-        sums[0][lane] += g * s;
-        sums[1][lane] += h * s;
-        sums[2][lane] += g * r;
-        sums[3][lane] += s * s;
-    };
-    let ((g, g_rest), (x, x_rest), (h, h_rest)) = (g.as_chunks::<4>(), x.as_chunks::<4>(), h.as_chunks::<4>());
-    let ((y, y_rest), (r, r_rest)) = (y.as_chunks::<4>(), r.as_chunks::<4>());
-    for ((g, x), ((h, y), r)) in g.iter().zip(x).zip(h.iter().zip(y).zip(r)) {
-        for k in 0..4 {
-            add(k, g[k], x[k], h[k], y[k], r[k]);
+        for (sum, term) in sums.iter_mut().zip([g * s, h * s, g * r, s * s]) {
+            sum[0] += term;
         }
     }
-    for ((g, x), ((h, y), r)) in g_rest.iter().zip(x_rest).zip(h_rest.iter().zip(y_rest).zip(r_rest)) {
-        add(0, *g, *x, *h, *y, *r);
-    }
     sums.map(|lanes| (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]))
+}
+
+/// The sums of [`pair_sums`] over whole blocks. Not inlined: where the compiler sees the four results side by side, it packs them into one
+/// register instead of four terms of one sum, and the pass takes more than twice as long.
+#[inline(never)]
+fn pair_lanes([g, x, h, y, r]: [&[[f64; 4]]; 5]) -> [[f64; 4]; 4] {
+    let (mut ahead, mut behind, mut product, mut squared) = ([0.0; 4], [0.0; 4], [0.0; 4], [0.0; 4]);
+    for ((g, x), ((h, y), r)) in g.iter().zip(x).zip(h.iter().zip(y).zip(r)) {
+        let s: [f64; 4] = std::array::from_fn(|k| y[k] - x[k]);
+        add_products(&mut ahead, g, &s);
+        add_products(&mut behind, h, &s);
+        add_products(&mut product, g, r);
+        add_products(&mut squared, &s, &s);
+    }
+    [ahead, behind, product, squared]
+}
+
+/// sum_k += x_k y_k.
+#[inline(always)]
+fn add_products(sum: &mut [f64; 4], x: &[f64; 4], y: &[f64; 4]) {
+    for k in 0..4 {
+        sum[k] += x[k] * y[k];
+    }
 }
 
 /// Σ w_i (x_i − y_i)².
@@ -64,6 +78,34 @@ pub(crate) fn weighted_squares(w: &[f64], x: &[f64]) -> f64 {
 /// Σ |x_i y_i|: size of the terms of a dot product.
 pub(crate) fn dot_terms(x: &[f64], y: &[f64]) -> f64 {
     sum_of([x, y], |[x, y]| (x * y).abs())
+}
+
+/// Σ |x_i y_i| and Σ |x_i z_i| in one pass, each rounded as by [`dot_terms`].
+pub(crate) fn two_dot_terms(x: &[f64], y: &[f64], z: &[f64]) -> [f64; 2] {
+    let rests = [x, y, z].map(|vector| vector.as_chunks::<8>().1);
+    let sums = two_term_lanes([x, y, z].map(|vector| vector.as_chunks().0));
+    let tail = |k: usize| rests[0].iter().zip(rests[k]).map(|(x, y)| (x * y).abs()).sum::<f64>();
+    std::array::from_fn(|k| total(tail(k + 1), sums[k]))
+}
+
+/// The sums of [`two_dot_terms`] over whole blocks; not inlined for the reason given at [`pair_lanes`].
+#[inline(never)]
+fn two_term_lanes([x, y, z]: [&[[f64; 8]]; 3]) -> [[f64; 8]; 2] {
+    let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
+    for ((x, y), z) in x.iter().zip(y).zip(z) {
+        for k in 0..8 {
+            first[k] += (x[k] * y[k]).abs();
+        }
+        for k in 0..8 {
+            second[k] += (x[k] * z[k]).abs();
+        }
+    }
+    [first, second]
+}
+
+/// The sum of a tail and eight lanes.
+fn total(tail: f64, sums: [f64; 8]) -> f64 {
+    tail + ((sums[0] + sums[4]) + (sums[1] + sums[5])) + ((sums[2] + sums[6]) + (sums[3] + sums[7]))
 }
 
 /// y += factor · x.

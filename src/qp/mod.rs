@@ -33,5 +33,6 @@ mod working_set;
 pub use certificate::kkt_residual;
 pub(crate) use gram::Gram;
 pub use problem::{EpigraphQp, Metric, QpCounts, QpError, QpMethod, QpSolution};
+pub(crate) use projection::is_only_point;
 pub use projection::project;
 pub use solver::EpigraphQpSolver;

@@ -48,6 +48,22 @@ pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
     Ok(nearest)
 }
 
+/// Whether a point x of the polyhedron is its only one, as far as points within `distance` tell.
+///
+/// The unit vectors and minus their sum span everything with positive factors. If the points at the given distance from x along them all
+/// have x as their nearest point, the normal cone at x is therefore the whole space. A nearest point within [`ALONE`] of the distance
+/// counts as x.
+pub(crate) fn is_only_point(set: &Polyhedron, x: &Vector, distance: f64) -> bool {
+    if set.rows().nrows() == 0 {
+        return set.lower() == set.upper();
+    }
+    let n = x.len();
+    let direction = |k: usize| Vector::from_fn(n, |i, _| if k == n { -distance } else { distance * f64::from(i == k) });
+    (0..=n).all(|k| project(set, &(x + direction(k))).is_ok_and(|nearest| (nearest - x).amax() <= ALONE * distance))
+}
+
+/// Rounding of a nearest point, relative to the distance of the point that is projected.
+const ALONE: f64 = 1e-12;
 /// Largest number of steps taken after the first.
 const REFINEMENTS: usize = 2;
 

@@ -12,6 +12,7 @@ pub use composite_proof::{CompositeProof, ProofCheck};
 pub use observer::{Observer, TablePrinter};
 pub use record::{Counts, IterationRecord, Origin, StepKind, TrialCounts};
 pub use stop::StopRule;
+pub(crate) use termination::CONFIRMING_RADIUS;
 pub use termination::Termination;
 
 use crate::Vector;

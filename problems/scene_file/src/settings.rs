@@ -57,7 +57,7 @@ pub struct OptimizerSection {
     pub first_step: Option<f64>,
     /// Largest number of cuts kept. Default controls + 15, at most 500.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 2, max = 10_000), extend("x-unit" = "1"))]
+    #[schemars(range(min = 3, max = 10_000), extend("x-unit" = "1"))]
     pub bundle_size: Option<usize>,
     /// Accuracy asked of the contact solver: always the tightest, or as the predicted decrease demands. The latter is relative to the objective and therefore refused with `pressure-deviation`, `open-area` and `compliance`, which can reach or cross 0.
     pub accuracy: AccuracyName,

@@ -25,6 +25,7 @@ impl Proof {
         let cut = |(index, cut): (usize, &super::OuterCut)| Cut {
             id: index as u64 + 1,
             point: point.clone(),
+            radius: 0.0,
             value: value - cut.error(&linearization.outputs, *value),
             subgradient: linearization.jacobian.tr_mul(&cut.subgradient),
             error_bound: 0.0,

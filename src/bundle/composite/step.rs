@@ -2,7 +2,7 @@
 
 use super::model::{CompositeModel, CompositeStep};
 use super::{Base, FACTOR, MAX_WEIGHTS, Proof};
-use crate::bundle::proposers::aggregate::{aggregate_sizes, slack_error};
+use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::run::Run;
 use crate::composite::Linearization;
@@ -118,17 +118,17 @@ impl Run<'_, '_> {
         let slack = slack_error(sides, &base.point, &self.set);
         let aggregate = base.linearization.jacobian.tr_mul(&step.weights());
         let trial = &base.point + &step.step;
+        let aggregate_norm =
+            state.norm.dual_length(&(&aggregate + self.set.rows().tr_mul(&rows) + &step.bound_multipliers));
         let proposal = Proposal {
             step: &trial - &state.center,
             trial,
             step_length: length,
             predicted_decrease: step.decrease,
             cut_change: 0.0,
-            aggregate_sizes: aggregate_sizes(std::iter::once((1.0, &aggregate)), sides, &self.set),
+            composite_aggregate: Some(aggregate),
             slack_error: slack,
-            aggregate_norm: state
-                .norm
-                .dual_length(&(&aggregate + self.set.rows().tr_mul(&rows) + &step.bound_multipliers)),
+            aggregate_norm,
             aggregate_error: error + slack,
             cut_error: error,
             cut_multipliers: vec![0.0; state.bundle.cuts().len()],

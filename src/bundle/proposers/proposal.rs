@@ -17,8 +17,8 @@ pub(crate) struct Proposal {
     pub predicted_decrease: f64,
     /// The change that the plain cuts predict at the trial point; not formed, and 0, for points of the composite model.
     pub cut_change: f64,
-    /// |Σ λ_i g_i + Aᵀμ + ν| of the subgradients as they are, entry by entry, plus what rounding of the sum can hide.
-    pub aggregate_sizes: Vector,
+    /// Gᵀw of the composite model, in place of the sum of the cuts with their multipliers.
+    pub composite_aggregate: Option<Vector>,
     /// Σ slack·|multiplier| of the active rows and bounds, the other part of ẽ.
     pub slack_error: f64,
     /// ‖z̃‖* of the aggregate subgradient.

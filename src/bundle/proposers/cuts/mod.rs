@@ -9,7 +9,7 @@
 pub(crate) mod model;
 mod weight;
 
-use super::aggregate::{aggregate_sizes, slack_error};
+use super::aggregate::slack_error;
 use super::proposal::{Proposal, SubproblemError};
 use super::proposer::{Position, Proposer, Trial};
 use super::subproblem::{self, Cuts};
@@ -71,13 +71,10 @@ fn interpret(mut solution: QpSolution, (state, set): (&State, &Polyhedron), mode
     model.distribute(&mut solution.cut_multipliers);
     let multipliers = (Vector::from_vec(solution.row_multipliers), Vector::from_vec(solution.bound_multipliers));
     let sides = (&multipliers.0, &multipliers.1);
-    let cuts = state.bundle.cuts().iter().zip(&solution.cut_multipliers);
-    let active = cuts.filter(|(_, multiplier)| **multiplier > 0.0);
-    let subgradients = active.map(|(cut, &multiplier)| (multiplier, &cut.subgradient));
     Proposal {
         trial: &state.center + &step,
         step_length: squared.sqrt(),
-        aggregate_sizes: aggregate_sizes(subgradients, sides, set),
+        composite_aggregate: None,
         slack_error: slack_error(sides, &state.center, set),
         step,
         predicted_decrease,

@@ -14,7 +14,6 @@ use crate::bundle::config::{BundleTrustConfig, Convexity};
 use crate::bundle::proposers::subproblem::Cuts;
 use crate::bundle::state::State;
 use crate::qp::Gram;
-use std::collections::HashMap;
 
 /// Slopes and offsets of the model, in the order of the cuts.
 #[derive(Debug, Clone)]
@@ -54,7 +53,7 @@ impl Model {
             Convexity::Unknown => convexification(state, config, &errors, &distances),
             Convexity::Convex => 0.0,
         };
-        let mut known = former.map(Self::into_plain_slopes).unwrap_or_default();
+        let mut known = former.into_iter().flat_map(Self::into_plain_slopes).peekable();
         let mut model = Self {
             slopes: vec![],
             offsets: vec![],
@@ -82,7 +81,8 @@ impl Model {
                 let tilt = state.norm.lower_index(&(&state.center - &cut.point));
                 &cut.subgradient - tilt * (2.0 * c)
             } else {
-                known.remove(&cut.id).unwrap_or_else(|| cut.subgradient.clone())
+                while known.next_if(|(id, _)| *id < cut.id).is_some() {}
+                known.next_if(|(id, _)| *id == cut.id).map_or_else(|| cut.subgradient.clone(), |(_, slope)| slope)
             });
             model.offsets.push(offset);
             model.ids.push(cut.id);
@@ -96,13 +96,11 @@ impl Model {
         model
     }
 
-    /// The slopes that are subgradients as they are, by the identities of their cuts.
-    fn into_plain_slopes(self) -> HashMap<u64, Vector> {
-        if self.convexification > 0.0 {
-            return HashMap::new();
-        }
+    /// The slopes that are subgradients as they are, with the identities of their cuts, which ascend.
+    fn into_plain_slopes(self) -> impl Iterator<Item = (u64, Vector)> {
+        let plain = self.convexification == 0.0;
         let slopes = self.ids.into_iter().zip(self.slopes).zip(self.shares);
-        slopes.filter(|(_, share)| *share == 1.0).map(|(slope, _)| slope).collect()
+        slopes.filter(move |(_, share)| plain && *share == 1.0).map(|(slope, _)| slope)
     }
 
     /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut. The mixture lies below the model, and meets the center's cut
