@@ -27,7 +27,7 @@ const MAX_CONDENSED_BYTES: f64 = 4e9;
 const MIN_PRODUCTS: usize = 100;
 /// Share of [`MAX_RESIDUAL`] above which a state of total FETI is found anew by direct condensation: the two solvers measure
 /// forces and lengths in different units, a defect of the gluing grows along a slender body, and bodies that a few nodes hold enlarge
-/// what is left by some 4000 (8.5e-8 of 2e-11 was seen). States of ordinary scenes stand at 2e-13.
+/// what is left by some 4000. States of ordinary scenes stand at 2e-13.
 const COMFORTABLE_SHARE: f64 = 1e-4;
 /// Poisson's ratio of standard bricks from which total FETI takes hundreds of products and more.
 const LOCKING: f64 = 0.499;

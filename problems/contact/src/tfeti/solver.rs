@@ -9,7 +9,7 @@ use crate::equilibrium::{
     StageSeconds, Tangents, Work,
 };
 use crate::error::ContactError;
-use crate::linear::vector::{add_scaled, dot, norm};
+use crate::linear::vector::dot;
 use crate::tfeti::derivative::{DisplacementLoad, MovedSurface, height_sensitivities};
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::NewtonSettings;
@@ -358,10 +358,8 @@ fn forces(contact: &TornContact<'_>, solution: &TornSolution) -> ContactForces {
         *force /= nu;
         *jump *= nu;
     }
-    let mut defect = contact.space.resultant(&iterate.multipliers);
-    add_scaled(&mut defect, -1.0, contact.space.resultants());
     let residuals = Residuals {
-        equilibrium: norm(&defect) / contact.load,
+        equilibrium: contact.imbalance(&iterate.multipliers),
         newton: solution.residual,
         ..law_residuals(boundary, &forces, &jumps, contact.stiffness, contact.load)
     };

@@ -78,12 +78,19 @@ impl<'a> ActiveSet<'a> {
 
     /// v −= T Gqᵀ (G_T Gqᵀ)⁻¹ G v for multipliers v = T y + w with any w: then G v = 0.
     pub fn balance(&self, v: &mut RowVector) {
-        self.space.timed(|| {
-            let mut defect = self.space.resultant(v);
-            self.coarse.solve_in_place(&mut defect);
-            let jumps = self.rows.test_transposed(&self.space.jumps(&defect));
-            add_scaled(v, -1.0, &self.rows.trial(&jumps));
-        });
+        self.space.timed(|| self.take_off(self.space.resultant(v), v));
+    }
+
+    /// v −= T Gqᵀ (G_T Gqᵀ)⁻¹ (G v − e): then the clusters are in equilibrium, up to the rounding of the change.
+    pub fn equilibrate(&self, v: &mut RowVector) {
+        self.space.timed(|| self.take_off(self.space.defect(v), v));
+    }
+
+    /// v −= T Gqᵀ (G_T Gqᵀ)⁻¹ b.
+    fn take_off(&self, mut b: Vec<f64>, v: &mut RowVector) {
+        self.coarse.solve_in_place(&mut b);
+        let jumps = self.rows.test_transposed(&self.space.jumps(&b));
+        add_scaled(v, -1.0, &self.rows.trial(&jumps));
     }
 
     /// y += Gqᵀ (G_T Gqᵀ)⁻¹ (target − G T y): T y has the given resultants then; the change is the smallest if T = Q.

@@ -9,6 +9,7 @@ use crate::equilibrium::modes::MOTIONS;
 use crate::error::ContactError;
 use crate::linear::cholesky::NumericFactor;
 use crate::linear::entry::Entry;
+use crate::linear::vector::add_scaled;
 use crate::tfeti::dual::coarse_matrix::CondensedCoarse;
 use crate::tfeti::dual::coarse_rows::TornModes;
 use crate::tfeti::dual::rigid_rows::RigidRows;
@@ -143,6 +144,13 @@ impl CoarseSpace {
     /// G λ of multipliers over the rows of this process: the resultants on all clusters.
     pub fn resultant<V: Entry>(&self, multipliers: &[V]) -> Vec<V> {
         self.distribution.gather(&self.transposed.resultants(multipliers), MOTIONS)
+    }
+
+    /// G λ − e: what the clusters lack to equilibrium.
+    pub fn defect(&self, multipliers: &RowVector) -> Vec<f64> {
+        let mut defect = self.resultant(multipliers);
+        add_scaled(&mut defect, -1.0, &self.resultants);
+        defect
     }
 
     /// Gᵀ a.

@@ -100,6 +100,11 @@ impl<'a> TornContact<'a> {
         glued.hypot(norm(&self.law_residual(iterate))) / self.load
     }
 
+    /// |G λ − e|₂ over the load.
+    pub(crate) fn imbalance(&self, multipliers: &RowVector) -> f64 {
+        norm(&self.space.defect(multipliers)) / self.load
+    }
+
     /// λ − Π(λ + c w) over the packed contact rows.
     pub(crate) fn law_residual(&self, iterate: &Iterate) -> Vec<f64> {
         projection_residual(self.boundary, iterate.multipliers.contact(), iterate.jumps.contact(), self.stiffness)

@@ -21,6 +21,10 @@ use crate::tfeti::newton::stagnation::stagnates;
 /// Residual reduction after which the projector is renewed although the active set has stayed.
 const PROJECTOR_RENEWAL: f64 = 0.01;
 
+/// Resultant of a cluster, over the load, that rounding leaves where the coarse matrix is well conditioned; ordinary states stand at
+/// 1e-15. Few nodes in a corner make it ill conditioned: every direction then leaves equilibrium by more.
+const MAX_IMBALANCE: f64 = 1e-13;
+
 /// Residual reduction after which single precision images are replaced.
 const IMAGE_REPLACEMENT: f64 = 1e-4;
 
@@ -87,8 +91,15 @@ impl TornContact<'_> {
         if slow { MAX_STALLED_SLOW } else { MAX_STALLED_PRODUCTS }
     }
 
-    /// Replaces the image of the multipliers by a product in double precision; returns the residual.
+    /// Brings the multipliers into equilibrium where they have drifted from it, and replaces their image by a product in double
+    /// precision; returns the residual.
     pub(crate) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
+        if self.imbalance(&iterate.multipliers) > MAX_IMBALANCE {
+            // Where no active set holds all motions, nothing can be brought into equilibrium; the certificate tells.
+            if let Ok(active) = self.held_at(iterate) {
+                active.equilibrate(&mut iterate.multipliers);
+            }
+        }
         let image = self.operator.apply(&iterate.multipliers);
         *iterate = self.iterate(iterate.multipliers.clone(), image, std::mem::take(&mut iterate.amplitudes));
         self.residual(iterate)
