@@ -19,8 +19,9 @@ use faer::Mat;
 
 /// Compliances that the first problem is tried with, one after the other until Newton's method converges.
 const FIRST_COMPLIANCES: [f64; 6] = [0.0, 1.0, 1e2, 1e4, 1e6, 1e8];
-/// Compliance below which it is set to 0.
-const LAST_COMPLIANCE: f64 = 1e-6;
+/// Compliance below which it is set to 0: rounding. Where bodies bend, their compliances are far above those of single nodes, and states
+/// change down to 1e-8.
+const LAST_COMPLIANCE: f64 = 1e-12;
 /// Factor of the compliance in the first step that lowers it.
 const SHRINKAGE: f64 = 0.25;
 /// Smallest factor of the compliance in one step.
@@ -32,7 +33,7 @@ pub(super) const SPRINGS: [f64; 2] = [1e-8, 1e-6];
 /// Newton steps for one compliance.
 const MAX_STEPS: usize = 30;
 /// Newton steps that lowering the compliance may take with one spring.
-const MAX_TOTAL_STEPS: usize = 600;
+const MAX_TOTAL_STEPS: usize = 1000;
 /// Halvings of one step.
 const MAX_HALVINGS: usize = 6;
 /// Relative decrease of the residual asked of a step of length one.
