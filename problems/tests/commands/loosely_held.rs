@@ -69,6 +69,24 @@ fn the_default_finds_the_states_of_thin_bodies_that_bend() {
     }
 }
 
+/// A column leans along an obstacle that it does not touch. Friction times its slip exceeds the opening, so that it may be wedged in as
+/// well; 1 mm farther away it cannot be.
+#[test]
+fn a_state_without_contact_is_said_to_be_one_of_several_where_friction_could_wedge() {
+    let near = std::fs::read_to_string(scene_file("wedged")).unwrap();
+    let folder = testset::kit::scratch();
+    let far = folder.path().join("far.toml");
+    std::fs::write(&far, near.replace("apex = 60.01", "apex = 61.01")).unwrap();
+    for (file, expected) in [(scene_file("wedged"), true), (far.display().to_string(), false)] {
+        for solver in ["newton", "direct"] {
+            let result = json(CONTACT, &[&file, "evaluate", "--solver", solver, "--json"]);
+            assert_eq!(result["status"]["open"], 16, "{solver}");
+            let warned = result["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "not-unique");
+            assert_eq!(warned, expected, "{solver}: {}", result["warnings"]);
+        }
+    }
+}
+
 /// Total FETI alone used to return a state with a resultant of 5e-3 of the load. Whether it finds the state of this scene hangs on
 /// rounding; what it returns is the state, or a refusal.
 #[test]

@@ -6,6 +6,7 @@
 
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::newton::SPRINGS;
+use crate::equilibrium::certificate::wedging;
 use crate::equilibrium::diagnosis::{Diagnosis, spectral_radius};
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
@@ -44,16 +45,17 @@ impl CompliantContact {
     }
 
     /// 𝓕 ‖∂λ_N/∂λ_T‖₂ over the closed nodes by power iteration: it bounds the contraction of the slip bounds as long as the same
-    /// nodes are closed, whichever of them slide and in whatever direction. 0 without friction or closed nodes.
-    pub(super) fn estimate_contraction(&self, linearizations: &[Linearization]) -> f64 {
+    /// nodes are closed, whichever of them slide and in whatever direction. Where no node is closed, over those that friction could
+    /// wedge in; 0 without friction or where there are none of these either.
+    pub(super) fn estimate_contraction(&self, unknowns: &[f64], linearizations: &[Linearization]) -> f64 {
         let boundary = &self.problem.boundary;
-        let all_sliding: Vec<Linearization> = linearizations
-            .iter()
-            .map(|linearization| match linearization {
-                Linearization::Open => Linearization::Open,
-                _ => Linearization::Slip { direction: [1.0, 0.0], ratio: 0.0 },
-            })
-            .collect();
+        let mut closed: Vec<bool> = linearizations.iter().map(|l| *l != Linearization::Open).collect();
+        if !closed.contains(&true) {
+            closed = wedging(boundary, &self.jumps(unknowns, 0.0)).into_iter().map(|excess| excess > 0.0).collect();
+        }
+        let sliding = Linearization::Slip { direction: [1.0, 0.0], ratio: 0.0 };
+        let all_sliding: Vec<Linearization> =
+            closed.iter().map(|&closed| if closed { sliding } else { Linearization::Open }).collect();
         let mut system = self.active_system(&all_sliding, 0.0, 0.0);
         for motion in system.rows.len()..system.matrix.nrows() {
             system.matrix[(motion, motion)] = SPRINGS[0];

@@ -290,7 +290,10 @@ impl ContactSolver for DirectSolver {
     }
 
     fn estimate_contraction(&self, state: &DirectState, _max_products: usize) -> Result<f64, ContactError> {
-        Ok(state.contact.estimate_contraction(&state.solution.linearizations))
+        if state.load == 0.0 {
+            return Ok(0.0);
+        }
+        Ok(state.contact.estimate_contraction(&state.solution.unknowns, &state.solution.linearizations))
     }
 
     fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {

@@ -258,8 +258,7 @@ impl TornSolver {
     /// [`ContactError::Unheld`], [`ContactError::ForeignState`] for a state of another mesh.
     pub fn estimate_contraction(&self, state: &TornState, max_products: usize) -> Result<f64, ContactError> {
         let Some(contact) = self.contact_of(state)? else { return Ok(0.0) };
-        let forces = state.solution.iterate.multipliers.contact();
-        contact.estimate_contraction(&state.solution.linearizations, forces, max_products)
+        contact.estimate_contraction(&state.solution, max_products)
     }
 
     /// Sensitivities of the column heights for a dual: j = ∂J/∂λ in packed physical rows, then l = ∂J/∂u over the nodes of all bodies where

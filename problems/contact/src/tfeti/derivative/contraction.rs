@@ -6,13 +6,14 @@
 //! Every step is one projected conjugate gradient solve; the radius is that of the Hessenberg matrix, exact (up to the
 //! accuracy of the solves) when there are no more sliding nodes than steps.
 
+use crate::equilibrium::certificate::wedging;
 use crate::equilibrium::diagnosis::{Diagnosis, spectral_radius};
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
 use crate::linear::pcg::pcg;
 use crate::linear::sums::Whole;
 use crate::linear::vector::{add_scaled, norm};
-use crate::tfeti::dual::{ActiveSet, Friction, TornContact};
+use crate::tfeti::dual::{ActiveSet, Friction, TornContact, TornSolution};
 
 /// Arnoldi steps.
 const MAX_STEPS: usize = 12;
@@ -78,34 +79,42 @@ impl TornContact<'_> {
 
     /// A rough |Φ′ Ψ|/|Ψ| at the slip bounds Ψ of the state, by at most so many products with F; 0 without friction forces. Where no
     /// node slides, Φ′ is that of all closed nodes sliding along their friction forces: where they stick, slip bounds change
-    /// nothing nearby, but nodes that only friction keeps closed may as well be open.
+    /// nothing nearby, but nodes that only friction keeps closed may as well be open. Where no node is closed, it is that of the nodes
+    /// which friction could wedge in, sliding as they do.
     ///
     /// # Errors
     /// [`ContactError::Unheld`] when the closed nodes leave a motion free.
-    pub fn estimate_contraction(
-        &self,
-        linearizations: &[Linearization],
-        forces: &[f64],
-        max_products: usize,
-    ) -> Result<f64, ContactError> {
-        let mut linearizations = linearizations.to_vec();
-        if self.sliding(&linearizations).is_empty() {
+    pub fn estimate_contraction(&self, state: &TornSolution, max_products: usize) -> Result<f64, ContactError> {
+        let (forces, jumps) = (state.iterate.multipliers.contact(), state.iterate.jumps.contact());
+        let mut linearizations = state.linearizations.clone();
+        let mut bounds = self.slip_bounds(forces);
+        if linearizations.iter().all(|linearization| *linearization == Linearization::Open) {
+            bounds = wedging(self.boundary, jumps);
+            let wedged = bounds.iter().map(|bound| *bound > 0.0);
+            linearizations
+                .iter_mut()
+                .zip(wedged)
+                .filter(|(_, wedged)| *wedged)
+                .for_each(|(l, _)| *l = Linearization::Stick);
+            self.let_slide(&mut linearizations, jumps);
+        } else if self.sliding(&linearizations).is_empty() {
             self.let_slide(&mut linearizations, forces);
         }
         let sliding = self.sliding(&linearizations);
         if sliding.is_empty() {
             return Ok(0.0);
         }
+        let slides = linearizations.iter().map(|linearization| matches!(linearization, Linearization::Slip { .. }));
+        let bounds: Vec<f64> = bounds.iter().zip(slides).filter(|(_, slides)| *slides).map(|(b, _)| *b).collect();
         let active = self.active_set(linearizations, Friction::Tresca)?;
-        let bounds: Vec<f64> = sliding.iter().map(|(start, ..)| self.boundary.friction * forces[*start]).collect();
         let (image, _) = self.bound_change(&active, &sliding, &bounds, ROUGH_REDUCTION, max_products.saturating_sub(1));
         Ok(norm(&image) / norm(&bounds))
     }
 
-    /// Makes sticking nodes slide along their friction forces.
-    fn let_slide(&self, linearizations: &mut [Linearization], forces: &[f64]) {
+    /// Makes sticking nodes slide along the tangential part of their friction forces, or of their jumps.
+    fn let_slide(&self, linearizations: &mut [Linearization], vectors: &[f64]) {
         for (point, linearization) in self.boundary.points.iter().zip(linearizations) {
-            let friction = &forces[point.rows()][1..];
+            let friction = &vectors[point.rows()][1..];
             let size = norm(friction);
             if *linearization == Linearization::Stick && size > 0.0 {
                 let mut direction = [0.0; 2];
