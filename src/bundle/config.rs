@@ -12,8 +12,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Convexity {
-    /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex. Where more cuts than variables agree
-    /// with a convex Θ and the active ones are not far, the end is confirmed without a restart.
+    /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex.
     #[default]
     Unknown,
     /// Θ is convex. The cuts bound how far Θ can still fall within reach of the variables, this bound decides the end, and no

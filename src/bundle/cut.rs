@@ -96,9 +96,6 @@ struct ConcavePair {
     allowance: f64,
 }
 
-/// Rounding of the error of a pair relative to its terms.
-const PAIR_ROUNDING: f64 = 8.0 * f64::EPSILON;
-
 /// ‖g‖* and ‖y‖ of a cut, and how far its linearization varies, with the center for which this spread was formed.
 #[derive(Debug, Clone)]
 struct Sizes {
@@ -120,7 +117,6 @@ pub(crate) struct Bundle {
     cuts: Vec<Cut>,
     sizes: Vec<Sizes>,
     concave: Vec<ConcavePair>,
-    contradicts_convexity: bool,
     pairs: Pairs,
 }
 
@@ -220,11 +216,8 @@ impl Bundle {
             for (i, j) in [(i, newest), (newest, i)].into_iter().filter(|(_, j)| !self.cuts[*j].certified) {
                 let (error, from, to) = (self.pair_error(i, j), &self.cuts[i], &self.cuts[j]);
                 if error < 0.0 {
-                    let (promised, values) = (from.error_bound + to.error_bound, from.value.abs() + to.value.abs());
-                    let terms = self.sizes[i].dual_length * (self.sizes[i].point_length + self.sizes[j].point_length);
-                    self.contradicts_convexity |= -error > promised + PAIR_ROUNDING * (values + terms);
-                    let (ids, allowance) = ((from.id, to.id), promised + 1e-9 * values);
-                    self.concave.push(ConcavePair { ids, error, squared_distance, allowance });
+                    let allowance = from.error_bound + to.error_bound + 1e-9 * (from.value.abs() + to.value.abs());
+                    self.concave.push(ConcavePair { ids: (from.id, to.id), error, squared_distance, allowance });
                 }
             }
         }
@@ -243,11 +236,6 @@ impl Bundle {
     /// The position of a cut.
     pub(crate) fn position(&self, id: u64) -> Option<usize> {
         self.cuts.iter().position(|cut| cut.id == id)
-    }
-
-    /// Whether a cut ever lay above the point of another one by more than promised errors and rounding.
-    pub(crate) fn contradicts_convexity(&self) -> bool {
-        self.contradicts_convexity
     }
 
     /// Curvatures −E_ij/‖y_i − y_j‖², ascending, proven by pairs that are farther apart than `resolution` and whose error exceeds its

@@ -2,19 +2,17 @@
 //!
 //! A small predicted decrease at a large weight is not stationarity (a flat valley), and one that rests on cuts far from
 //! the center is none either (a nonconvex function): both are checked before a run ends. For a function declared convex the cuts
-//! bound Θ(x̂) − Θ(y) within reach, wherever they lie: the bound decides, and no restart is made. Nor is one made where all that was seen
-//! agrees with a convex function and the active cuts are not far.
+//! bound Θ(x̂) − Θ(y) within reach, wherever they lie: the bound decides, and no restart is made.
 
 use super::config::{AccuracyPolicy, Convexity};
 use super::cut::{Cut, LEAST_ACTIVE_MULTIPLIER};
 use super::proposers::proposal::Proposal;
 use super::run::Run;
-use crate::report::{CONFIRMING_RADIUS, Termination};
+use crate::report::Termination;
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// Active cuts within this relative distance confirm stationarity where all that was seen agrees with a convex function. Nonconvex
-/// functions have cuts that agree farther out: of 1542 runs, 20 would end falsely confirmed, by cuts within 0.06 to 120.
-const AGREEING_RADIUS: f64 = 5e-3;
+/// Active cuts within this relative distance confirm stationarity.
+const CONFIRMING_RADIUS: f64 = 1e-5;
 /// The weight is lowered until the step has this relative length.
 const LEAST_STEP_LENGTH: f64 = 1e-2;
 /// What may be left within reach at a confirmed end, in small decreases: a decrease that is small at the least step length is at
@@ -70,12 +68,6 @@ impl Run<'_, '_> {
 
     fn is_declared_convex(&self) -> bool {
         self.method.config.convexity == Convexity::Convex
-    }
-
-    /// Whether all that was seen agrees with a convex Θ: no cut ever lay above the point of another one, and the bundle has more cuts
-    /// than variables. Fewer cuts have not looked into every direction.
-    fn agrees_with_convexity(&self) -> bool {
-        self.state.bundle.cuts().len() > self.state.center.len() && !self.state.bundle.contradicts_convexity()
     }
 
     /// Predicted decrease that counts as small: the noise of the oracle where it is not negligible, otherwise the tolerance.
@@ -179,8 +171,7 @@ impl Run<'_, '_> {
         if !certified {
             return Continue(proposal);
         }
-        let gap = self.is_declared_convex().then_some(found.bound);
-        let confirmed = Termination::Stationary { radius: self.relative_radius(&proposal), gap };
+        let confirmed = Termination::Stationary { radius: self.relative_radius(&proposal), gap: Some(found.bound) };
         let uncertain = Termination::NoiseLimit { estimate: found.bound.max(self.state.rounding()) };
         Break(self.word((found.bound, MAX_BOUND_DECREASES), confirmed).unwrap_or(uncertain))
     }
@@ -232,9 +223,7 @@ impl Run<'_, '_> {
             None => self.state.decrease_bound(proposal, &self.set),
         };
         if let Some(word) = self.word((remaining, MAX_REMAINING_DECREASES), confirmed)
-            && (near
-                || radius <= AGREEING_RADIUS && self.agrees_with_convexity()
-                || matches!(word, Termination::NoiseLimit { .. }))
+            && (near || matches!(word, Termination::NoiseLimit { .. }))
         {
             return Break(word);
         }

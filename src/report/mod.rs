@@ -12,7 +12,6 @@ pub use composite_proof::{CompositeProof, ProofCheck};
 pub use observer::{Observer, TablePrinter};
 pub use record::{Counts, IterationRecord, Origin, StepKind, TrialCounts};
 pub use stop::StopRule;
-pub(crate) use termination::CONFIRMING_RADIUS;
 pub use termination::Termination;
 
 use crate::Vector;
@@ -94,7 +93,7 @@ impl fmt::Display for Report {
         }
         writeln!(
             f,
-            "             {} subproblems ({} by the fallback solver); {:.3} s in all",
+            "             {} subproblems ({} by the fallback solver), {:.3} s",
             counts.qp_solves, counts.qp_fallbacks, self.seconds
         )?;
         for warning in &self.warnings {

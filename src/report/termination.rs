@@ -3,16 +3,13 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Active cuts within this relative distance confirm stationarity, whatever Θ is.
-pub(crate) const CONFIRMING_RADIUS: f64 = 1e-5;
-
 /// Why a run ended, with the numbers behind it. Only [`Stationary`](Self::Stationary) is a confirmed solution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Termination {
-    /// Aggregate subgradient and aggregate error are small, and every active cut lies next to the center, or Θ is declared
-    /// convex, or they lie within 5e-3 and more cuts than variables agree with a convex Θ: none ever lay above the point of another one.
+    /// Aggregate subgradient and aggregate error are small, and every active cut lies next to the center or Θ is declared
+    /// convex.
     Stationary {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
@@ -112,11 +109,7 @@ impl fmt::Display for Termination {
                 )
             }
             Self::Stationary { radius, gap: None } => {
-                write!(f, "stationary, confirmed by cuts within relative distance {radius:.1e}")?;
-                if *radius > CONFIRMING_RADIUS {
-                    write!(f, " that all agree with a convex objective (a local optimum need not be the best)")?;
-                }
-                Ok(())
+                write!(f, "stationary, confirmed by cuts within relative distance {radius:.1e}")
             }
             Self::StationaryUnconfirmed { radius } => {
                 write!(f, "stationary, unconfirmed: active cuts reach out to relative distance {radius:.1e}")

@@ -139,21 +139,3 @@ fn a_bundle_without_room_for_merged_cuts_is_refused() {
     assert!(matches!(error, InputError::OutOfRange { setting: "bundle_size", .. }));
     assert!(error.to_string().contains("≥ 3"), "{error}");
 }
-
-/// The runs of the convex problems that are not declared convex.
-#[test]
-fn convex_functions_that_are_not_declared_so_are_confirmed_without_restarts() {
-    let convex = testset::all().into_iter().filter(|p| p.convex && p.family == testset::Family::Unconstrained);
-    let (mut evaluations, mut needed, mut agreeing) = (0, 0, 0);
-    for problem in convex {
-        let report = with_bundle(&problem, problem.dimension + 15, Convexity::Unknown);
-        let level = problem.optimal_value + 1e-6 * (1.0 + problem.optimal_value.abs());
-        evaluations += report.counts.evaluations;
-        needed += report.history.iter().find(|record| record.center_value <= level).unwrap().evaluation;
-        agreeing += usize::from(report.termination.is_confirmed() && report.counts.restarts == 0);
-        assert!(report.value <= level, "{}: {report}", problem.name);
-    }
-    println!("{evaluations} evaluations, {needed} to 1e-6, {agreeing} confirmed without a restart");
-    assert!(evaluations as f64 <= 1.36 * needed as f64, "{evaluations} {needed}");
-    assert!(agreeing >= 12, "{agreeing}");
-}
