@@ -12,7 +12,7 @@ const AROUND_THE_BUILD: [&str; 7] = [
     "cargo build --release --locked",
     "cargo build --release --locked --offline",
     "cargo package -p nonsmooth -p contact -p exchange -p figures -p scene_file -p problems --locked",
-    "cargo build --release --locked -p problems-mpi",
+    "bash problems/mpi/build.sh",
     "cargo doc --no-deps --locked --open",
 ];
 

@@ -1,6 +1,7 @@
 //! Bad input and interruptions: one message, by process 0, and the exit status of a single process.
 
 use super::{PATIENCE, PROGRAM, begun, end_of, ended, errors, mpirun, scene, started};
+use std::path::Path;
 use std::process::Command;
 use std::time::{Duration, Instant};
 use testset::kit::{scratch, text};
@@ -70,4 +71,14 @@ fn an_interruption_of_the_first_process_ends_the_run_with_its_report() {
     assert!(errors(&output).contains("error: interrupted; continue with"), "{}", errors(&output));
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(report["evaluations"].as_u64() >= Some(2) && out.join("report.json").exists(), "{report}");
+}
+
+#[test]
+fn a_build_without_mpi_is_told_what_to_install() {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("build.sh");
+    let output = Command::new("bash").arg(script).env("MPICC", "/nonexistent").output().unwrap();
+    let said = errors(&output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("an MPI library with its compiler mpicc (libopenmpi-dev, openmpi-bin)"), "{said}");
+    assert!(said.contains("apt-get install libopenmpi-dev openmpi-bin libclang-dev clang"), "{said}");
 }
