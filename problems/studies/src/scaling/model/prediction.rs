@@ -121,8 +121,8 @@ impl Prediction {
         };
         let sent: f64 = gathered.iter().map(|(count, bytes)| count * bytes / ranks).sum();
         let total = products + adjoint;
-        // Per shape: displacements of the bodies, columns of the coarse matrix, modes at the dofs of neighbours.
-        let once = NUMBER * subdomains * (machine.subdomain_dofs + COARSE_COLUMNS) + AMPLITUDES * exchanged;
+        // Per shape: columns of the coarse matrix, modes at the dofs of neighbours.
+        let once = NUMBER * subdomains * COARSE_COLUMNS + AMPLITUDES * exchanged;
         let [coarse_factors, coarse_solves] = coarse_seconds(machine, units, contact, total);
         Self {
             run,
