@@ -144,7 +144,8 @@ def test_an_interrupt_ends_a_state(interruptible):
     with pytest.raises(KeyboardInterrupt) as caught:
         scene.optimize(callback=lambda x: sent.append(interrupt_after(0.2) if not sent else None))
     assert time.perf_counter() - sent[0] < 0.5
-    assert caught.value.best.fun <= whole and caught.value.best.nfev == len(sent)
+    # The signal may come between the end of an evaluation and its callback.
+    assert caught.value.best.fun <= whole and caught.value.best.nfev - len(sent) in (0, 1)
 
 
 def test_scenes_go_to_other_processes():
