@@ -167,19 +167,22 @@ impl Bundle {
         while self.cuts.len() >= size {
             let candidates = || self.cuts.iter().enumerate().filter(|(_, cut)| cut.id != protected);
             let idle = candidates().filter(|(_, cut)| cut.idle > 0).max_by_key(|(i, cut)| (cut.idle, usize::MAX - i));
+            if let Some((index, _)) = idle {
+                self.remove(index);
+                continue;
+            }
             let mut weakest: Vec<usize> = candidates().map(|(index, _)| index).collect();
             weakest.sort_by(|&a, &b| self.cuts[a].multiplier.total_cmp(&self.cuts[b].multiplier));
-            match (idle, weakest.as_slice()) {
-                (Some((index, _)), _) => self.remove(index),
-                (None, &[lighter, heavier, ..]) if self.cuts[lighter].is_active() => {
+            match weakest[..] {
+                [lighter, heavier, ..] if self.cuts[lighter].is_active() => {
                     let merged = self.cuts[heavier].merged(&self.cuts[lighter], *next_id, norm);
                     *next_id += 1;
                     self.remove(lighter.max(heavier));
                     self.remove(lighter.min(heavier));
                     self.push(merged, norm);
                 }
-                (None, &[index, ..]) => self.remove(index),
-                (None, []) => return,
+                [index, ..] => self.remove(index),
+                [] => return,
             }
         }
     }

@@ -58,6 +58,10 @@ impl Folder {
         let held = Register::lock(path, false)?;
         let names = held.as_ref().map(Register::names).unwrap_or_default();
         if let Some(file) = register::foreign(path, &names).map_err(unwritable(path))? {
+            if held.is_none() && Register::lock(path, false)?.is_some() {
+                // Another process has begun here since the list was looked for.
+                return Self::create(path, bytes, overwrite);
+            }
             let words = "was not written by this program; no results are put beside it, take another folder";
             return Err(Failure::Input(format!("{}: {} {words}", path.display(), file.display())));
         }

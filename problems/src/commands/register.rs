@@ -136,7 +136,7 @@ pub fn foreign(folder: &Path, names: &BTreeSet<String>) -> io::Result<Option<Pat
 
 fn foreign_below(folder: &Path, prefix: &str, names: &BTreeSet<String>) -> io::Result<Option<PathBuf>> {
     let entries = match fs::read_dir(folder) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound && !exists(folder) => return Ok(None),
+        Err(error) if error.kind() == io::ErrorKind::NotFound && !folder.is_symlink() => return Ok(None),
         entries => entries?,
     };
     for entry in entries {

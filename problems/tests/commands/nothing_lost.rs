@@ -160,6 +160,25 @@ fn two_processes_never_share_a_folder() {
     assert!(2 * at_once >= meetings);
 }
 
+/// Two processes that begin in one folder within a millisecond: one works, and the other one is told so.
+#[test]
+fn beginnings_at_one_moment_are_one_beginning_and_one_refusal() {
+    let mut random = Random(78);
+    for _meeting in 0..count(1000, 100) {
+        let scratch = kit::scratch();
+        let folder = scratch.path().join("run");
+        let mut run = kit::command(SIGNORINI, &["evaluate", "--mesh", "2", "--json", "--out", text(&folder)]);
+        let first = run.spawn().unwrap();
+        std::thread::sleep(Duration::from_secs_f64(1e-3 * random.unit()));
+        let outputs = [run.output().unwrap(), first.wait_with_output().unwrap()];
+        let (done, refused): (Vec<&Output>, Vec<&Output>) = outputs.iter().partition(|output| output.status.success());
+        let message = refused.iter().map(|output| kit::errors(output)).collect::<String>();
+        // The first one may have ended on a busy machine.
+        let is_told = ["another process works", "holds results"].iter().any(|words| message.contains(words));
+        assert!(done.len() == 1 && is_told, "{message}");
+    }
+}
+
 /// Limits the size of files of a process that is running: the system refuses more bytes as on a full disk.
 fn limit(child: &Child, bytes: &str) {
     let arguments = ["--pid", &child.id().to_string(), &format!("--fsize={bytes}:")];

@@ -31,8 +31,6 @@ _MORE = {
     "time_limit": "the option is max_seconds",
 }
 
-_STUCK = "the later half of the evaluations brought no decrease: nonsmooth.taylor_test(fun, result.x) shows whether the subgradient is right"
-
 
 class History(list):
     """One dict per evaluation: number, kind of step, values, predicted decrease, seconds."""
@@ -160,8 +158,7 @@ def build(outcome, outer=None):
     counts = json.loads(outcome.counts)
     reason = outcome.reason
     history = History(json.loads(outcome.history))
-    is_stuck = reason in ("evaluation_limit", "iteration_limit", "time_limit") and _is_stuck(history)
-    more = _STUCK if is_stuck else _MORE.get(reason)
+    more = _MORE.get(reason)
     result = Result(
         message=f"{outcome.message}; {more}" if more else outcome.message,
         success=outcome.confirmed,
@@ -185,8 +182,3 @@ def build(outcome, outer=None):
     # No entry of the dict: it is not for users.
     object.__setattr__(result, "_outer", outer or (None, 1.0))
     return result
-
-
-def _is_stuck(history):
-    """Whether the later half of many evaluations brought no decrease."""
-    return len(history) >= 100 and history[-1]["center_value"] == history[len(history) // 2]["center_value"]

@@ -114,9 +114,9 @@ pub fn projection_residual(boundary: &ContactBoundary, forces: &[f64], jumps: &[
     residual
 }
 
-/// 𝓕|w_T| + w_N of every node, for the packed jumps w = B u − g of a state in which no node is closed. Any other equilibrium λ satisfies
-/// λᵀCλ ≤ Σ λ_N (𝓕|w_T| + w_N): only nodes where this is positive can wedge a body in.
-pub fn wedging(boundary: &ContactBoundary, jumps: &[f64]) -> Vec<f64> {
+/// 𝓕|w_T| + w_N of every contact node, in the unit of the jumps, for the packed jumps w = B u − g of a state in which no node is closed.
+/// Any other equilibrium λ satisfies λᵀCλ ≤ Σ λ_N (𝓕|w_T| + w_N), method.md (4.12): only nodes where this is positive can wedge a body in.
+pub(crate) fn wedging(boundary: &ContactBoundary, jumps: &[f64]) -> Vec<f64> {
     let of_node = |jump: &[f64]| boundary.friction * tangential_norm(jump) + jump[0];
     boundary.points.iter().map(|point| of_node(&jumps[point.rows()])).collect()
 }

@@ -11,10 +11,7 @@ use crate::tfeti::torn::vectors::TornVector;
 pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> Vec<SolvedBody> {
     let size = model.pattern.pattern.dimension();
     let own = &torn.0[..model.interface.owned_count()];
-    let all = model.distribution.at_first(own, size).unwrap_or_default();
-    if all.is_empty() {
-        return Vec::new();
-    }
+    let Some(all) = model.distribution.at_first(own, size) else { return Vec::new() };
     blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, &all)).collect()
 }
 
