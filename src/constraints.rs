@@ -142,8 +142,9 @@ impl Polyhedron {
     /// entries happen to be near zero is then not judged by its rounding errors.
     pub fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
         let mut worst: f64 = 0.0;
-        for i in 0..self.dimension() {
-            worst = worst.max(side_violation(x[i], self.lower[i], self.upper[i], x[i].abs().max(reference[i].abs())));
+        let sides = self.lower.as_slice().iter().zip(self.upper.as_slice());
+        for ((x, reference), (&lower, &upper)) in x.as_slice().iter().zip(reference.as_slice()).zip(sides) {
+            worst = worst.max(side_violation(*x, lower, upper, x.abs().max(reference.abs())));
         }
         for (i, row) in self.rows.row_iter().enumerate() {
             let (mut value, mut scale) = (0.0, 0.0);
@@ -168,6 +169,9 @@ fn stack(a: &Vector, b: &Vector) -> Vector {
 
 /// Violation of lower ≤ value ≤ upper relative to the violated bound and the terms that make up the value.
 fn side_violation(value: f64, lower: f64, upper: f64, scale: f64) -> f64 {
+    if value >= lower && value <= upper {
+        return 0.0;
+    }
     if value.is_nan() {
         return f64::INFINITY;
     }

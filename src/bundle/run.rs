@@ -6,7 +6,7 @@ use super::config::AccuracyPolicy;
 use super::cut::Cut;
 use super::finish::Event;
 use super::oracle::{Oracle, Outcome, evaluate};
-use super::proposers::cuts::model::Model;
+use super::proposers::cuts::{self, model::Model};
 use super::proposers::list::Proposers;
 use super::proposers::proposal::{Proposal, SubproblemError};
 use super::proposers::proposer::Position;
@@ -217,7 +217,7 @@ impl Run<'_, '_> {
 
     /// Solves the plain subproblem at the weight of the run.
     pub(super) fn try_subproblem(&mut self) -> Result<Proposal, SubproblemError> {
-        let proposal = self.ask(|proposers, position| proposers.plain(position))?;
+        let proposal = self.ask(|_, position| cuts::propose(position))?;
         self.state.bundle.set_multipliers(&proposal.cut_multipliers);
         self.proposal = Some(proposal.clone());
         Ok(proposal)
@@ -225,17 +225,21 @@ impl Run<'_, '_> {
 
     /// The proposal worth an evaluation: that of the plain cuts or of a rival.
     fn choose_trial(&mut self, plain: Proposal) -> Proposal {
-        self.ask(|proposers, position| proposers.choose(position, plain))
+        if !self.proposers.has_rivals() {
+            return plain;
+        }
+        let small = self.small();
+        self.ask(|proposers, position| proposers.choose(position, plain, small))
     }
 
     /// Asks the proposers at the present position and counts the subproblems they solve.
     fn ask<T>(&mut self, question: impl FnOnce(&mut Proposers, &mut Position<'_>) -> T) -> T {
-        let (small, before) = (self.small(), self.solver.counts());
+        let before = self.solver.counts();
         let config = &self.method.config;
         let former = &mut self.former_model;
         let model = self.model.take().unwrap_or_else(|| Model::new(&mut self.state, config, former.take()));
         let (state, set, solver) = (&self.state, &self.set, &mut self.solver);
-        let answer = question(&mut self.proposers, &mut Position { state, set, solver, model: &model, small });
+        let answer = question(&mut self.proposers, &mut Position { state, set, solver, model: &model });
         self.model = Some(model);
         self.count_solves(before);
         answer

@@ -18,6 +18,7 @@ use super::cut::Spread;
 use super::proposers::aggregate::aggregate_sizes;
 use super::proposers::proposal::Proposal;
 use super::state::State;
+use crate::linalg::upper_median;
 use crate::qp::kernels::{dot_terms, two_dot_terms};
 use crate::{Polyhedron, Vector};
 use std::rc::Rc;
@@ -111,8 +112,7 @@ impl State {
         let near = |i: &usize| self.bundle.pairs().distance(*i, center) <= lengths.squared;
         let mut terms: Vec<f64> =
             (0..self.bundle.cuts().len()).filter(near).map(|i| self.spread(i, &lengths).size).collect();
-        terms.sort_by(f64::total_cmp);
-        terms.get(terms.len() / 2).copied().unwrap_or(0.0)
+        upper_median(&mut terms).unwrap_or(0.0)
     }
 
     /// How far Θ varies by its outputs, also where its subgradients vanish, as at a smooth minimum.

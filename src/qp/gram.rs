@@ -11,10 +11,12 @@
 //! Reference: \[Kiwiel1986\].
 
 use super::certificate::LENGTH_SHARE;
-use super::kernels::{add_scaled, dot, dot_terms};
+use super::kernels::{add_all_scaled, dot, dot_terms, weighted_squares};
 use super::problem::{EpigraphQp, QpMethod, QpSolution};
 use super::triangular::Triangular;
 use crate::Vector;
+use crate::linalg::upper_median;
+use std::borrow::Cow;
 
 /// Inner products of the slopes of a QP in the metric W, and the weight u of H = u W.
 #[derive(Debug, Clone, Copy)]
@@ -65,6 +67,10 @@ struct Dual<'a> {
     /// A length: its product with ‖g_j‖ and the machine precision is the size of the rounding of w_j.
     drift: f64,
     pivots: usize,
+    /// ‖g_j‖ in the dual norm of W.
+    norms: Vec<f64>,
+    /// The diagonal of H.
+    diagonal: Cow<'a, [f64]>,
 }
 
 impl GramMemory {
@@ -103,16 +109,13 @@ impl<'a> Dual<'a> {
             skipped: vec![],
             drift: 0.0,
             pivots: 0,
+            diagonal: qp.metric.diagonal(qp.dimension()),
+            norms: gram.slots.iter().map(|&slot| gram.rows[slot][slot].sqrt()).collect(),
         }
     }
 
     fn product(&self, i: usize, j: usize) -> f64 {
         self.gram.rows[self.gram.slots[i]][self.gram.slots[j]]
-    }
-
-    /// ‖g_j‖ in the dual norm of W.
-    fn norm(&self, j: usize) -> f64 {
-        self.product(j, j).sqrt()
     }
 
     /// Goes on with the working set of the last call, without the cuts that are no longer in the problem.
@@ -136,8 +139,7 @@ impl<'a> Dual<'a> {
         self.factor.clear();
         let mut lengths: Vec<f64> = (0..self.qp.slopes.len()).map(|j| self.product(j, j)).collect();
         lengths.retain(|length| *length > 0.0);
-        lengths.sort_by(f64::total_cmp);
-        self.shift = lengths.get(lengths.len() / 2).copied().unwrap_or(1.0);
+        self.shift = upper_median(&mut lengths).unwrap_or(1.0);
         for (id, &multiplier) in ids.iter().zip(multipliers) {
             if let Some(j) = self.qp.cut_ids.iter().position(|known| known == id)
                 && let Ok((column, diagonal)) = self.column(j)
@@ -197,10 +199,26 @@ impl<'a> Dual<'a> {
         self.pivots += 1;
     }
 
-    /// Adds to w what a change of a cut's multiplier contributes.
-    fn shift_gradient(&mut self, j: usize, change: f64) {
-        self.drift += change.abs() * self.norm(j) / self.gram.weight;
-        add_scaled(&mut self.gradient, change / self.gram.weight, &self.gram.rows[self.gram.slots[j]]);
+    /// Adds to w what changes of multipliers contribute, given by the cuts.
+    fn shift_gradient(&mut self, changes: &[(usize, f64)]) {
+        let (gram, weight) = (self.gram, self.gram.weight);
+        changes.iter().for_each(|&(j, change)| self.drift += change.abs() * self.norms[j] / weight);
+        let rows = changes.iter().map(|&(j, change)| (change / weight, gram.rows[gram.slots[j]].as_slice()));
+        add_all_scaled(&mut self.gradient, &rows.collect::<Vec<_>>());
+    }
+
+    /// Adds changes to the multipliers of the cuts held.
+    fn shift_multipliers(&mut self, factor: f64, changes: &[f64]) {
+        let shifts: Vec<(usize, f64)> =
+            self.held.iter().zip(changes).map(|(&j, change)| (j, factor * change)).collect();
+        self.multipliers.iter_mut().zip(&shifts).for_each(|(multiplier, (_, shift))| *multiplier += shift);
+        self.shift_gradient(&shifts);
+    }
+
+    /// Takes the multiplier of a cut held away, and the cut out of the working set.
+    fn drop_held(&mut self, position: usize) {
+        self.shift_gradient(&[(self.held[position], -self.multipliers[position])]);
+        self.release(position);
     }
 
     /// w_j of the cuts held.
@@ -214,9 +232,8 @@ impl<'a> Dual<'a> {
         for (&slot, offset) in self.gram.slots.iter().zip(self.qp.offsets) {
             self.gradient[slot] = *offset;
         }
-        for k in 0..self.held.len() {
-            self.shift_gradient(self.held[k], self.multipliers[k]);
-        }
+        let held: Vec<(usize, f64)> = self.held.iter().copied().zip(self.multipliers.iter().copied()).collect();
+        self.shift_gradient(&held);
         let mut placed = vec![0.0; self.qp.slopes.len()];
         let mut step = Vector::zeros(self.qp.dimension());
         for _ in 0..ROUNDS {
@@ -239,17 +256,16 @@ impl<'a> Dual<'a> {
 
     /// Moves d by what the multipliers have changed since the last call.
     fn place(&self, step: &mut Vector, placed: &mut [f64]) {
-        let mut sum = vec![0.0; step.len()];
         let mut now = vec![0.0; placed.len()];
         self.held.iter().zip(&self.multipliers).for_each(|(&j, &multiplier)| now[j] = multiplier);
-        for ((now, placed), slope) in now.iter().zip(placed).zip(self.qp.slopes) {
-            if now != placed {
-                add_scaled(&mut sum, now - *placed, slope.as_slice());
-                *placed = *now;
-            }
-        }
-        for (k, (step, sum)) in step.iter_mut().zip(sum).enumerate() {
-            *step -= sum / self.qp.metric.diagonal_entry(k);
+        let changes = now.iter().zip(&*placed).zip(self.qp.slopes).filter(|((now, placed), _)| now != placed);
+        let moved: Vec<(f64, &[f64])> =
+            changes.map(|((now, placed), slope)| (now - placed, slope.as_slice())).collect();
+        let mut sum = vec![0.0; step.len()];
+        add_all_scaled(&mut sum, &moved);
+        placed.copy_from_slice(&now);
+        for ((step, sum), diagonal) in step.as_mut_slice().iter_mut().zip(sum).zip(&*self.diagonal) {
+            *step -= sum / diagonal;
         }
     }
 
@@ -261,20 +277,19 @@ impl<'a> Dual<'a> {
 
     /// ‖d‖ in the norm of W.
     fn length(&self, step: &Vector) -> f64 {
-        let squares = step.iter().enumerate().map(|(k, d)| d * d * self.qp.metric.diagonal_entry(k));
-        (squares.sum::<f64>() / self.gram.weight).sqrt()
+        (weighted_squares(&self.diagonal, step.as_slice()) / self.gram.weight).sqrt()
     }
 
     /// The parts of the KKT residual that do not hold by construction: Σ π = 1 and complementarity. The size of
-    /// a cut's terms is formed only where a held cut lies below the highest one.
+    /// a cut's terms is formed only where it can decide.
     fn residual(&self, step: &Vector, values: &[f64], epigraph: f64) -> f64 {
-        let steepest = (0..values.len()).map(|j| self.norm(j)).fold(0.0, f64::max);
+        let steepest = self.norms.iter().copied().fold(0.0, f64::max);
         let share = LENGTH_SHARE * (self.length(step) + steepest / self.gram.weight);
         let mut worst = (self.multipliers.iter().sum::<f64>() - 1.0).abs();
         for (&j, &multiplier) in self.held.iter().zip(&self.multipliers) {
             let gap = multiplier.abs().min(1.0) * (epigraph - values[j]);
-            let known = self.qp.offsets[j].abs() + epigraph.abs() + share * self.norm(j);
-            if gap > 0.0 {
+            let known = self.qp.offsets[j].abs() + epigraph.abs() + share * self.norms[j];
+            if gap > worst * known {
                 worst = worst.max(gap / (known + dot_terms(self.qp.slopes[j].as_slice(), step.as_slice())));
             }
             worst = worst.max(-multiplier);
@@ -327,16 +342,9 @@ impl<'a> Dual<'a> {
             let shares = blocks.filter(|(_, (d, l))| *l + *d < 0.0).map(|(k, (d, l))| ((l / -d).clamp(0.0, 1.0), k));
             let first = shares.reduce(|a, b| if b.0 < a.0 { b } else { a });
             let share = first.map_or(1.0, |(share, _)| share);
-            for k in 0..self.held.len() {
-                self.multipliers[k] += share * change[k];
-                self.shift_gradient(self.held[k], share * change[k]);
-            }
+            self.shift_multipliers(share, &change);
             match first {
-                Some((_, position)) => {
-                    let left = self.multipliers[position];
-                    self.shift_gradient(self.held[position], -left);
-                    self.release(position);
-                }
+                Some((_, position)) => self.drop_held(position),
                 None => return level,
             }
         }
@@ -348,11 +356,12 @@ impl<'a> Dual<'a> {
         for j in (0..self.qp.slopes.len()).filter(|&j| !self.is_held[j]) {
             let excess = level - self.gradient[self.gram.slots[j]];
             let rounding =
-                ROUNDING * (level.abs() + self.qp.offsets[j].abs()) + 4.0 * f64::EPSILON * self.norm(j) * self.drift;
-            let distance = excess / (self.product(j, j) + self.shift).sqrt();
-            let is_worse = worst.is_none_or(|(largest, _)| distance > largest);
-            if excess > rounding && is_worse && !self.skipped.contains(&j) {
-                worst = Some((distance, j));
+                ROUNDING * (level.abs() + self.qp.offsets[j].abs()) + 4.0 * f64::EPSILON * self.norms[j] * self.drift;
+            if excess > rounding && !self.skipped.contains(&j) {
+                let distance = excess / (self.product(j, j) + self.shift).sqrt();
+                if worst.is_none_or(|(largest, _)| distance > largest) {
+                    worst = Some((distance, j));
+                }
             }
         }
         worst.map(|(_, j)| j)
@@ -372,24 +381,19 @@ impl<'a> Dual<'a> {
             let falling = rates.iter().zip(&self.multipliers).enumerate().filter(|(_, (x, _))| **x > LEAST_RATE);
             let lengths = falling.map(|(k, (x, l))| (l / x, k));
             let (length, position) = lengths.reduce(|a, b| if b.0 < a.0 { b } else { a })?;
-            for k in 0..self.held.len() {
-                self.multipliers[k] -= length * rates[k];
-                self.shift_gradient(self.held[k], -length * rates[k]);
-            }
+            self.shift_multipliers(-length, &rates);
             multiplier += length;
-            self.shift_gradient(j, length);
-            let left = self.multipliers[position];
-            self.shift_gradient(self.held[position], -left);
-            self.release(position);
+            self.shift_gradient(&[(j, length)]);
+            self.drop_held(position);
         }
     }
 }
 
 /// Whether a step satisfies all rows and bounds.
 fn satisfies_sides(qp: &EpigraphQp<'_>, step: &Vector) -> bool {
-    let inside = |value: f64, lower: f64, upper: f64| value >= lower && value <= upper;
-    let bounds = step.iter().zip(qp.lower.iter().zip(qp.upper));
-    let rows = (0..qp.rows.nrows()).map(|i| qp.rows.row(i).iter().zip(step.iter()).map(|(a, d)| a * d).sum::<f64>());
-    bounds.into_iter().all(|(d, (lower, upper))| inside(*d, *lower, *upper))
-        && rows.enumerate().all(|(i, value)| inside(value, qp.row_lower[i], qp.row_upper[i]))
+    let inside = |values: &Vector, lower: &Vector, upper: &Vector| {
+        let sides = lower.as_slice().iter().zip(upper.as_slice());
+        values.as_slice().iter().zip(sides).all(|(value, (lower, upper))| value >= lower && value <= upper)
+    };
+    inside(step, qp.lower, qp.upper) && inside(&(qp.rows * step), qp.row_lower, qp.row_upper)
 }

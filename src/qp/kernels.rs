@@ -115,6 +115,18 @@ pub(super) fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
     }
 }
 
+/// y += Σ factor · x, rounded as by [`add_scaled`] one after the other; y is read and written once for four of them.
+pub(super) fn add_all_scaled(y: &mut [f64], terms: &[(f64, &[f64])]) {
+    let (fours, rest) = terms.as_chunks::<4>();
+    for [(a, x), (b, z), (c, u), (d, v)] in fours {
+        let others = x.iter().zip(*z).zip(u.iter().zip(*v));
+        for (y, ((x, z), (u, v))) in y.iter_mut().zip(others) {
+            *y = *y + a * x + b * z + c * u + d * v;
+        }
+    }
+    rest.iter().for_each(|(factor, x)| add_scaled(y, *factor, x));
+}
+
 /// Euclidean norm.
 pub(super) fn norm(x: &[f64]) -> f64 {
     dot(x, x).sqrt()

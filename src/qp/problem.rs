@@ -1,5 +1,6 @@
 //! Data of the QP, its answer, its errors, and the checks at the border.
 
+use std::borrow::Cow;
 use thiserror::Error;
 
 use crate::checks::{check_finite, check_intervals, check_size};
@@ -16,7 +17,7 @@ pub enum Metric<'a> {
     Dense(&'a Matrix),
 }
 
-impl Metric<'_> {
+impl<'a> Metric<'a> {
     /// The product H d.
     pub fn apply(&self, step: &Vector) -> Vector {
         match self {
@@ -32,6 +33,14 @@ impl Metric<'_> {
             Self::ScaledIdentity(weight) => *weight,
             Self::Diagonal(diagonal) => diagonal[index],
             Self::Dense(matrix) => matrix[(index, index)],
+        }
+    }
+
+    /// The diagonal of H for n variables.
+    pub(super) fn diagonal(self, dimension: usize) -> Cow<'a, [f64]> {
+        match self {
+            Self::Diagonal(diagonal) => Cow::Borrowed(diagonal.as_slice()),
+            _ => Cow::Owned((0..dimension).map(|i| self.diagonal_entry(i)).collect()),
         }
     }
 }

@@ -9,6 +9,7 @@
 //! With a diagonal metric an active bound is no column: it fixes its coordinate.
 
 use crate::Vector;
+use crate::linalg::upper_median;
 
 use super::certificate::{LENGTH_SHARE, SIDE_SHARE, largest_side};
 use super::coordinates::Coordinates;
@@ -287,6 +288,5 @@ impl<'a> WorkingSet<'a> {
 
 fn median_of_positive(values: &[f64]) -> Option<f64> {
     let mut positive: Vec<f64> = values.iter().copied().filter(|value| *value > 0.0).collect();
-    positive.sort_by(f64::total_cmp);
-    positive.get(positive.len() / 2).copied()
+    upper_median(&mut positive)
 }

@@ -30,11 +30,15 @@ pub(crate) fn aggregate_sizes<'g>(
 /// Σ slack·|multiplier| at the center.
 pub(crate) fn slack_error((rows, bounds): (&Vector, &Vector), center: &Vector, set: &Polyhedron) -> f64 {
     let at_rows = set.rows() * center;
-    let rows = set.row_lower().iter().zip(set.row_upper()).zip(at_rows.iter().zip(rows));
-    let bounds = set.lower().iter().zip(set.upper()).zip(center.iter().zip(bounds));
-    let one = |((lower, upper), (at, multiplier)): ((&f64, &f64), (&f64, &f64))| {
-        let slack = if *multiplier > 0.0 { upper - at } else { at - lower };
-        if *multiplier == 0.0 { 0.0 } else { multiplier.abs() * slack.max(0.0) }
-    };
-    rows.chain(bounds).map(one).sum()
+    let sum = add_slacks(0.0, rows, &at_rows, (set.row_lower(), set.row_upper()));
+    add_slacks(sum, bounds, center, (set.lower(), set.upper()))
+}
+
+/// A sum, plus slack·|multiplier| of the sides of some values.
+fn add_slacks(sum: f64, multipliers: &Vector, at: &Vector, (lower, upper): (&Vector, &Vector)) -> f64 {
+    let active = multipliers.as_slice().iter().enumerate().filter(|(_, multiplier)| **multiplier != 0.0);
+    active.fold(sum, |sum, (i, multiplier)| {
+        let slack = if *multiplier > 0.0 { upper[i] - at[i] } else { at[i] - lower[i] };
+        sum + multiplier.abs() * slack.max(0.0)
+    })
 }

@@ -1,16 +1,15 @@
 //! The proposers of a run.
 
 use super::curved::Curved;
-use super::cuts::PlainCuts;
+use super::cuts;
 use super::exploration::Exploration;
-use super::proposal::{Proposal, SubproblemError};
+use super::proposal::Proposal;
 use super::proposer::{Position, Proposer, Trial};
 use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::state::State;
 
-/// The plain cuts and their rivals, in the order in which they are asked.
+/// The rivals of the plain cuts, in the order in which they are asked.
 pub(crate) struct Proposers {
-    cuts: PlainCuts,
     rivals: Vec<Box<dyn Proposer>>,
 }
 
@@ -24,26 +23,23 @@ impl Proposers {
         if let Some(settings) = config.exploration.filter(|settings| dimension <= settings.max_dimension) {
             rivals.push(Box::new(Exploration::new(settings, weight)));
         }
-        Self { cuts: PlainCuts, rivals }
+        Self { rivals }
     }
 
-    /// What the plain cuts propose.
-    pub(crate) fn plain(&mut self, position: &mut Position<'_>) -> Result<Proposal, SubproblemError> {
-        self.cuts.propose(position, &[])?.ok_or(SubproblemError::Unusable)
+    /// Whether anybody proposes trial points beside the plain cuts.
+    pub(crate) fn has_rivals(&self) -> bool {
+        !self.rivals.is_empty()
     }
 
-    /// The proposal worth an evaluation: that of the cuts, unless a rival has a better one.
-    pub(crate) fn choose(&mut self, position: &mut Position<'_>, plain: Proposal) -> Proposal {
+    /// The proposal worth an evaluation: that of the cuts, unless a rival has a better one, which must promise more than `small`.
+    pub(crate) fn choose(&mut self, position: &mut Position<'_>, plain: Proposal, small: f64) -> Proposal {
         let mut proposed = vec![plain.clone()];
         for rival in &mut self.rivals {
-            if let Ok(Some(better)) = rival.propose(position, &proposed) {
+            if let Ok(Some(better)) = rival.propose(position, &proposed, small) {
                 proposed.push(better);
             }
         }
         let mut chosen = proposed.pop().unwrap_or(plain);
-        if self.rivals.is_empty() {
-            return chosen;
-        }
         chosen.cut_change = position.model.cuts().change(&chosen.step);
         chosen
     }
@@ -53,7 +49,7 @@ impl Proposers {
         for rival in &mut self.rivals {
             rival.shorten(state, config, proposal);
         }
-        self.cuts.shorten(state, config, proposal);
+        cuts::shorten(state, config, proposal);
     }
 
     /// Tells all proposers what came of a trial point.
@@ -61,6 +57,6 @@ impl Proposers {
         for rival in &mut self.rivals {
             rival.learn(state, config, trial);
         }
-        self.cuts.learn(state, config, trial);
+        cuts::learn(state, config, trial);
     }
 }

@@ -1,4 +1,4 @@
-//! What the engine asks of whoever proposes trial points.
+//! What the engine asks of whoever proposes trial points beside the plain cuts.
 
 use super::cuts::model::Model;
 use super::proposal::{Proposal, SubproblemError};
@@ -7,17 +7,18 @@ use crate::bundle::state::State;
 use crate::qp::EpigraphQpSolver;
 use crate::{Polyhedron, Vector};
 
-/// One way to propose trial points.
+/// A rival of the plain cuts.
 pub(crate) trait Proposer {
-    /// A trial point that should replace the last of those already `proposed`; none if that one should stay. The first entry of
-    /// `proposed` comes from the plain cuts; the list is empty when they are asked themselves.
+    /// A trial point that should replace the last of those `proposed` so far; none if that one should stay. The first entry of
+    /// `proposed` comes from the plain cuts. A predicted decrease up to `small` is not worth an evaluation.
     ///
     /// # Errors
-    /// [`SubproblemError`]; only that of the plain cuts matters to the run.
+    /// [`SubproblemError`]: the rival proposes nothing.
     fn propose(
         &mut self,
         position: &mut Position<'_>,
         proposed: &[Proposal],
+        small: f64,
     ) -> Result<Option<Proposal>, SubproblemError>;
 
     /// Takes note that the oracle failed at a trial point of any proposer. Where the point was its own, a proposer takes a shorter step
@@ -35,8 +36,6 @@ pub(crate) struct Position<'a> {
     pub solver: &'a mut EpigraphQpSolver,
     /// The cutting-plane model at the center.
     pub model: &'a Model,
-    /// The predicted decrease that counts as small.
-    pub small: f64,
 }
 
 /// A trial point and what came of it.

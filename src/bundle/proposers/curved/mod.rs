@@ -106,14 +106,19 @@ fn missing_weight(comparison: &Comparison, step_length: f64) -> f64 {
 }
 
 impl Proposer for Curved {
-    fn propose(&mut self, at: &mut Position<'_>, proposed: &[Proposal]) -> Result<Option<Proposal>, SubproblemError> {
+    fn propose(
+        &mut self,
+        at: &mut Position<'_>,
+        proposed: &[Proposal],
+        small: f64,
+    ) -> Result<Option<Proposal>, SubproblemError> {
         self.model = CurvedModel::new(at.state, at.model.cuts(), &self.settings);
         let may_propose = self.pause.pass() && self.score > self.settings.trust;
         let Some(plain) = proposed.first().filter(|_| may_propose) else { return Ok(None) };
         let step = self.step(at)?;
         let change = |step: &Vector| self.model.change(step);
         let better = plain.replaced((step, self.weight, Origin::CurvedModel), (at.set, at.state), change)?;
-        Ok(Some(better).filter(|better| better.predicted_decrease > at.small))
+        Ok(Some(better).filter(|better| better.predicted_decrease > small))
     }
 
     fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {

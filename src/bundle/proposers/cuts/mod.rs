@@ -11,7 +11,7 @@ mod weight;
 
 use super::aggregate::slack_error;
 use super::proposal::{Proposal, SubproblemError};
-use super::proposer::{Position, Proposer, Trial};
+use super::proposer::{Position, Trial};
 use super::subproblem::{self, Cuts};
 use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::norm::WeightedMetric;
@@ -21,44 +21,43 @@ use crate::report::Origin;
 use crate::{Polyhedron, Vector};
 use model::{Model, PRODUCTS_DIMENSION};
 
-/// The cutting-plane model with the weight of the run.
-#[derive(Debug)]
-pub(crate) struct PlainCuts;
-
-impl Proposer for PlainCuts {
-    fn propose(&mut self, at: &mut Position<'_>, _proposed: &[Proposal]) -> Result<Option<Proposal>, SubproblemError> {
-        let (state, model) = (at.state, at.model);
-        let quadratic = state.norm.weighted(state.weight);
-        let many = state.center.len() >= PRODUCTS_DIMENSION && matches!(quadratic, WeightedMetric::Diagonal(_));
-        let gram = if many { model.products(state) } else { None };
-        let cuts = Cuts { gram, ..model.cuts() };
-        let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
-        let proposal = interpret(solution, (state, at.set), model);
-        // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution.
-        let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
-        if !(proposal.predicted_decrease >= least && proposal.step_length.is_finite()) {
-            return Err(SubproblemError::Unusable);
-        }
-        proposal.admissible(at.set, state).map(Some)
+/// The trial point of the cutting-plane model with the weight of the run.
+///
+/// # Errors
+/// [`SubproblemError`] if the subproblem has no usable answer.
+pub(crate) fn propose(at: &mut Position<'_>) -> Result<Proposal, SubproblemError> {
+    let (state, model) = (at.state, at.model);
+    let quadratic = state.norm.weighted(state.weight);
+    let many = state.center.len() >= PRODUCTS_DIMENSION && matches!(quadratic, WeightedMetric::Diagonal(_));
+    let gram = if many { model.products(state) } else { None };
+    let cuts = Cuts { gram, ..model.cuts() };
+    let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
+    let proposal = interpret(solution, (state, at.set), model);
+    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution.
+    let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
+    if !(proposal.predicted_decrease >= least && proposal.step_length.is_finite()) {
+        return Err(SubproblemError::Unusable);
     }
+    proposal.admissible(at.set, state)
+}
 
-    fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
-        if proposal.origin == Origin::Cuts {
-            state.streak = -1;
-            state.set_weight(proposal.weight * config.weight_increase, config);
-        }
+/// Takes note that the oracle failed at a trial point of any proposer.
+pub(crate) fn shorten(state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
+    if proposal.origin == Origin::Cuts {
+        state.streak = -1;
+        state.set_weight(proposal.weight * config.weight_increase, config);
     }
+}
 
-    /// Sets the next weight, after trial points of the plain cuts only.
-    fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
-        if trial.proposal.origin != Origin::Cuts {
-            return;
-        }
-        if trial.serious {
-            weight::after_serious(state, config, &trial.comparison);
-        } else {
-            weight::after_null(state, config, trial);
-        }
+/// Sets the next weight, after trial points of the plain cuts only; the center has not moved yet.
+pub(crate) fn learn(state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+    if trial.proposal.origin != Origin::Cuts {
+        return;
+    }
+    if trial.serious {
+        weight::after_serious(state, config, &trial.comparison);
+    } else {
+        weight::after_null(state, config, trial);
     }
 }
 

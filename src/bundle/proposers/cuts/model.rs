@@ -13,6 +13,7 @@ use crate::bundle::acceptance::NOISE_MARGIN;
 use crate::bundle::config::{BundleTrustConfig, Convexity};
 use crate::bundle::proposers::subproblem::Cuts;
 use crate::bundle::state::State;
+use crate::linalg::upper_median;
 use crate::qp::Gram;
 
 /// Slopes and offsets of the model, in the order of the cuts.
@@ -113,13 +114,12 @@ impl Model {
         } else {
             state.bundle.dual_lengths().collect()
         };
-        let mut sorted = norms.clone();
-        sorted.sort_by(f64::total_cmp);
-        let limit = MAX_RELATIVE_SLOPE * sorted[sorted.len() / 2].max(norms[center]);
-        let base = self.slopes[center].clone();
+        let median = upper_median(&mut norms.clone()).unwrap_or(0.0);
+        let limit = MAX_RELATIVE_SLOPE * median.max(norms[center]);
         for (i, norm) in norms.iter().enumerate().filter(|(_, norm)| **norm > limit && limit > 0.0) {
+            // The center's cut is below the limit.
             let share = limit / norm;
-            self.slopes[i] = &self.slopes[i] * share + &base * (1.0 - share);
+            self.slopes[i] = &self.slopes[i] * share + &self.slopes[center] * (1.0 - share);
             self.offsets[i] = share * self.offsets[i] + (1.0 - share) * self.offsets[center];
             self.shares[i] = share;
         }

@@ -77,13 +77,18 @@ impl Exploration {
 }
 
 impl Proposer for Exploration {
-    fn propose(&mut self, at: &mut Position<'_>, proposed: &[Proposal]) -> Result<Option<Proposal>, SubproblemError> {
+    fn propose(
+        &mut self,
+        at: &mut Position<'_>,
+        proposed: &[Proposal],
+        small: f64,
+    ) -> Result<Option<Proposal>, SubproblemError> {
         let may_propose = self.pause.pass();
         let (Some(plain), Some(best)) = (proposed.first(), proposed.last()) else { return Ok(None) };
         if !may_propose || !self.is_stalled(at.state, best.predicted_decrease) {
             return Ok(None);
         }
-        let worthwhile = at.small.max(self.settings.min_gain * best.predicted_decrease);
+        let worthwhile = small.max(self.settings.min_gain * best.predicted_decrease);
         let seen = self.seen_curvature(at.state);
         let mut weight = self.weight.min(at.state.weight / self.settings.weight_factor);
         for _ in 0..self.settings.weights {
