@@ -1,9 +1,8 @@
 //! The certificate of a run as a Python object: its arrays, its check, its pickled form.
 
-use crate::convert;
+use crate::convert::{self, json};
 use crate::errors;
 use crate::failure::Failure;
-use crate::outcome::json;
 use crate::outer::Outer;
 use nonsmooth::{Cut, Polyhedron};
 use numpy::{PyArray1, PyArray2};

@@ -153,7 +153,7 @@ impl ContactScene {
         )?;
         result.set_item("total_force", forces.total_normal_force())?;
         result.set_item("residual", forces.residuals.largest())?;
-        result.set_item("weakly_active", crate::outcome::json(&forces.kink)?)?;
+        result.set_item("weakly_active", crate::convert::json(&forces.kink)?)?;
         Ok(result)
     }
 
@@ -177,7 +177,7 @@ impl ContactScene {
             AccuracyName::Tightest => "tightest",
             AccuracyName::OnDemand => "on_demand",
         };
-        crate::outcome::json(&serde_json::json!({
+        crate::convert::json(&serde_json::json!({
             "max_evaluations": optimizer.max_evaluations,
             "tolerance": optimizer.tolerance,
             "max_seconds": optimizer.time_limit,

@@ -6,6 +6,7 @@ use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::type_object::PyTypeCheck;
+use pyo3::types::{PyList, PyTuple};
 
 /// A new numpy array of the entries.
 pub fn array<'py>(py: Python<'py>, vector: &Vector) -> Bound<'py, PyArray1<f64>> {
@@ -86,4 +87,35 @@ fn refused(error: Option<PyErr>, object: &Bound<'_, PyAny>, what: &str, form: &s
     let refusal = PyTypeError::new_err(format!("{what} is {kind}{shape}{dtype}, expected {form}"));
     refusal.set_cause(py, error);
     refusal
+}
+
+/// The two parts of what a function returns, as a tuple or a list; with three an error bound, where there `may_be_bound` one.
+pub fn parts<'py>(
+    answer: &Bound<'py, PyAny>,
+    function: &str,
+    wanted: &str,
+    may_be_bound: bool,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let kind = || answer.get_type().name();
+    let tuple = match (answer.cast::<PyTuple>(), answer.cast::<PyList>()) {
+        (Ok(tuple), _) => Some(tuple.clone()),
+        (_, Ok(list)) => Some(list.to_tuple()),
+        _ => None,
+    };
+    let found = match tuple {
+        Some(tuple) if tuple.len() == 2 || (tuple.len() == 3 && may_be_bound) => return Ok(tuple),
+        Some(tuple) => format!("a {} of {}", kind()?, tuple.len()),
+        None => kind()?.to_string(),
+    };
+    let more = if may_be_bound {
+        ", and may add an error bound; if it returns the value alone, pass its subgradient as jac"
+    } else {
+        ""
+    };
+    Err(PyTypeError::new_err(format!("{function} must return {wanted}{more}; it returned {found}")))
+}
+
+/// JSON of plain data.
+pub fn json<T: serde::Serialize>(data: &T) -> PyResult<String> {
+    serde_json::to_string(data).map_err(|error| PyValueError::new_err(error.to_string()))
 }

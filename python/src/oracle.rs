@@ -12,10 +12,10 @@ use crate::failure::Failure;
 use crate::outer::Outer;
 use nonsmooth::composite::{Linearization, OuterFunction};
 use nonsmooth::{Answer, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::types::PyDict;
 
 /// A Python function with value and subgradient, or with outputs and Jacobian.
 #[derive(Debug)]
@@ -52,7 +52,7 @@ impl PythonOracle {
 
     fn evaluation(&self, answer: &Bound<'_, PyAny>, request: &Request<'_, ()>) -> PyResult<Evaluation<()>> {
         let wanted = if self.outer.is_some() { "(outputs, Jacobian)" } else { "(value, subgradient)" };
-        let parts = parts(answer, "fun", wanted, true)?;
+        let parts = convert::parts(answer, "fun", wanted, true)?;
         let (first, second) = (parts.get_item(0)?, parts.get_item(1)?);
         let mut evaluation = match &self.outer {
             None => {
@@ -104,32 +104,6 @@ impl PythonOracle {
         self.failure.set(error);
         OracleError::Interrupted
     }
-}
-
-/// The two parts of what a function returns, as a tuple or a list; with three an error bound, where there `may_be_bound` one.
-pub fn parts<'py>(
-    answer: &Bound<'py, PyAny>,
-    function: &str,
-    wanted: &str,
-    may_be_bound: bool,
-) -> PyResult<Bound<'py, PyTuple>> {
-    let kind = || answer.get_type().name();
-    let tuple = match (answer.cast::<PyTuple>(), answer.cast::<PyList>()) {
-        (Ok(tuple), _) => Some(tuple.clone()),
-        (_, Ok(list)) => Some(list.to_tuple()),
-        _ => None,
-    };
-    let found = match tuple {
-        Some(tuple) if tuple.len() == 2 || (tuple.len() == 3 && may_be_bound) => return Ok(tuple),
-        Some(tuple) => format!("a {} of {}", kind()?, tuple.len()),
-        None => kind()?.to_string(),
-    };
-    let more = if may_be_bound {
-        ", and may add an error bound; if it returns the value alone, pass its subgradient as jac"
-    } else {
-        ""
-    };
-    Err(PyTypeError::new_err(format!("{function} must return {wanted}{more}; it returned {found}")))
 }
 
 impl NonsmoothObjective for PythonOracle {

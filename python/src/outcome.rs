@@ -1,10 +1,9 @@
 //! The report of a run as a Python object.
 
 use crate::certificate::Certificate;
-use crate::convert;
+use crate::convert::{self, json};
 use nonsmooth::{Polyhedron, Report, Termination, Vector};
 use numpy::PyArray1;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// The report of a run, with the set that its certificate refers to.
@@ -127,9 +126,4 @@ impl Outcome {
     fn __str__(&self) -> String {
         self.report.to_string()
     }
-}
-
-/// JSON of plain data.
-pub fn json<T: serde::Serialize>(data: &T) -> PyResult<String> {
-    serde_json::to_string(data).map_err(|error| PyValueError::new_err(error.to_string()))
 }

@@ -2,7 +2,6 @@
 
 use crate::convert;
 use crate::failure::Failure;
-use crate::oracle::parts;
 use nonsmooth::composite::{Epigraph, EuclideanNorm, Maximum, OuterFunction, SumOfPowers};
 use nonsmooth::{Matrix, Vector};
 use pyo3::exceptions::PyValueError;
@@ -81,7 +80,7 @@ impl PythonOuter {
     fn call(&self, outputs: &Vector) -> PyResult<(f64, Vector)> {
         Python::attach(|py| {
             let answer = self.function.bind(py).call1((convert::array(py, outputs),))?;
-            let parts = parts(&answer, "outer", "(value, subgradient)", false)?;
+            let parts = convert::parts(&answer, "outer", "(value, subgradient)", false)?;
             let value = convert::number(&parts.get_item(0)?, "the value that outer returns")?;
             let subgradient = parts.get_item(1)?;
             let subgradient = convert::vector(&subgradient, "the subgradient that outer returns", Some(outputs.len()))?;

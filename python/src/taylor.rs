@@ -1,10 +1,10 @@
 //! The Taylor test of a Python function.
 
 use crate::convert;
+use crate::convert::json;
 use crate::errors;
 use crate::failure::Failure;
 use crate::oracle::PythonOracle;
-use crate::outcome::json;
 use nonsmooth::verify::{Direction, STEPS};
 use pyo3::prelude::*;
 

@@ -2,10 +2,11 @@
 
 use super::config::Convexity;
 use super::cut::Cut;
-use super::finish::Event;
+use super::event::Event;
 use super::proposers::proposal::Proposal;
 use super::proposers::proposer::{Comparison, Trial};
 use super::run::Run;
+use super::state::NOISE_MARGIN;
 use crate::report::StepKind;
 use crate::{Accuracy, Answer, Evaluation, Vector};
 
@@ -13,8 +14,6 @@ use crate::{Accuracy, Answer, Evaluation, Vector};
 const NOISE_STEP: f64 = 1e-4;
 /// A change of Θ is noise if it exceeds this many times ‖d‖ times the largest ‖g‖*, promised errors and rounding aside.
 const STEEPNESS_MARGIN: f64 = 4.0;
-/// Promised errors and rounding explain a change of Θ, or a cut above a convex Θ, up to this many times their sum; more is noise.
-pub(super) const NOISE_MARGIN: f64 = 8.0;
 /// Cuts in the bundle beyond the number of variables, unless `bundle_size` is set.
 const EXTRA_CUTS: usize = 15;
 /// Largest number of cuts, unless `bundle_size` is set.

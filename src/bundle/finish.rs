@@ -1,5 +1,6 @@
 //! Records, observers, and the report at the end.
 
+use super::event::Event;
 use super::proposers::proposal::Proposal;
 use super::run::Run;
 use crate::Accuracy;
@@ -8,18 +9,6 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 /// A decrease of Θ beyond this many times |Θ(x⁰)| + u₀·(first step)² ends the run as unbounded below.
 const UNBOUNDED_DECREASE: f64 = 1e12;
-
-/// What became of an evaluation.
-#[derive(Debug)]
-pub(super) struct Event {
-    pub kind: StepKind,
-    pub value: Option<f64>,
-    pub failure: Option<String>,
-    /// Whether a Jacobian was returned, or the reason why it could not be had; none if neither was reported.
-    pub linearized: Option<Result<(), String>>,
-    /// Work that the evaluation took.
-    pub work: usize,
-}
 
 impl Run<'_, '_> {
     pub(super) fn record(&mut self, proposal: &Proposal, accuracy: Accuracy, event: Event) {

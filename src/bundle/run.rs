@@ -4,7 +4,7 @@ use super::builder::BundleTrust;
 use super::composite::{Composite, Proof};
 use super::config::AccuracyPolicy;
 use super::cut::Cut;
-use super::finish::Event;
+use super::event::Event;
 use super::oracle::{Oracle, Outcome, evaluate};
 use super::proposers::cuts::{self, model::Model};
 use super::proposers::list::Proposers;

@@ -14,10 +14,10 @@
 //! values near x̂. A run that has not gone anywhere has seen no variation: nothing is small yet.
 
 use super::config::BundleTrustConfig;
-use super::cut::Spread;
+use super::kept_cuts::Spread;
 use super::proposers::aggregate::aggregate_sizes;
 use super::proposers::proposal::Proposal;
-use super::state::State;
+use super::state::{Lengths, OutputScales, State};
 use crate::linalg::upper_median;
 use crate::qp::kernels::{dot_terms, two_dot_terms};
 use crate::{Polyhedron, Vector};
@@ -35,24 +35,6 @@ const MAX_VALUE_SHARE: f64 = 10.0;
 /// Where values carry a shift, the variation alone tells the scale, and only this share of it counts: without a shift the values
 /// near a minimum are that much smaller than the terms of their linearizations.
 const SHIFTED_SHARE: f64 = 0.02;
-
-/// How large the variables are at a center.
-#[derive(Debug)]
-pub(crate) struct Lengths {
-    size: Vector,
-    reach: Vector,
-    /// ‖size‖².
-    squared: f64,
-}
-
-/// What the outputs c of a composite Θ = h(c) tell about its scale at a center.
-#[derive(Debug, Clone)]
-pub(crate) struct OutputScales {
-    /// Σ_i |w_i| |G_ik| for every variable k: the terms that cancel in Gᵀw.
-    pub slopes: Vector,
-    /// The larger of h(c ± |G| reach), minus h(c); 0 where h gives no such number.
-    pub within_reach: f64,
-}
 
 impl State {
     /// How far each variable lies from zero or from its start, whichever is more.

@@ -3,7 +3,8 @@
 use super::builder::BundleTrust;
 use super::composite::Composite;
 use super::config::{AccuracyPolicy, BundleTrustConfig};
-use super::cut::{Bundle, Cut};
+use super::cut::Cut;
+use super::kept_cuts::Bundle;
 use super::norm::ScaledNorm;
 use super::oracle::{Oracle, Outcome, WarmStarted, evaluate};
 use super::proposers::list::Proposers;

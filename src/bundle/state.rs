@@ -1,12 +1,32 @@
 //! Everything a run carries from step to step.
 
-use super::cut::Bundle;
+use super::kept_cuts::Bundle;
 use super::norm::ScaledNorm;
-use super::scales::{Lengths, OutputScales};
 use crate::report::{Counts, IterationRecord};
 use crate::{BundleTrustConfig, Vector};
 use std::cell::RefCell;
 use std::rc::Rc;
+
+/// Promised errors and rounding explain a change of Θ, or a cut above a convex Θ, up to this many times their sum; more is noise.
+pub(crate) const NOISE_MARGIN: f64 = 8.0;
+
+/// How large the variables are at a center.
+#[derive(Debug)]
+pub(crate) struct Lengths {
+    pub size: Vector,
+    pub reach: Vector,
+    /// ‖size‖².
+    pub squared: f64,
+}
+
+/// What the outputs c of a composite Θ = h(c) tell about its scale at a center.
+#[derive(Debug, Clone)]
+pub(crate) struct OutputScales {
+    /// Σ_i |w_i| |G_ik| for every variable k: the terms that cancel in Gᵀw.
+    pub slopes: Vector,
+    /// The larger of h(c ± |G| reach), minus h(c); 0 where h gives no such number.
+    pub within_reach: f64,
+}
 
 /// State of a run between two steps. The weight is u = 1/t of the trust parameter t.
 #[derive(Debug, Clone)]

@@ -3,13 +3,15 @@
 mod certificate;
 mod composite_proof;
 mod observer;
+mod proof_check;
 mod record;
 mod stop;
 mod termination;
 
 pub use certificate::{Certificate, CertificateCheck};
-pub use composite_proof::{CompositeProof, ProofCheck};
+pub use composite_proof::CompositeProof;
 pub use observer::{Observer, TablePrinter};
+pub use proof_check::ProofCheck;
 pub use record::{Counts, IterationRecord, Origin, StepKind, TrialCounts};
 pub use stop::StopRule;
 pub use termination::Termination;

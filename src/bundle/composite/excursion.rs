@@ -9,7 +9,9 @@
 //! but active, the neighbouring piece may lead lower. The excursion may rise above the center. It ends when a trial point is
 //! serious, when the model promises no value below the center any more, or after a few evaluations.
 
-use super::{Base, Composite, Proof};
+use super::base::Base;
+use super::proof::Proof;
+use super::state::{Composite, Excursion, FACTOR};
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::Trial;
 use crate::bundle::run::Run;
@@ -29,25 +31,6 @@ const PESSIMISM: f64 = 2.5;
 
 /// A last step of the model is worth its evaluation if it promises this share of a small decrease.
 const WORTH_A_STEP: f64 = 0.1;
-
-/// A run away from a stationary center.
-#[derive(Debug)]
-pub(crate) struct Excursion {
-    proof: Box<Proof>,
-    /// Whether the pending step is the model's own last step, before the closing step.
-    last_step: bool,
-    /// Where the model of the excursion is built; none before the first evaluation.
-    base: Option<Base>,
-    weight: f64,
-    /// Evaluations left.
-    left: usize,
-}
-
-impl Excursion {
-    pub(super) fn give_up(&mut self) {
-        self.left = 0;
-    }
-}
 
 impl Run<'_, '_> {
     /// Ends the run with a proof, unless the model's last step is worth its evaluation or constraints next to the point are to be closed
@@ -162,9 +145,9 @@ impl Run<'_, '_> {
             composite.excursion = None;
             self.rebase(point, value, linearization);
         } else if excursion.base.as_ref().is_some_and(|base| value >= base.value) {
-            excursion.weight *= super::FACTOR;
+            excursion.weight *= FACTOR;
         } else {
-            excursion.weight /= super::FACTOR;
+            excursion.weight /= FACTOR;
             excursion.base = linearization.map(|linearization| Base { point: point.clone(), value, linearization });
         }
     }

@@ -8,7 +8,7 @@
 //! of them serious and none of them worth its evaluation, so that the model falls silent at once. The evaluations that the cuts
 //! then ask for tell, at no cost, when the outputs follow their linearization again.
 
-use super::Base;
+use super::base::Base;
 use crate::Vector;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;

@@ -1,12 +1,13 @@
 //! What the composite model learns from an evaluation.
 
+use super::base::Base;
 use super::kinks::Seen;
-use super::{Base, Composite, FACTOR};
+use super::state::{Composite, FACTOR};
 use crate::Vector;
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::Trial;
 use crate::bundle::run::Run;
-use crate::bundle::scales::OutputScales;
+use crate::bundle::state::OutputScales;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::Origin;

@@ -1,6 +1,7 @@
 //! The proof that a point is stationary, as the certificate of a run.
 
-use super::{Base, CompositeStep};
+use super::base::Base;
+use super::model::{CompositeStep, OuterCut};
 use crate::Polyhedron;
 use crate::bundle::cut::Cut;
 use crate::bundle::proposers::proposal::Proposal;
@@ -22,7 +23,7 @@ impl Proof {
     /// are computed from these cuts, as a later check computes them.
     pub(crate) fn certificate(&self, of_proposal: Certificate, set: &Polyhedron) -> Certificate {
         let Base { point, value, linearization } = &self.base;
-        let cut = |(index, cut): (usize, &super::OuterCut)| Cut {
+        let cut = |(index, cut): (usize, &OuterCut)| Cut {
             id: index as u64 + 1,
             point: point.clone(),
             radius: 0.0,

@@ -1,7 +1,9 @@
 //! Steps of the composite model: from a base, and on from a rejected trial point.
 
+use super::base::Base;
 use super::model::{CompositeModel, CompositeStep};
-use super::{Base, FACTOR, MAX_WEIGHTS, Proof};
+use super::proof::Proof;
+use super::state::FACTOR;
 use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::run::Run;
@@ -11,6 +13,8 @@ use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 
+/// Weights tried, upwards and downwards, for one trial point.
+pub(super) const MAX_WEIGHTS: usize = 20;
 /// Longest correction from a rejected trial point, in lengths of the rejected step.
 const CONTRACTION: f64 = 0.5;
 /// Subproblems solved in turn so that the weights of the outputs and the curvature formed with them fit together.

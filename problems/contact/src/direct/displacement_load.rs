@@ -4,8 +4,8 @@
 //! l̂ = l_c − K_ci K_ii⁻¹ l_i,   u_c = C (f̂ ∓ Bᵀλ) + N a   ⇒   l·du = l̂·du_c = Σ_bodies ∓ (C l̂)·Bᵀdλ + (Nᵀ l̂)·da
 //! ```
 
+use crate::direct::compliant_body::CompliantBody;
 use crate::direct::condensation::CondensationPattern;
-use crate::direct::solver::DirectState;
 use crate::linear::dense::multiply;
 use crate::linear::vector::dot;
 use faer::Mat;
@@ -22,11 +22,10 @@ pub(super) struct CondensedLoad {
 }
 
 impl CondensedLoad {
-    /// The load on a body of a state, from three entries per node.
-    pub(super) fn new(state: &DirectState, body: usize, pattern: &CondensationPattern, load: &[f64]) -> Self {
+    /// The load on a body, from three entries per node.
+    pub(super) fn new(body: &CompliantBody, pattern: &CondensationPattern, load: &[f64]) -> Self {
         let free = load.iter().zip(pattern.held());
         let full: Vec<f64> = free.map(|(load, held)| if *held { 0.0 } else { *load }).collect();
-        let body = &state.contact.bodies[body];
         let column = Mat::from_fn(full.len(), 1, |dof, _| full[dof]);
         let condensed = body.condensed.condense_loads(column, pattern.held());
         let contact = condensed.col_as_slice(0);

@@ -312,9 +312,9 @@ impl ContactSolver for DirectSolver {
 impl DirectSolver {
     /// ∂J/∂u of all bodies as loads on them.
     fn condensed_loads(&self, state: &DirectState, displacements: &[f64]) -> Vec<CondensedLoad> {
-        let patterns = std::iter::once(&self.lower).chain(&self.upper).enumerate();
+        let bodies = state.contact.bodies.iter().zip(std::iter::once(&self.lower).chain(&self.upper));
         let loads = displacements.chunks_exact(3 * self.problem.grid.node_count());
-        patterns.zip(loads).map(|((body, pattern), load)| CondensedLoad::new(state, body, pattern, load)).collect()
+        bodies.zip(loads).map(|((body, pattern), load)| CondensedLoad::new(body, pattern, load)).collect()
     }
 
     /// Element sums over the lower body, per contact node: displacements u, their adjoint p, packed multipliers η.

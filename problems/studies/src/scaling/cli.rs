@@ -2,7 +2,7 @@
 
 use crate::scaling::cases::{Case, Extent, SceneName, Variant};
 use crate::scaling::model::{self, Network, Options};
-use crate::scaling::rows::Report;
+use crate::scaling::report::Report;
 use crate::scaling::{measure, table};
 use clap::Parser;
 use problems::commands::{Failure, arguments, finish, json, notice};

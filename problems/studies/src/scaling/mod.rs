@@ -14,6 +14,7 @@ mod growth;
 mod measure;
 mod memory;
 mod model;
+mod report;
 mod rows;
 mod table;
 
@@ -22,4 +23,5 @@ pub use cli::{Arguments, run};
 pub use growth::{CountGrowth, Growth};
 pub use memory::peak as peak_memory;
 pub use model::{Machine, ModelReport, Network, Prediction, Run};
-pub use rows::{Adjoint, Report, Row, Sample, Solve, Start};
+pub use report::Report;
+pub use rows::{Adjoint, Row, Sample, Solve, Start};

@@ -1,7 +1,6 @@
-//! What is measured of one case with one solver, and all rows of one run: keys of the JSON output.
+//! What is measured of one case with one solver: keys of the JSON output.
 
 use crate::scaling::cases::{Case, SceneName, Variant};
-use crate::scaling::growth::Growth;
 use contact::equilibrium::{StageSeconds, Work};
 use serde::Serialize;
 
@@ -109,27 +108,5 @@ impl Row {
     pub fn solve(&self, start: Start, tolerance: f64) -> Option<&Solve> {
         let timed = std::iter::once(&self.cold).chain(&self.warm).map(|sample| &sample.state);
         timed.chain(&self.others).find(|solve| solve.start == start && solve.tolerance == tolerance)
-    }
-}
-
-/// Everything measured in one run.
-#[derive(Debug, Clone, Serialize)]
-pub struct Report {
-    /// Threads that the machine runs at once.
-    pub machine_threads: usize,
-    /// One entry per case and variant.
-    pub rows: Vec<Row>,
-    /// Growth at fixed H/h, per scene and variant.
-    pub growth: Vec<Growth>,
-    /// Cases that could not be measured, in words.
-    pub failures: Vec<String>,
-}
-
-impl Report {
-    /// A report over rows.
-    pub fn new(rows: Vec<Row>, failures: Vec<String>) -> Self {
-        let machine_threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let growth = Growth::of(&rows);
-        Self { machine_threads, rows, growth, failures }
     }
 }

@@ -3,7 +3,8 @@
 use crate::markdown::{or_dash, seconds as short, section};
 use crate::scaling::cases::{Variant, word};
 use crate::scaling::measure::{COLD, TIMED};
-use crate::scaling::rows::{Report, Row, Start};
+use crate::scaling::report::Report;
+use crate::scaling::rows::{Row, Start};
 use contact::equilibrium::StageSeconds;
 
 /// One line for the terminal.

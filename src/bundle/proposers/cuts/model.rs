@@ -9,10 +9,9 @@
 //! References: \[SchrammZowe1992\] (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
 
 use crate::Vector;
-use crate::bundle::acceptance::NOISE_MARGIN;
 use crate::bundle::config::{BundleTrustConfig, Convexity};
 use crate::bundle::proposers::subproblem::Cuts;
-use crate::bundle::state::State;
+use crate::bundle::state::{NOISE_MARGIN, State};
 use crate::linalg::upper_median;
 use crate::qp::Gram;
 

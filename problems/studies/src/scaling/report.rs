@@ -1,0 +1,27 @@
+//! Everything measured in one run, as its JSON output.
+
+use crate::scaling::growth::Growth;
+use crate::scaling::rows::Row;
+use serde::Serialize;
+
+/// Everything measured in one run.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report {
+    /// Threads that the machine runs at once.
+    pub machine_threads: usize,
+    /// One entry per case and variant.
+    pub rows: Vec<Row>,
+    /// Growth at fixed H/h, per scene and variant.
+    pub growth: Vec<Growth>,
+    /// Cases that could not be measured, in words.
+    pub failures: Vec<String>,
+}
+
+impl Report {
+    /// A report over rows.
+    pub fn new(rows: Vec<Row>, failures: Vec<String>) -> Self {
+        let machine_threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let growth = Growth::of(&rows);
+        Self { machine_threads, rows, growth, failures }
+    }
+}

@@ -1,0 +1,12 @@
+//! The point at which the composite model is built.
+
+use crate::Vector;
+use crate::composite::Linearization;
+
+/// Where the model is built.
+#[derive(Debug, Clone)]
+pub(crate) struct Base {
+    pub point: Vector,
+    pub value: f64,
+    pub linearization: Linearization,
+}
