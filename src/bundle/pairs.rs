@@ -10,6 +10,7 @@
 use super::cut::Cut;
 use super::norm::ScaledNorm;
 use crate::qp::kernels::{dot, pair_sums};
+use std::borrow::Cow;
 
 /// The tables; cuts are named by their position in the bundle.
 #[derive(Debug, Clone, Default)]
@@ -47,9 +48,10 @@ impl Pairs {
     pub(crate) fn push(&mut self, cuts: &[Cut], norm: &ScaledNorm) {
         let Some(new) = cuts.last() else { return };
         let slot = self.free.pop().unwrap_or_else(|| self.add_slot());
-        let raised = norm.raise_index(&new.subgradient);
         let (slope, point) = (new.subgradient.as_slice(), new.point.as_slice());
         let euclidean = norm.is_euclidean();
+        let raised =
+            if euclidean { Cow::Borrowed(&new.subgradient) } else { Cow::Owned(norm.raise_index(&new.subgradient)) };
         for (cut, &other) in cuts.iter().zip(&self.slots) {
             let own = (cut.subgradient.as_slice(), cut.point.as_slice());
             let [ahead, behind, product, squared] = pair_sums(own.0, own.1, slope, point, raised.as_slice());

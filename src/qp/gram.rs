@@ -11,7 +11,7 @@
 //! Reference: \[Kiwiel1986\].
 
 use super::certificate::LENGTH_SHARE;
-use super::kernels::{add_all_scaled, dot, dot_terms, weighted_squares};
+use super::kernels::{add_all_scaled, dot, dot_terms, dots, weighted_squares};
 use super::problem::{EpigraphQp, QpMethod, QpSolution};
 use super::triangular::Triangular;
 use crate::Vector;
@@ -271,8 +271,9 @@ impl<'a> Dual<'a> {
 
     /// The values of all cuts at d.
     fn values(&self, step: &Vector) -> Vec<f64> {
-        let cuts = self.qp.slopes.iter().zip(self.qp.offsets);
-        cuts.map(|(slope, offset)| dot(slope.as_slice(), step.as_slice()) - offset).collect()
+        let mut values = dots(self.qp.slopes.iter().map(Vector::as_slice), step.as_slice());
+        values.iter_mut().zip(self.qp.offsets).for_each(|(value, offset)| *value -= offset);
+        values
     }
 
     /// ‖d‖ in the norm of W.

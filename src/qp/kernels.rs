@@ -23,6 +23,39 @@ pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
     sum_of([x, y], |[x, y]| x * y)
 }
 
+/// The products of y with some vectors, two at a time, each rounded as by [`dot`].
+pub(super) fn dots<'x>(vectors: impl ExactSizeIterator<Item = &'x [f64]>, y: &[f64]) -> Vec<f64> {
+    let mut products = Vec::with_capacity(vectors.len());
+    let (mut vectors, (blocks, rest)) = (vectors, y.as_chunks::<8>());
+    while let Some(first) = vectors.next() {
+        let Some(second) = vectors.next() else {
+            products.push(dot(first, y));
+            break;
+        };
+        let parts = [first, second].map(|vector| vector.as_chunks::<8>());
+        let sums = two_dot_lanes([parts[0].0, parts[1].0, blocks]);
+        for ((_, tail), sums) in parts.iter().zip(sums) {
+            products.push(total(tail.iter().zip(rest).map(|(x, y)| x * y).sum(), sums));
+        }
+    }
+    products
+}
+
+/// The sums of two products over whole blocks; not inlined for the reason given at [`pair_lanes`].
+#[inline(never)]
+fn two_dot_lanes([x, z, y]: [&[[f64; 8]]; 3]) -> [[f64; 8]; 2] {
+    let (mut first, mut second) = ([0.0; 8], [0.0; 8]);
+    for ((x, z), y) in x.iter().zip(z).zip(y) {
+        for k in 0..8 {
+            first[k] += x[k] * y[k];
+        }
+        for k in 0..8 {
+            second[k] += z[k] * y[k];
+        }
+    }
+    [first, second]
+}
+
 /// Σ g_i (x_i − y_i).
 pub(crate) fn difference_dot(g: &[f64], x: &[f64], y: &[f64]) -> f64 {
     sum_of([g, x, y], |[g, x, y]| g * (x - y))
@@ -155,6 +188,31 @@ impl Rotation {
     pub(super) fn apply_to_slices(self, x: &mut [f64], y: &mut [f64]) {
         for (x, y) in x.iter_mut().zip(y) {
             self.apply(x, y);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers whose sums depend on their order.
+    fn vector(length: usize, seed: usize) -> Vec<f64> {
+        (0..length).map(|i| ((17 * i + 31 * seed) as f64).sin() * 10_f64.powi(((i + seed) % 7) as i32)).collect()
+    }
+
+    #[test]
+    fn several_vectors_at_once_are_rounded_as_one_after_the_other() {
+        for (length, count) in [(0, 3), (1, 1), (7, 4), (8, 5), (29, 6), (64, 9)] {
+            let vectors: Vec<Vec<f64>> = (0..count).map(|seed| vector(length, seed)).collect();
+            let y = vector(length, count);
+            let each: Vec<f64> = vectors.iter().map(|x| dot(x, &y)).collect();
+            assert_eq!(dots(vectors.iter().map(Vec::as_slice), &y), each);
+            let terms: Vec<(f64, &[f64])> = vectors.iter().map(|x| (x.len() as f64 / 3.0, x.as_slice())).collect();
+            let (mut together, mut one_by_one) = (y.clone(), y);
+            add_all_scaled(&mut together, &terms);
+            terms.iter().for_each(|(factor, x)| add_scaled(&mut one_by_one, *factor, x));
+            assert_eq!(together, one_by_one);
         }
     }
 }
