@@ -14,6 +14,18 @@ pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), Inp
     }
 }
 
+impl InputError {
+    /// Refuses a vector with more or fewer entries than expected, or with one that is not finite; `what` names it in the message. The
+    /// engine never asks a problem at such a point; other callers may.
+    ///
+    /// # Errors
+    /// [`InputError::Dimension`], [`InputError::NotFinite`].
+    pub fn check_vector(what: &'static str, expected: usize, vector: &Vector) -> Result<(), Self> {
+        check_size(what, expected, vector.len())?;
+        check_finite(what, vector.as_slice())
+    }
+}
+
 /// Refuses sides of which one is NaN or no number lies between.
 pub(crate) fn check_intervals(what: &'static str, lower: &Vector, upper: &Vector) -> Result<(), InputError> {
     for (index, (&lower, &upper)) in lower.iter().zip(upper.iter()).enumerate() {

@@ -13,6 +13,6 @@ pub(crate) fn upper_median(values: &mut [f64]) -> Option<f64> {
 }
 
 /// Index of the first entry that is not finite, if there is one.
-pub fn first_non_finite(values: &[f64]) -> Option<usize> {
+pub(crate) fn first_non_finite(values: &[f64]) -> Option<usize> {
     values.iter().position(|value| !value.is_finite())
 }

@@ -5,7 +5,6 @@
 //! centred(h) = |(Θ(x + h d) − Θ(x − h d))/(2h) − ⟨ξ, d⟩| / |⟨ξ, d⟩|      best relative derivative error
 //! ```
 
-use crate::linalg::first_non_finite;
 use crate::{InputError, NonsmoothObjective, OracleError, Request, Vector};
 use std::fmt;
 use thiserror::Error;
@@ -120,12 +119,7 @@ fn check_input(dimension: usize, x: &Vector, direction: &Direction, steps: &[f64
         Direction::Seeded(seed) => seeded_direction(dimension, *seed),
     };
     for (what, vector) in [("point", x), ("direction", &direction)] {
-        if vector.len() != dimension {
-            return Err(InputError::Dimension { what, expected: dimension, found: vector.len() });
-        }
-        if let Some(index) = first_non_finite(vector.as_slice()) {
-            return Err(InputError::NotFinite { what, index, value: vector[index] });
-        }
+        InputError::check_vector(what, dimension, vector)?;
     }
     match steps.iter().find(|step| !(**step > 0.0 && step.is_finite())) {
         Some(step) => Err(InputError::OutOfRange { setting: "step", value: step.to_string(), allowed: "> 0, finite" }),

@@ -11,11 +11,13 @@ use super::proposers::list::Proposers;
 use super::proposers::proposal::FEASIBILITY;
 use super::run::Run;
 use super::state::State;
-use crate::checks::{check_finite, check_size};
+use crate::checks::check_size;
 use crate::composite::{Linearization, OuterFunction};
 use crate::qp::{EpigraphQpSolver, QpError, is_only_point, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
-use crate::{Accuracy, Evaluation, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector};
+use crate::{
+    Accuracy, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector,
+};
 use std::cell::RefCell;
 use std::ops::ControlFlow::Break;
 use std::time::Instant;
@@ -102,9 +104,8 @@ impl<'o> BundleTrust<'o> {
 
 /// Checks sizes, and moves the start into the admissible set.
 fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Vector, OptimizeError> {
-    check_size("start point", dimension, x0.len())?;
+    InputError::check_vector("start point", dimension, &x0)?;
     check_size("constraints", dimension, set.dimension())?;
-    check_finite("start point", x0.as_slice())?;
     let before = set.violation(&x0);
     if before <= FEASIBILITY {
         return Ok(set.clamp_to_box(&x0));

@@ -151,8 +151,7 @@ impl EpigraphQp<'_> {
         check_size("row_lower", p, self.row_lower.len())?;
         check_size("row_upper", p, self.row_upper.len())?;
         for slope in self.slopes {
-            check_size("slope", n, slope.len())?;
-            check_finite("slope", slope.as_slice())?;
+            InputError::check_vector("slope", n, slope)?;
         }
         check_finite("offsets", self.offsets)?;
         check_finite("constraint rows", self.rows.as_slice())?;

@@ -5,8 +5,7 @@
 //! ```
 //! In d = y − x this is the QP with the single cut 0 ≤ v and H = I.
 
-use crate::checks::{check_finite, check_size};
-use crate::{Polyhedron, Vector};
+use crate::{InputError, Polyhedron, Vector};
 
 use super::problem::{EpigraphQp, Metric, QpError};
 use super::solver::EpigraphQpSolver;
@@ -25,8 +24,7 @@ use super::solver::EpigraphQpSolver;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
-    check_size("point", set.dimension(), x.len())?;
-    check_finite("point", x.as_slice())?;
+    InputError::check_vector("point", set.dimension(), x)?;
     let clamped = set.clamp_to_box(x);
     if clamped == *x && set.violation(x) == 0.0 {
         return Ok(clamped);

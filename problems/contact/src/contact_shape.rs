@@ -223,14 +223,7 @@ impl<S: ContactSolver> ContactShape<S> {
     }
 
     fn check_dimension(&self, control: &Vector) -> Result<(), OracleError> {
-        let (expected, found) = (self.control_dimension(), control.len());
-        if expected != found {
-            return Err(InputError::Dimension { what: "control", expected, found }.into());
-        }
-        match nonsmooth::linalg::first_non_finite(control.as_slice()) {
-            Some(index) => Err(InputError::NotFinite { what: "control", index, value: control[index] }.into()),
-            None => Ok(()),
-        }
+        Ok(InputError::check_vector("control", self.control_dimension(), control)?)
     }
 }
 

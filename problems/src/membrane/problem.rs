@@ -95,13 +95,7 @@ impl MembraneControl {
     /// # Errors
     /// [`InputError`] on a wrong number of controls and on entries that are not finite.
     pub fn load(&self, control: &Vector) -> Result<Vec<f64>, InputError> {
-        let expected = self.patches * self.patches;
-        if control.len() != expected {
-            return Err(InputError::Dimension { what: "control", expected, found: control.len() });
-        }
-        if let Some(index) = control.iter().position(|value| !value.is_finite()) {
-            return Err(InputError::NotFinite { what: "control", index, value: control[index] });
-        }
+        InputError::check_vector("control", self.patches * self.patches, control)?;
         let area = self.grid.width() * self.grid.width();
         Ok(self.constant.iter().zip(&self.patch_of_node).map(|(b, &patch)| b + area * control[patch]).collect())
     }

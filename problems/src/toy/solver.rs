@@ -64,12 +64,7 @@ impl ToyContact {
     /// # Errors
     /// [`InputError`] on another number of controls, NaN and infinity.
     pub fn support_heights(&self, control: &Vector) -> Result<[f64; 2], InputError> {
-        if control.len() != 2 {
-            return Err(InputError::Dimension { what: "control", expected: 2, found: control.len() });
-        }
-        if let Some(index) = control.iter().position(|value| !value.is_finite()) {
-            return Err(InputError::NotFinite { what: "control", index, value: control[index] });
-        }
+        InputError::check_vector("control", 2, control)?;
         Ok(SURFACE.map(|row| row[0] * control[0] + row[1] * control[1]))
     }
 
