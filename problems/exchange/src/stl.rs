@@ -4,6 +4,9 @@ use crate::error::ExchangeError;
 use crate::triangulation::Triangle;
 use stl_io::{Normal, Vertex, write_stl};
 
+/// What the header says, which has 80 bytes. It must not begin with `solid`, as text files do.
+const HEADER: &[u8] = b"lengths in mm; written by nonsmooth";
+
 /// The bytes of a binary STL file; normals follow from the order of the corners.
 ///
 /// # Errors
@@ -14,6 +17,7 @@ pub fn stl(triangles: &[Triangle]) -> Result<Vec<u8>, ExchangeError> {
         .iter()
         .map(|corners| stl_io::Triangle { normal: Normal::new(normal(corners)), vertices: corners.map(Vertex::new) });
     write_stl(&mut bytes, triangles).map_err(|error| ExchangeError::Stl(error.to_string()))?;
+    bytes[..HEADER.len()].copy_from_slice(HEADER);
     Ok(bytes)
 }
 

@@ -25,6 +25,7 @@ mod recheck;
 mod register;
 mod report;
 mod run_kind;
+mod scene_difference;
 mod shell_files;
 mod study;
 mod verify;

@@ -7,13 +7,12 @@ use crate::commands::folder::{SCENE, file_error, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::{MeshStage, stages};
 use crate::commands::run_kind::RunKind;
+use crate::commands::scene_difference::{differences, is_below};
 use contact::cost::{Measure, PressureCost};
 use contact::equilibrium::ContactProblem;
 use nonsmooth::{Certificate, CertificateCheck, Journal, ProofCheck};
 use scene_file::{Case, SceneFile, read_text};
 use serde::Serialize;
-use serde_json::Value;
-use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
@@ -23,6 +22,9 @@ const MAX_ROUNDING: f64 = 1e-8;
 
 /// Largest certificate file, bytes.
 const LARGEST_FILE: u64 = 256 << 20;
+
+/// Fields on which a certificate does not depend.
+const LEFT_OUT: [&str; 6] = ["name", "mesh.subdomains", "solver", "optimizer", "output", "surface.start"];
 
 /// A number of the certificate, and the same number computed again.
 #[derive(Debug, Serialize)]
@@ -114,30 +116,11 @@ fn own_scene(here: &SceneFile, folder: &Path) -> Result<Option<LoadedScene>, Fai
         return Ok(None);
     }
     let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
-    let value = |scene: &SceneFile| serde_json::to_value(scene).map_err(Failure::computation);
-    if let Some((field, there, here)) = difference("", &value(&own.file)?, &value(here)?) {
-        let words = format!("{field} is {there} in the run and {here} here; {} is its scene", path.display());
-        return Err(Failure::Computation(format!(
-            "{}: the certificate is not one of this scene: {words}",
-            folder.display()
-        )));
+    if let Some(difference) = differences(&own.file, here, |field| !is_below(field, &LEFT_OUT))?.first() {
+        let words = format!("the certificate is not one of this scene: {difference}; {} is its scene", path.display());
+        return Err(Failure::Computation(format!("{}: {words}", folder.display())));
     }
     Ok(Some(own))
-}
-
-/// The first field in which two scenes differ, with its values; what a certificate does not depend on, and names of files, are left out.
-fn difference(field: &str, there: &Value, here: &Value) -> Option<(String, String, String)> {
-    const LEFT_OUT: [&str; 7] = ["name", "mesh.subdomains", "solver", "optimizer", "output", "surface.start", "file"];
-    if LEFT_OUT.contains(&field) || field.ends_with(".file") {
-        return None;
-    }
-    if let (Value::Object(first), Value::Object(second)) = (there, here) {
-        let keys: BTreeSet<&String> = first.keys().chain(second.keys()).collect();
-        let of = |fields: &serde_json::Map<String, Value>, key: &str| fields.get(key).cloned().unwrap_or_default();
-        let below = |key: &str| if field.is_empty() { key.to_owned() } else { format!("{field}.{key}") };
-        return keys.into_iter().find_map(|key| difference(&below(key), &of(first, key), &of(second, key)));
-    }
-    (there != here).then(|| (field.to_owned(), there.to_string(), here.to_string()))
 }
 
 /// The last mesh that the run in a folder has begun.

@@ -191,7 +191,7 @@ fn shapes_come_from_runs_by_their_optimum_or_any_evaluation() {
     refused(&["--evaluation", "0"], &["--evaluation = 0", "1 to 6"]);
     refused(
         &["--control-points", "5x5"],
-        &["--run", "another surface: surface.control_points is [6, 6] there and [5, 5]", "scene.toml"],
+        &["--run", "another surface: surface.control_points is [6,6] in the run and [5,5] here", "scene.toml export"],
     );
     refused(&["--controls", text(&file)], &["--controls is allowed without --run"]);
     // A journal that was tampered with: points without their last entry.
@@ -199,7 +199,11 @@ fn shapes_come_from_runs_by_their_optimum_or_any_evaluation() {
     std::fs::write(run.join("journal.jsonl"), shortened(&journal)).unwrap();
     refused(&["--evaluation", "1"], &["controls of evaluation 1", "35 numbers found, 36 expected"]);
     std::fs::write(run.join("journal.jsonl"), journal).unwrap();
-    kit::refused(HERTZ, &["export", "--run", text(&run), "--out", text(&at("other"))], &["another surface: size is"]);
+    kit::refused(
+        HERTZ,
+        &["export", "--run", text(&run), "--out", text(&at("other"))],
+        &["another surface: counter_surface"],
+    );
     kit::refused(
         SIGNORINI,
         &["export", "--run", text(folder.path()), "--out", text(&at("none"))],
@@ -313,6 +317,24 @@ fn matrices_balance_the_forces_of_the_program() {
     assert!(largest < 1e-10 * state.forces.total_normal_force(), "{largest} N");
     assert_eq!(numbers("friction"), [0.3; 25]);
     assert!((numbers("areas").iter().sum::<f64>() - 100.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_friction_problem_that_is_not_that_of_the_run_says_so() {
+    let folder = scratch();
+    let run = folder.path().join("run");
+    kit::json(
+        SIGNORINI,
+        &["--mesh", "3", "--friction", "0.1", "--max-evaluations", "2", "--json", "--out", text(&run)],
+    );
+    let differences = |name: &str, options: &[&str]| {
+        let out = folder.path().join(name);
+        let command = ["export", "--run", text(&run), "--mesh", "3", "--json", "--out", text(&out)];
+        kit::json(SIGNORINI, &[&command, options].concat())["differences"].clone()
+    };
+    assert_eq!(differences("other", &["--friction-problem"])[0], "friction is 0.1 in the run and 0.3 here");
+    assert_eq!(differences("same", &["--friction-problem", "--friction", "0.1", "--subdomains", "3"]), Value::Null);
+    assert_eq!(differences("surface", &["--step"]), Value::Null);
 }
 
 #[test]

@@ -12,6 +12,7 @@ use crate::commands::export::run::KeptRun;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::{LoadedScene, Session};
+use crate::commands::scene_difference::Difference;
 use contact::equilibrium::ContactProblem;
 use nonsmooth::Vector;
 use serde::Serialize;
@@ -23,6 +24,9 @@ use std::path::Path;
 struct ExportJson {
     folder: String,
     shape: Origin,
+    /// How the friction problem differs from that of the run.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    differences: Vec<String>,
     /// Largest distance between triangles and surface, mm; null without files of triangles.
     tolerance: Option<f64>,
     files: Vec<FileJson>,
@@ -45,10 +49,12 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     if options.friction_problem {
         friction::check(&problem).map_err(|error| arguments.blame(error))?;
     }
-    let (controls, origin) = match &options.run {
-        Some(folder) => KeptRun::open(folder, &case.scene)?.shape(options.evaluation)?,
+    let run = options.run.as_ref().map(|folder| KeptRun::open(folder, loaded)).transpose()?;
+    let (controls, origin) = match &run {
+        Some(run) => run.shape(options.evaluation)?,
         None => start(&problem, loaded, arguments.controls.as_deref())?,
     };
+    let differences = run.filter(|_| options.friction_problem).map_or_else(Vec::new, |run| run.differences);
     problem.admissible.check_shape(&controls)?;
     let heights = controls::written(controls.as_slice(), problem.scene.control_points)?;
     let what = "the control heights; --controls and --start-controls take the file";
@@ -78,6 +84,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let result = ExportJson {
         folder: path.display().to_string(),
         shape: origin,
+        differences: differences.iter().map(Difference::to_string).collect(),
         tolerance: options.writes_stl().then(|| options.tolerance()),
         files: files.iter().map(describe).collect(),
     };
@@ -102,6 +109,9 @@ impl fmt::Display for ExportJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let objective = self.shape.objective.map_or_else(String::new, |value| format!(", Θ = {value:.6e}"));
         writeln!(f, "shape:       {}{objective}", self.shape.source)?;
+        for difference in &self.differences {
+            writeln!(f, "note:        another friction problem than in the run: {difference}")?;
+        }
         self.files.iter().try_for_each(|file| writeln!(f, "{:<24} {}", file.file, file.holds))
     }
 }

@@ -8,13 +8,19 @@ use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::stages::stages;
 use crate::commands::run_kind::RunKind;
+use crate::commands::scene_difference::{Difference, differences, is_below};
 use contact::error::SceneError;
-use contact::scene::Scene;
 use nonsmooth::journal::{Entry, RecordedAnswer};
 use nonsmooth::{Journal, Vector};
 use scene_file::{SceneFile, read_text};
 use std::path::{Path, PathBuf};
 
+/// The fields of a scene that make its surfaces.
+const SURFACES: [&str; 6] =
+    ["size", "surface.spline", "surface.degree", "surface.control_points", "counter_surface", "upper.top"];
+/// The fields of a scene on which the friction problem of a shape does not depend.
+const NO_FRICTION_PROBLEM: [&str; 8] =
+    ["name", "mesh.subdomains", "solver", "optimizer", "output", "surface.start", "objective", "admissible"];
 /// Largest report, bytes.
 const LARGEST_REPORT: u64 = 256 << 20;
 
@@ -26,6 +32,8 @@ pub struct KeptRun {
     kind: Kind,
     /// Control points along x₁ and x₂.
     control_points: [usize; 2],
+    /// How its scene differs from that of the command in what makes a friction problem.
+    pub differences: Vec<Difference>,
 }
 
 /// What the journals of a run are.
@@ -46,7 +54,7 @@ impl KeptRun {
     ///
     /// # Errors
     /// [`Failure::Input`] for a folder without an optimization, for a comparison, and for a run of other surfaces.
-    pub fn open(folder: &Path, scene: &Scene) -> Result<Self, Failure> {
+    pub fn open(folder: &Path, loaded: &LoadedScene) -> Result<Self, Failure> {
         let refused = |reason: String| Err(Failure::Input(format!("--run {}: {reason}", folder.display())));
         if let Some(kind) = RunKind::of(folder)?.filter(|kind| *kind != RunKind::Optimization) {
             let parts = if kind == RunKind::Study { ["row_001", "row_002"] } else { COMPARED };
@@ -60,11 +68,15 @@ impl KeptRun {
             return refused(format!("holds no optimization ({SCENE}, {START} and a journal)"));
         }
         let path = root.join(SCENE);
-        let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?.case;
-        if let Some((field, found, here)) = difference(&own.scene, scene) {
-            let hint = format!("{} is the scene of the run", path.display());
-            return refused(format!("is a run of another surface: {field} is {found} there and {here} here; {hint}"));
+        let LoadedScene { case: own, file, .. } = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
+        let of_surface = differences(&file, &loaded.file, |field| is_below(field, &SURFACES))?;
+        let another_grid =
+            || (own.scene.counter_surface != loaded.case.scene.counter_surface).then(|| "counter_surface".to_owned());
+        if let Some(difference) = of_surface.first().map(Difference::to_string).or_else(another_grid) {
+            let hint = format!("take its own scene: contact3d {} export --run …", path.display());
+            return refused(format!("is a run of another surface: {difference}; {hint}"));
         }
+        let differences = differences(&file, &loaded.file, |field| !is_below(field, &NO_FRICTION_PROBLEM))?;
         let (kind, parts) = if root == folder {
             let places = stages(&own)
                 .into_iter()
@@ -78,7 +90,7 @@ impl KeptRun {
         } else {
             (Kind::Part, vec![folder.to_owned()])
         };
-        Ok(Self { folder: folder.to_owned(), parts, kind, control_points: own.scene.control_points })
+        Ok(Self { folder: folder.to_owned(), parts, kind, control_points: own.scene.control_points, differences })
     }
 
     /// The shape of an evaluation, or the one that the run has found.
@@ -178,24 +190,4 @@ fn evaluated(journal: &Journal) -> Vec<(f64, Entry)> {
         _ => None,
     });
     known.collect()
-}
-
-/// The first part of a scene's surfaces that differs from another's: its name, and both values.
-fn difference(there: &Scene, here: &Scene) -> Option<(&'static str, String, String)> {
-    let top = |scene: &Scene| scene.upper.as_ref().map(|upper| upper.top);
-    let words = |scene: &Scene| {
-        [
-            ("size", format!("{:?}", scene.size)),
-            ("surface.spline", format!("{:?}", scene.surface)),
-            ("surface.control_points", format!("{:?}", scene.control_points)),
-            ("counter_surface", format!("{:?}", scene.counter_surface)),
-            ("upper.top", format!("{:?}", top(scene))),
-        ]
-    };
-    let mut pairs = words(there).into_iter().zip(words(here));
-    let (there, here) = pairs.find(|(there, here)| there != here)?;
-    /// Longest value that a message shows.
-    const LONGEST: usize = 80;
-    let shown = |text: String| if text.chars().count() > LONGEST { "another one".to_owned() } else { text };
-    Some((there.0, shown(there.1), shown(here.1)))
 }
