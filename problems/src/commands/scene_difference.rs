@@ -58,7 +58,6 @@ impl fmt::Display for Difference {
 
 /// Whether a field is one of those given, or lies below one of them.
 pub fn is_below(field: &str, fields: &[&str]) -> bool {
-    let lies_below =
-        |name: &&str| field.strip_prefix(*name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
-    fields.iter().any(|name| lies_below(&name))
+    let mut ends = fields.iter().filter_map(|name| field.strip_prefix(name));
+    ends.any(|end| end.is_empty() || end.starts_with('.'))
 }
