@@ -15,8 +15,7 @@ pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), Inp
 }
 
 impl InputError {
-    /// Refuses a vector with more or fewer entries than expected, or with one that is not finite; `what` names it in the message. The
-    /// engine never asks a problem at such a point; other callers may.
+    /// Refuses a vector with more or fewer entries than expected, or with one that is not finite; `what` names it in the message.
     ///
     /// # Errors
     /// [`InputError::Dimension`], [`InputError::NotFinite`].

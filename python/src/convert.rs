@@ -1,4 +1,4 @@
-//! Numbers, vectors and matrices of Python objects.
+//! From Python objects to numbers, vectors and matrices, and back: arrays and JSON.
 
 use nonsmooth::{Matrix, Vector};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArray, PyUntypedArrayMethods, ToPyArray};

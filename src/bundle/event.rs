@@ -1,4 +1,4 @@
-//! What became of an evaluation, for the record.
+//! Between an evaluation and its record.
 
 use crate::report::StepKind;
 

@@ -27,7 +27,7 @@ struct Sizes {
     spread: Cell<Option<(u64, Spread)>>,
 }
 
-/// Σ |g_k| size_k and Σ |g_k| reach_k of a cut, with the lengths of `scales.rs`.
+/// Σ |g_k| size_k and Σ |g_k| reach_k of a cut, with the lengths at a center.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Spread {
     pub size: f64,

@@ -303,7 +303,7 @@ impl Run<'_, '_> {
         self.after_evaluation()
     }
 
-    /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Rivals that fail pause, so
+    /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Proposers that fail pause, so
     /// that after repeated failures the steps of the plain cuts tell whether the oracle fails next to the center.
     fn shorten(&mut self, proposal: &Proposal, accuracy: Accuracy, error: &OracleError) -> ControlFlow<Termination> {
         let state = &mut self.state;

@@ -58,8 +58,8 @@ impl Folder {
         let held = Register::lock(path, false)?;
         let names = held.as_ref().map(Register::names).unwrap_or_default();
         if let Some(file) = register::foreign(path, &names).map_err(unwritable(path))? {
-            if held.is_none() && Register::lock(path, false)?.is_some() {
-                // Another process has begun here since the list was looked for.
+            if held.is_none() && (Register::lock(path, false)?.is_some() || !register::exists(&file)) {
+                // Another process has begun or given up here since the list was looked for.
                 return Self::create(path, bytes, overwrite);
             }
             let words = "was not written by this program; no results are put beside it, take another folder";
@@ -261,13 +261,17 @@ fn what_it_holds(path: &Path) -> String {
     }
 }
 
-/// The command that continues a run, as it is typed in a shell.
-pub fn resume_command(folder: &Path, kind: RunKind) -> String {
+/// A word as it is typed in a shell.
+pub fn quoted(word: String) -> String {
     let plain = |c: char| c.is_alphanumeric() || "/._-+,:@%".contains(c);
-    let quoted = |word: String| match word.chars().all(plain) && !word.is_empty() {
+    match word.chars().all(plain) && !word.is_empty() {
         true => word,
         false => format!("'{}'", word.replace('\'', r"'\''")),
-    };
+    }
+}
+
+/// The command that continues a run, as it is typed in a shell.
+pub fn resume_command(folder: &Path, kind: RunKind) -> String {
     let program = std::env::args().next().map_or_else(String::new, |program| quoted(program) + " ");
     format!("{program}{}--resume {}", kind.command(), quoted(folder.display().to_string()))
 }

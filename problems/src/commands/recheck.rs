@@ -5,13 +5,13 @@ use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{SCENE, file_error, json};
 use crate::commands::loaded_scene::LoadedScene;
-use crate::commands::optimize::stages::{MeshStage, stages};
+use crate::commands::optimize::stages::{MeshStage, last_begun};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{differences, is_below};
 use contact::cost::{Measure, PressureCost};
 use contact::equilibrium::ContactProblem;
-use nonsmooth::{Certificate, CertificateCheck, Journal, ProofCheck};
-use scene_file::{Case, SceneFile, read_text};
+use nonsmooth::{Certificate, CertificateCheck, ProofCheck};
+use scene_file::{SceneFile, read_text};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -69,10 +69,10 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
         return Err(Failure::Input(format!("{}: holds {}; {words}", folder.display(), kind.words())));
     }
     let certificate = read(&folder.join("certificate.json"))?;
-    let own = own_scene(&loaded.file, folder)?;
+    let own = own_scene(loaded, folder)?;
     let case = own.as_ref().map_or(&loaded.case, |own| &own.case);
     let controls = controls::read(&folder.join("controls.json"), case.scene.control_points)?;
-    let Some(MeshStage { case, .. }) = last_stage(case, folder) else {
+    let Some(MeshStage { case, .. }) = last_begun(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };
     let scene = case.scene.clone();
@@ -110,23 +110,17 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
 /// # Errors
 /// [`Failure::Computation`] if it is another one than that of the command, in more than its name, its tearing, its start, its solver,
 /// its optimizer, and its outputs.
-fn own_scene(here: &SceneFile, folder: &Path) -> Result<Option<LoadedScene>, Failure> {
+fn own_scene(here: &LoadedScene, folder: &Path) -> Result<Option<LoadedScene>, Failure> {
     let path = folder.join(SCENE);
     if !path.exists() {
         return Ok(None);
     }
     let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
-    if let Some(difference) = differences(&own.file, here, |field| !is_below(field, &LEFT_OUT))?.first() {
+    if let Some(difference) = differences(&own, here, |field| !is_below(field, &LEFT_OUT))?.first() {
         let words = format!("the certificate is not one of this scene: {difference}; {} is its scene", path.display());
         return Err(Failure::Computation(format!("{}: {words}", folder.display())));
     }
     Ok(Some(own))
-}
-
-/// The last mesh that the run in a folder has begun.
-fn last_stage(case: &Case, folder: &Path) -> Option<MeshStage> {
-    let begun = |stage: &MeshStage| stage.part.folder().is_none_or(|name| Journal::exists(folder.join(name)));
-    stages(case).into_iter().rev().find(begun)
 }
 
 fn read(file: &Path) -> Result<Certificate, Failure> {

@@ -1,7 +1,7 @@
 //! The fields in which two scenes differ.
 
 use crate::commands::failure::Failure;
-use scene_file::SceneFile;
+use crate::commands::loaded_scene::LoadedScene;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 use std::fmt;
@@ -18,14 +18,17 @@ pub struct Difference {
 /// # Errors
 /// [`Failure::Computation`] if a scene cannot be written as JSON.
 pub fn differences(
-    there: &SceneFile,
-    here: &SceneFile,
+    there: &LoadedScene,
+    here: &LoadedScene,
     counts: impl Fn(&str) -> bool,
 ) -> Result<Vec<Difference>, Failure> {
-    let value = |scene: &SceneFile| serde_json::to_value(scene).map_err(Failure::computation);
+    let value = |scene: &LoadedScene| serde_json::to_value(&scene.file).map_err(Failure::computation);
     let mut found = Vec::new();
     collect(String::new(), (value(there)?, value(here)?), &mut found);
-    found.retain(|difference| counts(&difference.field) && difference.field.rsplit('.').next() != Some("file"));
+    // The degree that a file leaves out is the default one.
+    let same_spline = there.case.scene.surface == here.case.scene.surface;
+    let is_silent = |field: &str| field.ends_with(".file") || (same_spline && field == "surface.degree");
+    found.retain(|difference| !is_silent(&difference.field) && counts(&difference.field));
     Ok(found)
 }
 
@@ -41,11 +44,26 @@ fn collect(field: String, values: (Value, Value), found: &mut Vec<Difference>) {
     }
     let of = |value: Value| if let Value::Object(fields) = value { fields } else { Map::new() };
     let (mut there, mut here) = (of(there), of(here));
+    if let (Some(one), Some(other)) = (there.get("form"), here.get("form"))
+        && one != other
+    {
+        // Their parameters cannot be compared.
+        let (there, here) = (one.clone(), other.clone());
+        found.push(Difference { field: format!("{field}.form"), there, here });
+        return;
+    }
     let keys: BTreeSet<String> = there.keys().chain(here.keys()).cloned().collect();
     for key in keys {
         let values = (there.remove(&key).unwrap_or_default(), here.remove(&key).unwrap_or_default());
         let below = if field.is_empty() { key } else { format!("{field}.{key}") };
         collect(below, values, found);
+    }
+}
+
+impl Difference {
+    /// The difference of a value that is no field of a file.
+    pub fn new(field: &str, there: impl Into<Value>, here: impl Into<Value>) -> Self {
+        Self { field: field.to_owned(), there: there.into(), here: here.into() }
     }
 }
 

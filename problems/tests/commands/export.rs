@@ -202,7 +202,7 @@ fn shapes_come_from_runs_by_their_optimum_or_any_evaluation() {
     kit::refused(
         HERTZ,
         &["export", "--run", text(&run), "--out", text(&at("other"))],
-        &["another surface: counter_surface"],
+        &["another surface: counter_surface.form"],
     );
     kit::refused(
         SIGNORINI,
@@ -334,7 +334,16 @@ fn a_friction_problem_that_is_not_that_of_the_run_says_so() {
     };
     assert_eq!(differences("other", &["--friction-problem"])[0], "friction is 0.1 in the run and 0.3 here");
     assert_eq!(differences("same", &["--friction-problem", "--friction", "0.1", "--subdomains", "3"]), Value::Null);
-    assert_eq!(differences("surface", &["--step"]), Value::Null);
+    assert_eq!(differences("surface", &["--step", "--surface", "bspline:3"]), Value::Null);
+    // The optimum of a coarse-to-fine run belongs to its last mesh.
+    let run = folder.path().join("growing");
+    kit::json(SIGNORINI, &["--continuation", "2,4", "--max-evaluations", "2", "--json", "--out", text(&run)]);
+    let mesh = |run: &Path, name: &str| {
+        let command = ["export", "--run", text(run), "--mesh", "2", "--friction-problem", "--json", "--out"];
+        kit::json(SIGNORINI, &[&command[..], &[text(&folder.path().join(name))]].concat())["differences"].clone()
+    };
+    assert_eq!(mesh(&run, "last")[0], "mesh.bricks is [4,4,4] in the run and [2,2,2] here");
+    assert_eq!(mesh(&run.join("stage_2"), "first"), Value::Null);
 }
 
 #[test]

@@ -128,6 +128,8 @@ fn a_composite_proof_is_computed_again_from_jacobian_and_pressure_measure() {
 fn the_certificate_of_growing_meshes_is_rechecked_on_the_last_one() {
     let run = Run::new("meshes", &["--continuation", "2,4", "--max-evaluations", "8"]);
     assert_eq!(result(&recheck(&run.0), 0)["agrees"], json!(true));
+    let with_the_default_degree = ["recheck", run.path(), "--surface", "bspline:3"];
+    assert_eq!(signorini3d(&with_the_default_degree).status.code(), Some(0));
 }
 
 #[test]

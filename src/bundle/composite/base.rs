@@ -1,4 +1,4 @@
-//! The point at which the composite model is built.
+//! The base of the composite model: a point with its outputs and their Jacobian.
 
 use crate::Vector;
 use crate::composite::Linearization;

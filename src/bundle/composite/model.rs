@@ -3,6 +3,7 @@
 //! ```text
 //! h(c + G d) + dᵀBd/2 + u‖d − o‖²/2,   x + d ∈ U
 //! ```
+//! B is the curvature of the outputs, u the weight, and o leads from the base x to the point that lengths are measured from.
 
 use crate::bundle::norm::{ScaledNorm, WeightedMetric};
 use crate::bundle::proposers::proposal::SubproblemError;
@@ -120,7 +121,7 @@ impl CompositeModel<'_> {
     }
 
     /// dᵀBd.
-    pub(super) fn bend(&self, step: &Vector) -> f64 {
+    fn bend(&self, step: &Vector) -> f64 {
         self.curvature.map_or(0.0, |curvature| step.dot(&(curvature * step)))
     }
 

@@ -1,4 +1,4 @@
-//! The proposers of a run.
+//! The proposers of a run: the plain cuts, which need no memory, and their rivals.
 
 use super::curved::Curved;
 use super::cuts;
@@ -8,7 +8,7 @@ use super::proposer::{Position, Proposer, Trial};
 use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::state::State;
 
-/// The rivals of the plain cuts, in the order in which they are asked.
+/// The plain cuts and their rivals, in the order in which they are asked.
 pub(crate) struct Proposers {
     rivals: Vec<Box<dyn Proposer>>,
 }

@@ -3,24 +3,24 @@
 use crate::commands::controls;
 use crate::commands::export::files::Origin;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{COMPARED, REPORT, SCENE, START};
+use crate::commands::folder::{COMPARED, REPORT, SCENE, START, quoted};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
-use crate::commands::optimize::stages::stages;
+use crate::commands::optimize::stages::{MeshStage, last_begun, stages};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{Difference, differences, is_below};
 use contact::error::SceneError;
 use nonsmooth::journal::{Entry, RecordedAnswer};
 use nonsmooth::{Journal, Vector};
-use scene_file::{SceneFile, read_text};
+use scene_file::{Case, SceneFile, read_text};
 use std::path::{Path, PathBuf};
 
 /// The fields of a scene that make its surfaces.
 const SURFACES: [&str; 6] =
     ["size", "surface.spline", "surface.degree", "surface.control_points", "counter_surface", "upper.top"];
-/// The fields of a scene on which the friction problem of a shape does not depend.
+/// The fields of a scene on which the friction problem of a shape does not depend; the mesh may be that of a stage.
 const NO_FRICTION_PROBLEM: [&str; 8] =
-    ["name", "mesh.subdomains", "solver", "optimizer", "output", "surface.start", "objective", "admissible"];
+    ["name", "mesh", "solver", "optimizer", "output", "surface.start", "objective", "admissible"];
 /// Largest report, bytes.
 const LARGEST_REPORT: u64 = 256 << 20;
 
@@ -68,15 +68,23 @@ impl KeptRun {
             return refused(format!("holds no optimization ({SCENE}, {START} and a journal)"));
         }
         let path = root.join(SCENE);
-        let LoadedScene { case: own, file, .. } = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
-        let of_surface = differences(&file, &loaded.file, |field| is_below(field, &SURFACES))?;
-        let another_grid =
-            || (own.scene.counter_surface != loaded.case.scene.counter_surface).then(|| "counter_surface".to_owned());
+        let own = LoadedScene::new(SceneFile::read(&path)?, Some(path.clone()))?;
+        let of_surface = differences(&own, loaded, |field| is_below(field, &SURFACES))?;
+        let (there, here) = (&own.case.scene, &loaded.case.scene);
+        let another_grid = || {
+            (there.counter_surface != here.counter_surface).then(|| "the heights of counter_surface differ".to_owned())
+        };
         if let Some(difference) = of_surface.first().map(Difference::to_string).or_else(another_grid) {
-            let hint = format!("take its own scene: contact3d {} export --run …", path.display());
+            let [scene, run] = [&path, folder].map(|path| quoted(path.display().to_string()));
+            let hint = format!("take its own scene: contact3d {scene} export --run {run} --out DIR2");
             return refused(format!("is a run of another surface: {difference}; {hint}"));
         }
-        let differences = differences(&file, &loaded.file, |field| !is_below(field, &NO_FRICTION_PROBLEM))?;
+        let mut differences = differences(&own, loaded, |field| !is_below(field, &NO_FRICTION_PROBLEM))?;
+        let own = own.case;
+        let mesh = mesh(&own, root, folder);
+        if mesh != loaded.case.scene.mesh {
+            differences.push(Difference::new("mesh.bricks", mesh.to_vec(), loaded.case.scene.mesh.to_vec()));
+        }
         let (kind, parts) = if root == folder {
             let places = stages(&own)
                 .into_iter()
@@ -181,6 +189,13 @@ impl KeptRun {
         let source = format!("evaluation {evaluation} of {}{words}", self.folder.display());
         Ok((self.controls(entry)?, Origin { source, evaluation: Some(evaluation), objective }))
     }
+}
+
+/// The mesh of a run, or of its part in a folder: of several meshes, the last one that was begun.
+fn mesh(case: &Case, root: &Path, folder: &Path) -> [usize; 3] {
+    let of_folder = |stage: &MeshStage| stage.part.folder().is_some_and(|name| root.join(name) == folder);
+    let stage = if root == folder { last_begun(case, root) } else { stages(case).into_iter().find(of_folder) };
+    stage.map_or(case.scene.mesh, |stage| stage.case.scene.mesh)
 }
 
 /// The evaluations of a journal whose value is known.

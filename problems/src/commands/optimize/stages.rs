@@ -1,6 +1,8 @@
 //! The runs of an optimization: one, one per growing mesh, or one per start.
 
+use nonsmooth::Journal;
 use scene_file::{Case, default_subdomains};
+use std::path::Path;
 
 /// What a run is within its optimization.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,6 +66,12 @@ pub fn stages(case: &Case) -> Vec<MeshStage> {
         MeshStage { part: Part::Mesh(bricks), case }
     };
     meshes.iter().map(stage).collect()
+}
+
+/// The last of them that the run in a folder has begun.
+pub fn last_begun(case: &Case, folder: &Path) -> Option<MeshStage> {
+    let begun = |stage: &MeshStage| stage.part.folder().is_none_or(|name| Journal::exists(folder.join(name)));
+    stages(case).into_iter().rev().find(begun)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Everything measured in one run, as its JSON output.
+//! Rows and their growth together: the JSON output.
 
 use crate::scaling::growth::Growth;
 use crate::scaling::rows::Row;
