@@ -41,7 +41,18 @@ def interruptible():
     signal.signal(signal.SIGINT, kept)
 
 
-def interrupt_after(seconds):
-    timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
-    timer.start()
-    return time.perf_counter() + seconds
+class Interrupt:
+    """Ctrl-C after some seconds, sent by another thread."""
+
+    def __init__(self, seconds):
+        self.sent = None
+        timer = threading.Timer(seconds, self.send)
+        timer.start()
+
+    def send(self):
+        self.sent = time.process_time()
+        os.kill(os.getpid(), signal.SIGINT)
+
+    def age(self):
+        """Processor seconds of this process since the signal was sent: what a loaded machine gives to others does not count."""
+        return time.process_time() - self.sent

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import nonsmooth
-from conftest import interrupt_after, l1, same_bits, without_times
+from conftest import Interrupt, l1, same_bits, without_times
 
 
 def crescent(x):
@@ -148,12 +148,12 @@ def endless(x):
 
 
 def test_keyboard_interrupt_within_half_a_second(interruptible):
-    sent = interrupt_after(0.3)
+    interrupt = Interrupt(0.3)
     # A signal that does not arrive must not hang the tests.
     options = {"max_evaluations": 10**6, "tolerance": 1e-15, "max_seconds": 10.0}
     with pytest.raises(KeyboardInterrupt) as caught:
         nonsmooth.minimize(endless, [5.0, -3.0], options=options)
-    assert time.perf_counter() - sent < 0.5
+    assert interrupt.age() < 0.5
     assert caught.value.best.fun < -2
 
 
@@ -162,12 +162,13 @@ def test_keyboard_interrupt_in_a_function_without_bytecode(collection, interrupt
     options = {"max_evaluations": 10**6, "tolerance": 1e-15, "max_restarts": 10**6}
     x0 = problem.start
     runs = 0
-    sent = interrupt_after(0.2)
+    interrupt = Interrupt(0.2)
+    end = time.perf_counter() + 10
     with pytest.raises(KeyboardInterrupt) as caught:
-        while time.perf_counter() < sent + 10:
+        while time.perf_counter() < end:
             nonsmooth.minimize(problem, x0, options=options)
             runs += 1
-    assert time.perf_counter() - sent < 0.5
+    assert interrupt.age() < 0.5
     # Between two runs it is raised by this test, within a run it carries the best point.
     assert runs > 0 or caught.value.best is not None
 
@@ -175,16 +176,16 @@ def test_keyboard_interrupt_in_a_function_without_bytecode(collection, interrupt
 def test_keyboard_interrupt_in_a_long_subproblem(interruptible):
     rng = np.random.default_rng(1)
     matrix, right = rng.normal(size=(1200, 120)), rng.normal(size=1200)
-    sent = []
+    interrupts = []
 
     def residuals(x):
-        sent.append(interrupt_after(0.2) if not sent else None)
+        interrupts.append(Interrupt(0.2) if not interrupts else None)
         return matrix @ x - right, matrix
 
     with pytest.raises(KeyboardInterrupt) as caught:
         nonsmooth.minimize_composite("l1", residuals, np.ones(120), options={"max_seconds": 30.0})
-    assert time.perf_counter() - sent[0] < 0.5
-    assert caught.value.best.nfev == len(sent) == 1
+    assert interrupts[0].age() < 0.5
+    assert caught.value.best.nfev == len(interrupts) == 1
 
 
 def test_two_runs_at_once_in_threads(collection):
