@@ -199,18 +199,21 @@ impl Run<'_, '_> {
         }
     }
 
-    /// Solves the subproblem; where this fails, larger weights are tried before the run ends.
+    /// Solves the subproblem. Where this fails, larger weights are tried before the run ends, for this one subproblem also beyond the
+    /// range of the weights: beside cuts that are 1e8 times steeper than the one of the center, its largest weight may be too small.
     pub(super) fn solve_subproblem(&mut self) -> ControlFlow<Termination, Proposal> {
         let mut last = SubproblemError::Unusable;
         for _ in 0..MAX_SUBPROBLEM_TRIALS {
-            match self.try_subproblem() {
+            let answer = self.try_subproblem();
+            let weight = self.state.weight;
+            self.state.set_weight(weight, &self.method.config);
+            match answer {
                 // What an interrupted subproblem leaves says nothing about the objective.
                 _ if interrupted() => return Break(Termination::StoppedByObserver),
                 Ok(proposal) => return Continue(proposal),
                 Err(error) => last = error,
             }
-            let weight = self.state.weight * self.method.config.weight_increase;
-            self.state.set_weight(weight, &self.method.config);
+            self.state.weight = weight * self.method.config.weight_increase;
         }
         Break(Termination::SubproblemFailed { reason: last.to_string() })
     }

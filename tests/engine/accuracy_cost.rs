@@ -5,6 +5,7 @@
 //! at most 10^−k |Θ(y)| below Θ(y): a valid cut, as inexact solves of convex inner problems give. It stops at the accuracy
 //! asked for, or as soon as the plane lies above the descent target. An answer at the point of the warm start continues
 //! there and costs the missing decades only.
+use crate::common::{median, nearby_starts};
 use nonsmooth::{
     AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Evaluation, NonsmoothObjective, OracleError, Request,
     Termination, Vector,
@@ -77,17 +78,24 @@ impl NonsmoothObjective for Decades<'_> {
     }
 }
 
-/// Cost of a whole run, its evaluations, and the true gap at its end relative to 1 + |f*|.
-fn run(problem: &Problem, accuracy: AccuracyPolicy) -> (f64, usize, f64) {
+/// Medians over starts that differ by 1e-13: cost of a whole run, its evaluations, and the true gap at its end relative to 1 + |f*|.
+fn run(problem: &Problem, accuracy: AccuracyPolicy) -> (f64, f64, f64) {
+    let runs: Vec<_> = nearby_starts(problem, 5).map(|start| run_from(problem, start, accuracy)).collect();
+    let column = |entry: fn(&(f64, f64, f64)) -> f64| median(runs.iter().map(entry).collect());
+    (column(|run| run.0), column(|run| run.1), column(|run| run.2))
+}
+
+fn run_from(problem: &Problem, start: Vector, accuracy: AccuracyPolicy) -> (f64, f64, f64) {
     let theta = Decades { problem, cost: Cell::new(0.0) };
     let config = BundleTrustConfig { accuracy, ..Default::default() };
-    let report = BundleTrust::new(config).unwrap().minimize(&theta, Vector::from_vec(problem.start.clone())).unwrap();
+    let report = BundleTrust::new(config).unwrap().minimize(&theta, start).unwrap();
     let value = problem.evaluate(report.solution.as_slice()).0;
     let gap = (value - problem.optimal_value) / (1.0 + problem.optimal_value.abs());
     // Where minimum and minimiser are zero, the last digits are lost to rounding before they are small beside what is left.
     let rounding = matches!(report.termination, Termination::NoiseLimit { estimate } if estimate < 1e-8);
     assert!(report.termination.is_stationary() || rounding, "{}: {report}", problem.name);
-    (theta.cost.get(), report.counts.evaluations, gap)
+    assert!(gap <= 1e-6, "{}: {gap:.1e} {report}", problem.name);
+    (theta.cost.get(), report.counts.evaluations as f64, gap)
 }
 
 #[test]
@@ -104,7 +112,6 @@ fn accuracy_on_demand_halves_the_cost_on_the_convex_problems() {
             "{:<18} tight {:>6} {:>4} {:.1e}  on demand {:>6} {:>4} {:.1e}",
             problem.name, tight.0, tight.1, tight.2, demand.0, demand.1, demand.2
         );
-        assert!(tight.2 <= 1e-6 && demand.2 <= 1e-6, "{}: {tight:?} {demand:?}", problem.name);
         total = (total.0 + tight.0, total.1 + demand.0);
         logs.push((demand.0 / tight.0).ln());
     }

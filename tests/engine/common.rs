@@ -1,10 +1,28 @@
 //! Small objectives and sets that several tests share.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, NonsmoothObjective, Polyhedron, Report, Vector};
+use testset::Problem;
+use testset::kit::jitters;
 
 /// A vector from its entries.
 pub fn v(entries: &[f64]) -> Vector {
     Vector::from_column_slice(entries)
+}
+
+/// Starts x₀ (1 + 1e-13 jitter), x₀ itself first: a single count hangs on the last bit, the median over them does not.
+pub fn nearby_starts(problem: &Problem, count: u64) -> impl Iterator<Item = Vector> {
+    let start = v(&problem.start);
+    (0..count).map(move |seed| {
+        let size = if seed == 0 { 0.0 } else { 1e-13 };
+        let factors = jitters(start.as_slice(), seed).map(|entry| 1.0 + size * entry);
+        Vector::from_iterator(start.len(), start.iter().zip(factors).map(|(x, factor)| x * factor))
+    })
+}
+
+/// The median of an odd number of values.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }
 
 /// Σ |x_i − target_i|.

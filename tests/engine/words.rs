@@ -1,5 +1,5 @@
 //! The last word of a run is true, whatever the start, a shift, units, a wide side, failures and huge answers.
-use crate::common::v;
+use crate::common::{median, nearby_starts, v};
 use nonsmooth::{
     Answer, BundleTrust, BundleTrustConfig, Convexity, Evaluation, FnObjective, NonsmoothObjective, OracleError,
     Polyhedron, Report, Request, Termination, Vector,
@@ -14,13 +14,18 @@ fn method(problem: &Problem) -> BundleTrust<'static> {
 
 /// Minimises a·f(x) + s from a multiple of the start.
 fn run(problem: &Problem, (start, shift, factor): (f64, f64, f64), set: Option<Polyhedron>) -> Report {
+    run_from(problem, v(&problem.start) * start, (shift, factor), set)
+}
+
+/// Minimises a·f(x) + s from a point.
+fn run_from(problem: &Problem, start: Vector, (shift, factor): (f64, f64), set: Option<Polyhedron>) -> Report {
     let theta = FnObjective::new(problem.dimension, |x: &Vector| {
         let (value, gradient) = problem.evaluate(x.as_slice());
         (factor * value + shift, Vector::from_vec(gradient) * factor)
     });
     let method = method(problem);
     let mut method = if let Some(set) = set { method.constraints(set) } else { method };
-    method.minimize(&theta, v(&problem.start) * start).unwrap()
+    method.minimize(&theta, start).unwrap()
 }
 
 /// (value − a f* − s)/a relative to 1 + |f*|.
@@ -32,20 +37,29 @@ fn convex() -> Vec<Problem> {
     testset::all().into_iter().filter(|problem| problem.convex && problem.family == Family::Unconstrained).collect()
 }
 
+/// Evaluations are medians over starts that differ by 1e-13; the words are those of the start of the collection.
 #[test]
 fn a_convex_function_is_confirmed_by_its_bound_without_restarts() {
-    let (mut evaluations, mut needed) = (0, 0);
+    let (mut evaluations, mut needed) = (0.0, 0.0);
     for problem in convex() {
-        let report = run(&problem, (1.0, 0.0, 1.0), None);
-        let Termination::Stationary { gap: Some(bound), .. } = report.termination else { panic!("{report}") };
-        // The optimal values of the table have twelve digits.
-        let above = report.value - problem.optimal_value - 1e-8 * (1.0 + problem.optimal_value.abs());
-        assert!(above <= bound && report.counts.restarts == 0, "{}: {above:.1e} {report}", problem.name);
         let level = problem.optimal_value + 1e-6 * (1.0 + problem.optimal_value.abs());
-        evaluations += report.counts.evaluations;
-        needed += report.history.iter().find(|record| record.center_value <= level).unwrap().evaluation;
+        let (mut all, mut first) = (vec![], vec![]);
+        for (index, start) in nearby_starts(&problem, 11).enumerate() {
+            let report = run_from(&problem, start, (0.0, 1.0), None);
+            if index == 0 {
+                let Termination::Stationary { gap: Some(bound), .. } = report.termination else { panic!("{report}") };
+                // The optimal values of the table have twelve digits.
+                let above = report.value - problem.optimal_value - 1e-8 * (1.0 + problem.optimal_value.abs());
+                assert!(above <= bound && report.counts.restarts == 0, "{}: {above:.1e} {report}", problem.name);
+            }
+            all.push(report.counts.evaluations as f64);
+            first.push(report.history.iter().find(|r| r.center_value <= level).unwrap().evaluation as f64);
+        }
+        evaluations += median(all);
+        needed += median(first);
     }
-    assert!(evaluations as f64 <= 1.15 * needed as f64, "{evaluations} {needed}");
+    println!("{evaluations} evaluations, {needed} to 1e-6, ratio {:.3}", evaluations / needed);
+    assert!(evaluations <= 1.15 * needed, "{evaluations} {needed}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use testset::{Composition, Problem};
 /// Solved neither with the composite model nor without.
 const UNSOLVED: &str = "ChebRosenN1_5";
 /// Geometric mean of the evaluations with the composite model to those without, and the problems it is taken over.
-const MEASURED: (f64, usize) = (0.26, 42);
+const MEASURED: (f64, usize) = (0.266, 42);
 /// What the mean may be at most.
 const LARGEST_MEAN: f64 = 0.5;
 /// Rounding differs between processors, and a few courses with it.

@@ -4,18 +4,20 @@
 pub(crate) mod config;
 mod model;
 mod pieces;
+mod step;
+#[cfg(test)]
+mod step_tests;
 
 use super::pause::Pause;
 use super::proposal::{Proposal, SubproblemError};
 use super::proposer::{Comparison, Position, Proposer, Trial};
-use super::subproblem;
 use crate::Vector;
 use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::state::State;
-use crate::qp::Metric;
 use crate::report::Origin;
 use config::CurvedModelConfig;
 use model::CurvedModel;
+use step::Penalised;
 
 /// The curved model, and the right to use it.
 #[derive(Debug)]
@@ -37,35 +39,19 @@ impl Curved {
         Self { settings, weight, score: 0.0, nulls: 0, pause: Pause::default(), model: CurvedModel::default() }
     }
 
-    /// The step of least model value and penalty among those found with the multipliers of the solve before.
+    /// The step that minimises the model and its penalty.
     fn step(&self, at: &mut Position<'_>) -> Result<Vector, SubproblemError> {
         let (state, model) = (at.state, &self.model);
-        let mut multipliers = model.first_multipliers(state);
-        let mut best: Option<(f64, Vector)> = None;
-        for _ in 0..self.settings.multiplier_rounds {
-            let mut metric = model.matrix(state.center.len(), &multipliers);
-            state.norm.add_to(&mut metric, self.weight);
-            let solution =
-                match subproblem::solve(at.solver, at.set, &state.center, Metric::Dense(&metric), model.cuts()) {
-                    Ok(solution) => solution,
-                    // A later round only refines what an earlier one has found.
-                    Err(_) if best.is_some() => break,
-                    Err(error) => return Err(error.into()),
-                };
-            let total = model.change(&solution.step) + 0.5 * self.weight * state.norm.squared(&solution.step);
-            if best.as_ref().is_none_or(|(least, _)| total < *least) {
-                best = Some((total, solution.step));
-            }
-            multipliers = solution.cut_multipliers;
-        }
-        best.map(|(_, step)| step).ok_or(SubproblemError::Unusable)
+        let penalised = Penalised { model, weight: self.weight, norm: &state.norm, set: at.set, center: &state.center };
+        Ok(penalised.minimum(model.first_multipliers(state), at.solver, &self.settings)?)
     }
 
     /// Judges both predictions by the actual change.
     fn compare(&mut self, change: f64, plain: f64, curved: f64) {
-        let floor = self.settings.error_floor * (change.abs() + plain.abs());
-        // Models that agree say nothing about each other.
-        if floor > 0.0 && plain != curved {
+        let size = change.abs() + plain.abs();
+        let floor = self.settings.error_floor * size;
+        // Models that agree up to rounding say nothing about each other.
+        if (plain - curved).abs() > AGREEMENT * size {
             let gain = (((change - plain).abs() + floor) / ((change - curved).abs() + floor)).ln();
             let largest = self.settings.max_log_ratio;
             self.score += self.settings.newest_share * (gain.clamp(-largest, largest) - self.score);
@@ -83,12 +69,15 @@ impl Curved {
         }
     }
 
-    /// Raises the weight after the first null step already: the next matrix B knows the new point.
+    /// Raises the weight after the first null step already: the next matrix B knows the new point. A pause forgets the weight: near a kink
+    /// that no cut had shown, it has risen by the jump of the slope over a tiny step, and the cuts of the pause show that kink.
     fn after_null(&mut self, state: &State, config: &BundleTrustConfig, trial: &Trial<'_>) {
         self.nulls += 1;
         if self.nulls >= self.settings.max_null_steps {
             self.nulls = 0;
             self.pause.fail(self.settings.max_pause);
+            self.weight = self.settings.weight_after_pause * state.weight;
+            return;
         }
         let u = self.weight;
         let range = (LEAST_INCREASE.min(config.weight_increase) * u, config.weight_increase * u);
@@ -96,6 +85,9 @@ impl Curved {
         self.weight = next.min(state.first_weight * config.weight_range);
     }
 }
+
+/// Two predictions are one if they differ by at most this share of the changes that are compared.
+const AGREEMENT: f64 = 1e-10;
 
 /// Least factor by which the weight beside B rises after a null step, unless `weight_increase` is smaller.
 const LEAST_INCREASE: f64 = 2.0;
@@ -118,7 +110,7 @@ impl Proposer for Curved {
         let step = self.step(at)?;
         let change = |step: &Vector| self.model.change(step);
         let better = plain.replaced((step, self.weight, Origin::CurvedModel), (at.set, at.state), change)?;
-        Ok(Some(better).filter(|better| better.predicted_decrease > small))
+        Ok(Some(better).filter(|better| better.predicted_decrease > self.settings.least_promise * small))
     }
 
     fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {

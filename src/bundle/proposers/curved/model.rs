@@ -3,10 +3,8 @@
 //! ```text
 //! q(d) = max_i { ⟨h_i + B_i p_i, d⟩ − (a_i − ½ p_iᵀB_i p_i)₊ + ½ dᵀB_i d },   p_i = x̂ − y_i
 //! over the cut of the center, the cuts that contradict its quadratic, and all certified cuts
-//! min over d   max_i { slope_i·d − offset_i } + ½ dᵀ(Σ λ_i B_i + w W) d       λ: multipliers of the solve before, a few times
 //! ```
-//! Every piece has its own curvature B_i (pieces.rs); with the multipliers the subproblem has the Hessian of the Lagrangian of
-//! the epigraph problem, as in sequential quadratic programming for minimax.
+//! Every piece has its own curvature B_i (pieces.rs); step.rs minimises the model with its penalty.
 //! The curvatures come from symmetric rank-one updates. Reference: \[LuksanVlcek1998\] (cuts transported by their own curvature).
 
 use super::config::CurvedModelConfig;
@@ -51,9 +49,9 @@ impl CurvedModel {
         model
     }
 
-    /// The pieces without their curvature.
-    pub(super) fn cuts(&self) -> Cuts<'_> {
-        Cuts { slopes: &self.slopes, offsets: &self.offsets, ids: &self.ids, gram: None }
+    /// Identities of the pieces: those of their cuts.
+    pub(super) fn ids(&self) -> &[u64] {
+        &self.ids
     }
 
     /// Σ λ_i B_i.
@@ -68,8 +66,18 @@ impl CurvedModel {
 
     /// Predicted change of Θ.
     pub(super) fn change(&self, d: &Vector) -> f64 {
-        let values = self.slopes.iter().zip(&self.offsets).zip(&self.pieces);
-        values.map(|((h, a), b)| h.dot(d) - a + 0.5 * b.along(d)).fold(f64::NEG_INFINITY, f64::max)
+        self.values(d).fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    /// Slopes and values of all pieces at a step.
+    pub(super) fn tangents(&self, d: &Vector) -> (Vec<Vector>, Vec<f64>) {
+        (self.slopes.iter().zip(&self.pieces).map(|(h, b)| h + b.apply(d)).collect(), self.values(d).collect())
+    }
+
+    /// Values of the pieces at a step.
+    fn values(&self, d: &Vector) -> impl Iterator<Item = f64> {
+        let pieces = self.slopes.iter().zip(&self.offsets).zip(&self.pieces);
+        pieces.map(|((h, a), b)| h.dot(d) - a + 0.5 * b.along(d))
     }
 
     /// Multipliers of the plain subproblem. What the cuts outside this model carry there goes to the cut of the center.
@@ -81,5 +89,17 @@ impl CurvedModel {
             multipliers[center] += rest.max(0.0);
         }
         multipliers
+    }
+
+    /// A model of given slopes, offsets and curvatures.
+    #[cfg(test)]
+    pub(super) fn from_pieces(pieces: Vec<(Vector, f64, Curvature)>) -> Self {
+        let mut model = Self { ids: (0..pieces.len() as u64).collect(), ..Self::default() };
+        for (slope, offset, curvature) in pieces {
+            model.slopes.push(slope);
+            model.offsets.push(offset);
+            model.pieces.push(curvature);
+        }
+        model
     }
 }

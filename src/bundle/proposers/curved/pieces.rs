@@ -54,6 +54,11 @@ impl Curvature {
         curvature
     }
 
+    #[cfg(test)]
+    pub(super) fn from_terms(terms: Vec<(f64, Vector)>) -> Self {
+        Self { terms }
+    }
+
     /// B s.
     pub(super) fn apply(&self, s: &Vector) -> Vector {
         let mut product = Vector::zeros(s.len());

@@ -1,0 +1,100 @@
+//! The step of the curved model: its minimum with the penalty, by sequential quadratic programming for minimax.
+//!
+//! ```text
+//! m(d) = max_i { h_i·d − a_i + ½ dᵀB_i d } + ½ w‖d‖²                                          x̂ + d ∈ U
+//! round:  p minimises  max_i { (h_i + B_i d + w W d)·p − (m(d) − m_i(d)) } + ½ pᵀ(Σ λ_i B_i + w W) p       x̂ + d + p ∈ U
+//!         d ← d + t p,  t = 1, ½, ¼ … until m falls;   λ: multipliers of the round before
+//! ```
+//! m is convex, so that every p ≠ 0 is a direction of descent. The tangents are taken at the newest step: multipliers alone, with
+//! the pieces always transported to d = 0, leave a step that raises m wherever the active pieces bend differently.
+
+use super::config::CurvedModelConfig;
+use super::model::CurvedModel;
+use crate::bundle::norm::ScaledNorm;
+use crate::bundle::proposers::subproblem::{self, Cuts};
+use crate::qp::{EpigraphQpSolver, Metric, QpError};
+use crate::{Polyhedron, Vector};
+
+/// Halvings of one step before the round counts as failed.
+const MAX_HALVINGS: i32 = 9;
+/// Failed rounds in a row that end the search. One may fail because its multipliers are those of pieces that have left.
+const MAX_FAILURES: usize = 2;
+
+/// The function m around a center.
+pub(super) struct Penalised<'a> {
+    pub model: &'a CurvedModel,
+    pub weight: f64,
+    pub norm: &'a ScaledNorm,
+    pub set: &'a Polyhedron,
+    pub center: &'a Vector,
+}
+
+impl Penalised<'_> {
+    /// m(d).
+    pub(super) fn value(&self, step: &Vector) -> f64 {
+        self.model.change(step) + 0.5 * self.weight * self.norm.squared(step)
+    }
+
+    /// The step that minimises m, and zero where no round finds a lower value. A round that cannot be solved ends the search; it is an
+    /// error where nothing has been found before.
+    pub(super) fn minimum(
+        &self,
+        mut multipliers: Vec<f64>,
+        solver: &mut EpigraphQpSolver,
+        settings: &CurvedModelConfig,
+    ) -> Result<Vector, QpError> {
+        let mut step = Vector::zeros(self.center.len());
+        let mut value = self.value(&step);
+        let (mut moved, mut failures) = (false, 0);
+        for _ in 0..settings.max_rounds {
+            let (correction, next) = match self.round(&step, &multipliers, solver) {
+                Ok(round) => round,
+                Err(_) if moved => break,
+                Err(error) => return Err(error),
+            };
+            multipliers = next;
+            if let Some((lower, lower_value)) = self.lower(&step, value, &correction) {
+                let gain = value - lower_value;
+                (step, value, moved, failures) = (lower, lower_value, true, 0);
+                if gain <= settings.accuracy * value.abs() {
+                    break;
+                }
+            } else {
+                failures += 1;
+                if failures == MAX_FAILURES {
+                    break;
+                }
+            }
+        }
+        Ok(step)
+    }
+
+    /// The correction p of one round, and its multipliers.
+    fn round(
+        &self,
+        step: &Vector,
+        multipliers: &[f64],
+        solver: &mut EpigraphQpSolver,
+    ) -> Result<(Vector, Vec<f64>), QpError> {
+        let mut metric = self.model.matrix(step.len(), multipliers);
+        self.norm.add_to(&mut metric, self.weight);
+        let (mut slopes, values) = self.model.tangents(step);
+        let pull = self.norm.lower_index(step) * self.weight;
+        slopes.iter_mut().for_each(|slope| *slope += &pull);
+        let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let offsets: Vec<f64> = values.iter().map(|value| highest - value).collect();
+        let cuts = Cuts { slopes: &slopes, offsets: &offsets, ids: self.model.ids(), gram: None };
+        let base = self.center + step;
+        let solution = subproblem::solve(solver, self.set, &base, Metric::Dense(&metric), cuts)?;
+        Ok((solution.step, solution.cut_multipliers))
+    }
+
+    /// The first of the halved steps that lowers m, and its value.
+    fn lower(&self, step: &Vector, value: f64, correction: &Vector) -> Option<(Vector, f64)> {
+        (0..=MAX_HALVINGS).find_map(|halvings| {
+            let trial = step + correction * 0.5_f64.powi(halvings);
+            let lower = self.value(&trial);
+            (lower < value).then_some((trial, lower))
+        })
+    }
+}
