@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 /// A smaller multiplier is rounding of the subproblem: the cut is idle, and the longest idle cut leaves the bundle first.
 pub(crate) const LEAST_ACTIVE_MULTIPLIER: f64 = 1e-9;
 
+/// A subgradient this many times longer than all before cannot be held beside them in double precision.
+pub(crate) const MAX_RELATIVE_SLOPE: f64 = 1e15;
+
 /// One evaluation kept in the bundle, or several merged into one cut.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]

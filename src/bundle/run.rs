@@ -3,7 +3,7 @@
 use super::builder::BundleTrust;
 use super::composite::{Composite, Proof};
 use super::config::AccuracyPolicy;
-use super::cut::Cut;
+use super::cut::{Cut, MAX_RELATIVE_SLOPE};
 use super::event::Event;
 use super::oracle::{Oracle, Outcome, evaluate};
 use super::proposers::cuts::{self, model::Model};
@@ -25,8 +25,6 @@ const REFINEMENT_SHARE: f64 = 0.03;
 const SHORTEST_MOVE: f64 = 4.0 * f64::EPSILON;
 /// Failures end the run only where the oracle fails next to the center: within this share of the length scale or of the first step.
 const CLOSE: f64 = 1e-6;
-/// A subgradient this many times longer than all before cannot be held beside them in double precision.
-const MAX_RELATIVE_SLOPE: f64 = 1e15;
 /// Known trial points in a row after which no weight leads away from them.
 const MAX_KNOWN_TRIALS: usize = 100;
 /// Weights tried before a subproblem counts as unsolvable.
@@ -199,21 +197,18 @@ impl Run<'_, '_> {
         }
     }
 
-    /// Solves the subproblem. Where this fails, larger weights are tried before the run ends, for this one subproblem also beyond the
-    /// range of the weights: beside cuts that are 1e8 times steeper than the one of the center, its largest weight may be too small.
+    /// Solves the subproblem; where this fails, larger weights are tried before the run ends.
     pub(super) fn solve_subproblem(&mut self) -> ControlFlow<Termination, Proposal> {
         let mut last = SubproblemError::Unusable;
         for _ in 0..MAX_SUBPROBLEM_TRIALS {
-            let answer = self.try_subproblem();
-            let weight = self.state.weight;
-            self.state.set_weight(weight, &self.method.config);
-            match answer {
+            match self.try_subproblem() {
                 // What an interrupted subproblem leaves says nothing about the objective.
                 _ if interrupted() => return Break(Termination::StoppedByObserver),
                 Ok(proposal) => return Continue(proposal),
                 Err(error) => last = error,
             }
-            self.state.weight = weight * self.method.config.weight_increase;
+            let weight = self.state.weight * self.method.config.weight_increase;
+            self.state.set_weight(weight, &self.method.config);
         }
         Break(Termination::SubproblemFailed { reason: last.to_string() })
     }

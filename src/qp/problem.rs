@@ -84,7 +84,7 @@ pub enum QpMethod {
 pub struct QpSolution {
     /// The minimiser d.
     pub step: Vector,
-    /// v = max_j g_jᵀ d − e_j.
+    /// v = max_j g_jᵀ d − e_j, up to the rounding of active cuts that are far steeper than another one.
     pub epigraph: f64,
     /// π_j ≥ 0 with sum 1, one per cut.
     pub cut_multipliers: Vec<f64>,

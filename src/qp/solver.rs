@@ -7,7 +7,7 @@ use super::gram::{Gram, GramMemory};
 #[cfg(feature = "interior-point")]
 use super::interior_point;
 use super::problem::{EpigraphQp, QpCounts, QpError, QpMethod, QpSolution};
-use super::working_set::{Active, Member, Side, WorkingSet};
+use super::working_set::{Active, CutEntry, Member, Side, WorkingSet};
 
 /// Largest residual with which an answer is returned at all.
 const REQUIRED: f64 = 1e-10;
@@ -86,20 +86,26 @@ impl EpigraphQpSolver {
         qp.validate()?;
         let coordinates = self.coordinates.factorise(qp.metric, qp.dimension())?;
         self.counts.solves += 1;
-        let mut warm = self.recall(qp);
+        let warm = self.recall(qp);
+        let cold = [(&[] as &[Active], CutEntry::Median), (&[], CutEntry::Lower)];
+        let first = Some((warm.as_slice(), CutEntry::Median)).filter(|_| !warm.is_empty());
         let mut best: Option<Attempt> = None;
-        loop {
-            let attempt = run_active_set(qp, &coordinates, &warm);
+        let mut contradictions = vec![];
+        for start in first.into_iter().chain(cold) {
+            let attempt = run_active_set(qp, &coordinates, start);
             self.counts.pivots += attempt.solution.pivots;
             let done = attempt.outcome == Outcome::Solved && attempt.solution.kkt_residual <= WANTED;
-            if let (Outcome::Infeasible { violation }, true) = (attempt.outcome, warm.is_empty()) {
-                return Err(QpError::Infeasible { violation });
+            if let (Outcome::Infeasible { violation }, true) = (attempt.outcome, start.0.is_empty()) {
+                contradictions.push(violation);
             }
             keep_better(&mut best, attempt);
-            if done || warm.is_empty() {
+            if done {
                 break;
             }
-            warm.clear();
+        }
+        // Where cuts are far steeper than others, rounding in one scale of the columns may look like a contradiction.
+        if let [violation, _] = contradictions[..] {
+            return Err(QpError::Infeasible { violation });
         }
         let best = match best {
             Some(best) if best.solution.kkt_residual <= WANTED => best,
@@ -162,7 +168,7 @@ impl EpigraphQpSolver {
             (Err(_), Some(known)) if known.outcome == Outcome::Solved => return Ok(known),
             (Err(error), _) => return Err(error),
         };
-        let polished = run_active_set(qp, coordinates, &answer.actives);
+        let polished = run_active_set(qp, coordinates, (&answer.actives, CutEntry::Median));
         self.counts.pivots += polished.solution.pivots;
         keep_better(&mut best, polished);
         let outcome = Outcome::Stalled;
@@ -201,8 +207,8 @@ fn keep_better(best: &mut Option<Attempt>, attempt: Attempt) {
     }
 }
 
-fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, warm: &[Active]) -> Attempt {
-    let mut set = WorkingSet::new(qp, coordinates);
+fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, (warm, cut_entry): (&[Active], CutEntry)) -> Attempt {
+    let mut set = WorkingSet::new(qp, coordinates, cut_entry);
     set.start(warm);
     let outcome = set.run();
     let actives: Vec<Active> = set.actives().copied().collect();

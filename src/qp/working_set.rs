@@ -50,6 +50,15 @@ pub(super) enum Place {
     Coordinate(usize),
 }
 
+/// The extra entry c of a cut's column (g̃, c). Columns lose the digits of what is small beside c, and of c where it is small itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum CutEntry {
+    /// The median norm of the cuts.
+    Median,
+    /// The geometric mean of the median and the least norm: where most cuts are far steeper than the active ones.
+    Lower,
+}
+
 pub(super) struct WorkingSet<'a> {
     pub(super) qp: &'a EpigraphQp<'a>,
     pub(super) coordinates: &'a Coordinates,
@@ -79,7 +88,7 @@ pub(super) struct WorkingSet<'a> {
 }
 
 impl<'a> WorkingSet<'a> {
-    pub(super) fn new(qp: &'a EpigraphQp<'a>, coordinates: &'a Coordinates) -> Self {
+    pub(super) fn new(qp: &'a EpigraphQp<'a>, coordinates: &'a Coordinates, cut_entry: CutEntry) -> Self {
         let (n, m, p) = (qp.dimension(), qp.slopes.len(), qp.rows.nrows());
         let mut rows = vec![0.0; n * p];
         for (k, column) in qp.rows.column_iter().enumerate() {
@@ -93,7 +102,7 @@ impl<'a> WorkingSet<'a> {
         };
         let mut norms: Vec<f64> = qp.slopes.iter().map(|slope| scaled_norm(slope.as_slice())).collect();
         let steepest = norms.iter().copied().fold(0.0, f64::max);
-        let cut_entry = median_of_positive(&norms).unwrap_or(1.0);
+        let cut_entry = cut_entry.of(&norms);
         if n > 0 {
             norms.extend(rows.chunks_exact(n).map(scaled_norm));
         } else {
@@ -286,7 +295,14 @@ impl<'a> WorkingSet<'a> {
     }
 }
 
-fn median_of_positive(values: &[f64]) -> Option<f64> {
-    let mut positive: Vec<f64> = values.iter().copied().filter(|value| *value > 0.0).collect();
-    upper_median(&mut positive)
+impl CutEntry {
+    /// Its value for cuts of these norms.
+    fn of(self, norms: &[f64]) -> f64 {
+        let mut positive: Vec<f64> = norms.iter().copied().filter(|norm| *norm > 0.0).collect();
+        let Some(median) = upper_median(&mut positive) else { return 1.0 };
+        match self {
+            Self::Median => median,
+            Self::Lower => median.sqrt() * positive.into_iter().fold(median, f64::min).sqrt(),
+        }
+    }
 }

@@ -42,7 +42,7 @@ const MEASURED: [(&str, usize); 42] = [
     ("MAD1", 8),
     ("MAD4", 20),
     ("PENTAGON", 13),
-    ("EQUIL", 51),
+    ("EQUIL", 54),
     ("Wong3lin", 122),
     ("HS114", 51),
     ("Dembo5", 71),
@@ -58,7 +58,7 @@ const MEASURED: [(&str, usize); 42] = [
 /// Sum over the unconstrained problems that all nine peers solve.
 const COMMON_SUM: f64 = 438.0;
 /// Geometric mean of the ratio to MPBNGC over the problems both solve.
-const MEAN: f64 = 0.725;
+const MEAN: f64 = 0.726;
 
 fn evaluations(problem: &Problem) -> Option<usize> {
     let (count, hit) = (Cell::new(0), Cell::new(None));

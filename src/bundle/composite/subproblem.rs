@@ -11,6 +11,7 @@
 #[cfg(feature = "interior-point")]
 use super::cones::{self, ConeAnswer};
 use super::model::{CompositeModel, CompositeStep, MAX_EXCESS, OuterCut};
+use crate::bundle::cut::MAX_RELATIVE_SLOPE;
 #[cfg(feature = "interior-point")]
 use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::SubproblemError;
@@ -152,7 +153,12 @@ impl CompositeModel<'_> {
         loop {
             still_wanted()?;
             for newest in &cuts[slopes.len()..] {
-                slopes.push(linearization.jacobian.tr_mul(&newest.subgradient) + &pull);
+                let slope = linearization.jacobian.tr_mul(&newest.subgradient) + &pull;
+                let longest = slopes.iter().map(Vector::norm).fold(0.0, f64::max);
+                if longest > 0.0 && slope.norm() > MAX_RELATIVE_SLOPE * longest {
+                    return Err(SubproblemError::Unusable);
+                }
+                slopes.push(slope);
                 offsets.push(self.error(newest)?);
                 ids.push(ids.len() as u64);
             }
