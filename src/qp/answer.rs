@@ -31,26 +31,12 @@ pub(super) fn assemble(
 /// Differences of values below this share of their terms are rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The answer with v = max_j g_jᵀ d − e_j. Where that differs by rounding from the value of the active cut whose terms are smallest, and the
-/// certificate is better with it, v is this value: a cut 1e10 times as steep hides in its rounding what the others say about v.
+/// The answer with v = max_j g_jᵀ d − e_j, or with that of the sharpest active cut where the certificate is better with it.
 fn complete(qp: &EpigraphQp<'_>, step: Vector, actives: &[Active], pivots: usize, method: QpMethod) -> QpSolution {
-    let value = |j: usize| dot(qp.slopes[j].as_slice(), step.as_slice()) - qp.offsets[j];
-    let size = |j: usize| dot_terms(qp.slopes[j].as_slice(), step.as_slice()) + qp.offsets[j].abs();
-    let mut highest = (f64::NEG_INFINITY, 0.0);
-    for (j, value) in (0..qp.slopes.len()).map(|j| (j, value(j))) {
-        if value > highest.0 {
-            highest = (value, size(j));
-        }
-    }
-    let held = actives.iter().filter_map(|active| match active.member {
-        Member::Cut(j) if active.multiplier > 0.0 => Some(j),
-        _ => None,
-    });
-    let sharpest = held.min_by(|&i, &j| size(i).total_cmp(&size(j))).map(value);
-    let sharpest = sharpest.filter(|value| highest.0 - value <= ROUNDING * highest.1);
+    let epigraph = (0..qp.slopes.len()).map(|j| value(qp, j, &step)).fold(f64::NEG_INFINITY, f64::max);
     let mut solution = QpSolution {
         step,
-        epigraph: highest.0,
+        epigraph,
         cut_multipliers: vec![0.0; qp.slopes.len()],
         row_multipliers: vec![0.0; qp.rows.nrows()],
         bound_multipliers: vec![0.0; qp.dimension()],
@@ -67,12 +53,29 @@ fn complete(qp: &EpigraphQp<'_>, step: Vector, actives: &[Active], pivots: usize
     }
     solution.kkt_residual = kkt_residual(qp, &solution);
     if solution.kkt_residual > WANTED
-        && let Some(epigraph) = sharpest
+        && let Some(epigraph) = sharpest_value(qp, &solution)
     {
-        let residual = kkt_residual(qp, &QpSolution { epigraph, ..solution.clone() });
-        if residual < solution.kkt_residual {
-            (solution.epigraph, solution.kkt_residual) = (epigraph, residual);
+        let sharper = QpSolution { epigraph, ..solution.clone() };
+        let kkt_residual = kkt_residual(qp, &sharper);
+        if kkt_residual < solution.kkt_residual {
+            return QpSolution { kkt_residual, ..sharper };
         }
     }
     solution
+}
+
+/// The value of the active cut whose terms are smallest, if it differs from v by rounding only: a cut 1e10 times as steep hides in its
+/// rounding what the others say about v.
+fn sharpest_value(qp: &EpigraphQp<'_>, solution: &QpSolution) -> Option<f64> {
+    let step = &solution.step;
+    let size = |j: usize| dot_terms(qp.slopes[j].as_slice(), step.as_slice()) + qp.offsets[j].abs();
+    let active = (0..qp.slopes.len()).filter(|&j| solution.cut_multipliers[j] > 0.0);
+    let sharpest = active.min_by(|&i, &j| size(i).total_cmp(&size(j))).map(|j| value(qp, j, step))?;
+    let highest = (0..qp.slopes.len()).find(|&j| value(qp, j, step) == solution.epigraph)?;
+    (solution.epigraph - sharpest <= ROUNDING * size(highest)).then_some(sharpest)
+}
+
+/// g_jᵀ d − e_j.
+fn value(qp: &EpigraphQp<'_>, cut: usize, step: &Vector) -> f64 {
+    dot(qp.slopes[cut].as_slice(), step.as_slice()) - qp.offsets[cut]
 }

@@ -87,8 +87,10 @@ impl EpigraphQpSolver {
         let coordinates = self.coordinates.factorise(qp.metric, qp.dimension())?;
         self.counts.solves += 1;
         let warm = self.recall(qp);
-        let cold = [(&[] as &[Active], CutEntry::Median), (&[], CutEntry::Lower)];
         let first = Some((warm.as_slice(), CutEntry::Median)).filter(|_| !warm.is_empty());
+        // A single cut has a single scale.
+        let scales = if qp.slopes.len() == 1 { &[CutEntry::Median][..] } else { &[CutEntry::Median, CutEntry::Lower] };
+        let cold = scales.iter().map(|scale| (&[] as &[Active], *scale));
         let mut best: Option<Attempt> = None;
         let mut contradictions = vec![];
         for start in first.into_iter().chain(cold) {
@@ -104,7 +106,7 @@ impl EpigraphQpSolver {
             }
         }
         // Where cuts are far steeper than others, rounding in one scale of the columns may look like a contradiction.
-        if let [violation, _] = contradictions[..] {
+        if let Some(&violation) = contradictions.first().filter(|_| contradictions.len() == scales.len()) {
             return Err(QpError::Infeasible { violation });
         }
         let best = match best {

@@ -149,15 +149,17 @@ impl CompositeModel<'_> {
         let (metric, pull) = (self.metric(), self.pull_to_origin());
         let mut cuts = known;
         cuts.push(OuterCut::at(self.outer, linearization.outputs.clone()).map_err(SubproblemError::at_base)?);
-        let (mut slopes, mut offsets, mut ids) = (vec![], vec![], vec![]);
+        let (mut slopes, mut offsets, mut ids, mut longest) = (vec![], vec![], vec![], 0.0_f64);
         loop {
             still_wanted()?;
             for newest in &cuts[slopes.len()..] {
                 let slope = linearization.jacobian.tr_mul(&newest.subgradient) + &pull;
-                let longest = slopes.iter().map(Vector::norm).fold(0.0, f64::max);
-                if longest > 0.0 && slope.norm() > MAX_RELATIVE_SLOPE * longest {
+                let length = slope.norm();
+                // Such a cut of h says no more than an evaluation with such a subgradient: the step that led there was too long.
+                if longest > 0.0 && length > MAX_RELATIVE_SLOPE * longest {
                     return Err(SubproblemError::Unusable);
                 }
+                longest = length.max(longest);
                 slopes.push(slope);
                 offsets.push(self.error(newest)?);
                 ids.push(ids.len() as u64);
