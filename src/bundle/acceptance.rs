@@ -29,6 +29,7 @@ impl Run<'_, '_> {
         let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
         let serious = accurate && comparison.is_serious(&self.method.config);
         self.state.failures = 0;
+        self.state.longest_step = None;
         if accurate {
             self.watch_noise(&proposal, &evaluation);
         }

@@ -90,7 +90,8 @@ impl Run<'_, '_> {
             Some(proposal) => proposal,
             None => {
                 let plain = self.next_trial()?;
-                self.choose_trial(plain)
+                let chosen = self.choose_trial(plain);
+                self.shortened(chosen)
             }
         };
         if self.center_is_too_coarse(&proposal) {
@@ -301,12 +302,28 @@ impl Run<'_, '_> {
         self.after_evaluation()
     }
 
+    /// The proposal itself, or its step shortened to the length that a failed evaluation has left. A larger weight alone leaves the step as
+    /// it is where cuts meet in a point.
+    fn shortened(&mut self, proposal: Proposal) -> Proposal {
+        let Some(longest) = self.state.longest_step.filter(|longest| proposal.step_length > *longest) else {
+            return proposal;
+        };
+        let step = &proposal.step * (longest / proposal.step_length);
+        let cut_change = self.ask(|_, position| position.model.cuts().change(&step));
+        let (weight, origin) = (proposal.weight, proposal.origin);
+        match proposal.replaced((step, weight, origin), (&self.set, &self.state), |_| cut_change) {
+            Ok(shorter) => Proposal { cut_change, ..shorter },
+            Err(_) => proposal,
+        }
+    }
+
     /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Proposers that fail pause, so
     /// that after repeated failures the steps of the plain cuts tell whether the oracle fails next to the center.
     fn shorten(&mut self, proposal: &Proposal, accuracy: Accuracy, error: &OracleError) -> ControlFlow<Termination> {
         let state = &mut self.state;
         state.counts.failed += 1;
         state.failures += 1;
+        state.longest_step = Some(0.5 * proposal.step_length);
         let failures = state.failures;
         let close = proposal.step_length <= CLOSE * state.length_scale().max(state.first_step);
         self.proposers.shorten(state, &self.method.config, proposal);

@@ -6,6 +6,7 @@
 //!                                        Σ_k size_k Σ_i |w_i| |G_ik| of a composite Θ ) )
 //!             then times 10 variation/|Θ(x̂)|, clamped to [0.02, 1]
 //! scale     = |Θ(x̂)| clamped to [1e-6 least, variation]
+//! length    = ‖x̂‖ for distances up to ‖x̂‖,  else at least 1e-3 max(‖x̂‖, ‖x̂ − x⁰‖, ‖x⁰‖)
 //! least     = min( highest − Θ(x̂),  max( Σ_j λ_j Σ_i |g_ji| reach_i,  h(c ± |G| reach) − h(c) of a composite Θ ) )
 //! bound     = ẽ + Σ_i |z̃_i| reach_i ≥ Θ(x̂) − Θ(y)        if Θ is convex and |y_i − x̂_i| ≤ reach_i
 //! ```
@@ -25,8 +26,8 @@ use std::rc::Rc;
 
 /// Sizes of a variable below this share of its reach are not told from zero.
 const LEAST_SHARE: f64 = 1e-8;
-/// The least length of all variables together, as a share of the length scale. After a far start, a larger share would let cuts from
-/// both sides of a curved kink count as near to the center and cancel.
+/// The least length of all variables together where they cannot be told from zero, as a share of the length scale. Elsewhere, after a
+/// far start, it would let cuts from both sides of a curved kink count as near to the center and cancel.
 const LEAST_LENGTH_SHARE: f64 = 1e-3;
 /// The least scale of Θ, as a share of what the active cuts vary within reach.
 const LEAST_VALUE_SHARE: f64 = 1e-6;
@@ -57,9 +58,11 @@ impl State {
         }
     }
 
-    /// The length of the variables near the center.
-    pub(crate) fn local_length(&self) -> f64 {
-        self.norm.length(&self.center).max(LEAST_LENGTH_SHARE * self.length_scale())
+    /// The length of the variables that a distance from the center refers to: their own if it is the larger one, otherwise at least a share
+    /// of the length scale, because such a distance does not tell the center from zero.
+    pub(crate) fn local_length(&self, distance: f64) -> f64 {
+        let own = self.norm.length(&self.center);
+        if own >= distance { own } else { own.max(LEAST_LENGTH_SHARE * self.length_scale()) }
     }
 
     /// The scale of Θ near the center that relative tolerances refer to.

@@ -144,7 +144,8 @@ impl Run<'_, '_> {
     /// Lowers the weight, without evaluations, until the step is long enough to tell or the decrease is not small.
     fn decrease_weight(&mut self, mut proposal: Proposal) -> Proposal {
         for _ in 0..self.method.config.attenuation_steps {
-            if proposal.step_length >= LEAST_STEP_LENGTH * self.state.length_scale() {
+            let long_enough = proposal.step_length >= LEAST_STEP_LENGTH * self.state.length_scale();
+            if long_enough && self.noise().is_none_or(|noise| self.has_seen_more_than(noise, &proposal)) {
                 break;
             }
             let Some(next) = self.lower_weight() else { break };
@@ -206,9 +207,12 @@ impl Run<'_, '_> {
     /// a reach that is a rounding of zero proves nothing.
     fn meaningful_bound(&self, proposal: &Proposal, limit: f64) -> f64 {
         let bound = self.state.decrease_bound(proposal, &self.set);
-        let seen = self.state.active_variation();
-        let meaningful = proposal.aggregate_norm == 0.0 || seen >= LEAST_SEEN_VARIATION * limit;
-        if meaningful { bound } else { f64::INFINITY }
+        if self.has_seen_more_than(limit, proposal) { bound } else { f64::INFINITY }
+    }
+
+    /// Whether the linearizations of the active cuts vary within reach by much more than the limit, or leave no slope at all.
+    fn has_seen_more_than(&self, limit: f64, proposal: &Proposal) -> bool {
+        proposal.aggregate_norm == 0.0 || self.state.active_variation() >= LEAST_SEEN_VARIATION * limit
     }
 
     /// Ends the run if the point is confirmed, if noise or rounding hides what remains, or if no restart is left.
@@ -222,8 +226,10 @@ impl Run<'_, '_> {
             Some(noise) => self.look_within_reach(proposal.clone(), noise).bound,
             None => self.state.decrease_bound(proposal, &self.set),
         };
+        // Rounding that comes from cuts farther away than the variables are large is left behind by a restart.
+        let hidden = self.noise().is_some() || radius <= 1.0;
         if let Some(word) = self.word((remaining, MAX_REMAINING_DECREASES), confirmed)
-            && (near || matches!(word, Termination::NoiseLimit { .. }))
+            && (near || hidden && matches!(word, Termination::NoiseLimit { .. }))
         {
             return Break(word);
         }
@@ -236,7 +242,8 @@ impl Run<'_, '_> {
 
     /// The radius of the active cuts relative to the length of the variables near the center.
     fn relative_radius(&self, proposal: &Proposal) -> f64 {
-        self.active_radius(proposal) / self.state.local_length().max(f64::MIN_POSITIVE)
+        let radius = self.active_radius(proposal);
+        radius / self.state.local_length(radius).max(f64::MIN_POSITIVE)
     }
 
     /// Largest distance from the center of a point behind an active cut.

@@ -167,6 +167,7 @@ fn first_evaluation(
         nonconvex: false,
         noise: 0.0,
         failures: 0,
+        longest_step: None,
         known_trials: 0,
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],

@@ -113,11 +113,13 @@ impl NonsmoothObjective for Stated {
 fn stated_noise_ends_in_a_noise_limit_that_bounds_the_gap() {
     for noise in [1e-8, 1e-4] {
         for start in [[0.0, 0.0], [3.0, -2.0], [1e-9, 1e-9], [1e3, 1e3]] {
-            let config = BundleTrustConfig { convexity: Convexity::Convex, ..Default::default() };
-            let report = BundleTrust::new(config).unwrap().minimize(&Stated(noise), v(&start)).unwrap();
-            let Termination::NoiseLimit { estimate } = report.termination else { panic!("{noise}: {report}") };
-            let exact = (report.solution[0] - 1.0).abs() + report.solution[1].abs();
-            assert!(exact <= estimate && exact <= 10.0 * noise, "{exact:.1e} {report}");
+            for convexity in [Convexity::Convex, Convexity::Unknown] {
+                let config = BundleTrustConfig { convexity, ..Default::default() };
+                let report = BundleTrust::new(config).unwrap().minimize(&Stated(noise), v(&start)).unwrap();
+                let Termination::NoiseLimit { estimate } = report.termination else { panic!("{noise}: {report}") };
+                let exact = (report.solution[0] - 1.0).abs() + report.solution[1].abs();
+                assert!(exact <= estimate && exact <= 10.0 * noise, "{convexity:?} {exact:.1e} {report}");
+            }
         }
     }
 }
@@ -179,4 +181,62 @@ fn a_report_prints_its_solution() {
     let text = report.unwrap().to_string();
     let line = text.lines().find(|line| line.starts_with("solution:")).unwrap();
     assert!(line.contains("…") && line.len() < 160, "{line}");
+}
+
+#[test]
+fn a_valley_is_not_confirmed_because_its_start_lay_far_away() {
+    // Slopes across are two hundred times those along; the starts lie 1e6 times as far away as the minimum, 1 at (0.5, 0.125, …).
+    let valley = FnObjective::new(4, |x: &Vector| {
+        let (mut value, mut slope) = (1.0 + (x[0] - 0.5).abs(), Vector::zeros(4));
+        slope[0] = (x[0] - 0.5).signum();
+        for i in 0..3 {
+            let across = x[i + 1] - 0.5 * x[i] * x[i];
+            value += 100.0 * across.abs();
+            slope[i + 1] += 100.0 * across.signum();
+            slope[i] -= 100.0 * across.signum() * x[i];
+        }
+        (value, slope)
+    });
+    for seed in 0..12 {
+        let start = Vector::from_fn(4, |i, _| 1e6 * ((i * 7 + seed * 3 + 1) as f64).sin());
+        let config = BundleTrustConfig { max_evaluations: 2000, ..Default::default() };
+        let report = BundleTrust::new(config).unwrap().minimize(&valley, start).unwrap();
+        assert!(!report.termination.is_confirmed() || report.value - 1.0 <= 1e-5, "{seed}: {report}");
+    }
+}
+
+/// Fails at every tenth point, the same points whenever they are asked for.
+struct Riddled<'a>(&'a Problem);
+
+impl NonsmoothObjective for Riddled<'_> {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        self.0.dimension
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let mix = |sum: u64, x: &f64| (sum ^ x.to_bits()).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29);
+        if request.point.iter().fold(7, mix) % 10 == 0 {
+            return Err(OracleError::OutsideDomain { reason: "no answer here".to_owned() });
+        }
+        let (value, gradient) = self.0.evaluate(request.point.as_slice());
+        Ok(Answer::Accurate(Evaluation::exact(value, Vector::from_vec(gradient), ())))
+    }
+}
+
+#[test]
+fn a_point_that_fails_is_not_proposed_again() {
+    for problem in convex() {
+        for seed in 1..6 {
+            let start = v(&problem.start).map(|x| x + 0.01 * f64::from(seed));
+            let Ok(report) = method(&problem).minimize(&Riddled(&problem), start) else { continue };
+            assert!(!matches!(report.termination, Termination::OracleFailing { .. }), "{}: {report}", problem.name);
+            let trials: Vec<f64> = report.history.iter().map(|record| record.step_length).collect();
+            let failed = |i: &usize| report.history[*i].failure.is_some() && report.history[i - 1].failure.is_some();
+            for i in (1..trials.len()).filter(failed) {
+                assert!(trials[i] <= 0.51 * trials[i - 1], "{}, evaluation {i}: {report}", problem.name);
+            }
+        }
+    }
 }

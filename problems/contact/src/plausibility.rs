@@ -24,6 +24,8 @@ const MAX_TURN: f64 = 7.5;
 const MIN_CLOSED_NODES: usize = 6;
 /// Places per brick at which the obstacle is sampled.
 const SAMPLES: usize = 8;
+/// Slopes below this share of the steepest one are rounding of a flat place.
+const FLAT: f64 = 1e-9;
 /// Estimated contraction of the slip bounds from which a state may not be unique.
 const MAX_CONTRACTION: f64 = 1.0;
 
@@ -104,6 +106,7 @@ fn obstacle(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Wa
     for axis in 0..2 {
         let [along, across] = [grid.cells[axis], grid.cells[1 - axis]];
         let step = grid.size[axis] / (along * SAMPLES) as f64;
+        let places: Vec<f64> = (0..=along * SAMPLES).map(|sample| uneven(sample, along * SAMPLES) * step).collect();
         for line in 0..=across {
             let node = |k: usize| if axis == 0 { (k, line) } else { (line, k) };
             let is_closed: Vec<bool> = (0..=along).map(|k| closed(node(k).0, node(k).1)).collect();
@@ -111,23 +114,20 @@ fn obstacle(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Wa
                 continue;
             }
             let start = grid.position(node(0).0, node(0).1);
-            let height = |sample: usize| {
+            let height = |&offset: &f64| {
                 let mut place = start;
-                place[axis] += sample as f64 * step;
+                place[axis] += offset;
                 problem.scene.counter_surface.height(place[0], place[1])
             };
-            let heights: Vec<f64> = (0..=along * SAMPLES).map(height).collect();
-            let slopes: Vec<f64> = heights.windows(2).map(|pair| (pair[1] - pair[0]) / step).collect();
+            let heights: Vec<f64> = places.iter().map(height).collect();
+            let rises = heights.windows(2).zip(places.windows(2));
+            let slopes: Vec<f64> = rises.map(|(h, x)| (h[1] - h[0]) / (x[1] - x[0])).collect();
             let turns: Vec<f64> = slopes.windows(2).map(|pair| pair[1].atan() - pair[0].atan()).collect();
             for brick in (0..along).filter(|&brick| is_closed[brick] || is_closed[brick + 1]) {
                 let within = &turns[brick * SAMPLES..((brick + 1) * SAMPLES).min(turns.len())];
                 turn = turn.max(within.iter().map(|turn| turn.abs()).sum::<f64>().to_degrees());
             }
-            let extrema = slopes.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
-            // Two extrema make a wave; a single one is a hump.
-            if extrema > 1 {
-                bricks_per_wave = bricks_per_wave.min(2.0 * along as f64 / extrema as f64);
-            }
+            bricks_per_wave = bricks_per_wave.min(shortest_wave(&places, &slopes) / (step * SAMPLES as f64));
         }
     }
     let coarse = turn > MAX_TURN || bricks_per_wave < MIN_BRICKS_PER_WAVE;
@@ -139,6 +139,27 @@ fn obstacle(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Wa
              degrees, at least {MIN_BRICKS_PER_WAVE} bricks per wave)"
         )
     });
+}
+
+/// Places of samples between 0 and `last`, in steps: moved by up to half a step, so that no wave repeats itself from sample to sample.
+fn uneven(sample: usize, last: usize) -> f64 {
+    let ends = sample == 0 || sample == last;
+    sample as f64 + if ends { 0.0 } else { 0.5 * (sample as f64 * 0.618_033_988_749_895).fract() }
+}
+
+/// The shortest wave of heights with these slopes between the places: from an extremum to the next but one, or twice the distance of the
+/// only two; ∞ where there are fewer, since a single one is a hump.
+fn shortest_wave(places: &[f64], slopes: &[f64]) -> f64 {
+    let flat = FLAT * slopes.iter().fold(0.0, |steepest, slope| slope.abs().max(steepest));
+    let middles = places.windows(2).map(|x| 0.5 * (x[0] + x[1]));
+    let steep: Vec<(f64, f64)> = middles.zip(slopes.iter().copied()).filter(|(_, slope)| slope.abs() > flat).collect();
+    let turns = steep.windows(2).filter(|pair| pair[0].1 * pair[1].1 < 0.0);
+    let extrema: Vec<f64> =
+        turns.map(|p| p[0].0 + (p[1].0 - p[0].0) * p[0].1.abs() / (p[0].1.abs() + p[1].1.abs())).collect();
+    match extrema[..] {
+        [first, second] => 2.0 * (second - first),
+        _ => extrema.windows(3).map(|three| three[2] - three[0]).fold(f64::INFINITY, f64::min),
+    }
 }
 
 /// The size of the contact zone, and where its pressure peaks.
@@ -168,4 +189,39 @@ fn zone(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Warnin
             "the pressure peaks at the {where_it_is}, at ({x1:.2}, {x2:.2}) mm: it may grow with every refinement of the mesh"
         )
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Shortest wave of heights over 12 bricks of length 1.
+    fn wave(height: impl Fn(f64) -> f64) -> f64 {
+        let last = 12 * SAMPLES;
+        let places: Vec<f64> = (0..=last).map(|sample| uneven(sample, last) / SAMPLES as f64).collect();
+        let slopes: Vec<f64> = places.windows(2).map(|x| (height(x[1]) - height(x[0])) / (x[1] - x[0])).collect();
+        shortest_wave(&places, &slopes)
+    }
+
+    #[test]
+    fn a_wave_is_as_long_as_it_is_wherever_it_begins() {
+        for length in [2.0, 2.4, 3.2, 3.96, 4.3, 7.0] {
+            for shift in [0.0, 0.3, 1.1, 2.7] {
+                let found = wave(|x| 5.0 + 0.2 * ((x - shift) * std::f64::consts::TAU / length).cos());
+                assert!((found - length).abs() < 0.02 * length, "{length} {shift}: {found}");
+            }
+        }
+        // A hump, a plane and a plateau with flanks are no waves.
+        for found in [wave(|x| -(x - 6.1).powi(2)), wave(|x| 3.0 * x), wave(|x| (x - 6.0).abs().max(2.0))] {
+            assert_eq!(found, f64::INFINITY);
+        }
+    }
+
+    #[test]
+    fn a_wave_as_long_as_the_steps_between_samples_is_seen() {
+        for waves_per_step in [1.0, 2.0] {
+            let found = wave(|x| (x * waves_per_step * SAMPLES as f64 * std::f64::consts::TAU).sin());
+            assert!(found < 1.0, "{found}");
+        }
+    }
 }

@@ -32,7 +32,7 @@ struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     overwrite: bool,
 }
 

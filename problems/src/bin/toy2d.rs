@@ -29,7 +29,7 @@ struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     overwrite: bool,
     /// Grid cells per edge of the landscape
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=4096))]

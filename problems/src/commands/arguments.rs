@@ -127,7 +127,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
-    #[arg(long)]
+    #[arg(long, requires = "out")]
     pub overwrite: bool,
     /// With optimize and a folder: fields for ParaView of the start and of every serious step, as a series (history.pvd).
     #[arg(long)]

@@ -244,8 +244,8 @@ impl OuterFunction for PressureCost {
         }
     }
 
-    /// Σσ^p has the curvature p(p−1)σ^{p−2} per node; its root N has (p−1)/N ((σ/N)^{p−2} − g gᵀ) with g = (σ/N)^{p−1}. The deviation
-    /// has 2A/ΣA. None for the peak and the open area, which have kinks, and for p < 2, where the curvature grows without bound as a
+    /// Σσ^p has the curvature p(p−1)σ^{p−2} per node; its root N has (p−1)/N ((σ/N)^{p−2} − g gᵀ) with g = (σ/N)^{p−1}, which is formed
+    /// from the rows of G − (σ/N) gᵀG. The deviation has 2A/ΣA. None for the peak and the open area, which have kinks, and for p < 2, where the curvature grows without bound as a
     /// node opens.
     fn curvature(&self, pressures: &Vector, jacobian: &Matrix) -> Option<Matrix> {
         let exponent = match self.measure {
@@ -261,12 +261,14 @@ impl OuterFunction for PressureCost {
         let relative = pressures.map(|pressure| pressure.max(0.0) / size);
         let factor = if self.is_root { (exponent - 1.0) / size } else { exponent * (exponent - 1.0) };
         let weights = relative.map(|p| factor * p.powf(exponent - 2.0));
-        let mut curvature = weighted_gram(jacobian, &weights);
-        if self.is_root {
-            let gradient = jacobian.tr_mul(&relative.map(|p| p.powf(exponent - 1.0)));
-            curvature.ger(-factor, &gradient, &gradient, 1.0);
+        if !self.is_root {
+            return Some(weighted_gram(jacobian, &weights));
         }
-        Some(curvature)
+        // As a difference, rounding would make it indefinite where few nodes carry the norm: Σ (σ/N)^p = 1.
+        let mut centred = jacobian.clone();
+        let gradient = jacobian.tr_mul(&relative.map(|p| p.powf(exponent - 1.0)));
+        centred.ger(-1.0, &relative, &gradient, 1.0);
+        Some(weighted_gram(&centred, &weights))
     }
 }
 

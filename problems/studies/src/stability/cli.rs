@@ -18,8 +18,8 @@ pub struct Arguments {
     #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
     /// Random scenes instead of the cases: so many of them.
-    #[arg(long, value_name = "COUNT", conflicts_with_all = ["quick", "only"])]
-    pub random: Option<usize>,
+    #[arg(long, value_name = "COUNT", conflicts_with_all = ["quick", "only"], value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub random: Option<u32>,
     /// Seed of the random scenes.
     #[arg(long, value_name = "SEED", default_value_t = 1, requires = "random")]
     pub seed: u64,
@@ -45,7 +45,7 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
         return optimizer_words::page(arguments.json);
     }
     if let Some(count) = arguments.random {
-        return at_random(arguments, count);
+        return at_random(arguments, count as usize);
     }
     let report = Report::new(select(arguments)?);
     let text = if arguments.json { json(&report)? } else { table::markdown(&report) };

@@ -108,6 +108,25 @@ fn curvature_of_the_deviation_is_the_derivative_of_its_subgradient() {
     assert!((jacobian.tr_mul(&difference) - &product).norm() < 1e-13 * product.norm());
 }
 
+#[test]
+fn curvature_of_a_root_is_positive_where_one_node_carries_the_norm() {
+    for exponent in [8.0, 64.0] {
+        let cost = PressureCost { is_root: true, ..cost(PressureMeasure::Norm { exponent }) };
+        let jacobian = Matrix::from_fn(4, 3, |i, j| ((3 * i + j) as f64).sin());
+        let curvature = |c: &Vector| cost.curvature(c, &jacobian).expect("smooth");
+        // The curvature is of the size of (σ/N)^{p−2} at the other nodes: at p = 64 far below the rounding of the terms that cancel.
+        let eigenvalues = curvature(&Vector::from_vec(vec![1300.0, 500.0, 100.0, 0.0])).symmetric_eigenvalues();
+        assert!(
+            eigenvalues.min() >= -1e-14 * eigenvalues.max() && eigenvalues.max() > 0.0,
+            "{exponent}: {eigenvalues}"
+        );
+        let (c, d) = (Vector::from_vec(vec![3.0, 2.9, 2.8, 0.0]), Vector::from_vec(vec![3e-6, -7e-6, 4e-6]));
+        let slope = |sign: f64| jacobian.tr_mul(&cost.subgradient(&(&c + &jacobian * &d * sign)));
+        let (difference, product) = ((slope(1.0) - slope(-1.0)) * 0.5, curvature(&c) * &d);
+        assert!((&difference - &product).norm() < 1e-7 * product.norm(), "{exponent}: {difference} {product}");
+    }
+}
+
 proptest! {
     #[test]
     fn subgradients_lie_below_the_measure(
