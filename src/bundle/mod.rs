@@ -3,7 +3,7 @@
 //! ```text
 //! 1  cuts → convexified cutting-plane model m of Θ at the center x̂                      proposers/cuts/model.rs
 //! 2  min m(d) + u‖d‖²/2 over x̂ + d ∈ U → trial point y, predicted decrease, certificate         proposers/cuts
-//! 3  decrease small? lower u; else stop if the active cuts are near, else restart locally       small_decrease.rs
+//! 3  decrease small? lower u; else stop if the active cuts are near, else restart locally       small_decrease.rs, second_look.rs
 //!    a rival proposes instead: the curved model, an exploration        proposers/curved, proposers/exploration
 //!    Θ = h∘c: the composite model proposes before all others, and may prove x̂ stationary                 composite
 //! 4  evaluate Θ and one subgradient at y → new cut; failure: shorten the step                          oracle.rs
@@ -27,6 +27,7 @@ mod pairs;
 mod proposers;
 mod run;
 mod scales;
+mod second_look;
 mod small_decrease;
 mod start;
 mod state;

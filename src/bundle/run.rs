@@ -73,7 +73,7 @@ impl Run<'_, '_> {
         if let Some(termination) = &self.termination {
             return Break(termination.clone());
         }
-        let flow = self.advance();
+        let flow = self.advance().map_break(|word| self.after_second_look(word));
         if let Break(termination) = &flow {
             self.termination = Some(termination.clone());
         }

@@ -218,8 +218,17 @@ impl Run<'_, '_> {
     /// Ends the run if the point is confirmed, if noise or rounding hides what remains, or if no restart is left.
     fn stopping_test(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
         let radius = self.relative_radius(proposal);
-        let near = radius <= CONFIRMING_RADIUS;
-        let confirmed = Termination::Stationary { radius, gap: None };
+        match self.confirmed(proposal) {
+            Some(Termination::Stationary { .. }) if self.asks_for_second_look(radius, proposal.weight) => Continue(()),
+            Some(word) => Break(word),
+            None if self.may_restart() => Continue(()),
+            None => Break(Termination::StationaryUnconfirmed { radius }),
+        }
+    }
+
+    /// Why the run may end at a small predicted decrease; none where the active cuts lie too far, or leave too much.
+    pub(super) fn confirmed(&mut self, proposal: &Proposal) -> Option<Termination> {
+        let radius = self.relative_radius(proposal);
         let remaining = match self.noise() {
             // Where Θ is not convex, the cuts bound nothing.
             Some(_) if self.state.nonconvex => proposal.predicted_decrease,
@@ -228,16 +237,13 @@ impl Run<'_, '_> {
         };
         // Rounding that comes from cuts farther away than the variables are large is left behind by a restart.
         let hidden = self.noise().is_some() || radius <= 1.0;
-        if let Some(word) = self.word((remaining, MAX_REMAINING_DECREASES), confirmed)
-            && (near || hidden && matches!(word, Termination::NoiseLimit { .. }))
-        {
-            return Break(word);
-        }
+        let word = self.word((remaining, MAX_REMAINING_DECREASES), Termination::Stationary { radius, gap: None })?;
+        (radius <= CONFIRMING_RADIUS || hidden && matches!(word, Termination::NoiseLimit { .. })).then_some(word)
+    }
+
+    pub(super) fn may_restart(&self) -> bool {
         let allowed = if self.state.nonconvex { self.method.config.max_restarts } else { 1 };
-        if self.state.restarts >= allowed.min(self.method.config.max_restarts) {
-            return Break(Termination::StationaryUnconfirmed { radius });
-        }
-        Continue(())
+        self.state.restarts < allowed.min(self.method.config.max_restarts)
     }
 
     /// The radius of the active cuts relative to the length of the variables near the center.

@@ -163,6 +163,7 @@ fn first_evaluation(
         streak: 0,
         variation: None,
         restarts: 0,
+        first_proof: None,
         center_accuracy: accuracy.tolerance(),
         nonconvex: false,
         noise: 0.0,

@@ -1,5 +1,6 @@
 //! Everything a run carries from step to step.
 
+use super::cut::Cut;
 use super::kept_cuts::Bundle;
 use super::norm::ScaledNorm;
 use crate::report::{Counts, IterationRecord};
@@ -28,6 +29,15 @@ pub(crate) struct OutputScales {
     pub within_reach: f64,
 }
 
+/// What proved the center stationary before a restart that looks for something lower.
+#[derive(Debug, Clone)]
+pub(crate) struct FirstProof {
+    /// Θ at the center then.
+    pub value: f64,
+    pub weight: f64,
+    pub cuts: Vec<Cut>,
+}
+
 /// State of a run between two steps. The weight is u = 1/t of the trust parameter t.
 #[derive(Debug, Clone)]
 pub(crate) struct State {
@@ -50,6 +60,8 @@ pub(crate) struct State {
     pub variation: Option<f64>,
     /// Restarts since the last serious step that fell by more than the tolerance.
     pub restarts: usize,
+    /// None unless the run takes a second look at a confirmed end.
+    pub first_proof: Option<FirstProof>,
     /// Relative accuracy with which the center was last asked for.
     pub center_accuracy: f64,
     /// Whether a pair of cuts ever proved Θ nonconvex.

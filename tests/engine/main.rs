@@ -21,5 +21,6 @@ mod linear_scaling;
 mod many_variables;
 mod proposers;
 mod restart;
+mod second_look;
 mod terminations;
 mod words;
