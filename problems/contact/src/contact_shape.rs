@@ -24,7 +24,9 @@ use nonsmooth::{Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJ
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-pub use crate::any_solver::{AnySolver, AnyState, AutoSolver, Wanted};
+pub use crate::any_solver::AnySolver;
+pub use crate::any_state::AnyState;
+pub use crate::auto_solver::{AutoSolver, Wanted};
 pub use crate::equilibrium::ContactWarmStart;
 pub use crate::solver_kind::SolverKind;
 
@@ -146,7 +148,8 @@ impl<S: ContactSolver> ContactShape<S> {
         // An estimate that fails says nothing.
         let contraction = friction.then(|| self.solver.estimate_contraction(&state.solution, products).ok()).flatten();
         let bodies = self.bodies(state)?;
-        Ok(plausibility::warnings(self.problem(), &bodies, &state.forces, contraction))
+        let rounding = self.solver.force_rounding(&state.solution).map_err(oracle)?;
+        Ok(plausibility::warnings(self.problem(), &bodies, &state.forces, [contraction.unwrap_or(0.0), rounding]))
     }
 
     /// What this scene did not need, in words.

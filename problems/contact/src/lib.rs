@@ -53,6 +53,8 @@
 //! | [`error`] | what can be wrong with a scene, and why a contact problem has no answer |
 
 mod any_solver;
+mod any_state;
+mod auto_solver;
 pub mod body;
 pub mod communication;
 pub mod contact_objective;

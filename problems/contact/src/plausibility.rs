@@ -4,7 +4,7 @@
 //! discrete problem may be far from the body it stands for. Every warning has a code that does not change.
 
 use crate::deformation::Deformation;
-use crate::equilibrium::{ContactForces, ContactProblem, ContactStatus, SolvedBody};
+use crate::equilibrium::{ContactForces, ContactProblem, ContactStatus, MAX_RESIDUAL, SolvedBody};
 use serde::Serialize;
 use std::fmt;
 
@@ -51,18 +51,24 @@ fn warn(warnings: &mut Vec<Warning>, fails: bool, code: &'static str, text: impl
     }
 }
 
-/// What is implausible about a state; `contraction`: estimated contraction of the slip bounds, where friction asks for it.
+/// What is implausible about a state. The estimates: contraction of the slip bounds, and what the rounding of the solver's matrices has
+/// taken of the forces.
 pub fn warnings(
     problem: &ContactProblem,
     bodies: &[SolvedBody],
     forces: &ContactForces,
-    contraction: Option<f64>,
+    [contraction, rounding]: [f64; 2],
 ) -> Vec<Warning> {
     let mut found = Vec::new();
-    let estimate = contraction.unwrap_or(0.0);
-    warn(&mut found, estimate >= MAX_CONTRACTION, "not-unique", || {
+    warn(&mut found, contraction >= MAX_CONTRACTION, "not-unique", || {
         format!(
-            "the slip bounds contract by an estimated factor {estimate:.2} (below 1 needed): other equilibria may exist"
+            "the slip bounds contract by an estimated factor {contraction:.2} (below 1 needed): other equilibria may exist"
+        )
+    });
+    warn(&mut found, rounding.is_nan() || rounding > MAX_RESIDUAL, "few-digits", || {
+        format!(
+            "condensation of these bodies leaves an error of {rounding:.0e} of the load in the contact forces (at most \
+             {MAX_RESIDUAL:.0e}): total FETI keeps more digits where it converges"
         )
     });
     deformation(bodies, &mut found);

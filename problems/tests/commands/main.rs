@@ -35,6 +35,7 @@ mod reports;
 mod run_folder;
 mod stages;
 mod study;
+mod tall_columns;
 mod terminal;
 mod toy2d;
 

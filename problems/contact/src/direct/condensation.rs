@@ -56,6 +56,11 @@ impl CondensationPattern {
         Ok(Self { pattern, symbolic, contact: nodes.into_iter().map(|node| 3 * node).collect(), held })
     }
 
+    /// Sparsity and assembly of the body's stiffness matrix.
+    pub(super) fn local(&self) -> &LocalPattern {
+        &self.pattern
+    }
+
     /// Whether supports hold a dof of the body.
     pub fn held(&self) -> &[bool] {
         &self.held
@@ -141,6 +146,11 @@ impl CondensedBody {
             loads.col_as_slice_mut(column).copy_from_slice(&load);
         }
         loads
+    }
+
+    /// First dof of every contact node.
+    pub(super) fn contact(&self) -> &[usize] {
+        &self.contact
     }
 
     /// The loads over the whole body, N; 0 at held dofs.

@@ -12,6 +12,7 @@ mod condensation;
 mod cone_programs;
 mod diagnosis;
 mod displacement_load;
+mod force_rounding;
 mod newton;
 mod recovery;
 #[cfg(feature = "interior-point")]

@@ -214,6 +214,12 @@ impl CompliantContact {
         at(1.0)
     }
 
+    /// M⁻¹ r without contact compliance, with the smallest spring.
+    pub(super) fn exact_step(&self, linearizations: &[Linearization], residual: &[f64]) -> Vec<f64> {
+        let problem = Problem { delta: 0.0, spring: SPRINGS[0], tolerance: TIGHTEST, max_steps: 1 };
+        self.step(linearizations, residual, problem)
+    }
+
     /// M⁻¹ r for the derivative M with a spring: open nodes first, whose rows are those of the identity.
     fn step(&self, linearizations: &[Linearization], residual: &[f64], problem: Problem) -> Vec<f64> {
         let (count, rho) = (self.row_count(), 1.0 / (1.0 + problem.delta));

@@ -300,6 +300,20 @@ impl ContactSolver for DirectSolver {
         Ok(state.contact.estimate_contraction(&state.solution.unknowns, &state.solution.linearizations))
     }
 
+    fn force_rounding(&self, state: &DirectState) -> Result<f64, ContactError> {
+        if state.load == 0.0 {
+            return Ok(0.0);
+        }
+        let (contact, solution) = (&state.contact, &state.solution);
+        let upper = self.problem.upper_block()?;
+        let blocks = std::iter::once(&state.block).chain(&upper);
+        let patterns = std::iter::once(&self.lower).chain(&self.upper);
+        let parts = contact.bodies.iter().zip(patterns).zip(self.problem.bodies().zip(blocks));
+        let delta =
+            parts.map(|((body, pattern), (scene, block))| body.refinement(pattern, scene, block, &solution.forces));
+        Ok(contact.change_of_forces(&solution.linearizations, &delta.collect::<Vec<_>>()))
+    }
+
     fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
         self.whole_bodies(state)
     }

@@ -69,6 +69,15 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// [`ContactError`] from the linear system.
     fn estimate_contraction(&self, state: &Self::State, max_products: usize) -> Result<f64, ContactError>;
 
+    /// What the solver has lost of the contact forces by the rounding of its own matrices, as a share of the load, to first order
+    /// (method.md section 4); zero for a solver whose residuals know of it.
+    ///
+    /// # Errors
+    /// [`ContactError::InvertedElement`] never for a solved shape.
+    fn force_rounding(&self, _state: &Self::State) -> Result<f64, ContactError> {
+        Ok(0.0)
+    }
+
     /// All bodies of a solved shape, lower first.
     ///
     /// # Errors

@@ -1,5 +1,6 @@
 //! A scene made discrete: contact boundary, blocks of a shape, gaps, rigid motions. What both contact solvers share.
 
+use crate::body::elasticity::Formulation;
 use crate::body::elasticity::traction::face_weights;
 use crate::body::mesh::{Block, Grid};
 use crate::body::shape_load::loaded_faces;
@@ -13,6 +14,9 @@ use crate::shape::{AdmissibleSet, HeightMap};
 /// Ratio of the edges of a brick from which it is extreme: total FETI may take hundreds of products and more, above all for plates and
 /// for bricks that are long in the plan.
 const EXTREME_BRICK: f64 = 30.0;
+
+/// Poisson's ratio of standard bricks from which they are nearly incompressible: total FETI takes hundreds of products and more.
+const LOCKING: f64 = 0.499;
 
 /// The discrete problem behind a scene.
 #[derive(Debug)]
@@ -80,11 +84,17 @@ impl ContactProblem {
         std::array::from_fn(|axis| lengths[axis] / self.scene.mesh[axis] as f64)
     }
 
-    /// Longest over shortest edge of the bricks, where it is extreme.
-    pub(crate) fn extreme_aspect(&self) -> Option<f64> {
+    /// Why linear systems of the problem are ill conditioned, if material or bricks make them so: total FETI is slow then, and
+    /// condensation may lose digits.
+    pub(crate) fn ill_conditioned(&self) -> Option<String> {
+        let locking = self.bodies().map(|body| body.material).filter(|m| m.formulation() == Formulation::Standard);
+        let ratio = locking.map(|material| material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
+        if ratio >= LOCKING {
+            return Some(format!("Poisson's ratio {ratio} is nearly incompressible"));
+        }
         let [a, b, height] = self.brick_edges();
         let aspect = a.max(b).max(height) / a.min(b).min(height);
-        (aspect >= EXTREME_BRICK).then_some(aspect)
+        (aspect >= EXTREME_BRICK).then(|| format!("bricks have edges 1 : {aspect:.0}"))
     }
 
     /// The height of the bricks over both edges of their plan, or both edges over the height, where that is extreme: bricks

@@ -109,6 +109,17 @@ impl TotalFeti {
             bodies: None,
         })
     }
+
+    /// As [`ContactSolver::sensitivities`], with at most so many iterations for the adjoint.
+    pub(crate) fn sensitivities_within(
+        &self,
+        state: &TornState,
+        direction: &[f64],
+        tolerance: f64,
+        max_products: usize,
+    ) -> Result<Sensitivities, ContactError> {
+        self.solver.sensitivities_within(state, direction, tolerance, max_products)
+    }
 }
 
 impl SolverState for TornState {

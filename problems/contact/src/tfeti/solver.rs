@@ -17,6 +17,7 @@ use crate::tfeti::torn::{
     Constraints, PreconditionerKind, SubdomainFactors, TornModel, TornOptions, TornSubdomain, TornSystem, TornVector,
     whole_bodies,
 };
+use crate::work_estimate::MAX_PRODUCTS;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -272,6 +273,17 @@ impl TornSolver {
         direction: &[f64],
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
+        self.sensitivities_within(state, direction, tolerance, MAX_PRODUCTS)
+    }
+
+    /// As [`TornSolver::sensitivities`], with at most so many iterations for the adjoint.
+    pub(crate) fn sensitivities_within(
+        &self,
+        state: &TornState,
+        direction: &[f64],
+        tolerance: f64,
+        max_products: usize,
+    ) -> Result<Sensitivities, ContactError> {
         let mut clock = Clock::start();
         let (direction, loads) = self.problem().parts_of(direction)?;
         let Some(contact) = self.contact_of(state)? else {
@@ -293,7 +305,8 @@ impl TornSolver {
         let [work, size] = load.as_ref().map_or([0.0; 2], |load| load.products);
         let natural = (dot(scaled.contact(), iterate.multipliers.contact()).abs() + work.abs())
             / (contact.stiffness * height + contact.load);
-        let adjoint = contact.adjoint(&state.solution.linearizations, &scaled, load.as_ref(), tolerance, natural)?;
+        let linearizations = &state.solution.linearizations;
+        let adjoint = contact.adjoint(linearizations, &scaled, load.as_ref(), tolerance, natural, max_products)?;
         let value_error = contact.value_error(iterate, &adjoint, &scaled).with_displacements(size);
         let adjoint_seconds = clock.lap();
         Stage::ShapeDerivative.enter()?;

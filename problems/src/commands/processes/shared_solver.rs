@@ -137,6 +137,11 @@ impl ContactSolver for SharedSolver {
         self.call(state, task, |solver, state| solver.estimate_contraction(state, max_products), |_| 0)
     }
 
+    /// Every process condenses whole bodies, so that none waits for another.
+    fn force_rounding(&self, state: &SharedState) -> Result<f64, ContactError> {
+        self.own.force_rounding(&state.own)
+    }
+
     fn bodies(&self, state: &SharedState) -> Result<Vec<SolvedBody>, ContactError> {
         self.call(state, Task::Bodies, AnySolver::bodies, |_| 0)
     }

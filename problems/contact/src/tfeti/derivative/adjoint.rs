@@ -55,7 +55,8 @@ struct AdjointIterate {
 
 impl TornContact<'_> {
     /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ, `load` is l = ∂J/∂u where J depends on u.
-    /// `natural`: a residual, in the unit of j, that is rounding for the sensitivity however small that is.
+    /// `natural`: a residual, in the unit of j, that is rounding for the sensitivity however small that is. `max_products`: iterations
+    /// allowed in all, each of them a product with F.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] when the tolerance is not reached, [`ContactError::Unheld`].
@@ -66,6 +67,7 @@ impl TornContact<'_> {
         load: Option<&DisplacementLoad>,
         tolerance: f64,
         natural: f64,
+        max_products: usize,
     ) -> Result<TornAdjoint, ContactError> {
         let active = self.active_set(linearizations.to_vec(), Friction::Coulomb)?;
         let mut right: Vec<f64> = active.rows.trial_transposed(direction).into_iter().map(|entry| -entry).collect();
@@ -79,12 +81,14 @@ impl TornContact<'_> {
         let goal = if size < ROUNDING_SHARE * natural { TIGHTEST_ACCEPTABLE * natural } else { tolerance * size };
         let size = size.max(natural);
         let mut precision = self.precision;
+        let before = self.operator.applications();
         for _cycle in 0..MAX_CYCLES {
-            if iterate.residual <= goal {
+            let left = max_products.saturating_sub(self.operator.applications() - before);
+            if iterate.residual <= goal || left == 0 {
                 break;
             }
             let previous = iterate.residual;
-            system.adjoint_cycle(&mut iterate, goal, precision);
+            system.adjoint_cycle(&mut iterate, goal, precision, left.min(MAX_KRYLOV));
             match next_cycle(precision, previous, iterate.residual, goal) {
                 NextCycle::Continue => {}
                 NextCycle::Double => precision = Precision::Double,
@@ -102,7 +106,7 @@ impl TornContact<'_> {
                 solver: "adjoint GMRES on TFETI",
                 residual: iterate.residual / size,
                 tolerance,
-                iterations: MAX_KRYLOV,
+                iterations: self.operator.applications() - before,
                 history: vec![iterate.residual / size],
             });
         }
@@ -142,7 +146,7 @@ impl AdjointSystem<'_> {
 
     /// One run of a Krylov method with products in a given precision, towards a residual of `goal`; then the residual by one
     /// product in double precision.
-    fn adjoint_cycle(&self, iterate: &mut AdjointIterate, goal: f64, precision: Precision) {
+    fn adjoint_cycle(&self, iterate: &mut AdjointIterate, goal: f64, precision: Precision, max_krylov: usize) {
         let reduction = match precision {
             Precision::Double => 0.0,
             Precision::Mixed => CYCLE_REDUCTION,
@@ -164,12 +168,12 @@ impl AdjointSystem<'_> {
         let sums = self.contact.operator.model.sums();
         if self.contact.boundary.has_friction() {
             let krylov =
-                gmres(&sums, &iterate.projected, target, MAX_KRYLOV, patience, precondition, |z| (product(z), ()));
+                gmres(&sums, &iterate.projected, target, max_krylov, patience, precondition, |z| (product(z), ()));
             for (coefficient, z) in krylov.coefficients.iter().zip(&krylov.directions) {
                 add_scaled(&mut iterate.unknowns, *coefficient, z);
             }
         } else {
-            let krylov = pcg(&sums, &iterate.projected, target, MAX_KRYLOV, precondition, product);
+            let krylov = pcg(&sums, &iterate.projected, target, max_krylov, precondition, product);
             add_scaled(&mut iterate.unknowns, 1.0, &krylov.solution);
         }
         *iterate = self.evaluated(std::mem::take(&mut iterate.unknowns));
