@@ -5,7 +5,7 @@
 //! variation = min( highest − Θ(x̂),  max( median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂,
 //!                                        Σ_k size_k Σ_i |w_i| |G_ik| of a composite Θ ) )
 //!             then times 10 variation/|Θ(x̂)|, clamped to [0.02, 1]
-//! scale     = |Θ(x̂)| clamped to [1e-6 least, variation]
+//! scale     = |Θ(x̂)| clamped to [1e-6 least, variation], or to [1e-7 least, variation] for a Θ declared convex
 //! length    = ‖x̂‖ for distances up to ‖x̂‖,  else at least 1e-3 max(‖x̂‖, ‖x̂ − x⁰‖, ‖x⁰‖)
 //! least     = min( highest − Θ(x̂),  max( Σ_j λ_j Σ_i |g_ji| reach_i,  h(c ± |G| reach) − h(c) of a composite Θ ) )
 //! bound     = ẽ + Σ_i |z̃_i| reach_i ≥ Θ(x̂) − Θ(y)        if Θ is convex and |y_i − x̂_i| ≤ reach_i
@@ -14,7 +14,7 @@
 //! and the bound do not depend on the units of the variables. Cuts farther away than the variables are large tell nothing about the
 //! values near x̂. A run that has not gone anywhere has seen no variation: nothing is small yet.
 
-use super::config::BundleTrustConfig;
+use super::config::{BundleTrustConfig, Convexity};
 use super::kept_cuts::Spread;
 use super::proposers::aggregate::aggregate_sizes;
 use super::proposers::proposal::Proposal;
@@ -31,6 +31,9 @@ const LEAST_SHARE: f64 = 1e-8;
 const LEAST_LENGTH_SHARE: f64 = 1e-3;
 /// The least scale of Θ, as a share of what the active cuts vary within reach.
 const LEAST_VALUE_SHARE: f64 = 1e-6;
+/// The same for a Θ that is declared convex. Its word is a bound, which is that much sharper: after starts 1e6 times too far, bounds of 2e-5
+/// counted as small.
+const LEAST_CONVEX_SHARE: f64 = 1e-7;
 /// Values beyond this many times their variation carry a shift.
 const MAX_VALUE_SHARE: f64 = 10.0;
 /// Where values carry a shift, the variation alone tells the scale, and only this share of it counts: without a shift the values
@@ -76,7 +79,9 @@ impl State {
             if size > 0.0 {
                 variation *= (MAX_VALUE_SHARE * variation / size).clamp(SHIFTED_SHARE, 1.0);
             }
-            let least = LEAST_VALUE_SHARE * drop.min(self.active_variation().max(outputs.reach));
+            let convex = config.convexity == Convexity::Convex;
+            let share = if convex { LEAST_CONVEX_SHARE } else { LEAST_VALUE_SHARE };
+            let least = share * drop.min(self.active_variation().max(outputs.reach));
             size.clamp(least.min(variation), variation)
         })
     }

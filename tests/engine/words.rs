@@ -1,5 +1,5 @@
 //! The last word of a run is true, whatever the start, a shift, units, a wide side, failures and huge answers.
-use crate::common::{median, nearby_starts, v};
+use crate::common::{maximum, median, nearby_starts, v};
 use nonsmooth::{
     Answer, BundleTrust, BundleTrustConfig, Convexity, Evaluation, FnObjective, NonsmoothObjective, OracleError,
     Polyhedron, Report, Request, Termination, Vector,
@@ -203,6 +203,36 @@ fn a_valley_is_not_confirmed_because_its_start_lay_far_away() {
         let report = BundleTrust::new(config).unwrap().minimize(&valley, start).unwrap();
         assert!(!report.termination.is_confirmed() || report.value - 1.0 <= 1e-5, "{seed}: {report}");
     }
+}
+
+#[test]
+fn a_convex_bound_is_small_beside_more_than_a_far_start() {
+    // The largest of n + 1 quadratics whose slopes at their common zero cancel: the minimum is 0. Starts lie 1e6 times as far away as it.
+    let above = (0..80).filter(|seed| {
+        let n = 2 + seed % 3;
+        let number = |index: usize| ((131 * seed + 17 * index + 1) as f64 * 0.618).sin();
+        let vector = |first: usize| Vector::from_fn(n, |i, _| number(first + i));
+        let mut slopes: Vec<Vector> =
+            (0..n).map(|piece| vector(10 * piece) * 10f64.powf(2.0 * number(piece))).collect();
+        let last = slopes.iter().fold(Vector::zeros(n), |sum, slope| sum - slope);
+        slopes.push(last);
+        let minimiser = vector(100);
+        let theta = FnObjective::new(n, |x: &Vector| {
+            let step = x - &minimiser;
+            let piece = |(index, slope): (usize, &Vector)| {
+                let (curvature, direction) = (2.5 * (1.0 + number(index)), vector(200 + 10 * index));
+                let along = direction.dot(&step);
+                let value = slope.dot(&step) + 0.5 * along * along + 0.5 * curvature * step.norm_squared();
+                (value, slope + &direction * along + &step * curvature)
+            };
+            maximum(slopes.iter().enumerate().map(piece).collect())
+        });
+        let config = BundleTrustConfig { convexity: Convexity::Convex, max_evaluations: 1000, ..Default::default() };
+        let report = BundleTrust::new(config).unwrap().minimize(&theta, vector(300) * 1e6).unwrap();
+        report.termination.is_confirmed() && report.value > 1e-5
+    });
+    // 30 where the share was that of other functions. The one that is left starts at 6e12 and ends at 1.6e-5.
+    assert!(above.count() <= 1);
 }
 
 /// Fails at every tenth point, the same points whenever they are asked for.
