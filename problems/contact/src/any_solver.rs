@@ -169,11 +169,4 @@ impl ContactSolver for AnySolver {
             AnyState::Direct(state) => self.direct()?.bodies(state),
         }
     }
-
-    fn strain_energy(&self, state: &AnyState) -> Option<f64> {
-        match state {
-            AnyState::Torn(state) => self.torn().ok()?.strain_energy(state),
-            AnyState::Direct(state) => self.direct().ok()?.strain_energy(state),
-        }
-    }
 }

@@ -221,7 +221,10 @@ impl<S: ContactSolver> ContactShape<S> {
     }
 
     /// All bodies of a solved shape: those that the state holds, else recovered now.
-    fn bodies(&self, state: &ContactState<S::State>) -> Result<Vec<SolvedBody>, OracleError> {
+    ///
+    /// # Errors
+    /// [`OracleError::Failed`] for a state of another mesh.
+    pub fn bodies(&self, state: &ContactState<S::State>) -> Result<Vec<SolvedBody>, OracleError> {
         state.bodies.clone().map_or_else(|| self.solver.bodies(&state.solution).map_err(oracle), Ok)
     }
 

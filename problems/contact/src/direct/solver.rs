@@ -317,10 +317,6 @@ impl ContactSolver for DirectSolver {
     fn bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
         self.whole_bodies(state)
     }
-
-    fn strain_energy(&self, _state: &DirectState) -> Option<f64> {
-        None
-    }
 }
 
 impl DirectSolver {

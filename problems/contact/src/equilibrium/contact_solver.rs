@@ -83,9 +83,6 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// # Errors
     /// [`ContactError::ForeignState`] for a state of another mesh.
     fn bodies(&self, state: &Self::State) -> Result<Vec<SolvedBody>, ContactError>;
-
-    /// Strain energy of all bodies, N·mm; none for a solver that keeps no displacements inside the bodies.
-    fn strain_energy(&self, state: &Self::State) -> Option<f64>;
 }
 
 /// Directional derivatives of a contact state, one per change of the heights, and what they cost.

@@ -177,8 +177,4 @@ impl ContactSolver for TotalFeti {
     fn bodies(&self, state: &TornState) -> Result<Vec<SolvedBody>, ContactError> {
         self.solver.bodies(state)
     }
-
-    fn strain_energy(&self, state: &TornState) -> Option<f64> {
-        Some(self.solver.strain_energy(state))
-    }
 }

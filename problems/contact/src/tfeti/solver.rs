@@ -14,8 +14,7 @@ use crate::tfeti::derivative::{DisplacementLoad, MovedSurface, height_sensitivit
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::NewtonSettings;
 use crate::tfeti::torn::{
-    Constraints, PreconditionerKind, SubdomainFactors, TornModel, TornOptions, TornSubdomain, TornSystem, TornVector,
-    whole_bodies,
+    Constraints, PreconditionerKind, TornModel, TornOptions, TornSystem, TornVector, whole_bodies,
 };
 use crate::work_estimate::MAX_PRODUCTS;
 use std::sync::Arc;
@@ -345,19 +344,6 @@ impl TornSolver {
     pub fn bodies(&self, state: &TornState) -> Result<Vec<SolvedBody>, ContactError> {
         self.check(state)?;
         Ok(whole_bodies(&self.model, &state.blocks, &state.displacement))
-    }
-
-    /// Strain energy ½ uᵀK u, N·mm. Where there are several processes, all of them call it.
-    pub fn strain_energy(&self, state: &TornState) -> f64 {
-        let pattern = &self.model.pattern.pattern;
-        let energy = |(part, subdomain): (&Arc<SubdomainFactors>, &TornSubdomain)| {
-            let u = &state.displacement.0[subdomain.first_dof..subdomain.first_dof + subdomain.place.dof_count()];
-            let mut image = vec![0.0; pattern.dimension()];
-            pattern.multiply(&part.stiffness, u, &mut image);
-            0.5 * dot(u, &image)
-        };
-        let own: Vec<f64> = state.system.parts.iter().zip(&self.model.subdomains).map(energy).collect();
-        self.model.distribution.sum(&own, 1)[0]
     }
 }
 

@@ -40,7 +40,10 @@ fn results(scene: &Scene, clusters: [usize; 3], method: DualMethod) -> Vec<(&'st
         ("normal forces", forces.normal),
         ("tangential forces", forces.tangential.as_flattened().to_vec()),
         ("displacements", bodies.iter().flat_map(|body| body.displacement.as_flattened().to_vec()).collect()),
-        ("energy", vec![solver.strain_energy(&solution).unwrap()]),
+        (
+            "energy",
+            bodies.iter().zip(problem.bodies()).map(|(body, scene)| body.strain_energy(&scene.material)).collect(),
+        ),
         ("sensitivities", heights),
         ("tangents", tangents.forces.concat()),
     ]

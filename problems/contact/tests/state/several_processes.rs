@@ -46,7 +46,6 @@ struct Outcome {
     /// At process 0 alone.
     bodies: Vec<SolvedBody>,
     contraction: f64,
-    strain_energy: f64,
     factorizations: usize,
     products: usize,
 }
@@ -81,7 +80,6 @@ fn solve(scene: &Scene, clusters: [usize; 3], communication: Option<Rank>, metho
         tangents,
         bodies: solver.bodies(&state).unwrap(),
         contraction,
-        strain_energy: solver.strain_energy(&state).unwrap(),
         factorizations: work.factorizations,
         products: work.dual_operator_applications,
     }

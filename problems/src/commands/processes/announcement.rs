@@ -28,8 +28,6 @@ pub enum Task {
     Contraction(Id, Id, usize),
     /// All bodies of a state.
     Bodies(Id, Id),
-    /// Strain energy of a state.
-    StrainEnergy(Id, Id),
     /// What a shape similar to that of a state can be solved from.
     WarmStart(Id),
     /// Tell what this process has sent and used.

@@ -66,9 +66,6 @@ impl Follower {
                 self.derives(solver, state, |solver, state| solver.estimate_contraction(state, products))?;
             }
             Task::Bodies(solver, state) => self.derives(solver, state, AnySolver::bodies)?,
-            Task::StrainEnergy(solver, state) => {
-                let _ = self.solver(solver)?.strain_energy(self.state(state)?);
-            }
             Task::WarmStart(state) => {
                 let _ = self.state(state)?.warm_start();
             }

@@ -145,12 +145,4 @@ impl ContactSolver for SharedSolver {
     fn bodies(&self, state: &SharedState) -> Result<Vec<SolvedBody>, ContactError> {
         self.call(state, Task::Bodies, AnySolver::bodies, |_| 0)
     }
-
-    fn strain_energy(&self, state: &SharedState) -> Option<f64> {
-        let own = || self.own.strain_energy(&state.own);
-        match (&self.shared, &state.shared) {
-            (Some(name), Some(of)) => name.leader.together(Task::StrainEnergy(name.id, of.id), own).ok()?,
-            _ => own(),
-        }
-    }
 }

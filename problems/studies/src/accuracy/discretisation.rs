@@ -6,7 +6,6 @@ use crate::accuracy::extent::case;
 use crate::accuracy::objective::{EXPONENT, norm, objective_of};
 use crate::rates::{Extrapolation, extrapolate, observed};
 use crate::scaling::SceneName;
-use contact::equilibrium::ContactSolver;
 use nonsmooth::{Accuracy, StateSolver};
 use problems::commands::Failure;
 use serde::Serialize;
@@ -91,10 +90,11 @@ fn measure(scene: SceneName, mesh: usize) -> Result<MeshRow, Failure> {
         first += force * x1;
         second += force * (x1 * x1 + x2 * x2);
     }
-    let energy = shape.contact_solver().strain_energy(&state.solution).unwrap_or(f64::NAN);
-    let bodies = if problem.scene.upper.is_some() { 2 } else { 1 };
+    let bodies = shape.bodies(&state)?;
+    let materials = problem.bodies().map(|body| &body.material);
+    let energy = bodies.iter().zip(materials).map(|(body, material)| body.strain_energy(material)).sum();
     let case = case(mesh);
-    let dofs = 3 * bodies * case.subdomains.pow(3) * (case.ratio() + 1).pow(3);
+    let dofs = 3 * bodies.len() * case.subdomains.pow(3) * (case.ratio() + 1).pow(3);
     let values = [integral, peak, first, second, energy];
     let none = [f64::NAN; QUANTITIES.len()];
     Ok(MeshRow { bricks: mesh, dofs, seconds, values, errors: none, rates: [None; QUANTITIES.len()] })
