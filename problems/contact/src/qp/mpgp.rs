@@ -25,46 +25,6 @@ pub struct FacePreconditioner<'a> {
     pub diagonal: f64,
 }
 
-/// Constants of the method.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MpgpSettings {
-    /// Γ > 0: constraints are let go when |chopped| > Γ·|free|. Default 0.5; larger holds them longer.
-    pub proportion: f64,
-    /// Relative residual at which conjugate gradients leave a face, in (0, 1). Default 0.1.
-    pub forcing: f64,
-    /// Share of the certain gain of a projected step that a sweep must reach, in (0, 1). Default 0.1.
-    pub sufficient: f64,
-    /// Products with H allowed. Default 20 000.
-    pub max_products: usize,
-    /// Conjugate gradient steps allowed without a gradient computed from x, at least 1. Default 100.
-    pub refresh: usize,
-}
-
-impl Default for MpgpSettings {
-    fn default() -> Self {
-        Self { proportion: 0.5, forcing: 0.1, sufficient: 0.1, max_products: 20_000, refresh: 100 }
-    }
-}
-
-impl MpgpSettings {
-    /// Checks every constant.
-    ///
-    /// # Errors
-    /// [`QpError::Setting`].
-    pub fn validate(&self) -> Result<(), QpError> {
-        let unit = |value: f64| value > 0.0 && value < 1.0;
-        setting("proportion", self.proportion, "> 0", self.proportion > 0.0)?;
-        setting("forcing", self.forcing, "in (0, 1)", unit(self.forcing))?;
-        setting("sufficient", self.sufficient, "in (0, 1)", unit(self.sufficient))?;
-        setting("refresh", self.refresh as f64, "at least 1", self.refresh > 0)
-    }
-}
-
-/// Refuses a setting that is not `valid`.
-pub(crate) fn setting(name: &'static str, value: f64, allowed: &'static str, valid: bool) -> Result<(), QpError> {
-    if valid { Ok(()) } else { Err(QpError::Setting { name, value, allowed }) }
-}
-
 /// Products with H by the kind of step that needed them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StepCounts {
@@ -113,8 +73,8 @@ pub struct Mpgp<'a> {
     pub preconditioner: Option<FacePreconditioner<'a>>,
     /// Upper estimate of |H|; raised when a step shows that it is too small.
     pub norm: f64,
-    /// Constants.
-    pub settings: MpgpSettings,
+    /// Products with H allowed.
+    pub max_products: usize,
     /// Work so far.
     pub counts: StepCounts,
 }
@@ -140,8 +100,9 @@ impl Mpgp<'_> {
     /// # Errors
     /// [`QpError::Dimension`], [`QpError::Setting`], [`QpError::NotFinite`].
     pub fn start(&mut self, mut x: Vec<f64>, linear: &[f64]) -> Result<Point, QpError> {
-        self.settings.validate()?;
-        setting("norm", self.norm, "finite and > 0", self.norm > 0.0 && self.norm.is_finite())?;
+        if !(self.norm > 0.0 && self.norm.is_finite()) {
+            return Err(QpError::Setting { name: "norm", value: self.norm, allowed: "finite and > 0" });
+        }
         let expected = self.hessian.dimension();
         for (what, found) in [("start", x.len()), ("linear term", linear.len()), ("set", self.set.dimension())] {
             if found != expected {
@@ -184,14 +145,14 @@ impl Mpgp<'_> {
                 return Ok(Ending::Stagnated);
             }
             history.push(length);
-            if self.counts.products() >= self.settings.max_products {
+            if self.counts.products() >= self.max_products {
                 let (residual, steps) = (length / norm(linear).max(f64::MIN_POSITIVE), self.counts.products());
                 return Err(QpError::NotConverged { solver: "MPGP", residual, steps, history });
             }
             let before = self.counts.cg_steps;
             if self.advance(point, linear, &reduced, tolerance)? {
                 since_refresh += 1 + self.counts.cg_steps - before;
-                if since_refresh <= self.settings.refresh {
+                if since_refresh <= REFRESH {
                     continue;
                 }
             } else if since_refresh == 0 {
@@ -212,10 +173,10 @@ impl Mpgp<'_> {
         tolerance: &dyn Fn(&[f64]) -> f64,
     ) -> Result<bool, QpError> {
         let (free, chopped) = self.set.split(&point.x, &point.gradient, reduced);
-        let release = chopped > self.settings.proportion * self.settings.proportion * free;
+        let release = chopped > PROPORTION * PROPORTION * free;
         let face = Face::new(self.set, &point.x, &point.gradient, release);
         let sweep = self.sweep(point, &face, release, tolerance)?;
-        let certain = 0.5 * self.settings.sufficient * (free + chopped) / self.norm;
+        let certain = 0.5 * SUFFICIENT * (free + chopped) / self.norm;
         let mut x = point.x.clone();
         add_scaled(&mut x, 1.0, &sweep.step);
         let gradient = if self.set.project(&mut x) {
@@ -249,8 +210,8 @@ impl Mpgp<'_> {
         let mut direction = vec![0.0; size];
         let mut previous = 0.0;
         let mut position = point.x.clone();
-        for index in 0..self.settings.refresh {
-            if norm(&residual) <= (self.settings.forcing * start).max(0.5 * tolerance(&position)) {
+        for index in 0..REFRESH {
+            if norm(&residual) <= (FORCING * start).max(0.5 * tolerance(&position)) {
                 break;
             }
             let z = self.precondition(face, &residual);
@@ -370,6 +331,14 @@ impl Mpgp<'_> {
     }
 }
 
+/// Γ: constraints are let go when |chopped| > Γ·|free|; a larger one holds them longer.
+const PROPORTION: f64 = 0.5;
+/// Relative residual at which conjugate gradients leave a face.
+const FORCING: f64 = 0.1;
+/// Share of the certain gain of a projected step that a sweep must reach.
+const SUFFICIENT: f64 = 0.1;
+/// Conjugate gradient steps allowed without a gradient computed from x.
+const REFRESH: usize = 100;
 /// Multiple of the rounding of the gradient below which |g̃| means nothing.
 const ROUNDED: f64 = 2.0;
 /// The same, if no progress was made for [`MAX_STALLED_ITERATIONS`] sweeps.

@@ -1,7 +1,6 @@
-//! Programs with equalities: data, constants of the outer loop, warm starts, results.
+//! Programs with equalities: data, limits, warm starts, results.
 
-use crate::qp::mpgp::setting;
-use crate::qp::{LinearEqualities, MpgpSettings, QpError, SeparableSet, StepCounts, SymmetricOperator};
+use crate::qp::{LinearEqualities, SeparableSet, StepCounts, SymmetricOperator};
 
 /// The data of a program.
 #[derive(Clone, Copy)]
@@ -24,52 +23,18 @@ impl QuadraticProgram<'_> {
     }
 }
 
-/// Constants of the outer loop; see [`smalse`](crate::qp::smalse) for ρ, M, β, η and μ.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SmalseSettings {
-    /// ρ over |H|/|C|², > 0. Default 1.
-    pub penalty: f64,
-    /// First M over ρ|C|, > 0. Default 1.
-    pub first_m: f64,
-    /// β, the factor of M, in (0, 1). Default 0.8.
-    pub beta: f64,
-    /// η > 0. Default 1.
-    pub eta: f64,
-    /// Updates of μ allowed. Default 500.
-    pub max_outer: usize,
-    /// Lanczos steps for |H| when it is not known; a low estimate costs steps, not correctness. Default 5.
-    pub norm_steps: usize,
-    /// Constants of the inner solver.
-    pub inner: MpgpSettings,
+/// Work allowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct QpLimits {
+    /// Updates of μ. Default 500.
+    pub outer: usize,
+    /// Products with H of the inner solver. Default 20 000.
+    pub products: usize,
 }
 
-impl Default for SmalseSettings {
+impl Default for QpLimits {
     fn default() -> Self {
-        Self {
-            penalty: 1.0,
-            first_m: 1.0,
-            beta: 0.8,
-            eta: 1.0,
-            max_outer: 500,
-            norm_steps: 5,
-            inner: MpgpSettings::default(),
-        }
-    }
-}
-
-impl SmalseSettings {
-    /// Checks every constant.
-    ///
-    /// # Errors
-    /// [`QpError::Setting`].
-    pub fn validate(&self) -> Result<(), QpError> {
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        setting("penalty", self.penalty, "finite and > 0", positive(self.penalty))?;
-        setting("first_m", self.first_m, "finite and > 0", positive(self.first_m))?;
-        setting("beta", self.beta, "in (0, 1)", self.beta > 0.0 && self.beta < 1.0)?;
-        setting("eta", self.eta, "> 0", self.eta > 0.0)?;
-        setting("norm_steps", self.norm_steps as f64, "at least 1", self.norm_steps > 0)?;
-        self.inner.validate()
+        Self { outer: 500, products: 20_000 }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! L(x, μ) = ½ xᵀHx − xᵀb + μᵀ(C x − e) + ρ/2 |C x − e|²
-//! 1. find x ∈ Ω with |g̃(x, μ)| ≤ min(M |C x − e|, η |b|)                    (MPGP, warm)
+//! 1. find x ∈ Ω with |g̃(x, μ)| ≤ min(M |C x − e|, |b|)                    (MPGP, warm)
 //! 2. stop when |g̃| and |C x − e| are small enough
 //! 3. μ ← μ + ρ (C x − e);   if L grew by less than ρ/2 |C x − e|²: M ← β M
 //! ```
@@ -12,7 +12,7 @@
 use crate::linear::vector::{add_scaled, dot, norm};
 use crate::qp::mpgp::Ending;
 use crate::qp::{
-    FacePreconditioner, Mpgp, Point, QpError, QuadraticProgram, SmalseSettings, SmalseSolution, StepCounts, WarmStart,
+    FacePreconditioner, Mpgp, Point, QpError, QpLimits, QuadraticProgram, SmalseSolution, StepCounts, WarmStart,
     largest_eigenvalue,
 };
 
@@ -25,7 +25,7 @@ use crate::qp::{
 /// let set = SeparableSet::new(2, vec![Block::HalfLine { index: 0, bound: 0.5 }])?;
 /// let line = DenseEqualities { transposed: nonsmooth::Matrix::from_element(2, 1, 1.0), right_side: vec![0.0] };
 /// let program = QuadraticProgram { hessian: &hessian, linear: &[0.0; 2], set: &set, equalities: &line };
-/// let solver = Smalse { program, preconditioner: None, settings: SmalseSettings::default() };
+/// let solver = Smalse { program, preconditioner: None, limits: QpLimits::default() };
 /// let start = WarmStart { x: vec![0.0; 2], ..WarmStart::default() };
 /// let x = solver.solve(&start, 1e-10)?.warm.x;
 /// assert!((x[0] - 0.5).abs() < 1e-9 && (x[1] + 0.5).abs() < 1e-9);
@@ -37,8 +37,8 @@ pub struct Smalse<'a> {
     pub program: QuadraticProgram<'a>,
     /// Preconditioner of H + ρCᵀC inside faces.
     pub preconditioner: Option<FacePreconditioner<'a>>,
-    /// Constants.
-    pub settings: SmalseSettings,
+    /// Work allowed.
+    pub limits: QpLimits,
 }
 
 impl Smalse<'_> {
@@ -96,15 +96,15 @@ impl Smalse<'_> {
                 set: self.program.set,
                 preconditioner: self.preconditioner,
                 norm: state.norm + state.rho * state.row_norm * state.row_norm,
-                settings: self.settings.inner,
+                max_products: self.limits.products,
                 counts: state.counts,
             };
             if history.is_empty() {
                 state.begin(&mut inner, start)?;
             }
-            let stagnated = state.inner_solve(&mut inner, self.settings.eta * scale, floor)?;
+            let stagnated = state.inner_solve(&mut inner, scale, floor)?;
             state.counts = inner.counts;
-            let solution = state.update(self, inner.norm, history.len());
+            let solution = state.update(inner.norm, history.len());
             history.push((solution.reduced_gradient + state.rho * solution.infeasibility) / scale);
             if !history[history.len() - 1].is_finite() {
                 return Err(QpError::NotFinite { what: "residual of the equalities" });
@@ -118,7 +118,7 @@ impl Smalse<'_> {
             if converged || stalled > STALLED || (bounds_alone && solution.reduced_gradient <= floor) {
                 return Ok(SmalseSolution { converged, ..solution });
             }
-            if history.len() >= self.settings.max_outer {
+            if history.len() >= self.limits.outer {
                 let residual = history[history.len() - 1];
                 let steps = state.counts.products();
                 return Err(QpError::NotConverged { solver: "SMALSE-M", residual, steps, history });
@@ -126,9 +126,8 @@ impl Smalse<'_> {
         }
     }
 
-    /// Checks settings and sizes.
+    /// Checks sizes.
     fn check(&self, start: &WarmStart) -> Result<(), QpError> {
-        self.settings.validate()?;
         let expected = self.program.hessian.dimension();
         let sizes = [
             ("linear term", self.program.linear.len()),
@@ -159,11 +158,15 @@ impl Smalse<'_> {
         if let Some(norm) = start.norm {
             return Ok(norm);
         }
-        let estimate = NORM_SAFETY * largest_eigenvalue(self.program.hessian, self.settings.norm_steps)?;
+        let estimate = NORM_SAFETY * largest_eigenvalue(self.program.hessian, NORM_STEPS)?;
         Ok(if estimate > 0.0 { estimate } else { 1.0 })
     }
 }
 
+/// β, the factor of M.
+const BETA: f64 = 0.8;
+/// Lanczos steps for |H| where it is not known; a low estimate costs steps, not correctness.
+const NORM_STEPS: usize = 5;
 /// Factor on the Lanczos estimate of |H|.
 const NORM_SAFETY: f64 = 1.05;
 /// Multiple of the tolerance accepted when rounding stops all progress.
@@ -206,8 +209,8 @@ impl<'a> State<'a> {
         let row_norm = largest_eigenvalue(&gram, ROW_NORM_STEPS)?.max(0.0).sqrt();
         let known = start.multipliers.len() == right.len();
         let multipliers = if known { start.multipliers.clone() } else { vec![0.0; right.len()] };
-        let rho = if row_norm > 0.0 { solver.settings.penalty * norm / (row_norm * row_norm) } else { 0.0 };
-        let m = start.m.unwrap_or(solver.settings.first_m * rho * row_norm);
+        let rho = if row_norm > 0.0 { norm / (row_norm * row_norm) } else { 0.0 };
+        let m = start.m.unwrap_or(rho * row_norm);
         let mut linear = program.linear.to_vec();
         let shift: Vec<f64> = right.iter().zip(&multipliers).map(|(e, mu)| rho * e - mu).collect();
         add_scaled(&mut linear, 1.0, &equalities.apply_transposed(&shift));
@@ -270,7 +273,7 @@ impl<'a> State<'a> {
     }
 
     /// Step 3, the update of μ and M; returns the solution so far.
-    fn update(&mut self, solver: &Smalse<'_>, norm_rho: f64, outer: usize) -> SmalseSolution {
+    fn update(&mut self, norm_rho: f64, outer: usize) -> SmalseSolution {
         let reduced = self.program.set.reduced_gradient(&self.point.x, &self.point.gradient, 1.0 / norm_rho);
         let equalities = self.program.equalities;
         let defect = self.program.defect(&self.point.x);
@@ -280,7 +283,7 @@ impl<'a> State<'a> {
         let right = equalities.right_side();
         let lagrangian = energy - dot(&self.multipliers, right) + 0.5 * self.rho * dot(right, right);
         if lagrangian < self.lagrangian + 0.5 * self.rho * infeasibility * infeasibility {
-            self.m *= solver.settings.beta;
+            self.m *= BETA;
         }
         self.lagrangian = lagrangian;
         add_scaled(&mut self.multipliers, self.rho, &defect);

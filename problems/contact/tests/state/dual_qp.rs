@@ -5,7 +5,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use contact::linear::vector::{add_scaled, norm};
 use contact::qp::{
-    Block, DenseEqualities, FacePreconditioner, QpError, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
+    Block, DenseEqualities, FacePreconditioner, QpError, QpLimits, QuadraticProgram, SeparableSet, Smalse,
     SmalseSolution, SymmetricOperator, WarmStart, largest_eigenvalue,
 };
 use nonsmooth::Matrix;
@@ -77,11 +77,11 @@ impl Instance {
         DenseEqualities { transposed: Matrix::from_vec(self.dimension(), rows.len(), rows.concat()), right_side }
     }
 
-    fn solve(&self, settings: SmalseSettings, tolerance: f64) -> Result<SmalseSolution, QpError> {
+    fn solve(&self, limits: QpLimits, tolerance: f64) -> Result<SmalseSolution, QpError> {
         let (hessian, set, rows) = (self.hessian(), self.set(), self.dense_equalities());
         let program = QuadraticProgram { hessian: &hessian, linear: &self.linear, set: &set, equalities: &rows };
         let start = WarmStart { x: vec![0.0; self.dimension()], ..WarmStart::default() };
-        Smalse { program, preconditioner: None, settings }.solve(&start, tolerance)
+        Smalse { program, preconditioner: None, limits }.solve(&start, tolerance)
     }
 
     fn residual(&self, solution: &SmalseSolution) -> f64 {
@@ -249,7 +249,7 @@ proptest! {
         let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities: &rows };
         let preconditioner = Some(FacePreconditioner { operator: &inverse, diagonal: 1.0 });
         let start = WarmStart { x: vec![0.0; instance.dimension()], ..WarmStart::default() };
-        let solver = Smalse { program, preconditioner, settings: SmalseSettings::default() };
+        let solver = Smalse { program, preconditioner, limits: QpLimits::default() };
         let solution = solver.solve(&start, 1e-10).expect("solvable");
         prop_assert!(instance.residual(&solution) < 1e-8);
     }
@@ -268,7 +268,7 @@ fn random_programs_satisfy_kkt_and_agree_with_the_conic_solver() {
         &instances(),
         |instance| {
             prop_assume!(instance.is_well_posed());
-            let solution = instance.solve(SmalseSettings::default(), 1e-10).expect("solvable");
+            let solution = instance.solve(QpLimits::default(), 1e-10).expect("solvable");
             // The size of the solution that the data suggest may be some hundred times its true size.
             prop_assert!(instance.residual(&solution) < 1e-7, "{}", instance.residual(&solution));
             let Some(reference) = instance.reference() else {
@@ -333,7 +333,7 @@ fn string(stiffness: f64, force: f64) -> Instance {
 
 #[test]
 fn step_counts_of_a_string_over_obstacles() {
-    let solution = string(1.0, 1.0).solve(SmalseSettings::default(), 1e-8).expect("solvable");
+    let solution = string(1.0, 1.0).solve(QpLimits::default(), 1e-8).expect("solvable");
     let counts = solution.counts;
     let found = (solution.outer, counts.cg_steps, counts.expansion_steps, counts.proportioning_steps);
     assert_eq!((found, counts.refreshed_gradients), ((16, 80, 24, 1), 1));
@@ -342,8 +342,8 @@ fn step_counts_of_a_string_over_obstacles() {
 #[test]
 fn units_do_not_matter() {
     // Powers of two scale every number exactly, so that the runs must be the same step by step.
-    let plain = string(1.0, 1.0).solve(SmalseSettings::default(), 1e-8).expect("solvable");
-    let scaled = string(2.0_f64.powi(40), 2.0_f64.powi(-10)).solve(SmalseSettings::default(), 1e-8).expect("solvable");
+    let plain = string(1.0, 1.0).solve(QpLimits::default(), 1e-8).expect("solvable");
+    let scaled = string(2.0_f64.powi(40), 2.0_f64.powi(-10)).solve(QpLimits::default(), 1e-8).expect("solvable");
     assert_eq!((plain.outer, plain.counts), (scaled.outer, scaled.counts));
     let factor = 2.0_f64.powi(50);
     assert!(plain.warm.x.iter().zip(&scaled.warm.x).all(|(a, b)| *a == b * factor));
@@ -352,34 +352,32 @@ fn units_do_not_matter() {
 #[test]
 fn warm_start_at_the_solution_costs_nothing_new() {
     let instance = string(1.0, 1.0);
-    let first = instance.solve(SmalseSettings::default(), 1e-8).expect("solvable");
+    let first = instance.solve(QpLimits::default(), 1e-8).expect("solvable");
     let (hessian, set, rows) = (instance.hessian(), instance.set(), instance.dense_equalities());
     let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities: &rows };
-    let again = Smalse { program, preconditioner: None, settings: SmalseSettings::default() }.solve(&first.warm, 1e-7);
+    let again = Smalse { program, preconditioner: None, limits: QpLimits::default() }.solve(&first.warm, 1e-7);
     assert_eq!(again.expect("solvable").counts.products(), 0);
 }
 
 #[test]
 fn flat_objective_ends_on_the_bound_or_is_refused() {
     let flat = |blocks| Instance { rows: vec![vec![0.0]], linear: vec![-1.0], blocks, equalities: Vec::new() };
-    let solution = flat(vec![Block::HalfLine { index: 0, bound: -7.0 }]).solve(SmalseSettings::default(), 1e-10);
+    let solution = flat(vec![Block::HalfLine { index: 0, bound: -7.0 }]).solve(QpLimits::default(), 1e-10);
     assert_eq!(solution.expect("bounded").warm.x, [-7.0]);
-    let free = flat(Vec::new()).solve(SmalseSettings::default(), 1e-10);
+    let free = flat(Vec::new()).solve(QpLimits::default(), 1e-10);
     assert!(matches!(free, Err(QpError::Curvature { .. })), "{free:?}");
 }
 
 #[test]
 fn failures_have_their_own_variants() {
     let good = || string(1.0, 1.0);
-    let solve = |instance: Instance, settings| instance.solve(settings, 1e-10).expect_err("must fail");
-    let defaults = SmalseSettings::default();
-    let mut limited = defaults;
-    limited.inner.max_products = 5;
-    match solve(good(), limited) {
+    let solve = |instance: Instance, limits| instance.solve(limits, 1e-10).expect_err("must fail");
+    let defaults = QpLimits::default();
+    match solve(good(), QpLimits { products: 5, ..defaults }) {
         QpError::NotConverged { solver: "MPGP", history, .. } => assert!(!history.is_empty()),
         other => panic!("{other}"),
     }
-    match solve(good(), SmalseSettings { max_outer: 2, ..defaults }) {
+    match solve(good(), QpLimits { outer: 2, ..defaults }) {
         QpError::NotConverged { solver: "SMALSE-M", history, .. } => assert_eq!(history.len(), 2),
         other => panic!("{other}"),
     }
@@ -391,10 +389,12 @@ fn failures_have_their_own_variants() {
     assert!(matches!(solve(nan, defaults), QpError::NotFinite { .. }));
     let indefinite = Instance { rows: vec![vec![-1.0]], linear: vec![1.0], blocks: vec![], equalities: vec![] };
     assert!(matches!(solve(indefinite, defaults), QpError::Curvature { .. }));
-    assert!(matches!(solve(good(), SmalseSettings { beta: 1.0, ..defaults }), QpError::Setting { name: "beta", .. }));
-    let mut forcing = defaults;
-    forcing.inner.forcing = 0.0;
-    assert!(matches!(solve(good(), forcing), QpError::Setting { name: "forcing", .. }));
+    let (instance, set) = (good(), good().set());
+    let (hessian, rows) = (instance.hessian(), instance.dense_equalities());
+    let program = QuadraticProgram { hessian: &hessian, linear: &instance.linear, set: &set, equalities: &rows };
+    let start = WarmStart { x: vec![0.0; instance.dimension()], norm: Some(f64::NAN), ..WarmStart::default() };
+    let found = Smalse { program, preconditioner: None, limits: defaults }.solve(&start, 1e-10);
+    assert!(matches!(found, Err(QpError::Setting { name: "norm", .. })), "{found:?}");
     let mut short = good();
     short.rows.truncate(7);
     short.rows.iter_mut().for_each(|row| row.truncate(7));

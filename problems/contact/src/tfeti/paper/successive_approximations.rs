@@ -13,8 +13,8 @@ use crate::equilibrium::{Stage, Work};
 use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::qp::{
-    Block, FacePreconditioner, LinearEqualities, QuadraticProgram, SeparableSet, Smalse, SmalseSettings,
-    SmalseSolution, StepCounts, WarmStart,
+    Block, FacePreconditioner, LinearEqualities, QpLimits, QuadraticProgram, SeparableSet, Smalse, SmalseSolution,
+    StepCounts, WarmStart,
 };
 use crate::tfeti::dual::{Iterate, TornContact, TornSolution};
 use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, projected_preconditioner};
@@ -31,21 +31,15 @@ pub struct AugmentedLagrangianSettings {
     pub max_fixed_point_steps: usize,
     /// Whether the preconditioner is used inside faces. Default true.
     pub precondition: bool,
-    /// Constants of the dual QP solver.
-    pub qp: SmalseSettings,
+    /// Work allowed to the dual QP solver.
+    pub qp: QpLimits,
 }
 
 impl AugmentedLagrangianSettings {
     /// Settings for a relative residual.
     pub fn to(tolerance: f64) -> Self {
         let tolerance = tolerance.max(TIGHTEST_TOLERANCE);
-        Self {
-            tolerance,
-            adaptivity: 0.2,
-            max_fixed_point_steps: 60,
-            precondition: true,
-            qp: SmalseSettings::default(),
-        }
+        Self { tolerance, adaptivity: 0.2, max_fixed_point_steps: 60, precondition: true, qp: QpLimits::default() }
     }
 }
 
@@ -206,10 +200,10 @@ impl TornContact<'_> {
     ) -> Result<SmalseSolution, ContactError> {
         let (set, coarse) = (self.feasible_set(&state.bounds)?, dual.coarse);
         let program = QuadraticProgram { hessian: dual, linear, set: &set, equalities: coarse };
-        let mut solver = Smalse { program, preconditioner: None, settings: settings.qp };
+        let mut solver = Smalse { program, preconditioner: None, limits: settings.qp };
         let norm_h = solver.norm(&state.warm)?;
         let warm = WarmStart { norm: Some(norm_h), ..state.warm.clone() };
-        let preconditioner = projected_preconditioner(&self.preconditioner, coarse, settings.qp.penalty * norm_h);
+        let preconditioner = projected_preconditioner(&self.preconditioner, coarse, norm_h);
         if settings.precondition {
             solver.preconditioner = Some(FacePreconditioner { operator: &preconditioner, diagonal: self.stiffness });
         }
