@@ -2,7 +2,8 @@
 //!
 //! Cuts on both sides of a curved kink cancel at a point where Θ still falls along the kink, the more so the farther they lie. Before an end
 //! with active cuts beyond 1e-6 is confirmed, the run restarts once from the nearest of them, as it does after an unconfirmed end. If
-//! nothing lower is found, the cuts of the first proof come back, and the end is confirmed by them after all.
+//! nothing lower is found, the cuts of the first proof come back, and the end is confirmed by them if they still prove it. A limit that ends
+//! the look keeps its word: the run can be continued.
 
 use super::run::Run;
 use super::state::FirstProof;
@@ -31,6 +32,9 @@ impl Run<'_, '_> {
                 | Termination::StoppedByObserver
                 | Termination::StopRule { .. }
                 | Termination::UnboundedBelow
+                | Termination::EvaluationLimit
+                | Termination::IterationLimit
+                | Termination::TimeLimit
         );
         let Some(proof) = self.state.first_proof.take().filter(|proof| !settled && !self.fell_since(proof)) else {
             return word;

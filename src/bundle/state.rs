@@ -70,7 +70,7 @@ pub(crate) struct State {
     pub noise: f64,
     /// Failed evaluations in a row.
     pub failures: usize,
-    /// Length of the next step at most: half of the last one that failed; none after an answer.
+    /// Length of the next step at most: half of the last one that failed; none after an answer at a trial point.
     pub longest_step: Option<f64>,
     /// Trial points in a row that were known, so that nothing was evaluated.
     pub known_trials: usize,

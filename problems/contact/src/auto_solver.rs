@@ -139,6 +139,7 @@ impl AutoSolver {
         let Some(max_products) = self.max_products else { return torn.sensitivities(state, direction, tolerance) };
         let failed = match torn.sensitivities_within(state, direction, tolerance, max_products) {
             Ok(found) => return Ok(found),
+            Err(error) if error.ends_the_search() => return Err(error),
             Err(error) => error,
         };
         let (direct, condensed) = self.condensed(state)?;

@@ -105,16 +105,16 @@ fn total_feti_alone_finds_the_state_of_two_loosely_held_bodies_or_refuses() {
     assert!(refusals.iter().any(|words| message.contains(words)), "{message}");
 }
 
-/// The adjoint of a loosely held state took 1172 and 634 products, where a state by direct condensation costs as much as 100: what
-/// total FETI does not find for that price, direct condensation does.
+/// The adjoint of a loosely held state took 1172 and 634 products, where a state by direct condensation costs as much as 213 and 156:
+/// what total FETI does not find for that price, direct condensation does.
 #[test]
 fn the_adjoint_costs_no_more_than_a_condensed_state() {
-    for (name, budget) in [("slow_adjoint", 220), ("slow_adjoint_without_friction", 160)] {
+    for (name, budget) in [("slow_adjoint", 213), ("slow_adjoint_without_friction", 156)] {
         let evaluated = |solver| json(CONTACT, &[&scene_file(name), "evaluate", "--solver", solver, "--json"]);
         let (default, direct) = (evaluated("auto"), evaluated("direct"));
         assert_eq!(default["solver"], "newton", "{name}");
         let products = default["work"]["adjoint_applications"].as_u64().unwrap();
-        assert!((1..=budget).contains(&products), "{name}: {products}");
+        assert!((budget - 1..=budget).contains(&products), "{name}: {products}");
         let subgradient = |result: &serde_json::Value| -> Vec<f64> {
             result["subgradient"].as_array().unwrap().iter().map(|entry| entry.as_f64().unwrap()).collect()
         };

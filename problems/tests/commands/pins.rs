@@ -28,6 +28,8 @@
 //! Measured: they leave the histories before by more than 1e-8 at evaluation 12, 6, 6 and 15 (signorini3d and hertz3d, each mesh 6 and 12);
 //! the best of 60 is lower by 3.1e-4, higher by 4.1e-3, lower by 5.2e-4 and higher by 13 % (lower by 3 % after 150). The marks 1.4985e16 and
 //! 1.4835e16 come after 31 and 53 evaluations. Over 24 scenes Θ is lower by 2.5 to 3 % in the geometric mean.
+//! Those of direct condensation were replaced by the commit "Loads on free bodies arrive": resultants of loads are summed over the bodies
+//! instead of over condensed loads. Measured: Θ by at most 4.6e-14, every entry of ξ by at most 4.6e-14 of the largest.
 
 use crate::binary;
 use serde_json::Value;

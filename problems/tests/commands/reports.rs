@@ -144,8 +144,12 @@ fn the_table_of_the_result_says_what_the_files_say() {
         assert!((number(&shown[2]) - change).abs() < 0.051, "{row}: {}", shown[2]);
     }
     let values = |key: &str| &rows.iter().find(|row| row["key"] == key).unwrap()["values"];
-    assert_eq!((&values("objective")[0], &values("objective")[1]), (&result["objective_start"], &result["objective"]));
-    assert_eq!(values("peak_pressure"), &result["peak_pressure"]);
+    // The states of the table are solved anew, without the start that the run had: they agree up to rounding, as it happens not to the bit.
+    let agree = |a: &Value, b: &Value| (a.as_f64().unwrap() / b.as_f64().unwrap() - 1.0).abs() < 1e-13;
+    assert!(agree(&values("objective")[0], &result["objective_start"]), "{}", values("objective"));
+    assert!(agree(&values("objective")[1], &result["objective"]), "{} {}", values("objective"), result["objective"]);
+    let peaks = [0, 1].map(|end| (&values("peak_pressure")[end], &result["peak_pressure"][end]));
+    assert!(peaks.iter().all(|(table, result)| agree(table, result)), "{peaks:?}");
     // Closed nodes of the table of nodes carry the contact area; the upper body does not change.
     assert_eq!(values("volume_upper")[0], values("volume_upper")[1]);
     let nodes = read(scratch, "run/pressure_optimal.csv");

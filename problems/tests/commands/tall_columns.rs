@@ -35,6 +35,16 @@ fn digits_that_condensation_has_lost_are_named() {
     assert!(!warns_of_few_digits(&torn) && by_tearing < 5e-8, "{by_tearing:e} {}", torn["warnings"]);
 }
 
+/// A body 3e5 times as high as the lower one, free along x3: its load must arrive at the contact. Condensed loads had lost 5e-5 of it.
+#[test]
+fn loads_on_free_bodies_arrive() {
+    for solver in ["auto", "direct"] {
+        let found = evaluated("very_tall_upper_body", &["--solver", solver]);
+        let force = found["total_normal_force"].as_f64().unwrap();
+        assert!((force - 1.0).abs() < 1e-13, "{solver}: {force:e}");
+    }
+}
+
 /// One free body on a tall one: equilibrium alone determines the single contact force, so that the compliance may have lost all its digits.
 #[test]
 fn forces_that_equilibrium_determines_have_all_digits() {

@@ -6,6 +6,7 @@
 
 use crate::direct::condensation::CondensedBody;
 use crate::equilibrium::ContactBoundary;
+use crate::equilibrium::modes::OwnMotion;
 use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::{add_scaled, dot, norm};
 use faer::Mat;
@@ -27,16 +28,22 @@ pub struct CompliantBody {
 }
 
 impl CompliantBody {
-    /// The compliance of a condensed body; `motions`: contact displacements of the rigid motions that its supports leave free,
-    /// `held`: its held contact dofs, `sign`: 1 for the lower body, −1 for the upper one.
+    /// The compliance of a condensed body; `motions`: the rigid motions that its supports leave free, `held`: its held contact dofs,
+    /// `sign`: 1 for the lower body, −1 for the upper one. The condensed load takes over the resultants of the loads, of which
+    /// condensation keeps fewer digits.
     pub fn new(
-        condensed: CondensedBody,
-        motions: Vec<Vec<f64>>,
+        mut condensed: CondensedBody,
+        motions: Vec<OwnMotion>,
         boundary: &ContactBoundary,
         held: &[bool],
         sign: f64,
     ) -> Self {
         let motions = orthonormal(motions, held);
+        for OwnMotion { contact, resultant } in &motions {
+            let lost = resultant - dot(contact, &condensed.load);
+            add_scaled(&mut condensed.load, lost, contact);
+        }
+        let motions: Vec<Vec<f64>> = motions.into_iter().map(|motion| motion.contact).collect();
         let schur = &condensed.schur;
         let size = schur.nrows();
         let scale = (0..size).map(|dof| schur[(dof, dof)]).sum::<f64>() / size as f64;
@@ -95,23 +102,25 @@ impl CompliantBody {
     }
 }
 
-/// Orthonormal motions that vanish on held dofs.
-fn orthonormal(motions: Vec<Vec<f64>>, held: &[bool]) -> Vec<Vec<f64>> {
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    for mut motion in motions {
+/// Motions that are orthonormal over the contact dofs and vanish on the held ones.
+fn orthonormal(motions: Vec<OwnMotion>, held: &[bool]) -> Vec<OwnMotion> {
+    let mut basis: Vec<OwnMotion> = Vec::new();
+    for OwnMotion { contact: mut motion, mut resultant } in motions {
         for (value, held) in motion.iter_mut().zip(held) {
             *value = if *held { 0.0 } else { *value };
         }
         // Twice, since once leaves rounding in the older directions.
         for _pass in 0..2 {
             for older in &basis {
-                let share = dot(older, &motion);
-                add_scaled(&mut motion, -share, older);
+                let share = dot(&older.contact, &motion);
+                add_scaled(&mut motion, -share, &older.contact);
+                resultant -= share * older.resultant;
             }
             let length = norm(&motion);
             motion.iter_mut().for_each(|value| *value /= length);
+            resultant /= length;
         }
-        basis.push(motion);
+        basis.push(OwnMotion { contact: motion, resultant });
     }
     basis
 }

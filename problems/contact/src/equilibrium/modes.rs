@@ -42,6 +42,15 @@ pub struct RigidScene {
     pub length: f64,
 }
 
+/// A motion that the supports of one body leave free.
+#[derive(Debug, Clone)]
+pub struct OwnMotion {
+    /// Displacements of the contact nodes, three per node.
+    pub contact: Vec<f64>,
+    /// Resultant of the loads of the body along it, N.
+    pub resultant: f64,
+}
+
 /// A motion of all bodies: six coefficients per body.
 pub type Motion = Vec<f64>;
 
@@ -72,8 +81,8 @@ impl RigidScene {
         self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0))
     }
 
-    /// Contact displacements (three components per node) of the motions that the supports of one body leave free.
-    pub(crate) fn own_motions(&self, body: usize) -> Vec<Vec<f64>> {
+    /// The motions that the supports of one body leave free.
+    pub(crate) fn own_motions(&self, body: usize) -> Vec<OwnMotion> {
         let held = self.held.iter().filter(|(holder, ..)| *holder == body);
         let own = Self { bodies: 1, held: Vec::new(), loads: Vec::new(), contact: Vec::new(), ..*self };
         let free = kernel(held.map(|&(_, point, component)| own.row(0, point, component, 1.0)), 1);
@@ -81,11 +90,16 @@ impl RigidScene {
             let basis = motions(point, self.centre, self.length);
             basis.iter().zip(motion.iter()).map(|(b, c)| b[component] * c).sum()
         };
-        let contact = |motion| {
+        let along = |motion| {
             let points = self.contact.iter().map(|points| points[body]);
-            points.flat_map(|point| (0..3).map(move |component| displacement(motion, point, component))).collect()
+            let contact = points.flat_map(|point| (0..3).map(move |component| displacement(motion, point, component)));
+            let loads = self.loads.iter().filter(|(loaded, ..)| *loaded == body);
+            let work = |&(_, point, force): &(usize, [f64; 3], [f64; 3])| -> f64 {
+                (0..3).map(|component| force[component] * displacement(motion, point, component)).sum()
+            };
+            OwnMotion { contact: contact.collect(), resultant: loads.map(work).sum() }
         };
-        free.iter().map(contact).collect()
+        free.iter().map(along).collect()
     }
 
     /// Checks that contact within its friction cone can carry the load; returns the motions that nothing holds, which are

@@ -84,8 +84,7 @@ impl ContactProblem {
         std::array::from_fn(|axis| lengths[axis] / self.scene.mesh[axis] as f64)
     }
 
-    /// Why linear systems of the problem are ill conditioned, if material or bricks make them so: total FETI is slow then, and
-    /// condensation may lose digits.
+    /// Why linear systems of the problem are ill conditioned, if material or bricks make them so: total FETI is slow then.
     pub(crate) fn ill_conditioned(&self) -> Option<String> {
         let locking = self.bodies().map(|body| body.material).filter(|m| m.formulation() == Formulation::Standard);
         let ratio = locking.map(|material| material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);

@@ -24,7 +24,7 @@ pub enum QpError {
         /// What is wrong.
         reason: &'static str,
     },
-    /// A constant of a method is outside its range.
+    /// A number that a method is given is outside its range.
     #[error("{name} = {value} is not allowed; allowed: {allowed}")]
     Setting {
         /// Its name.

@@ -110,7 +110,7 @@ impl TotalFeti {
         })
     }
 
-    /// As [`ContactSolver::sensitivities`], with at most so many iterations for the adjoint.
+    /// As [`ContactSolver::sensitivities`], with at most so many products with F.
     pub(crate) fn sensitivities_within(
         &self,
         state: &TornState,

@@ -275,7 +275,7 @@ impl TornSolver {
         self.sensitivities_within(state, direction, tolerance, MAX_PRODUCTS)
     }
 
-    /// As [`TornSolver::sensitivities`], with at most so many iterations for the adjoint.
+    /// As [`TornSolver::sensitivities`], with at most so many products with F.
     pub(crate) fn sensitivities_within(
         &self,
         state: &TornState,

@@ -55,8 +55,8 @@ struct AdjointIterate {
 
 impl TornContact<'_> {
     /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ, `load` is l = ∂J/∂u where J depends on u.
-    /// `natural`: a residual, in the unit of j, that is rounding for the sensitivity however small that is. `max_products`: iterations
-    /// allowed in all, each of them a product with F.
+    /// `natural`: a residual, in the unit of j, that is rounding for the sensitivity however small that is. `max_products`: products with F
+    /// allowed in all.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] when the tolerance is not reached, [`ContactError::Unheld`].
@@ -81,9 +81,9 @@ impl TornContact<'_> {
         let goal = if size < ROUNDING_SHARE * natural { TIGHTEST_ACCEPTABLE * natural } else { tolerance * size };
         let size = size.max(natural);
         let mut precision = self.precision;
-        let before = self.operator.applications();
         for _cycle in 0..MAX_CYCLES {
-            let left = max_products.saturating_sub(self.operator.applications() - before);
+            // The last one tells the residual.
+            let left = max_products.saturating_sub(self.operator.applications() + 1);
             if iterate.residual <= goal || left == 0 {
                 break;
             }
@@ -106,7 +106,7 @@ impl TornContact<'_> {
                 solver: "adjoint GMRES on TFETI",
                 residual: iterate.residual / size,
                 tolerance,
-                iterations: self.operator.applications() - before,
+                iterations: self.operator.applications(),
                 history: vec![iterate.residual / size],
             });
         }
