@@ -8,7 +8,7 @@
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::scene::{Scene, signorini};
-use contact::tfeti::{DualOperator, PreconditionerKind, TornSolver};
+use contact::tfeti::{DualOperator, TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
 use std::error::Error;
 use std::hint::black_box;
@@ -64,7 +64,7 @@ fn derivatives(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
 fn parts(size: &str, shape: &ContactShape) -> Result<(), Box<dyn Error>> {
     let problem = ContactProblem::new(shape.problem().scene.clone())?;
     let blocks = problem.blocks(shape.start().as_slice())?;
-    let torn = TornSolver::new(Arc::new(problem), PreconditionerKind::default())?;
+    let torn = TotalFeti::new(Arc::new(problem), TornOptions::default())?;
     let model = torn.model();
     let system = model.factorize(&blocks)?;
     let operator = DualOperator::new(model, &system);

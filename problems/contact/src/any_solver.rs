@@ -9,7 +9,7 @@ use crate::equilibrium::{
 };
 use crate::error::ContactError;
 use crate::solver_kind::SolverKind;
-use crate::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
+use crate::tfeti::{DualMethod, PreconditionerKind, TornOptions, TotalFeti};
 use std::sync::Arc;
 
 /// A contact solver of any kind.
@@ -48,14 +48,14 @@ impl AnySolver {
         wanted: Wanted,
         communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
-        let torn = |problem, method| {
-            TotalFeti::with_communication(problem, preconditioner, method, Arc::clone(&communication)).map(Self::from)
-        };
+        let options = TornOptions { preconditioner, communication, ..TornOptions::default() };
         match kind {
-            SolverKind::Auto => AutoSolver::new(problem, preconditioner, wanted, Arc::clone(&communication))
-                .map(|solver| Self::Auto(Box::new(solver))),
-            SolverKind::Newton => torn(problem, DualMethod::Newton(Recycling::default())),
-            SolverKind::AugmentedLagrangian => torn(problem, DualMethod::SuccessiveApproximations),
+            SolverKind::Auto => Ok(Self::Auto(Box::new(AutoSolver::new(problem, options, wanted)?))),
+            SolverKind::Newton => TotalFeti::new(problem, options).map(Self::from),
+            SolverKind::AugmentedLagrangian => {
+                let solver = TotalFeti::new(problem, options)?;
+                Ok(Self::from(solver.with_method(DualMethod::SuccessiveApproximations)))
+            }
             SolverKind::Direct => DirectSolver::new(problem).map(Self::from),
         }
     }
@@ -124,8 +124,8 @@ impl ContactSolver for AnySolver {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
         match state {
-            AnyState::Torn(state) => match self {
-                Self::Auto(solver) => solver.sensitivities(state, direction, tolerance),
+            AnyState::Torn(state, condensed) => match self {
+                Self::Auto(solver) => solver.sensitivities(state, condensed, direction, tolerance),
                 _ => self.torn()?.sensitivities(state, direction, tolerance),
             },
             AnyState::Direct(state) => self.direct()?.sensitivities(state, direction, tolerance),
@@ -134,8 +134,8 @@ impl ContactSolver for AnySolver {
 
     fn tangents(&self, state: &AnyState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
         match state {
-            AnyState::Torn(state) => match self {
-                Self::Auto(solver) => solver.tangents(state, changes, tolerance),
+            AnyState::Torn(state, condensed) => match self {
+                Self::Auto(solver) => solver.tangents(state, condensed, changes, tolerance),
                 _ => self.torn()?.tangents(state, changes, tolerance),
             },
             AnyState::Direct(state) => self.direct()?.tangents(state, changes, tolerance),
@@ -144,28 +144,28 @@ impl ContactSolver for AnySolver {
 
     fn diagnose(&self, state: &AnyState) -> Result<Diagnosis, ContactError> {
         match state {
-            AnyState::Torn(state) => self.torn()?.diagnose(state),
+            AnyState::Torn(state, _) => self.torn()?.diagnose(state),
             AnyState::Direct(state) => self.direct()?.diagnose(state),
         }
     }
 
     fn estimate_contraction(&self, state: &AnyState, max_products: usize) -> Result<f64, ContactError> {
         match state {
-            AnyState::Torn(state) => self.torn()?.estimate_contraction(state, max_products),
+            AnyState::Torn(state, _) => self.torn()?.estimate_contraction(state, max_products),
             AnyState::Direct(state) => self.direct()?.estimate_contraction(state, max_products),
         }
     }
 
     fn force_rounding(&self, state: &AnyState) -> Result<f64, ContactError> {
         match state {
-            AnyState::Torn(state) => self.torn()?.force_rounding(state),
+            AnyState::Torn(state, _) => self.torn()?.force_rounding(state),
             AnyState::Direct(state) => self.direct()?.force_rounding(state),
         }
     }
 
     fn bodies(&self, state: &AnyState) -> Result<Vec<SolvedBody>, ContactError> {
         match state {
-            AnyState::Torn(state) => self.torn()?.bodies(state),
+            AnyState::Torn(state, _) => self.torn()?.bodies(state),
             AnyState::Direct(state) => self.direct()?.bodies(state),
         }
     }

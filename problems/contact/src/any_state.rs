@@ -3,12 +3,13 @@
 use crate::direct::DirectState;
 use crate::equilibrium::{ContactWarmStart, SolverState};
 use crate::tfeti::TornState;
+use std::sync::OnceLock;
 
 /// What a solver of any kind keeps of a solved shape.
 #[derive(Debug)]
 pub enum AnyState {
-    /// By total FETI.
-    Torn(Box<TornState>),
+    /// By total FETI; also the same shape by direct condensation, once a derivative has needed it.
+    Torn(Box<TornState>, OnceLock<Box<DirectState>>),
     /// By direct condensation.
     Direct(Box<DirectState>),
 }
@@ -16,7 +17,7 @@ pub enum AnyState {
 impl SolverState for AnyState {
     fn warm_start(&self) -> ContactWarmStart {
         match self {
-            Self::Torn(state) => state.warm_start(),
+            Self::Torn(state, _) => state.warm_start(),
             Self::Direct(state) => state.warm_start(),
         }
     }
@@ -24,7 +25,7 @@ impl SolverState for AnyState {
 
 impl From<TornState> for AnyState {
     fn from(state: TornState) -> Self {
-        Self::Torn(Box::new(state))
+        Self::Torn(Box::new(state), OnceLock::new())
     }
 }
 

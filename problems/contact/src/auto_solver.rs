@@ -7,7 +7,6 @@
 //! the choice. Where bodies are too large to be condensed, total FETI is alone.
 
 use crate::any_state::AnyState;
-use crate::communication::Communication;
 use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{
     Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Failed, MAX_RESIDUAL, Sensitivities,
@@ -16,7 +15,7 @@ use crate::equilibrium::{
 use crate::error::ContactError;
 use crate::memory;
 use crate::solver_kind::SolverKind;
-use crate::tfeti::{DualMethod, PreconditionerKind, Recycling, TornState, TotalFeti};
+use crate::tfeti::{TornOptions, TornState, TotalFeti};
 use crate::work_estimate::WorkEstimate;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, OnceLock};
@@ -47,8 +46,7 @@ pub enum Wanted {
 #[derive(Debug)]
 pub struct AutoSolver {
     problem: Arc<ContactProblem>,
-    preconditioner: PreconditionerKind,
-    communication: Arc<dyn Communication>,
+    options: TornOptions,
     torn: OnceLock<TotalFeti>,
     direct: OnceLock<DirectSolver>,
     /// Why direct condensation comes first, if it does.
@@ -71,19 +69,19 @@ impl AutoSolver {
     /// Prepares the solver that comes first.
     pub(crate) fn new(
         problem: Arc<ContactProblem>,
-        preconditioner: PreconditionerKind,
+        options: TornOptions,
         wanted: Wanted,
-        communication: Arc<dyn Communication>,
     ) -> Result<Self, ContactError> {
         let scene = &problem.scene;
-        let condensable = memory::estimate(scene, SolverKind::Direct, preconditioner, 0, 1) <= MAX_CONDENSED_BYTES;
+        let condensable =
+            memory::estimate(scene, SolverKind::Direct, options.preconditioner, 0, 1) <= MAX_CONDENSED_BYTES;
         let products = WorkEstimate::of(scene).products_per_condensed_state();
         let max_products = condensable.then(|| products.max(MIN_PRODUCTS));
         let cheaper = wanted == Wanted::Jacobians && products <= MAX_PRODUCTS_WITH_JACOBIANS;
         let cheaper = cheaper.then(|| "Jacobians of all pressures cost least there".to_owned());
         let direct_first = if condensable { problem.ill_conditioned().or(cheaper) } else { None };
         let (torn, direct) = (OnceLock::new(), OnceLock::new());
-        let solver = Self { problem, preconditioner, communication, torn, direct, direct_first, max_products };
+        let solver = Self { problem, options, torn, direct, direct_first, max_products };
         match solver.direct_first {
             Some(_) => solver.direct().map(|_| ())?,
             None => solver.torn().map(|_| ())?,
@@ -92,11 +90,7 @@ impl AutoSolver {
     }
 
     pub(crate) fn torn(&self) -> Result<&TotalFeti, ContactError> {
-        let method = DualMethod::Newton(Recycling::default());
-        prepared(&self.torn, || {
-            let communication = Arc::clone(&self.communication);
-            TotalFeti::with_communication(Arc::clone(&self.problem), self.preconditioner, method, communication)
-        })
+        prepared(&self.torn, || TotalFeti::new(Arc::clone(&self.problem), self.options.clone()))
     }
 
     pub(crate) fn direct(&self) -> Result<&DirectSolver, ContactError> {
@@ -132,6 +126,7 @@ impl AutoSolver {
     pub(crate) fn sensitivities(
         &self,
         state: &TornState,
+        condensed: &OnceLock<Box<DirectState>>,
         direction: &[f64],
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
@@ -142,8 +137,8 @@ impl AutoSolver {
             Err(error) if error.ends_the_search() => return Err(error),
             Err(error) => error,
         };
-        let (direct, condensed) = self.condensed(state)?;
-        let found = direct.sensitivities(&condensed.solution, direction, 0.0)?;
+        let (direct, condensed) = self.condensed(state, condensed)?;
+        let found = direct.sensitivities(condensed, direction, 0.0)?;
         let applications = if let ContactError::NotConverged { iterations, .. } = failed { iterations } else { 0 };
         Ok(Sensitivities { applications, ..found })
     }
@@ -152,13 +147,14 @@ impl AutoSolver {
     pub(crate) fn tangents(
         &self,
         state: &TornState,
+        condensed: &OnceLock<Box<DirectState>>,
         changes: &[Vec<f64>],
         tolerance: f64,
     ) -> Result<Tangents, ContactError> {
         match self.torn()?.tangents(state, changes, tolerance) {
             Err(_) if self.max_products.is_some() => {
-                let (direct, state) = self.condensed(state)?;
-                direct.tangents(&state.solution, changes, tolerance)
+                let (direct, condensed) = self.condensed(state, condensed)?;
+                direct.tangents(condensed, changes, tolerance)
             }
             result => result,
         }
@@ -183,11 +179,19 @@ impl AutoSolver {
         }
     }
 
-    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on total FETI.
-    fn condensed(&self, state: &TornState) -> Result<(&DirectSolver, ContactState<DirectState>), ContactError> {
-        let configuration = Configuration::of(&self.problem, state.blocks().to_vec())?;
+    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on total FETI; once per
+    /// state.
+    fn condensed<'a>(
+        &'a self,
+        state: &TornState,
+        condensed: &'a OnceLock<Box<DirectState>>,
+    ) -> Result<(&'a DirectSolver, &'a DirectState), ContactError> {
         let direct = self.direct()?;
-        Ok((direct, direct.solve_configuration(configuration, None, 0.0)?))
+        let solved = prepared(condensed, || {
+            let configuration = Configuration::of(&self.problem, state.blocks.clone())?;
+            Ok(Box::new(direct.solve_configuration(configuration, None, 0.0)?.solution))
+        });
+        Ok((direct, solved?))
     }
 
     fn torn_then_direct(
@@ -238,4 +242,35 @@ fn proves_friction_too_weak(error: &ContactError) -> bool {
 fn unsolved(torn: Failed, direct: ContactError) -> ContactError {
     let products = torn.work.dual_operator_applications;
     ContactError::Unsolved { torn: torn.error, products, direct: Box::new(direct) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::hertz;
+
+    /// A state keeps what its first derivative has condensed.
+    #[test]
+    fn derivatives_condense_a_shape_once() {
+        let mut scene = hertz().expect("the example");
+        (scene.mesh, scene.subdomains) = ([3; 3], [1; 3]);
+        let controls = vec![scene.start_height; scene.control_points.iter().product()];
+        let problem = Arc::new(ContactProblem::new(scene).expect("a scene"));
+        let mut solver =
+            AutoSolver::new(Arc::clone(&problem), TornOptions::default(), Wanted::States).expect("a solver");
+        let state = solver.torn().expect("total FETI").solve(&controls, None, 1e-11).expect("a state").solution;
+        let dual = vec![1.0; problem.boundary.row_count];
+        let expected =
+            solver.torn().expect("total FETI").sensitivities(&state, &dual, 1e-11).expect("an adjoint").heights;
+        // No adjoint takes a single product.
+        solver.max_products = Some(1);
+        let condensed = OnceLock::new();
+        let heights = || solver.sensitivities(&state, &condensed, &dual, 1e-11).expect("an adjoint").heights;
+        let found = heights();
+        let size = expected.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()));
+        assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-9 * size));
+        let place: *const DirectState = &**condensed.get().expect("a condensed state");
+        assert_eq!(heights(), found);
+        assert!(std::ptr::eq(place, &**condensed.get().expect("a condensed state")));
+    }
 }

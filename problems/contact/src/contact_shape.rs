@@ -15,7 +15,7 @@ use crate::equilibrium::{
 use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
 use crate::memory;
-use crate::plausibility::{self, Warning};
+use crate::plausibility::{self, Estimates, Warning};
 use crate::scene::Scene;
 use crate::tfeti::PreconditionerKind;
 use nonsmooth::composite::{InactiveConstraints, Linearization};
@@ -148,8 +148,9 @@ impl<S: ContactSolver> ContactShape<S> {
         // An estimate that fails says nothing.
         let contraction = friction.then(|| self.solver.estimate_contraction(&state.solution, products).ok()).flatten();
         let bodies = self.bodies(state)?;
-        let rounding = self.solver.force_rounding(&state.solution).map_err(oracle)?;
-        Ok(plausibility::warnings(self.problem(), &bodies, &state.forces, [contraction.unwrap_or(0.0), rounding]))
+        let force_rounding = self.solver.force_rounding(&state.solution).map_err(oracle)?;
+        let estimates = Estimates { contraction: contraction.unwrap_or(0.0), force_rounding };
+        Ok(plausibility::warnings(self.problem(), &bodies, &state.forces, estimates))
     }
 
     /// What this scene did not need, in words.

@@ -51,13 +51,21 @@ fn warn(warnings: &mut Vec<Warning>, fails: bool, code: &'static str, text: impl
     }
 }
 
-/// What is implausible about a state. The estimates: contraction of the slip bounds, and what the rounding of the solver's matrices has
-/// taken of the forces.
+/// What a solver estimates of a state.
+#[derive(Debug, Clone, Copy)]
+pub struct Estimates {
+    /// Contraction of the slip bounds; 0 without friction.
+    pub contraction: f64,
+    /// What the rounding of the solver's matrices has taken of the contact forces, as a share of the load.
+    pub force_rounding: f64,
+}
+
+/// What is implausible about a state.
 pub fn warnings(
     problem: &ContactProblem,
     bodies: &[SolvedBody],
     forces: &ContactForces,
-    [contraction, rounding]: [f64; 2],
+    Estimates { contraction, force_rounding: rounding }: Estimates,
 ) -> Vec<Warning> {
     let mut found = Vec::new();
     warn(&mut found, contraction >= MAX_CONTRACTION, "not-unique", || {

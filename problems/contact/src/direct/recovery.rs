@@ -11,12 +11,8 @@ impl DirectSolver {
     /// # Errors
     /// [`ContactError::ForeignState`] for a state of another mesh, [`ContactError::InvertedElement`] never for a solved one.
     pub(super) fn whole_bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
-        let (problem, found) = (&self.problem, state.solution.displacement.len());
-        let expected = 3 * problem.boundary.points.len() * self.held.len();
-        if expected != found || state.block.grid != problem.grid {
-            return Err(ContactError::ForeignState { what: "contact dofs", expected, found });
-        }
-        let blocks: Vec<Block> = std::iter::once(state.block.clone()).chain(problem.upper_block()?).collect();
+        self.check(state)?;
+        let blocks: Vec<Block> = std::iter::once(state.block.clone()).chain(self.problem.upper_block()?).collect();
         Ok(blocks
             .into_iter()
             .enumerate()

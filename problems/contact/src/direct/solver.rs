@@ -240,6 +240,7 @@ impl ContactSolver for DirectSolver {
         direction: &[f64],
         _tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
+        self.check(state)?;
         let (direction, displacements) = self.problem.parts_of(direction)?;
         if state.load == 0.0 {
             return Ok(Sensitivities::at_rest(self.problem.grid.column_count()));
@@ -266,6 +267,8 @@ impl ContactSolver for DirectSolver {
     }
 
     fn tangents(&self, state: &DirectState, changes: &[Vec<f64>], _tolerance: f64) -> Result<Tangents, ContactError> {
+        self.check(state)?;
+        self.problem.check_changes(changes)?;
         let rows = self.problem.boundary.row_count;
         if state.load == 0.0 {
             return Ok(Tangents::at_rest(rows, changes));
@@ -287,6 +290,7 @@ impl ContactSolver for DirectSolver {
     }
 
     fn diagnose(&self, state: &DirectState) -> Result<Diagnosis, ContactError> {
+        self.check(state)?;
         if state.load == 0.0 {
             return Ok(Diagnosis { contraction: 0.0, condition: None });
         }
@@ -294,6 +298,7 @@ impl ContactSolver for DirectSolver {
     }
 
     fn estimate_contraction(&self, state: &DirectState, _max_products: usize) -> Result<f64, ContactError> {
+        self.check(state)?;
         if state.load == 0.0 {
             return Ok(0.0);
         }
@@ -301,6 +306,7 @@ impl ContactSolver for DirectSolver {
     }
 
     fn force_rounding(&self, state: &DirectState) -> Result<f64, ContactError> {
+        self.check(state)?;
         if state.load == 0.0 {
             return Ok(0.0);
         }
@@ -320,6 +326,19 @@ impl ContactSolver for DirectSolver {
 }
 
 impl DirectSolver {
+    /// Checks that a state is one of this problem's mesh.
+    ///
+    /// # Errors
+    /// [`ContactError::ForeignState`].
+    pub(super) fn check(&self, state: &DirectState) -> Result<(), ContactError> {
+        let (expected, found) =
+            (3 * self.problem.boundary.points.len() * self.held.len(), state.solution.displacement.len());
+        if expected != found || state.block.grid != self.problem.grid {
+            return Err(ContactError::ForeignState { what: "contact dofs", expected, found });
+        }
+        Ok(())
+    }
+
     /// ∂J/∂u of all bodies as loads on them.
     fn condensed_loads(&self, state: &DirectState, displacements: &[f64]) -> Vec<CondensedLoad> {
         let bodies = state.contact.bodies.iter().zip(std::iter::once(&self.lower).chain(&self.upper));

@@ -8,7 +8,8 @@ use std::fmt;
 
 /// A solver of one contact problem.
 ///
-/// A state belongs to the solver that found it: the state of another kind of solver does not compile.
+/// A state belongs to the solver that found it: the state of another kind of solver does not compile, and that of another
+/// mesh is refused with [`ContactError::ForeignState`].
 pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// What the solver keeps of a solved shape for derivative, diagnosis and displacements.
     type State: SolverState;
@@ -53,7 +54,8 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// residual of the linearized contact problems, for solvers that iterate.
     ///
     /// # Errors
-    /// [`ContactError::NotConverged`] from the linearized problems, [`ContactError::NotFinite`] when they are singular.
+    /// [`ContactError::NotConverged`] from the linearized problems, [`ContactError::NotFinite`] when they are singular,
+    /// [`ContactError::ForeignState`] for changes of another surface.
     fn tangents(&self, state: &Self::State, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError>;
 
     /// Contraction and condition at a solved shape.
@@ -73,7 +75,7 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// (method.md section 4); zero for a solver whose residuals know of it.
     ///
     /// # Errors
-    /// [`ContactError::InvertedElement`] never for a solved shape.
+    /// [`ContactError::ForeignState`] for a state of another mesh.
     fn force_rounding(&self, _state: &Self::State) -> Result<f64, ContactError> {
         Ok(0.0)
     }

@@ -78,6 +78,18 @@ impl ContactProblem {
         }
     }
 
+    /// Checks that changes of the surface have one entry per contact node.
+    ///
+    /// # Errors
+    /// [`ContactError::ForeignState`] for changes of another surface.
+    pub(crate) fn check_changes(&self, changes: &[Vec<f64>]) -> Result<(), ContactError> {
+        let expected = self.grid.column_count();
+        match changes.iter().map(Vec::len).find(|found| *found != expected) {
+            Some(found) => Err(ContactError::ForeignState { what: "heights of contact nodes", expected, found }),
+            None => Ok(()),
+        }
+    }
+
     /// Edges of the bricks of the lower body at the start, mm.
     fn brick_edges(&self) -> [f64; 3] {
         let lengths = [self.scene.size[0], self.scene.size[1], self.scene.start_height];

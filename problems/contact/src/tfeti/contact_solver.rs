@@ -1,115 +1,18 @@
-//! Total FETI as a contact solver: semismooth Newton, or the paper's successive approximations.
+//! Total FETI as a contact solver: states, their derivatives, what is known of them.
 
-use crate::communication::Communication;
 use crate::equilibrium::{
-    ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, Sensitivities, SolvedBody,
-    SolverState, Tangents,
+    ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, Stage,
+    Tangents,
 };
 use crate::error::ContactError;
-use crate::solver_kind::SolverKind;
-use crate::tfeti::dual::TornContact;
-use crate::tfeti::{
-    AugmentedLagrangianSettings, NewtonSettings, PreconditionerKind, Recycling, TornOptions, TornSolver, TornState,
-};
-use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
-
-/// How the dual problem is solved. The state is the same, whichever method found it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DualMethod {
-    /// Semismooth Newton.
-    Newton(Recycling),
-    /// Successive approximations of the slip bound, dual QPs by SMALSE-M and MPGP.
-    SuccessiveApproximations,
-}
-
-/// A contact problem torn into subdomains, with the method for its dual problem.
-#[derive(Debug)]
-pub struct TotalFeti {
-    solver: TornSolver,
-    method: DualMethod,
-}
+use crate::linear::vector::dot;
+use crate::tfeti::derivative::{DisplacementLoad, MovedSurface, height_sensitivities};
+use crate::tfeti::solver::{Clock, TotalFeti};
+use crate::tfeti::state::TornState;
+use crate::tfeti::torn::whole_bodies;
+use crate::work_estimate::MAX_PRODUCTS;
 
 impl TotalFeti {
-    /// Tears the bodies of a problem.
-    ///
-    /// # Errors
-    /// [`ContactError::Factorization`] when a symbolic analysis fails.
-    pub fn new(
-        problem: Arc<ContactProblem>,
-        preconditioner: PreconditionerKind,
-        method: DualMethod,
-    ) -> Result<Self, ContactError> {
-        Self::with_options(problem, method, TornOptions { preconditioner, ..TornOptions::default() })
-    }
-
-    /// As [`TotalFeti::new`], in one process of several; see [`TornSolver::with_communication`].
-    ///
-    /// # Errors
-    /// As [`TotalFeti::new`].
-    pub fn with_communication(
-        problem: Arc<ContactProblem>,
-        preconditioner: PreconditionerKind,
-        method: DualMethod,
-        communication: Arc<dyn Communication>,
-    ) -> Result<Self, ContactError> {
-        Self::with_options(problem, method, TornOptions { preconditioner, communication, ..TornOptions::default() })
-    }
-
-    /// As [`TotalFeti::new`], with all options of the tearing.
-    ///
-    /// # Errors
-    /// As [`TornSolver::with_options`].
-    pub fn with_options(
-        problem: Arc<ContactProblem>,
-        method: DualMethod,
-        options: TornOptions,
-    ) -> Result<Self, ContactError> {
-        Ok(Self { solver: TornSolver::with_options(problem, options)?, method })
-    }
-
-    /// Solves one shape with at most so many products with F in Newton's method; a failure says what work it cost.
-    pub(crate) fn attempt(
-        &self,
-        controls: &[f64],
-        start: Option<&ContactWarmStart>,
-        tolerance: f64,
-        max_products: Option<usize>,
-    ) -> Result<ContactState<TornState>, Failed> {
-        let start = match start {
-            Some(ContactWarmStart::Multipliers(multipliers)) => Some(multipliers.as_slice()),
-            _ => None,
-        };
-        let (solution, forces, work, solver, counts) = match self.method {
-            DualMethod::Newton(recycling) => {
-                let settings = NewtonSettings::to(tolerance);
-                let max_products = max_products.unwrap_or(settings.max_products);
-                let settings = NewtonSettings { recycling, max_products, ..settings };
-                let method = |contact: &TornContact<'_>| Ok((contact.solve(start, &settings)?, ()));
-                let (solution, forces, work, ()) = self.solver.attempt(controls, tolerance, method)?;
-                (solution, forces, work, SolverKind::Newton, None)
-            }
-            DualMethod::SuccessiveApproximations => {
-                let settings = AugmentedLagrangianSettings::to(tolerance);
-                let method = |contact: &TornContact<'_>| contact.solve_by_successive_approximations(start, &settings);
-                let (solution, forces, work, counts) = self.solver.attempt(controls, tolerance, method)?;
-                (solution, forces, work, SolverKind::AugmentedLagrangian, Some(counts))
-            }
-        };
-        Ok(ContactState {
-            forces,
-            load: solution.load(),
-            solver,
-            reason: None,
-            contraction: counts.map(|counts| counts.contraction).filter(|f| *f > 0.0),
-            stages: Some(solution.seconds()),
-            work: counts.map_or(work, |counts| counts.added_to(work)),
-            adjoint_applications: AtomicUsize::new(0),
-            solution,
-            bodies: None,
-        })
-    }
-
     /// As [`ContactSolver::sensitivities`], with at most so many products with F.
     pub(crate) fn sensitivities_within(
         &self,
@@ -118,30 +21,53 @@ impl TotalFeti {
         tolerance: f64,
         max_products: usize,
     ) -> Result<Sensitivities, ContactError> {
-        self.solver.sensitivities_within(state, direction, tolerance, max_products)
+        let mut clock = Clock::start();
+        let (direction, loads) = self.problem().parts_of(direction)?;
+        let Some(contact) = self.contact_of(state)? else {
+            return Ok(Sensitivities::at_rest(self.problem().grid.column_count()));
+        };
+        Stage::Adjoint.enter()?;
+        let constraints = &self.model.constraints;
+        let mut scaled = constraints.zeros();
+        let scales = constraints.contact_scales(contact.boundary);
+        for ((scaled, physical), nu) in scaled.contact_mut().iter_mut().zip(direction).zip(scales) {
+            *scaled = physical / nu;
+        }
+        let iterate = &state.solution.iterate;
+        // A sensitivity of J over the height of the body, or over its displacement where that is larger; below the rounding of
+        // this scale, no residual means anything.
+        let heights = &state.blocks[0].upper;
+        let height = heights.iter().sum::<f64>() / heights.len() as f64;
+        let load = loads.map(|loads| DisplacementLoad::new(&contact.operator, loads, &state.displacement));
+        let [work, size] = load.as_ref().map_or([0.0; 2], |load| load.products);
+        let natural = (dot(scaled.contact(), iterate.multipliers.contact()).abs() + work.abs())
+            / (contact.stiffness * height + contact.load);
+        let linearizations = &state.solution.linearizations;
+        let adjoint = contact.adjoint(linearizations, &scaled, load.as_ref(), tolerance, natural, max_products)?;
+        let value_error = contact.value_error(iterate, &adjoint, &scaled).with_displacements(size);
+        let adjoint_seconds = clock.lap();
+        Stage::ShapeDerivative.enter()?;
+        let heights = height_sensitivities(&self.model, &state.blocks[0], &state.displacement, &adjoint);
+        let (applications, shape_seconds) = (contact.operator.applications(), clock.lap());
+        Ok(Sensitivities { heights, applications, adjoint_seconds, shape_seconds, value_error })
     }
 }
 
-impl SolverState for TornState {
-    fn warm_start(&self) -> ContactWarmStart {
-        ContactWarmStart::Multipliers(self.multipliers())
-    }
-}
-
+/// Where there are several processes, all of them make each call.
 impl ContactSolver for TotalFeti {
     type State = TornState;
 
     fn problem(&self) -> &ContactProblem {
-        self.solver.problem()
+        &self.model.problem
     }
 
     fn sizes(&self) -> [usize; 2] {
-        let model = self.solver.model();
+        let model = &self.model;
         [model.total_dofs, model.constraints.total_equality_count + model.problem.boundary.row_count]
     }
 
     fn left_out(&self) -> Option<&'static str> {
-        (self.solver.model().constraints.gluing_count == 0).then_some("gluing (one subdomain per body)")
+        (self.model.constraints.gluing_count == 0).then_some("gluing (one subdomain per body)")
     }
 
     fn solve(
@@ -159,22 +85,38 @@ impl ContactSolver for TotalFeti {
         direction: &[f64],
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
-        self.solver.sensitivities(state, direction, tolerance)
+        self.sensitivities_within(state, direction, tolerance, MAX_PRODUCTS)
     }
 
     fn tangents(&self, state: &TornState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
-        self.solver.tangents(state, changes, tolerance)
+        self.problem().check_changes(changes)?;
+        let Some(contact) = self.contact_of(state)? else {
+            return Ok(Tangents::at_rest(self.problem().boundary.row_count, changes));
+        };
+        Stage::Adjoint.enter()?;
+        let surface = MovedSurface {
+            lower: &state.blocks[0],
+            displacement: &state.displacement,
+            linearizations: &state.solution.linearizations,
+        };
+        contact.tangents(surface, changes, tolerance)
     }
 
     fn diagnose(&self, state: &TornState) -> Result<Diagnosis, ContactError> {
-        self.solver.diagnose(state)
+        match self.contact_of(state)? {
+            Some(contact) => contact.diagnose(&state.solution.linearizations),
+            None => Ok(Diagnosis { contraction: 0.0, condition: None }),
+        }
     }
 
     fn estimate_contraction(&self, state: &TornState, max_products: usize) -> Result<f64, ContactError> {
-        self.solver.estimate_contraction(state, max_products)
+        let Some(contact) = self.contact_of(state)? else { return Ok(0.0) };
+        contact.estimate_contraction(&state.solution, max_products)
     }
 
+    /// Torn copies of a node are averaged. Of several processes, the first one alone gets the bodies, the others none.
     fn bodies(&self, state: &TornState) -> Result<Vec<SolvedBody>, ContactError> {
-        self.solver.bodies(state)
+        self.check(state)?;
+        Ok(whole_bodies(&self.model, &state.blocks, &state.displacement))
     }
 }

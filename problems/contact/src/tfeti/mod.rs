@@ -19,14 +19,15 @@ mod dual;
 mod newton;
 mod paper;
 mod solver;
+mod state;
 mod torn;
 
-pub use contact_solver::{DualMethod, TotalFeti};
 pub(crate) use derivative::MAX_COLUMNS;
 pub use dual::{DualOperator, Iterate, Precision, Preconditioner, TornContact, TornSolution};
 pub use newton::{NewtonSettings, Recycling};
 pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
-pub use solver::{TornSolver, TornState};
+pub use solver::{DualMethod, TotalFeti};
+pub use state::TornState;
 pub use torn::{
     Constraints, PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornOptions, TornSystem, TornVector,
 };

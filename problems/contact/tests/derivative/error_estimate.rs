@@ -5,7 +5,7 @@ use contact::cost::{FieldCost, FieldMeasure, PressureCost, PressureMeasure, Regi
 use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactProblem, ContactSolver, ValueError};
 use contact::scene::{Scene, hertz, signorini};
-use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
+use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, Cost, ReducedObjective, StateSolver, Vector};
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -46,7 +46,10 @@ impl TestCost for FieldCost {
 fn objective<J: TestCost>(scene: &Scene, solver: Solver, measure: &J::Measure) -> ReducedObjective<ContactShape, J> {
     let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
     let solver = match solver {
-        Some((preconditioner, method)) => AnySolver::from(TotalFeti::new(problem, preconditioner, method).unwrap()),
+        Some((preconditioner, method)) => {
+            let options = TornOptions { preconditioner, ..TornOptions::default() };
+            AnySolver::from(TotalFeti::new(problem, options).unwrap().with_method(method))
+        }
         None => AnySolver::from(DirectSolver::new(problem).unwrap()),
     };
     let cost = J::of(measure, solver.problem());

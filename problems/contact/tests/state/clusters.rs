@@ -13,7 +13,7 @@ const NEWTON: DualMethod = DualMethod::Newton(Recycling::On);
 
 fn solver(scene: &Scene, clusters: [usize; 3], method: DualMethod) -> TotalFeti {
     let problem = Arc::new(ContactProblem::new(scene.clone()).unwrap());
-    TotalFeti::with_options(problem, method, TornOptions { clusters, ..TornOptions::default() }).unwrap()
+    TotalFeti::new(problem, TornOptions { clusters, ..TornOptions::default() }).unwrap().with_method(method)
 }
 
 /// |found − expected|/|expected|.
@@ -93,7 +93,7 @@ fn clusters_that_do_not_fit_are_refused() {
         let scene = Scene { mesh: [mesh; 3], subdomains: [4; 3], ..signorini().unwrap() };
         let problem = Arc::new(ContactProblem::new(scene).unwrap());
         let options = TornOptions { clusters, ..TornOptions::default() };
-        match TotalFeti::with_options(problem, NEWTON, options).unwrap_err() {
+        match TotalFeti::new(problem, options).unwrap_err() {
             ContactError::Clusters { shape, reason } if shape == clusters => reason,
             error => panic!("{error}"),
         }

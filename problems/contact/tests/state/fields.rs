@@ -5,7 +5,8 @@ use contact::body::elasticity::stress::{BrickStress, COMPONENTS};
 use contact::body::elasticity::{Formulation, brick};
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
-use contact::equilibrium::ContactStatus;
+use contact::equilibrium::{ContactSolver, ContactStatus};
+use contact::error::ContactError;
 use contact::fields::{BodyFields, Fields};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
@@ -260,5 +261,25 @@ fn states_of_other_solvers_and_meshes_are_refused() {
         let other = ContactShape::new(scene, kind).unwrap();
         let text = message(other.fields(state));
         assert!(text.contains("another mesh"), "{text}");
+        let (solver, state) = (other.contact_solver(), &state.solution);
+        let (dual, change) = (vec![1.0; other.problem().boundary.row_count], vec![1.0; 25]);
+        let mut refusals = vec![
+            solver.sensitivities(state, &dual, 1e-8).map(|_| ()),
+            solver.tangents(state, &[change], 1e-8).map(|_| ()),
+            solver.diagnose(state).map(|_| ()),
+            solver.estimate_contraction(state, 10).map(|_| ()),
+            solver.bodies(state).map(|_| ()),
+        ];
+        // Total FETI has nothing to lose there, whatever the state.
+        if kind == SolverKind::Direct {
+            refusals.push(solver.force_rounding(state).map(|_| ()));
+        }
+        for refusal in refusals {
+            let error = refusal.unwrap_err();
+            assert!(matches!(error, ContactError::ForeignState { .. }), "{error}");
+        }
+        let state = other.solve(&other.start(), None, Accuracy::TIGHTEST).unwrap();
+        let error = solver.tangents(&state.solution, &[vec![1.0; 24]], 1e-8).unwrap_err();
+        assert!(matches!(error, ContactError::ForeignState { expected: 25, found: 24, .. }), "{error}");
     }
 }

@@ -3,9 +3,9 @@
 use contact::body::mesh::Face;
 use contact::communication::InProcess;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind, Wanted};
-use contact::equilibrium::ContactProblem;
+use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
-use contact::tfeti::{Precision, PreconditionerKind, TornSolver};
+use contact::tfeti::{Precision, PreconditionerKind, TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
 use std::sync::Arc;
 use testset::kit::wavy;
@@ -87,11 +87,12 @@ fn single_precision_of_search_directions_changes_neither_state_nor_subgradient()
             let problem = Arc::new(ContactProblem::new(scene).unwrap());
             let dual: Vec<f64> = (0..problem.boundary.row_count).map(|row| (0.7 * row as f64).cos()).collect();
             let solve = |precision| {
-                let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
+                let solver = TotalFeti::new(Arc::clone(&problem), TornOptions::default()).unwrap();
                 let solver = solver.with_precision(precision);
-                let (state, forces, work) = solver.solve(control.as_slice(), None, 0.0).unwrap();
-                let adjoint = solver.sensitivities(&state, &dual, 1e-11).unwrap();
-                (forces, adjoint.heights, work.dual_operator_applications)
+                let state = solver.solve(control.as_slice(), None, 0.0).unwrap();
+                let adjoint = solver.sensitivities(&state.solution, &dual, 1e-11).unwrap();
+                let products = state.work().dual_operator_applications;
+                (state.forces, adjoint.heights, products)
             };
             let (mixed, mixed_slopes, mixed_products) = solve(Precision::Mixed);
             let (double, double_slopes, double_products) = solve(Precision::Double);

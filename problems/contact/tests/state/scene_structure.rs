@@ -7,7 +7,7 @@ use contact::equilibrium::{ContactProblem, ContactStatus};
 use contact::error::{ContactError, SceneError};
 use contact::linear::vector::norm;
 use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody, hertz, signorini};
-use contact::tfeti::{PreconditionerKind, TornSolver};
+use contact::tfeti::{TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use std::sync::Arc;
 
@@ -32,12 +32,12 @@ fn no_friction_means_no_tangential_multipliers() {
 #[test]
 fn one_subdomain_means_no_gluing_and_more_mean_the_known_rows() {
     let problem = Arc::new(ContactProblem::new(small(signorini().unwrap(), 6, 1)).unwrap());
-    let whole = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
+    let whole = TotalFeti::new(Arc::clone(&problem), TornOptions::default()).unwrap();
     assert_eq!(whole.model().constraints.gluing_count, 0);
     // Two components of the 7 × 7 nodes on x₁ = 0.
     assert_eq!(whole.model().constraints.equality_count, 98);
     let problem = Arc::new(ContactProblem::new(small(signorini().unwrap(), 12, 2)).unwrap());
-    let torn = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
+    let torn = TotalFeti::new(Arc::clone(&problem), TornOptions::default()).unwrap();
     assert_eq!(torn.model().total_dofs, 8232);
     assert_eq!(torn.model().constraints.equality_count, 1979);
 }
@@ -45,7 +45,7 @@ fn one_subdomain_means_no_gluing_and_more_mean_the_known_rows() {
 #[test]
 fn rows_are_orthonormal_and_weights_invert_them() {
     let problem = Arc::new(ContactProblem::new(small(hertz().unwrap(), 4, 2)).unwrap());
-    let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
+    let solver = TotalFeti::new(Arc::clone(&problem), TornOptions::default()).unwrap();
     let constraints = &solver.model().constraints;
     let dense = |row: usize, weighted: bool| {
         let mut values = vec![0.0; solver.model().total_dofs];
@@ -67,7 +67,7 @@ fn rows_are_orthonormal_and_weights_invert_them() {
 #[test]
 fn rigid_modes_are_the_kernel_and_the_inverse_is_a_generalised_one() {
     let problem = Arc::new(ContactProblem::new(small(signorini().unwrap(), 6, 2)).unwrap());
-    let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
+    let solver = TotalFeti::new(Arc::clone(&problem), TornOptions::default()).unwrap();
     let blocks = problem.blocks(&[99.0; 36]).unwrap();
     let system = solver.model().factorize(&blocks).unwrap();
     let pattern = &solver.model().pattern.pattern;

@@ -5,7 +5,7 @@ use contact::communication::{Communication, Parcel};
 use contact::equilibrium::{ContactProblem, ContactSolver, SolvedBody, SolverState};
 use contact::error::ContactError;
 use contact::scene::{Scene, hertz, signorini};
-use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TornOptions, TornSolver, TotalFeti};
+use contact::tfeti::{DualMethod, Recycling, TornOptions, TotalFeti};
 use std::sync::Arc;
 use testset::kit::Mailbox;
 
@@ -56,7 +56,7 @@ fn solve(scene: &Scene, clusters: [usize; 3], communication: Option<Rank>, metho
     if let Some(rank) = communication {
         options.communication = Arc::new(rank);
     }
-    let solver = TotalFeti::with_options(Arc::clone(&problem), method, options).unwrap();
+    let solver = TotalFeti::new(Arc::clone(&problem), options).unwrap().with_method(method);
     let controls = vec![scene.start_height; 36];
     let first = solver.solve(&controls, None, 1e-6).unwrap();
     let moved: Vec<f64> = (0..36).map(|index| scene.start_height - 0.01 * (index as f64).sin()).collect();
@@ -130,8 +130,8 @@ fn a_failure_in_one_process_ends_the_others() {
             // The bodies of the second process are so flat that no factor of theirs has a digit.
             let controls = vec![if number == 1 { 1e-9 } else { scene.start_height }; 36];
             let problem = Arc::new(ContactProblem::new(scene).unwrap());
-            let kind = PreconditionerKind::Dirichlet;
-            let solver = TornSolver::with_communication(problem, kind, Arc::new(rank)).unwrap();
+            let options = TornOptions { communication: Arc::new(rank), ..TornOptions::default() };
+            let solver = TotalFeti::new(problem, options).unwrap();
             solver.solve(&controls, None, 1e-8).unwrap_err()
         })
     });

@@ -1,12 +1,14 @@
 //! The paper's path against the Newton path on small scenes: states, subgradients, step counts, limits.
 
 use contact::body::mesh::Face;
-use contact::equilibrium::{ContactForces, ContactProblem, Work};
+use contact::equilibrium::{
+    ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, SolverState, Work,
+};
 use contact::error::ContactError;
 use contact::qp::QpError;
 use contact::scene::{Scene, Support, hertz, signorini};
 use contact::tfeti::{
-    AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornSolver, TornState,
+    AugmentedLagrangianCounts, AugmentedLagrangianSettings, PreconditionerKind, TornOptions, TornState, TotalFeti,
 };
 use std::sync::Arc;
 
@@ -23,6 +25,11 @@ fn controls(problem: &ContactProblem) -> Vec<f64> {
     (0..36).map(|index| height * (1.0 + 2e-3 * (2.3 * index as f64).sin())).collect()
 }
 
+fn torn(problem: &Arc<ContactProblem>, preconditioner: PreconditionerKind) -> TotalFeti {
+    let options = TornOptions { preconditioner, ..TornOptions::default() };
+    TotalFeti::new(Arc::clone(problem), options).expect("torn")
+}
+
 struct Paper {
     state: TornState,
     forces: ContactForces,
@@ -31,15 +38,16 @@ struct Paper {
 }
 
 fn paper(
-    solver: &TornSolver,
+    solver: &TotalFeti,
     start: Option<&[f64]>,
     settings: &AugmentedLagrangianSettings,
 ) -> Result<Paper, ContactError> {
     let controls = controls(solver.problem());
-    let (state, forces, work, counts) = solver.solve_by(&controls, settings.tolerance, |contact| {
+    let (state, counts) = solver.solve_by(&controls, settings.tolerance, |contact| {
         contact.solve_by_successive_approximations(start, settings)
     })?;
-    Ok(Paper { state, forces, work, counts })
+    let (forces, work) = (state.forces.clone(), state.work());
+    Ok(Paper { state: state.solution, forces, work, counts })
 }
 
 /// Largest difference of the normal and tangential forces over the largest normal force.
@@ -52,8 +60,9 @@ fn difference(a: &ContactForces, b: &ContactForces) -> f64 {
 
 /// Solves by both paths to 1e-9 and compares forces, statuses and subgradients.
 fn agrees(problem: &Arc<ContactProblem>, kind: PreconditionerKind, precondition: bool) -> Paper {
-    let solver = TornSolver::new(Arc::clone(problem), kind).expect("torn");
-    let (newton_state, newton, _) = solver.solve(&controls(problem), None, 1e-11).expect("Newton");
+    let solver = torn(problem, kind);
+    let ContactState { solution: newton_state, forces: newton, .. } =
+        solver.solve(&controls(problem), None, 1e-11).expect("Newton");
     let settings = AugmentedLagrangianSettings { precondition, ..AugmentedLagrangianSettings::to(1e-9) };
     let paper = paper(&solver, None, &settings).expect("successive approximations");
     // The largest error of a force is 5 to 70 times the residual.
@@ -103,10 +112,11 @@ fn grounded_motion_common_to_both_bodies() {
 #[test]
 fn warm_start_needs_fewer_products() {
     let problem = small(signorini().expect("preset"), 6, 2, 0.3);
-    let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet).expect("torn");
+    let solver = torn(&problem, PreconditionerKind::Dirichlet);
     let settings = AugmentedLagrangianSettings::to(1e-7);
     let cold = paper(&solver, None, &settings).expect("cold");
-    let warm = paper(&solver, Some(&cold.state.multipliers()), &settings).expect("warm");
+    let ContactWarmStart::Multipliers(multipliers) = cold.state.warm_start() else { panic!("multipliers") };
+    let warm = paper(&solver, Some(&multipliers), &settings).expect("warm");
     let (cold_work, warm_work) = (cold.work.dual_operator_applications, warm.work.dual_operator_applications);
     assert!(3 * warm_work < 2 * cold_work, "{warm_work} against {cold_work}");
     assert!(difference(&warm.forces, &cold.forces) < 1e-4);
@@ -115,7 +125,7 @@ fn warm_start_needs_fewer_products() {
 #[test]
 fn products_are_those_counted() {
     let problem = small(signorini().expect("preset"), 4, 2, 0.3);
-    let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet).expect("torn");
+    let solver = torn(&problem, PreconditionerKind::Dirichlet);
     let settings = AugmentedLagrangianSettings::to(1e-6);
     let Paper { work, counts, .. } = paper(&solver, None, &settings).expect("solved");
     let steps = counts.steps.products();
@@ -133,7 +143,7 @@ fn large_friction_still_contracts_on_this_scene() {
 #[test]
 fn limits_end_in_typed_errors() {
     let problem = small(signorini().expect("preset"), 4, 2, 0.3);
-    let solver = TornSolver::new(problem, PreconditionerKind::Dirichlet).expect("torn");
+    let solver = torn(&problem, PreconditionerKind::Dirichlet);
     let defaults = AugmentedLagrangianSettings::to(1e-9);
     let fail = |settings| paper(&solver, None, &settings).map(|_| ()).expect_err("must fail");
     match fail(AugmentedLagrangianSettings { max_fixed_point_steps: 2, ..defaults }) {

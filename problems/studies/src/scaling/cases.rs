@@ -176,7 +176,7 @@ impl Variant {
             _ => DualMethod::Newton(Recycling::On),
         };
         let options = TornOptions { preconditioner, clusters: [clusters; 3], ..TornOptions::default() };
-        TotalFeti::with_options(problem, method, options).map(AnySolver::from)
+        Ok(AnySolver::from(TotalFeti::new(problem, options)?.with_method(method)))
     }
 
     /// The preconditioner; none for direct condensation.

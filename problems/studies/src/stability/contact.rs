@@ -5,7 +5,7 @@ use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver, ContactState, Diagnosis};
 use contact::error::{ContactError, SceneError};
 use contact::scene::Scene;
-use contact::tfeti::{DualMethod, PreconditionerKind, Recycling, TotalFeti};
+use contact::tfeti::{DualMethod, TornOptions, TotalFeti};
 use std::sync::Arc;
 use testset::kit::wavy;
 
@@ -146,13 +146,9 @@ fn heights<S: ContactSolver>(solver: &S, state: &ContactState<S::State>) -> Resu
     sensitivities.map(|sensitivities| sensitivities.heights).map_err(|error| error.to_string())
 }
 
-fn torn(problem: &Arc<ContactProblem>, method: DualMethod) -> Result<TotalFeti, ContactError> {
-    TotalFeti::new(Arc::clone(problem), PreconditionerKind::Dirichlet, method)
-}
-
 /// Newton on TFETI.
 pub fn by_tfeti(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
-    let solver = torn(problem, DualMethod::Newton(Recycling::default()));
+    let solver = TotalFeti::new(Arc::clone(problem), TornOptions::default());
     attempt("tfeti", solver, controls, TOLERANCE, |solver, state, _| {
         let heights = heights(solver, &state);
         Found { forces: state.forces, heights, diagnosis: None }
@@ -171,7 +167,8 @@ pub fn by_condensation(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attem
 
 /// Successive approximations on TFETI.
 pub fn by_successive_approximations(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
-    let solver = torn(problem, DualMethod::SuccessiveApproximations);
+    let solver = TotalFeti::new(Arc::clone(problem), TornOptions::default());
+    let solver = solver.map(|solver| solver.with_method(DualMethod::SuccessiveApproximations));
     attempt("successive approximations", solver, controls, PAPER_TOLERANCE, |_, state, path| {
         path.reason = Some(format!("observed contraction {:.3}", state.contraction.unwrap_or(0.0)));
         Found { forces: state.forces, heights: Ok(Vec::new()), diagnosis: None }

@@ -6,7 +6,7 @@ use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
 use contact::scene::{CounterSurface, Scene, hertz, signorini};
-use contact::tfeti::{AugmentedLagrangianSettings, DualMethod, PreconditionerKind, Recycling, TornSolver, TotalFeti};
+use contact::tfeti::{AugmentedLagrangianSettings, TornOptions, TotalFeti};
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
@@ -14,8 +14,7 @@ use std::sync::Arc;
 use studies::stability::{Counts, Outcome, Report, all, field_error, random_scenes, words};
 
 fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
-    let method = DualMethod::Newton(Recycling::default());
-    TotalFeti::new(Arc::clone(problem), PreconditionerKind::Dirichlet, method).unwrap()
+    TotalFeti::new(Arc::clone(problem), TornOptions::default()).unwrap()
 }
 
 /// Numbers of cases that are solved, refused, limited and broken, of the groups with these names; all must be as expected.
@@ -90,12 +89,12 @@ fn contraction_of_both_paths_agrees() {
 fn accurate_successive_approximations_contract_as_diagnosed() {
     let problem = Arc::new(ContactProblem::new(Scene { mesh: [4; 3], friction: 0.3, ..signorini().unwrap() }).unwrap());
     let controls = vec![100.0; 36];
-    let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::Dirichlet).unwrap();
+    let solver = newton(&problem);
     let settings = AugmentedLagrangianSettings { adaptivity: 1e-3, ..AugmentedLagrangianSettings::to(1e-9) };
-    let (state, .., counts) =
+    let (state, counts) =
         solver.solve_by(&controls, 0.0, |contact| contact.solve_by_successive_approximations(None, &settings)).unwrap();
     let observed = counts.contraction;
-    let diagnosed = solver.diagnose(&state).unwrap().contraction;
+    let diagnosed = solver.diagnose(&state.solution).unwrap().contraction;
     println!("observed {observed:.4}, diagnosed {diagnosed:.4}");
     assert!((observed / diagnosed - 1.0).abs() < 0.25, "{observed} {diagnosed}");
 }

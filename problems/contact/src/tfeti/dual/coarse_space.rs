@@ -201,15 +201,15 @@ mod tests {
     use crate::equilibrium::{Configuration, ContactProblem};
     use crate::linear::dense::DenseLu;
     use crate::scene::{Scene, hertz, signorini};
-    use crate::tfeti::TornSolver;
-    use crate::tfeti::torn::PreconditionerKind;
+    use crate::tfeti::{PreconditionerKind, TornOptions, TotalFeti};
     use faer::Mat;
 
     /// The coarse space of a flat scene, with a motion of all subdomains grounded if asked for.
     fn coarse_space(scene: Scene, subdomains: [usize; 3], ground: bool) -> CoarseSpace {
         let scene = Scene { mesh: [6; 3], subdomains, ..scene };
         let problem = Arc::new(ContactProblem::new(scene).expect("a preset"));
-        let solver = TornSolver::new(Arc::clone(&problem), PreconditionerKind::None).expect("a torn scene");
+        let options = TornOptions { preconditioner: PreconditionerKind::None, ..TornOptions::default() };
+        let solver = TotalFeti::new(Arc::clone(&problem), options).expect("a torn scene");
         let surface = problem.scene.spline_surface().expect("a preset");
         let controls = vec![95.0; surface.control_count()];
         let configuration = Configuration::new(&problem, &controls).expect("held bodies");

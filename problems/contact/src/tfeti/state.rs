@@ -1,0 +1,39 @@
+//! A shape solved by total FETI, with all that its derivative needs.
+
+use crate::body::mesh::Block;
+use crate::equilibrium::{ContactWarmStart, SolverState};
+use crate::tfeti::dual::{CoarseSpace, TornSolution};
+use crate::tfeti::torn::{Constraints, TornSystem, TornVector};
+use std::sync::Arc;
+
+/// A solved shape with all that its derivative needs.
+#[derive(Debug)]
+pub struct TornState {
+    /// The bodies, lower first.
+    pub(crate) blocks: Vec<Block>,
+    pub(super) system: TornSystem,
+    pub(super) space: CoarseSpace,
+    pub(super) constraints: Arc<Constraints>,
+    pub(super) solution: TornSolution,
+    pub(super) displacement: TornVector,
+    pub(super) gaps: Vec<f64>,
+    pub(super) stiffness: f64,
+    /// Force that residuals are relative to, N; zero for bodies at rest.
+    pub(super) load: f64,
+}
+
+impl TornState {
+    /// Displacements over the torn dofs of this process, then its ghosts, mm.
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement.0
+    }
+}
+
+impl SolverState for TornState {
+    /// λ over all rows. Where there are several processes, all of them call it.
+    fn warm_start(&self) -> ContactWarmStart {
+        ContactWarmStart::Multipliers(
+            self.constraints.whole(&self.solution.iterate.multipliers, self.space.distribution()),
+        )
+    }
+}
