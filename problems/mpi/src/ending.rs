@@ -37,9 +37,3 @@ pub fn end_with_panics(rank: usize, size: usize) {
         end_all(&format!("process {rank} of {size} panicked{place}: {words}"), PANICKED);
     }));
 }
-
-/// From now on Ctrl-C and termination requests do nothing here: the first process gets them too, and decides what follows.
-pub fn leave_signals_to_the_first() {
-    // Nothing is lost where it cannot be done: the process then ends, and with it all of them.
-    let _ = ctrlc::set_handler(|| {});
-}

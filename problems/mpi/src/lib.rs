@@ -12,10 +12,10 @@ pub use build_name::build_name;
 pub use world::World;
 
 use contact::communication::Communication;
-use ending::{FAILED, end_all, end_with_panics, leave_signals_to_the_first};
+use ending::{FAILED, end_all, end_with_panics};
 use mpi::Threading;
 use problems::commands::processes::run_together;
-use problems::commands::{notice, print_failure, run_any_among};
+use problems::commands::{leave_interrupts, notice, print_failure, run_any_among};
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -40,7 +40,8 @@ pub fn run(binary: &'static str, connection: impl FnOnce(World) -> Arc<dyn Commu
     }
     end_with_panics(rank, world.size());
     if rank > 0 {
-        leave_signals_to_the_first();
+        // The first process gets requests to end too, and decides what follows.
+        leave_interrupts();
     }
     let communication = connection(world);
     let result = run_together(&communication, &build_name(), |processes| run_any_among(binary, processes));

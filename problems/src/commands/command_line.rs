@@ -8,6 +8,7 @@ use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
 use crate::commands::output::{finish, leave, left, notice};
 use crate::commands::processes::Processes;
 use crate::commands::shell_files::{asked, examples};
+use crate::commands::signals::let_large_writes_fail;
 use crate::commands::{compare, evaluate, export, optimize, recheck, study, verify};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
 use contact::equilibrium::STAGE_TARGET;
@@ -36,6 +37,7 @@ struct AnyScene {
 
 /// Runs the binary of this name on its own scene, the text of a scene file.
 pub fn run(binary: &'static str, scene: &str) -> ExitCode {
+    let_large_writes_fail();
     let scene = SceneFile::parse(scene, binary);
     let command = Arguments::command().name(binary).after_help(examples(binary, ""));
     let command = Arguments::help_with_defaults(command, scene.as_ref().ok());
@@ -49,6 +51,7 @@ pub fn run(binary: &'static str, scene: &str) -> ExitCode {
 
 /// Runs a binary of this name that takes any scene, in the first of its processes.
 pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
+    let_large_writes_fail();
     let command = AnyScene::command().name(binary).after_help(examples(binary, "SCENE.toml "));
     let command = Arguments::help_with_defaults(command, None);
     if let Some(file) = asked(&command, &words()) {

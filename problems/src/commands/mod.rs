@@ -27,6 +27,7 @@ mod report;
 mod run_kind;
 mod scene_difference;
 mod shell_files;
+mod signals;
 mod study;
 mod verify;
 
@@ -38,4 +39,5 @@ pub use failure::{Failure, failed};
 pub use folder::{Folder, json, printed_with_files};
 pub use long_run::StageLayer;
 pub use output::{arguments, finish, notice, print, print_failure};
+pub use signals::leave_interrupts;
 pub use verify::{DIRECTION_SEED, smooth_taylor_test, taylor_steps};

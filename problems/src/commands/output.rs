@@ -2,6 +2,7 @@
 
 use crate::commands::ascii::shown;
 use crate::commands::failure::Failure;
+use crate::commands::signals::let_large_writes_fail;
 use clap::{Error, Parser};
 use std::io::{self, Write};
 use std::path::Path;
@@ -93,6 +94,7 @@ const READ_AND_WRITE: u32 = 0b10;
 
 /// The arguments of a binary; ends the program where they ask for help or are wrong.
 pub fn arguments<A: Parser>() -> A {
+    let_large_writes_fail();
     A::try_parse().unwrap_or_else(|error| leave(&error))
 }
 

@@ -33,6 +33,7 @@ mod processes;
 mod recheck;
 mod reports;
 mod run_folder;
+mod signals;
 mod stages;
 mod study;
 mod tall_columns;

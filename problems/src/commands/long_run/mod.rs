@@ -7,11 +7,9 @@
 //! `--resume` reads the run as stated from the folder and runs it again; the journal answers as long as it lasts.
 
 mod folder;
-mod interrupt;
 mod progress;
 mod status;
 
 pub use folder::RunFolder;
-pub use interrupt::{STATUS, interrupted, watch_interrupts};
 pub use progress::Progress;
 pub use status::{StageLayer, StatusLine};

@@ -11,12 +11,13 @@ use crate::commands::contact_objective::{SolvedShape, checks};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, json, printed_with_files, resume_command};
 use crate::commands::loaded_scene::{LoadedScene, Session};
-use crate::commands::long_run::{RunFolder, STATUS, interrupted};
+use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::run::{OptimizationRun, optimize};
 use crate::commands::optimize::standstill::standstill;
 use crate::commands::optimize::summary::{page, stages_page, summary};
 use crate::commands::report::files;
 use crate::commands::run_kind::RunKind;
+use crate::commands::signals::{STATUS, interrupted};
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
