@@ -123,11 +123,7 @@ impl DirectSolver {
             return Ok((Some(Arc::clone(body)), 0));
         }
         let condensed = pattern.condense(&configuration.blocks[1], &scene.body)?;
-        // Its motions refer to a point of its own: the bits must not depend on which shape came first.
-        let centre = [configuration.rigid.centre[0], configuration.rigid.centre[1], scene.top];
-        let length = centre[0].max(centre[1]);
-        let rigid = RigidScene { centre, length, ..configuration.rigid.clone() };
-        let body = Arc::new(self.compliant(condensed, &rigid, 1));
+        let body = Arc::new(self.compliant(condensed, &configuration.rigid, 1));
         // Another thread may have been first; its factor is the same.
         Ok((Some(Arc::clone(self.fixed.get_or_init(|| body))), 1))
     }

@@ -8,13 +8,16 @@
 
 use crate::equilibrium::ContactBoundary;
 use crate::error::ContactError;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector};
 
 /// Six motions per body: translations, and rotations about a common centre divided by a common length.
 pub const MOTIONS: usize = 6;
 
-/// Relative size of an eigenvalue (square of a restraint) that counts as zero.
+/// Square of what restrains a motion beside others, relative to what restrains it alone, that counts as zero.
 const FREE: f64 = 1e-12;
+
+/// Square of a restraint relative to the largest one that counts as rounding.
+const UNHELD: f64 = 1e-24;
 
 /// Relative resultant that counts as zero.
 const UNLOADED: f64 = 1e-9;
@@ -23,6 +26,32 @@ const UNLOADED: f64 = 1e-9;
 pub fn motions(point: [f64; 3], centre: [f64; 3], length: f64) -> [[f64; 3]; MOTIONS] {
     let x: [f64; 3] = std::array::from_fn(|axis| (point[axis] - centre[axis]) / length);
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]]
+}
+
+/// What the rotations of a body refer to.
+#[derive(Debug, Clone, Copy)]
+pub struct Frame {
+    /// Centre: among the held nodes, where lever arms hide no restraint.
+    pub centre: [f64; 3],
+    /// Length that scales the rotations, mm.
+    pub length: f64,
+}
+
+impl Frame {
+    /// The frame of a body by the points of its held and its contact nodes: the centroid of the held ones, or of the others where none is
+    /// held; the largest distance of a contact node along an axis.
+    pub(crate) fn new(held: &[[f64; 3]], contact: &[[f64; 3]]) -> Self {
+        let points = if held.is_empty() { contact } else { held };
+        let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
+        let centre = std::array::from_fn(mean);
+        let distances = contact.iter().flat_map(|point| (0..3).map(move |axis| (point[axis] - centre[axis]).abs()));
+        Self { centre, length: distances.fold(0.0, f64::max) }
+    }
+
+    /// Displacement of the six motions at a point.
+    pub(crate) fn motions(&self, point: [f64; 3]) -> [[f64; 3]; MOTIONS] {
+        motions(point, self.centre, self.length)
+    }
 }
 
 /// What the analysis needs to know of a scene's geometry.
@@ -36,10 +65,8 @@ pub struct RigidScene {
     pub loads: Vec<(usize, [f64; 3], [f64; 3])>,
     /// Contact nodes: position on the lower and (if there is one) on the upper body.
     pub contact: Vec<[[f64; 3]; 2]>,
-    /// Centre of the rotations.
-    pub centre: [f64; 3],
-    /// Length that scales the rotations, mm.
-    pub length: f64,
+    /// What the rotations of each body refer to.
+    pub frames: Vec<Frame>,
 }
 
 /// A motion that the supports of one body leave free.
@@ -62,7 +89,7 @@ impl RigidScene {
 
     fn row(&self, body: usize, point: [f64; 3], component: usize, sign: f64) -> DVector<f64> {
         let mut row = DVector::zeros(MOTIONS * self.bodies);
-        for (mode, motion) in motions(point, self.centre, self.length).iter().enumerate() {
+        for (mode, motion) in self.frames[body].motions(point).iter().enumerate() {
             row[MOTIONS * body + mode] = sign * motion[component];
         }
         row
@@ -83,13 +110,11 @@ impl RigidScene {
 
     /// The motions that the supports of one body leave free.
     pub(crate) fn own_motions(&self, body: usize) -> Vec<OwnMotion> {
+        let basis = |point| self.frames[body].motions(point);
         let held = self.held.iter().filter(|(holder, ..)| *holder == body);
-        let own = Self { bodies: 1, held: Vec::new(), loads: Vec::new(), contact: Vec::new(), ..*self };
-        let free = kernel(held.map(|&(_, point, component)| own.row(0, point, component, 1.0)), 1);
-        let displacement = |motion: &DVector<f64>, point: [f64; 3], component: usize| {
-            let basis = motions(point, self.centre, self.length);
-            basis.iter().zip(motion.iter()).map(|(b, c)| b[component] * c).sum()
-        };
+        let row = |point, component: usize| DVector::from_iterator(MOTIONS, basis(point).iter().map(|m| m[component]));
+        let free = kernel(held.map(|&(_, point, component)| row(point, component)), MOTIONS);
+        let displacement = |motion: &DVector<f64>, point: [f64; 3], component: usize| row(point, component).dot(motion);
         let along = |motion| {
             let points = self.contact.iter().map(|points| points[body]);
             let contact = points.flat_map(|point| (0..3).map(move |component| displacement(motion, point, component)));
@@ -108,7 +133,7 @@ impl RigidScene {
     /// # Errors
     /// [`ContactError::NoEquilibrium`] naming the motion and the resultant that cannot be carried.
     pub(crate) fn analyse(&self, boundary: &ContactBoundary) -> Result<Vec<Motion>, ContactError> {
-        let free = kernel(self.held_rows(), self.bodies);
+        let free = kernel(self.held_rows(), MOTIONS * self.bodies);
         if free.is_empty() {
             return Ok(Vec::new());
         }
@@ -124,23 +149,21 @@ impl RigidScene {
             let components = std::iter::once(2).chain(point.tangents.iter().copied());
             components.map(|component| self.contact_row(points, component)).collect()
         });
-        let contact: Vec<Vec<DVector<f64>>> = contact.collect();
-        let rows: Vec<Vec<DVector<f64>>> = contact.iter().map(|rows| rows.iter().map(project).collect()).collect();
+        let rows: Vec<Vec<DVector<f64>>> = contact.map(|rows| rows.iter().map(project).collect()).collect();
         let scale = self.total_load();
         let rest = ConeProjection { rows: &rows, friction: boundary.friction }.residual(&project(&load));
+        let motion = |coefficients: &DVector<f64>| -> DVector<f64> {
+            free.iter().zip(coefficients.iter()).map(|(mode, coefficient)| mode * *coefficient).sum()
+        };
         if rest.norm() > UNLOADED * scale {
-            let mut motion = DVector::zeros(MOTIONS * self.bodies);
-            for (coefficient, mode) in rest.iter().zip(&free) {
-                motion += mode * *coefficient;
-            }
             return Err(ContactError::NoEquilibrium {
-                direction: self.describe(&motion),
+                direction: self.describe(&motion(&rest)),
                 resultant: rest.norm(),
                 allowed: UNLOADED * scale,
             });
         }
-        let grounded = kernel(self.held_rows().chain(contact.into_iter().flatten()), self.bodies);
-        Ok(grounded.into_iter().map(|mode| mode.iter().copied().collect()).collect())
+        let grounded = kernel(rows.into_iter().flatten(), free.len());
+        Ok(grounded.iter().map(|coefficients| motion(coefficients).iter().copied().collect()).collect())
     }
 
     /// The largest parts of a motion in words.
@@ -161,19 +184,42 @@ impl RigidScene {
     }
 }
 
-/// Orthonormal basis of the common kernel of some rows of length `MOTIONS·bodies`.
-fn kernel(rows: impl Iterator<Item = DVector<f64>>, bodies: usize) -> Vec<DVector<f64>> {
-    let size = MOTIONS * bodies;
+/// Orthonormal basis of the common kernel of some rows of this length, by elimination of what the rows hold. Every motion counts in units
+/// of its own restraint: lever arms differ by the proportions of the bodies.
+fn kernel(rows: impl Iterator<Item = DVector<f64>>, size: usize) -> Vec<DVector<f64>> {
     let mut gram = DMatrix::zeros(size, size);
     for row in rows {
         gram += &row * row.transpose();
     }
-    let eigen = SymmetricEigen::new(gram);
-    let largest = eigen.eigenvalues.amax();
-    (0..size)
-        .filter(|&index| eigen.eigenvalues[index] <= FREE * largest)
-        .map(|index| eigen.eigenvectors.column(index).into_owned())
-        .collect()
+    let largest = gram.diagonal().iter().fold(0.0, |largest: f64, square| largest.max(*square));
+    let unit = gram.diagonal().map(|square| if square > UNHELD * largest { square.sqrt().recip() } else { 0.0 });
+    // What is held follows from what is free: row i of a held motion ends as u_i + Σ entries · u_free = 0.
+    let mut rest = DMatrix::from_fn(size, size, |i, j| unit[i] * gram[(i, j)] * unit[j]);
+    let mut held: Vec<usize> = Vec::new();
+    loop {
+        let others = (0..size).filter(|index| !held.contains(index));
+        let Some(pivot) = others.max_by(|&i, &j| rest[(i, i)].total_cmp(&rest[(j, j)])) else { break };
+        if rest[(pivot, pivot)] <= FREE {
+            break;
+        }
+        let row = rest.row(pivot) / rest[(pivot, pivot)];
+        let mut column = rest.column(pivot).into_owned();
+        column[pivot] = 0.0;
+        rest -= column * &row;
+        rest.set_row(pivot, &row);
+        held.push(pivot);
+    }
+    let motion = |free: usize| {
+        let mut motion = DVector::zeros(size);
+        motion[free] = if unit[free] > 0.0 { unit[free] } else { 1.0 };
+        held.iter().for_each(|&index| motion[index] = -rest[(index, free)] * unit[index]);
+        motion
+    };
+    let free: Vec<DVector<f64>> = (0..size).filter(|index| !held.contains(index)).map(motion).collect();
+    if free.is_empty() {
+        return free;
+    }
+    DMatrix::from_columns(&free).qr().q().column_iter().map(|column| column.into_owned()).collect()
 }
 
 /// Projection of a resultant onto the cone of contact resultants, by a nonnegative least squares active set whose columns
@@ -246,6 +292,43 @@ fn nonnegative_fit(columns: &mut Vec<DVector<f64>>, weights: &mut Vec<f64>, load
         (*columns, *weights) = pairs.filter(|(_, weight)| *weight > 1e-15 * largest).unzip();
         if columns.is_empty() {
             return;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::body::mesh::Face;
+    use crate::equilibrium::ContactProblem;
+    use crate::scene::{CounterSurface, Scene, Support, signorini};
+    use crate::shape::ShapeBounds;
+
+    /// What the supports of a body leave free does not depend on its proportions; of what is free, contact holds its part.
+    #[test]
+    fn proportions_hide_no_restraint() {
+        let support = |face, components| Support { face, components };
+        let (x1, x2) = (support(Face::X1Min, [true, false, false]), support(Face::X2Min, [false, true, false]));
+        let cases =
+            [(vec![support(Face::Bottom, [true; 3])], 0, 0), (vec![x1, x2], 1, 0), (vec![x1], 3, 1), (vec![], 6, 3)];
+        for height in [1e-7, 1e-4, 1.0, 1e3, 1e5, 1e7] {
+            for (supports, free, unheld) in &cases {
+                let mut scene = Scene { size: [1.0; 2], mesh: [4; 3], friction: 0.0, ..signorini().expect("a scene") };
+                (scene.lower.supports, scene.lower.loads) = (supports.clone(), Vec::new());
+                scene.start_height = height;
+                scene.counter_surface = CounterSurface::Waves { base: height, first: 0.0, second: 0.0, period: 1.0 };
+                scene.bounds = ShapeBounds { minimum_height: 0.5 * height, slope: 1.0, volume: [0.0, 2.0 * height] };
+                let problem = ContactProblem::new(scene).expect("a problem");
+                let rigid = problem.rigid_scene(&problem.blocks(&[height; 36]).expect("a block"));
+                assert_eq!(rigid.own_motions(0).len(), *free, "{height:e}: {supports:?}");
+                let grounded = rigid.analyse(&problem.boundary).expect("nothing is loaded");
+                assert_eq!(grounded.len(), *unheld, "{height:e}: {supports:?}");
+                for motion in grounded {
+                    // Contact without friction holds translation along x₃ and tilting.
+                    let basis = rigid.frames[0].motions(rigid.contact[5][0]);
+                    let normal: f64 = basis.iter().zip(&motion).map(|(basis, c)| basis[2] * c).sum();
+                    assert!(normal.abs() < 1e-9, "{height:e}: {normal:e}");
+                }
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::body::elasticity::traction::face_weights;
 use crate::body::mesh::{Block, Grid};
 use crate::body::shape_load::loaded_faces;
 use crate::equilibrium::ContactBoundary;
-use crate::equilibrium::modes::RigidScene;
+use crate::equilibrium::modes::{Frame, RigidScene};
 use crate::error::{ContactError, SceneError};
 use crate::lattice;
 use crate::scene::{BodyScene, Scene};
@@ -173,15 +173,12 @@ impl ContactProblem {
             let lower = blocks[0].coordinates([i, j, self.grid.cells[2]]);
             [lower, blocks.get(1).map_or(lower, |block| block.coordinates([i, j, 0]))]
         });
-        let [a, b] = self.grid.size;
-        let height = blocks[0].upper.iter().sum::<f64>() / blocks[0].upper.len() as f64;
-        RigidScene {
-            bodies: blocks.len(),
-            held,
-            loads,
-            contact: contact.collect(),
-            centre: [a / 2.0, b / 2.0, height],
-            length: a.max(b).max(height),
-        }
+        let contact: Vec<[[f64; 3]; 2]> = contact.collect();
+        let frame = |body| {
+            let own = held.iter().filter(|(holder, ..)| *holder == body).map(|(_, point, _)| *point);
+            Frame::new(&own.collect::<Vec<_>>(), &contact.iter().map(|points| points[body]).collect::<Vec<_>>())
+        };
+        let frames = (0..blocks.len()).map(frame).collect();
+        RigidScene { bodies: blocks.len(), held, loads, contact, frames }
     }
 }

@@ -4,7 +4,6 @@ use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::body::mesh::{Block, Subdomain, Tearing};
 use crate::body::shape_load::nodal_loads;
 use crate::communication::Communication;
-use crate::equilibrium::modes::motions;
 use crate::equilibrium::{Configuration, ContactProblem};
 use crate::error::ContactError;
 use crate::lattice;
@@ -257,7 +256,7 @@ impl TornModel {
                 let mut displacement = Vec::with_capacity(place.dof_count());
                 for node in 0..place.node_count() {
                     let point = blocks[subdomain.body].coordinates(place.block_position(node));
-                    let basis = motions(point, rigid.centre, rigid.length);
+                    let basis = rigid.frames[subdomain.body].motions(point);
                     for component in 0..3 {
                         displacement.push(basis.iter().zip(coefficients).map(|(b, c)| b[component] * c).sum::<f64>());
                     }
