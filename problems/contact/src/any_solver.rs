@@ -124,8 +124,8 @@ impl ContactSolver for AnySolver {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
         match state {
-            AnyState::Torn(state, condensed) => match self {
-                Self::Auto(solver) => solver.sensitivities(state, condensed, direction, tolerance),
+            AnyState::Torn(state) => match self {
+                Self::Auto(solver) => solver.sensitivities(state, direction, tolerance),
                 _ => self.torn()?.sensitivities(state, direction, tolerance),
             },
             AnyState::Direct(state) => self.direct()?.sensitivities(state, direction, tolerance),
@@ -134,8 +134,8 @@ impl ContactSolver for AnySolver {
 
     fn tangents(&self, state: &AnyState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
         match state {
-            AnyState::Torn(state, condensed) => match self {
-                Self::Auto(solver) => solver.tangents(state, condensed, changes, tolerance),
+            AnyState::Torn(state) => match self {
+                Self::Auto(solver) => solver.tangents(state, changes, tolerance),
                 _ => self.torn()?.tangents(state, changes, tolerance),
             },
             AnyState::Direct(state) => self.direct()?.tangents(state, changes, tolerance),
@@ -144,28 +144,28 @@ impl ContactSolver for AnySolver {
 
     fn diagnose(&self, state: &AnyState) -> Result<Diagnosis, ContactError> {
         match state {
-            AnyState::Torn(state, _) => self.torn()?.diagnose(state),
+            AnyState::Torn(state) => self.torn()?.diagnose(state),
             AnyState::Direct(state) => self.direct()?.diagnose(state),
         }
     }
 
     fn estimate_contraction(&self, state: &AnyState, max_products: usize) -> Result<f64, ContactError> {
         match state {
-            AnyState::Torn(state, _) => self.torn()?.estimate_contraction(state, max_products),
+            AnyState::Torn(state) => self.torn()?.estimate_contraction(state, max_products),
             AnyState::Direct(state) => self.direct()?.estimate_contraction(state, max_products),
         }
     }
 
     fn force_rounding(&self, state: &AnyState) -> Result<f64, ContactError> {
         match state {
-            AnyState::Torn(state, _) => self.torn()?.force_rounding(state),
+            AnyState::Torn(state) => self.torn()?.force_rounding(state),
             AnyState::Direct(state) => self.direct()?.force_rounding(state),
         }
     }
 
     fn bodies(&self, state: &AnyState) -> Result<Vec<SolvedBody>, ContactError> {
         match state {
-            AnyState::Torn(state, _) => self.torn()?.bodies(state),
+            AnyState::Torn(state) => self.torn()?.bodies(state),
             AnyState::Direct(state) => self.direct()?.bodies(state),
         }
     }

@@ -3,13 +3,12 @@
 use crate::direct::DirectState;
 use crate::equilibrium::{ContactWarmStart, SolverState};
 use crate::tfeti::TornState;
-use std::sync::OnceLock;
 
 /// What a solver of any kind keeps of a solved shape.
 #[derive(Debug)]
 pub enum AnyState {
-    /// By total FETI; also the same shape by direct condensation, once a derivative has needed it.
-    Torn(Box<TornState>, OnceLock<Box<DirectState>>),
+    /// By total FETI.
+    Torn(Box<TornState>),
     /// By direct condensation.
     Direct(Box<DirectState>),
 }
@@ -17,7 +16,7 @@ pub enum AnyState {
 impl SolverState for AnyState {
     fn warm_start(&self) -> ContactWarmStart {
         match self {
-            Self::Torn(state, _) => state.warm_start(),
+            Self::Torn(state) => state.warm_start(),
             Self::Direct(state) => state.warm_start(),
         }
     }
@@ -25,7 +24,7 @@ impl SolverState for AnyState {
 
 impl From<TornState> for AnyState {
     fn from(state: TornState) -> Self {
-        Self::Torn(Box::new(state), OnceLock::new())
+        Self::Torn(Box::new(state))
     }
 }
 

@@ -126,7 +126,6 @@ impl AutoSolver {
     pub(crate) fn sensitivities(
         &self,
         state: &TornState,
-        condensed: &OnceLock<Box<DirectState>>,
         direction: &[f64],
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
@@ -137,8 +136,8 @@ impl AutoSolver {
             Err(error) if error.ends_the_search() => return Err(error),
             Err(error) => error,
         };
-        let (direct, condensed) = self.condensed(state, condensed)?;
-        let found = direct.sensitivities(condensed, direction, 0.0)?;
+        let (direct, condensed) = self.condensed(state)?;
+        let found = direct.sensitivities(&condensed, direction, 0.0)?;
         let applications = if let ContactError::NotConverged { iterations, .. } = failed { iterations } else { 0 };
         Ok(Sensitivities { applications, ..found })
     }
@@ -147,14 +146,13 @@ impl AutoSolver {
     pub(crate) fn tangents(
         &self,
         state: &TornState,
-        condensed: &OnceLock<Box<DirectState>>,
         changes: &[Vec<f64>],
         tolerance: f64,
     ) -> Result<Tangents, ContactError> {
         match self.torn()?.tangents(state, changes, tolerance) {
-            Err(_) if self.max_products.is_some() => {
-                let (direct, condensed) = self.condensed(state, condensed)?;
-                direct.tangents(condensed, changes, tolerance)
+            Err(error) if self.max_products.is_some() && !error.ends_the_search() => {
+                let (direct, condensed) = self.condensed(state)?;
+                direct.tangents(&condensed, changes, tolerance)
             }
             result => result,
         }
@@ -179,19 +177,11 @@ impl AutoSolver {
         }
     }
 
-    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on total FETI; once per
-    /// state.
-    fn condensed<'a>(
-        &'a self,
-        state: &TornState,
-        condensed: &'a OnceLock<Box<DirectState>>,
-    ) -> Result<(&'a DirectSolver, &'a DirectState), ContactError> {
+    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on total FETI.
+    fn condensed(&self, state: &TornState) -> Result<(&DirectSolver, DirectState), ContactError> {
+        let configuration = Configuration::of(&self.problem, state.blocks.clone())?;
         let direct = self.direct()?;
-        let solved = prepared(condensed, || {
-            let configuration = Configuration::of(&self.problem, state.blocks.clone())?;
-            Ok(Box::new(direct.solve_configuration(configuration, None, 0.0)?.solution))
-        });
-        Ok((direct, solved?))
+        Ok((direct, direct.solve_configuration(configuration, None, 0.0)?.solution))
     }
 
     fn torn_then_direct(
@@ -242,35 +232,4 @@ fn proves_friction_too_weak(error: &ContactError) -> bool {
 fn unsolved(torn: Failed, direct: ContactError) -> ContactError {
     let products = torn.work.dual_operator_applications;
     ContactError::Unsolved { torn: torn.error, products, direct: Box::new(direct) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::hertz;
-
-    /// A state keeps what its first derivative has condensed.
-    #[test]
-    fn derivatives_condense_a_shape_once() {
-        let mut scene = hertz().expect("the example");
-        (scene.mesh, scene.subdomains) = ([3; 3], [1; 3]);
-        let controls = vec![scene.start_height; scene.control_points.iter().product()];
-        let problem = Arc::new(ContactProblem::new(scene).expect("a scene"));
-        let mut solver =
-            AutoSolver::new(Arc::clone(&problem), TornOptions::default(), Wanted::States).expect("a solver");
-        let state = solver.torn().expect("total FETI").solve(&controls, None, 1e-11).expect("a state").solution;
-        let dual = vec![1.0; problem.boundary.row_count];
-        let expected =
-            solver.torn().expect("total FETI").sensitivities(&state, &dual, 1e-11).expect("an adjoint").heights;
-        // No adjoint takes a single product.
-        solver.max_products = Some(1);
-        let condensed = OnceLock::new();
-        let heights = || solver.sensitivities(&state, &condensed, &dual, 1e-11).expect("an adjoint").heights;
-        let found = heights();
-        let size = expected.iter().fold(0.0_f64, |size, entry| size.max(entry.abs()));
-        assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-9 * size));
-        let place: *const DirectState = &**condensed.get().expect("a condensed state");
-        assert_eq!(heights(), found);
-        assert!(std::ptr::eq(place, &**condensed.get().expect("a condensed state")));
-    }
 }

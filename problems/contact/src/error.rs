@@ -283,13 +283,14 @@ impl From<FactorizationError> for ContactError {
 }
 
 impl ContactError {
-    /// Whether every solver would say the same: the scene or the shape is at fault, or the wish for an end.
+    /// Whether every solver would say the same: the scene, the shape or the caller is at fault, or an end is wished for.
     pub fn ends_the_search(&self) -> bool {
         matches!(
             self,
             Self::InvertedElement { .. }
                 | Self::NoEquilibrium { .. }
                 | Self::FrictionTooWeak { .. }
+                | Self::ForeignState { .. }
                 | Self::Interrupted
         )
     }

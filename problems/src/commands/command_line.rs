@@ -2,13 +2,13 @@
 
 use crate::commands::arguments::{Arguments, Command};
 use crate::commands::failure::Failure;
+use crate::commands::file_limit::let_large_writes_fail;
 use crate::commands::folder::json;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::{RunFolder, StageLayer, StatusLine};
 use crate::commands::output::{finish, leave, left, notice};
 use crate::commands::processes::Processes;
 use crate::commands::shell_files::{asked, examples};
-use crate::commands::signals::let_large_writes_fail;
 use crate::commands::{compare, evaluate, export, optimize, recheck, study, verify};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueEnum};
 use contact::equilibrium::STAGE_TARGET;

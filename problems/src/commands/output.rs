@@ -2,7 +2,7 @@
 
 use crate::commands::ascii::shown;
 use crate::commands::failure::Failure;
-use crate::commands::signals::let_large_writes_fail;
+use crate::commands::file_limit::let_large_writes_fail;
 use clap::{Error, Parser};
 use std::io::{self, Write};
 use std::path::Path;

@@ -2,6 +2,7 @@
 
 #![cfg(unix)]
 
+use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command};
 use std::time::{Duration, Instant};
@@ -30,39 +31,50 @@ fn wait_for_the_first(child: &mut Child, folder: &Path) {
 }
 
 #[test]
-fn the_second_request_ends_the_program_at_once() {
+fn a_request_after_the_answer_ends_the_program_at_once() {
     for signal in ["-INT", "-TERM"] {
         let scratch = kit::scratch();
         let folder = scratch.path().join("run");
-        // An evaluation takes hundreds of times as long as the pause between the requests.
+        // An evaluation takes many times as long as an answer.
         let mut child = kit::command(SIGNORINI, &[&run("20")[..], &["--out", text(&folder)]].concat()).spawn().unwrap();
         wait_for_the_first(&mut child, &folder);
         send(signal, &child);
-        std::thread::sleep(Duration::from_millis(5));
+        let mut errors = BufReader::new(child.stderr.take().unwrap()).lines();
+        assert!(errors.any(|line| line.unwrap().contains("once more ends the program at once")));
         send(signal, &child);
         let output = child.wait_with_output().unwrap();
-        assert_eq!(output.status.code(), Some(130), "{}", kit::errors(&output));
+        assert_eq!(output.status.code(), Some(130));
         assert!(output.stdout.is_empty() && !folder.join("report.json").exists(), "the run was ended orderly");
     }
+}
+
+/// `timeout` sends its request to the program and to its group.
+#[test]
+fn a_request_that_is_sent_twice_at_once_is_one() {
+    let scratch = kit::scratch();
+    let folder = scratch.path().join("run");
+    let mut child = kit::command(SIGNORINI, &[&run("12")[..], &["--out", text(&folder)]].concat()).spawn().unwrap();
+    wait_for_the_first(&mut child, &folder);
+    let twice = format!("kill -TERM {0}; kill -TERM {0}", child.id());
+    assert!(Command::new("sh").args(["-c", &twice]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let message = kit::errors(&output);
+    assert_eq!(output.status.code(), Some(130), "{message}");
+    assert!(message.contains("once more ends the program") && folder.join("report.json").exists(), "{message}");
 }
 
 #[test]
 fn a_run_that_ignores_hangups_outlives_its_terminal() {
     let scratch = kit::scratch();
-    let begin = |name: &str, before: &str| {
-        let folder = scratch.path().join(name);
-        let script = format!("{before} exec \"$0\" \"$@\"");
-        let arguments = [&["-c", &script, SIGNORINI][..], &run("12"), &["--out", text(&folder)]].concat();
-        let mut child = kit::command("sh", &arguments).spawn().unwrap();
-        wait_for_the_first(&mut child, &folder);
-        send("-HUP", &child);
-        (child.wait_with_output().unwrap(), folder.join("report.json").exists())
-    };
+    let folder = scratch.path().join("run");
     // What nohup does.
-    let (output, complete) = begin("ignored", "trap '' HUP;");
-    assert!(output.status.success() && complete, "{}", kit::errors(&output));
-    let (output, complete) = begin("heard", "");
-    assert!(output.status.code().is_none() && !complete, "{}", output.status);
+    let script = "trap '' HUP; exec \"$0\" \"$@\"";
+    let arguments = [&["-c", script, SIGNORINI][..], &run("12"), &["--out", text(&folder)]].concat();
+    let mut child = kit::command("sh", &arguments).spawn().unwrap();
+    wait_for_the_first(&mut child, &folder);
+    send("-HUP", &child);
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success() && folder.join("report.json").exists(), "{}", kit::errors(&output));
 }
 
 #[test]

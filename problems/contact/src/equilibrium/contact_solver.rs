@@ -75,7 +75,7 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// (method.md section 4); zero for a solver whose residuals know of it.
     ///
     /// # Errors
-    /// [`ContactError::ForeignState`] for a state of another mesh.
+    /// [`ContactError::ForeignState`] for a state of another mesh, where it says anything of the state.
     fn force_rounding(&self, _state: &Self::State) -> Result<f64, ContactError> {
         Ok(0.0)
     }

@@ -13,11 +13,11 @@ use nalgebra::{DMatrix, DVector};
 /// Six motions per body: translations, and rotations about a common centre divided by a common length.
 pub const MOTIONS: usize = 6;
 
-/// Square of what restrains a motion beside others, relative to what restrains it alone, that counts as zero.
-const FREE: f64 = 1e-12;
+/// Part of a motion's restraint that others do not share, relative to the restraint, that counts as zero.
+const FREE: f64 = 1e-11;
 
-/// Square of a restraint relative to the largest one that counts as rounding.
-const UNHELD: f64 = 1e-24;
+/// Restraint of a motion, relative to a unit in every row, that counts as rounding.
+const UNHELD: f64 = 1e-13;
 
 /// Relative resultant that counts as zero.
 const UNLOADED: f64 = 1e-9;
@@ -28,23 +28,29 @@ pub fn motions(point: [f64; 3], centre: [f64; 3], length: f64) -> [[f64; 3]; MOT
     [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]]
 }
 
+/// Rounding of a resultant relative to the load.
+const ROUNDING: f64 = 1e-15;
+
+/// Times the load or the forces of the fit that the forces which balance a load may sum up to.
+const MARGIN: f64 = 10.0;
+
 /// What the rotations of a body refer to.
 #[derive(Debug, Clone, Copy)]
 pub struct Frame {
-    /// Centre: among the held nodes, where lever arms hide no restraint.
+    /// Centre: among the held nodes.
     pub centre: [f64; 3],
     /// Length that scales the rotations, mm.
     pub length: f64,
 }
 
 impl Frame {
-    /// The frame of a body by the points of its held and its contact nodes: the centroid of the held ones, or of the others where none is
-    /// held; the largest distance of a contact node along an axis.
-    pub(crate) fn new(held: &[[f64; 3]], contact: &[[f64; 3]]) -> Self {
-        let points = if held.is_empty() { contact } else { held };
+    /// The frame of a body by its held nodes and all its nodes: the mean of the first ones, or of all where none is held; the largest distance
+    /// along an axis, so that no motion moves a node by more than one.
+    pub(crate) fn new(held: &[[f64; 3]], nodes: &[[f64; 3]]) -> Self {
+        let points = if held.is_empty() { nodes } else { held };
         let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
-        let centre = std::array::from_fn(mean);
-        let distances = contact.iter().flat_map(|point| (0..3).map(move |axis| (point[axis] - centre[axis]).abs()));
+        let centre: [f64; 3] = std::array::from_fn(mean);
+        let distances = nodes.iter().flat_map(|point| (0..3).map(move |axis| (point[axis] - centre[axis]).abs()));
         Self { centre, length: distances.fold(0.0, f64::max) }
     }
 
@@ -113,7 +119,7 @@ impl RigidScene {
         let basis = |point| self.frames[body].motions(point);
         let held = self.held.iter().filter(|(holder, ..)| *holder == body);
         let row = |point, component: usize| DVector::from_iterator(MOTIONS, basis(point).iter().map(|m| m[component]));
-        let free = kernel(held.map(|&(_, point, component)| row(point, component)), MOTIONS);
+        let free = kernel(&held.map(|&(_, point, component)| row(point, component)).collect::<Vec<_>>(), MOTIONS);
         let displacement = |motion: &DVector<f64>, point: [f64; 3], component: usize| row(point, component).dot(motion);
         let along = |motion| {
             let points = self.contact.iter().map(|points| points[body]);
@@ -133,7 +139,7 @@ impl RigidScene {
     /// # Errors
     /// [`ContactError::NoEquilibrium`] naming the motion and the resultant that cannot be carried.
     pub(crate) fn analyse(&self, boundary: &ContactBoundary) -> Result<Vec<Motion>, ContactError> {
-        let free = kernel(self.held_rows(), MOTIONS * self.bodies);
+        let free = kernel(&self.held_rows().collect::<Vec<_>>(), MOTIONS * self.bodies);
         if free.is_empty() {
             return Ok(Vec::new());
         }
@@ -151,18 +157,19 @@ impl RigidScene {
         });
         let rows: Vec<Vec<DVector<f64>>> = contact.map(|rows| rows.iter().map(project).collect()).collect();
         let scale = self.total_load();
-        let rest = ConeProjection { rows: &rows, friction: boundary.friction }.residual(&project(&load));
+        let (rest, doubt) = ConeProjection { rows: &rows, friction: boundary.friction }.residual(&project(&load));
+        let allowed = doubt.max(UNLOADED * scale);
         let motion = |coefficients: &DVector<f64>| -> DVector<f64> {
             free.iter().zip(coefficients.iter()).map(|(mode, coefficient)| mode * *coefficient).sum()
         };
-        if rest.norm() > UNLOADED * scale {
+        if rest.norm() > allowed {
             return Err(ContactError::NoEquilibrium {
                 direction: self.describe(&motion(&rest)),
                 resultant: rest.norm(),
-                allowed: UNLOADED * scale,
+                allowed,
             });
         }
-        let grounded = kernel(rows.into_iter().flatten(), free.len());
+        let grounded = kernel(&rows.concat(), free.len());
         Ok(grounded.iter().map(|coefficients| motion(coefficients).iter().copied().collect()).collect())
     }
 
@@ -184,38 +191,35 @@ impl RigidScene {
     }
 }
 
-/// Orthonormal basis of the common kernel of some rows of this length, by elimination of what the rows hold. Every motion counts in units
-/// of its own restraint: lever arms differ by the proportions of the bodies.
-fn kernel(rows: impl Iterator<Item = DVector<f64>>, size: usize) -> Vec<DVector<f64>> {
-    let mut gram = DMatrix::zeros(size, size);
-    for row in rows {
-        gram += &row * row.transpose();
-    }
-    let largest = gram.diagonal().iter().fold(0.0, |largest: f64, square| largest.max(*square));
-    let unit = gram.diagonal().map(|square| if square > UNHELD * largest { square.sqrt().recip() } else { 0.0 });
-    // What is held follows from what is free: row i of a held motion ends as u_i + Σ entries · u_free = 0.
-    let mut rest = DMatrix::from_fn(size, size, |i, j| unit[i] * gram[(i, j)] * unit[j]);
-    let mut held: Vec<usize> = Vec::new();
-    loop {
-        let others = (0..size).filter(|index| !held.contains(index));
-        let Some(pivot) = others.max_by(|&i, &j| rest[(i, i)].total_cmp(&rest[(j, j)])) else { break };
-        if rest[(pivot, pivot)] <= FREE {
-            break;
-        }
-        let row = rest.row(pivot) / rest[(pivot, pivot)];
-        let mut column = rest.column(pivot).into_owned();
-        column[pivot] = 0.0;
-        rest -= column * &row;
-        rest.set_row(pivot, &row);
-        held.push(pivot);
-    }
+/// Orthonormal basis of the common kernel of some rows of this length, whose entries for translations are 1 before any projection. Every
+/// motion counts in units of its own restraint: lever arms differ by the proportions of the bodies.
+///
+/// ```text
+/// (rows · units) P = Q [R₁₁ R₁₂]   (columns of least new restraint last),   kernel = units · P [−R₁₁⁻¹ R₁₂; I]
+/// ```
+fn kernel(rows: &[DVector<f64>], size: usize) -> Vec<DVector<f64>> {
+    let rounding = UNHELD * (rows.len() as f64).sqrt();
+    let length = |motion: usize| rows.iter().map(|row| row[motion] * row[motion]).sum::<f64>().sqrt();
+    let lengths: Vec<f64> = (0..size).map(length).collect();
+    let unit = |motion: usize| if lengths[motion] > rounding { lengths[motion].recip() } else { 0.0 };
+    let units: Vec<f64> = (0..size).map(unit).collect();
+    let factors = DMatrix::from_fn(rows.len().max(size), size, |i, j| rows.get(i).map_or(0.0, |row| row[j]) * units[j]);
+    let factors = factors.col_piv_qr();
+    let triangle = factors.r();
+    let mut order = DMatrix::from_fn(1, size, |_, motion| motion);
+    factors.p().permute_columns(&mut order);
+    let held = (0..size).take_while(|&k| triangle[(k, k)].abs() > FREE).count();
+    let shares =
+        triangle.view((0, 0), (held, held)).solve_upper_triangular(&triangle.view((0, held), (held, size - held)));
+    let shares = shares.expect("invariant: no entry of the diagonal is zero");
     let motion = |free: usize| {
         let mut motion = DVector::zeros(size);
-        motion[free] = if unit[free] > 0.0 { unit[free] } else { 1.0 };
-        held.iter().for_each(|&index| motion[index] = -rest[(index, free)] * unit[index]);
+        (0..held).for_each(|k| motion[order[k]] = -shares[(k, free)] * units[order[k]]);
+        let own = order[held + free];
+        motion[own] = if units[own] > 0.0 { units[own] } else { 1.0 };
         motion
     };
-    let free: Vec<DVector<f64>> = (0..size).filter(|index| !held.contains(index)).map(motion).collect();
+    let free: Vec<DVector<f64>> = (0..size - held).map(motion).collect();
     if free.is_empty() {
         return free;
     }
@@ -231,14 +235,20 @@ struct ConeProjection<'a> {
 }
 
 impl ConeProjection<'_> {
-    /// What remains of `load` after the nearest resultant of the cone is taken off.
-    fn residual(&self, load: &DVector<f64>) -> DVector<f64> {
+    /// What remains of `load` after a near resultant of the cone is taken off, and what may remain of a load within the cone.
+    ///
+    /// With unit forces c of the cone, weights w and rest r = load − Σ w c, a load within the cone has |r|² = r·load ≤ Σ w* max c·r for the
+    /// weights w* that balance it.
+    fn residual(&self, load: &DVector<f64>) -> (DVector<f64>, f64) {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let mut weights: Vec<f64> = Vec::new();
         let mut rest = load.clone();
+        let rounding = ROUNDING * load.norm();
+        let mut taken = 0.0;
         for _iteration in 0..400 {
-            let Some(column) = self.support(&rest) else { break };
-            if rest.norm() <= 1e-13 * load.norm() || column.dot(&rest) <= 1e-13 * column.norm() * load.norm() {
+            let Some((share, column)) = self.support(&rest) else { break };
+            taken = share;
+            if rest.norm() <= 1e-13 * load.norm() || taken <= rounding {
                 break;
             }
             columns.push(column);
@@ -249,11 +259,13 @@ impl ConeProjection<'_> {
                 rest -= column * *weight;
             }
         }
-        rest
+        let fitted: f64 = columns.iter().zip(&weights).map(|(column, weight)| weight * column.norm()).sum();
+        let doubt = (MARGIN * fitted.max(load.norm()) * taken.max(rounding)).sqrt();
+        (rest, doubt)
     }
 
-    /// The extreme force of unit normal part whose resultant has the largest product with `direction`.
-    fn support(&self, direction: &DVector<f64>) -> Option<DVector<f64>> {
+    /// The extreme force of unit normal part whose resultant has the largest product with `direction` for its length, with that product.
+    fn support(&self, direction: &DVector<f64>) -> Option<(f64, DVector<f64>)> {
         let mut best: Option<(f64, DVector<f64>)> = None;
         for rows in self.rows {
             let tangential: Vec<f64> = rows[1..].iter().map(|row| row.dot(direction)).collect();
@@ -270,7 +282,7 @@ impl ConeProjection<'_> {
                 best = Some((value, column));
             }
         }
-        best.map(|(_, column)| column)
+        best
     }
 }
 
@@ -300,34 +312,60 @@ fn nonnegative_fit(columns: &mut Vec<DVector<f64>>, weights: &mut Vec<f64>, load
 mod tests {
     use crate::body::mesh::Face;
     use crate::equilibrium::ContactProblem;
-    use crate::scene::{CounterSurface, Scene, Support, signorini};
+    use crate::scene::{CounterSurface, Scene, Support, hertz, signorini};
     use crate::shape::ShapeBounds;
 
-    /// What the supports of a body leave free does not depend on its proportions; of what is free, contact holds its part.
+    /// Numbers of motions that supports leave free to the lower body and to all, and of those that contact leaves free as well.
+    fn counts(mut scene: Scene, supports: [&[Support]; 2], height: f64, friction: f64) -> [usize; 3] {
+        (scene.size, scene.mesh, scene.friction) = ([1.0; 2], [4; 3], friction);
+        (scene.lower.supports, scene.lower.loads) = (supports[0].to_vec(), Vec::new());
+        if let Some(upper) = &mut scene.upper {
+            (upper.body.supports, upper.body.loads, upper.top) = (supports[1].to_vec(), Vec::new(), 3.0 * height);
+        }
+        scene.start_height = height;
+        scene.counter_surface = CounterSurface::Plane { height };
+        scene.bounds = ShapeBounds { minimum_height: 0.5 * height, slope: 1.0, volume: [0.0, 2.0 * height] };
+        let problem = ContactProblem::new(scene).expect("a problem");
+        let rigid = problem.rigid_scene(&problem.blocks(&[height; 36]).expect("a block"));
+        let own: Vec<usize> = (0..rigid.bodies).map(|body| rigid.own_motions(body).len()).collect();
+        [own[0], own.iter().sum(), rigid.analyse(&problem.boundary).expect("nothing is loaded").len()]
+    }
+
+    /// What supports and contact leave free does not depend on the proportions of the bodies.
     #[test]
     fn proportions_hide_no_restraint() {
-        let support = |face, components| Support { face, components };
-        let (x1, x2) = (support(Face::X1Min, [true, false, false]), support(Face::X2Min, [false, true, false]));
-        let cases =
-            [(vec![support(Face::Bottom, [true; 3])], 0, 0), (vec![x1, x2], 1, 0), (vec![x1], 3, 1), (vec![], 6, 3)];
-        for height in [1e-7, 1e-4, 1.0, 1e3, 1e5, 1e7] {
-            for (supports, free, unheld) in &cases {
-                let mut scene = Scene { size: [1.0; 2], mesh: [4; 3], friction: 0.0, ..signorini().expect("a scene") };
-                (scene.lower.supports, scene.lower.loads) = (supports.clone(), Vec::new());
-                scene.start_height = height;
-                scene.counter_surface = CounterSurface::Waves { base: height, first: 0.0, second: 0.0, period: 1.0 };
-                scene.bounds = ShapeBounds { minimum_height: 0.5 * height, slope: 1.0, volume: [0.0, 2.0 * height] };
-                let problem = ContactProblem::new(scene).expect("a problem");
-                let rigid = problem.rigid_scene(&problem.blocks(&[height; 36]).expect("a block"));
-                assert_eq!(rigid.own_motions(0).len(), *free, "{height:e}: {supports:?}");
-                let grounded = rigid.analyse(&problem.boundary).expect("nothing is loaded");
-                assert_eq!(grounded.len(), *unheld, "{height:e}: {supports:?}");
-                for motion in grounded {
-                    // Contact without friction holds translation along x₃ and tilting.
-                    let basis = rigid.frames[0].motions(rigid.contact[5][0]);
-                    let normal: f64 = basis.iter().zip(&motion).map(|(basis, c)| basis[2] * c).sum();
-                    assert!(normal.abs() < 1e-9, "{height:e}: {normal:e}");
-                }
+        let support = |face, held: [u8; 3]| Support { face, components: held.map(|held| held == 1) };
+        let foot = support(Face::Bottom, [1, 1, 1]);
+        let plane = support(Face::Bottom, [0, 0, 1]);
+        let (x1, x2) = (support(Face::X1Min, [1, 0, 0]), support(Face::X2Min, [0, 1, 0]));
+        let across = support(Face::X2Min, [1, 0, 0]);
+        let one: [(&[Support], f64, [usize; 3]); 10] = [
+            (&[foot], 0.0, [0, 0, 0]),
+            (&[foot, x1], 0.0, [0, 0, 0]),
+            (&[x1, x2], 0.0, [1, 1, 0]),
+            (&[x1], 0.0, [3, 3, 1]),
+            (&[x1], 0.3, [3, 3, 0]),
+            (&[plane, across], 0.0, [2, 2, 2]),
+            (&[plane, across], 0.3, [2, 2, 0]),
+            (&[plane], 0.0, [3, 3, 3]),
+            (&[], 0.0, [6, 6, 3]),
+            (&[], 0.3, [6, 6, 0]),
+        ];
+        let two: [([&[Support]; 2], f64, [usize; 3]); 5] = [
+            ([&[foot], &[]], 0.0, [0, 6, 3]),
+            ([&[foot], &[]], 0.3, [0, 6, 0]),
+            ([&[x1, plane], &[x1]], 0.0, [1, 4, 2]),
+            ([&[x1, plane], &[x1]], 0.3, [1, 4, 1]),
+            ([&[], &[]], 0.3, [6, 12, 6]),
+        ];
+        for height in [1e-7, 1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e7] {
+            for (supports, friction, expected) in &one {
+                let found = counts(signorini().expect("a scene"), [supports, &[]], height, *friction);
+                assert_eq!(found, *expected, "{height:e}, friction {friction}: {supports:?}");
+            }
+            for (supports, friction, expected) in &two {
+                let found = counts(hertz().expect("a scene"), *supports, height, *friction);
+                assert_eq!(found, *expected, "{height:e}, friction {friction}: {supports:?}");
             }
         }
     }

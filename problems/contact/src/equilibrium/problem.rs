@@ -174,11 +174,12 @@ impl ContactProblem {
             [lower, blocks.get(1).map_or(lower, |block| block.coordinates([i, j, 0]))]
         });
         let contact: Vec<[[f64; 3]; 2]> = contact.collect();
-        let frame = |body| {
+        let frame = |(body, block): (usize, &Block)| {
             let own = held.iter().filter(|(holder, ..)| *holder == body).map(|(_, point, _)| *point);
-            Frame::new(&own.collect::<Vec<_>>(), &contact.iter().map(|points| points[body]).collect::<Vec<_>>())
+            let nodes = lattice::points([0; 3], self.grid.nodes()).map(|node| block.coordinates(node));
+            Frame::new(&own.collect::<Vec<_>>(), &nodes.collect::<Vec<_>>())
         };
-        let frames = (0..blocks.len()).map(frame).collect();
+        let frames = blocks.iter().enumerate().map(frame).collect();
         RigidScene { bodies: blocks.len(), held, loads, contact, frames }
     }
 }

@@ -104,15 +104,14 @@ impl TotalFeti {
                 let max_products = max_products.unwrap_or(settings.max_products);
                 let settings = NewtonSettings { recycling, max_products, ..settings };
                 let method = |contact: &TornContact<'_>| Ok((contact.solve(start, &settings)?, ()));
-                let (state, ()) = self.attempt_by(controls, tolerance, method)?;
+                let (state, ()) = self.attempt_by(SolverKind::Newton, controls, tolerance, method)?;
                 Ok(state)
             }
             DualMethod::SuccessiveApproximations => {
                 let settings = AugmentedLagrangianSettings::to(tolerance);
                 let method = |contact: &TornContact<'_>| contact.solve_by_successive_approximations(start, &settings);
-                let (state, counts) = self.attempt_by(controls, tolerance, method)?;
+                let (state, counts) = self.attempt_by(SolverKind::AugmentedLagrangian, controls, tolerance, method)?;
                 Ok(ContactState {
-                    solver: SolverKind::AugmentedLagrangian,
                     contraction: Some(counts.contraction).filter(|factor| *factor > 0.0),
                     work: counts.added_to(state.work),
                     ..state
@@ -122,23 +121,25 @@ impl TotalFeti {
     }
 
     /// Solves one shape by any method on the contact problem in the multipliers, and passes on what else the method returns
-    /// (its default for bodies at rest, where there is nothing to solve). The state names Newton's method as its solver.
+    /// (its default for bodies at rest, where there is nothing to solve). `solver`: what the state says of the method.
     ///
     /// # Errors
     /// [`ContactError`]: inverted elements, no equilibrium, what the method returns, and [`ContactError::Inaccurate`] when the
     /// residuals of its state are above both 1e-8 and four times `allowed`.
     pub fn solve_by<T: Default>(
         &self,
+        solver: SolverKind,
         controls: &[f64],
         allowed: f64,
         method: impl FnOnce(&TornContact<'_>) -> Result<(TornSolution, T), ContactError>,
     ) -> Result<(ContactState<TornState>, T), ContactError> {
-        self.attempt_by(controls, allowed, method).map_err(|failed| *failed.error)
+        self.attempt_by(solver, controls, allowed, method).map_err(|failed| *failed.error)
     }
 
     /// As [`TotalFeti::solve_by`]; a failure says what work it cost.
     fn attempt_by<T: Default>(
         &self,
+        solver: SolverKind,
         controls: &[f64],
         allowed: f64,
         method: impl FnOnce(&TornContact<'_>) -> Result<(TornSolution, T), ContactError>,
@@ -183,7 +184,7 @@ impl TotalFeti {
         let state = ContactState {
             forces,
             load,
-            solver: SolverKind::Newton,
+            solver,
             reason: None,
             contraction: None,
             stages: Some(seconds),

@@ -3,10 +3,11 @@
 use contact::body::elasticity::Material;
 use contact::body::mesh::Face;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::equilibrium::{ContactProblem, ContactStatus};
+use contact::equilibrium::{Configuration, ContactProblem, ContactStatus};
 use contact::error::{ContactError, SceneError};
 use contact::linear::vector::norm;
 use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody, hertz, signorini};
+use contact::shape::ShapeBounds;
 use contact::tfeti::{TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use std::sync::Arc;
@@ -166,6 +167,51 @@ fn unloaded_free_motions_are_grounded() {
         }
         let shape = ContactShape::new(plates(0.0, 0.01), kind).unwrap();
         assert!(shape.solve(&shape.start(), None, Accuracy::TIGHTEST).is_err());
+    }
+}
+
+/// Supports hold the motions that contact holds as well, and leave two others free: nothing loads them, and they are grounded.
+#[test]
+fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
+    for (mesh, subdomains) in [([3; 3], 1), ([4, 4, 2], 2)] {
+        let mut scene = Scene { friction: 0.0, mesh, subdomains: [subdomains; 3], ..signorini().unwrap() };
+        let support = |face, components| Support { face, components };
+        scene.lower.supports =
+            vec![support(Face::Bottom, [false, false, true]), support(Face::X2Min, [true, false, false])];
+        scene.lower.loads = vec![Load { face: Face::X1Min, traction: [0.0, 0.0, 3000.0] }];
+        scene.counter_surface = CounterSurface::Plane { height: 100.001 };
+        let force = |kind| {
+            let shape = ContactShape::new(scene.clone(), kind).unwrap();
+            shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap().forces.total_normal_force()
+        };
+        let direct = force(SolverKind::Direct);
+        for kind in [SolverKind::Newton, SolverKind::AugmentedLagrangian] {
+            let torn = force(kind);
+            assert!((torn / direct - 1.0).abs() < 1e-8, "{mesh:?} {kind:?}: {torn} {direct}");
+        }
+    }
+}
+
+/// Blocks that only friction between them holds, pulled by forces in balance, whatever the gap between them.
+#[test]
+fn forces_in_balance_are_never_refused() {
+    for index in 0..24 {
+        let mut scene = Scene { size: [1.0; 2], mesh: [3; 3], subdomains: [1; 3], friction: 0.3, ..hertz().unwrap() };
+        let gap = 1e-6 * 10.0_f64.powf(f64::from(index) / 6.0);
+        scene.counter_surface = CounterSurface::Plane { height: 1.0 + gap };
+        (scene.start_height, scene.bounds) =
+            (1.0, ShapeBounds { minimum_height: 0.5, slope: 5.0, volume: [0.0, 10.0] });
+        scene.lower.supports.clear();
+        scene.lower.loads = vec![Load { face: Face::Bottom, traction: [0.0, 0.0, 1.0] }];
+        if let Some(upper) = &mut scene.upper {
+            upper.body.supports.clear();
+            upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
+            upper.top = 2.0 + gap;
+        }
+        let problem = ContactProblem::new(scene).unwrap();
+        if let Err(error) = Configuration::new(&problem, &[1.0; 36]) {
+            panic!("gap {gap:e}: {error}");
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The paper's path against the Newton path on small scenes: states, subgradients, step counts, limits.
 
 use contact::body::mesh::Face;
+use contact::contact_shape::SolverKind;
 use contact::equilibrium::{
     ContactForces, ContactProblem, ContactSolver, ContactState, ContactWarmStart, SolverState, Work,
 };
@@ -43,9 +44,10 @@ fn paper(
     settings: &AugmentedLagrangianSettings,
 ) -> Result<Paper, ContactError> {
     let controls = controls(solver.problem());
-    let (state, counts) = solver.solve_by(&controls, settings.tolerance, |contact| {
-        contact.solve_by_successive_approximations(start, settings)
-    })?;
+    let (state, counts) =
+        solver.solve_by(SolverKind::AugmentedLagrangian, &controls, settings.tolerance, |contact| {
+            contact.solve_by_successive_approximations(start, settings)
+        })?;
     let (forces, work) = (state.forces.clone(), state.work());
     Ok(Paper { state: state.solution, forces, work, counts })
 }

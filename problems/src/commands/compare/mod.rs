@@ -7,6 +7,7 @@ use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{SolvedShape, optimized_objective};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, REPORT, json, printed_with_files, resume_command};
+use crate::commands::interrupt::STATUS;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::run::{OptimizationRun, begin, optimize};
@@ -14,7 +15,6 @@ use crate::commands::optimize::{interruption, report};
 use crate::commands::register::REGISTER;
 use crate::commands::report::files;
 use crate::commands::run_kind::RunKind;
-use crate::commands::signals::STATUS;
 use contact::error::SceneError;
 use std::path::Path;
 

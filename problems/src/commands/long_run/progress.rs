@@ -1,7 +1,7 @@
 //! One line per evaluation for people, one event for logs; and the place where an interruption takes effect.
 
+use crate::commands::interrupt::interrupted;
 use crate::commands::long_run::status::StatusLine;
-use crate::commands::signals::interrupted;
 use nonsmooth::{IterationRecord, Observer};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};

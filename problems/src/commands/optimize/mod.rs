@@ -10,6 +10,7 @@ mod vtk_history;
 use crate::commands::contact_objective::{SolvedShape, checks};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, json, printed_with_files, resume_command};
+use crate::commands::interrupt::{STATUS, interrupted};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::run::{OptimizationRun, optimize};
@@ -17,7 +18,6 @@ use crate::commands::optimize::standstill::standstill;
 use crate::commands::optimize::summary::{page, stages_page, summary};
 use crate::commands::report::files;
 use crate::commands::run_kind::RunKind;
-use crate::commands::signals::{STATUS, interrupted};
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {

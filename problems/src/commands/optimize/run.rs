@@ -4,12 +4,12 @@ use crate::commands::contact_objective::{ContactObjective, check_ahead, optimize
 use crate::commands::controls;
 use crate::commands::failure::{Failure, failed};
 use crate::commands::folder::Folder;
+use crate::commands::interrupt::{interrupted, watch_interrupts};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
 use crate::commands::optimize::stages::{MeshStage, Part, stages};
 use crate::commands::run_kind::RunKind;
-use crate::commands::signals::{interrupted, watch_interrupts};
 use contact::error::SceneError;
 use nonsmooth::qp::project;
 use nonsmooth::verify::seeded_direction;

@@ -11,7 +11,7 @@ const FLAT: f64 = 1e-9;
 /// Distance of Θ from its least value, relative to Θ, that is rounding.
 const LEAST: f64 = 1e-9;
 
-/// A warning about runs that ended at their start because Θ is constant there, or at its least value; none for all other runs.
+/// A warning about runs that gained no more than rounding because Θ is constant there, or at its least value; none for all other runs.
 ///
 /// # Errors
 /// [`Failure`] of the adjoint.
@@ -20,7 +20,8 @@ pub fn standstill(runs: &[MeshRun], last: &MeshRun, shape: &SolvedShape) -> Resu
         let word = &run.report.termination;
         let is_end =
             word.is_stationary() || matches!(word, Termination::NoiseLimit { .. } | Termination::StepTooShort { .. });
-        is_end && run.report.counts.serious == 0
+        let gained = run.report.start_value - run.report.value;
+        is_end && gained <= FLAT * run.report.start_value.abs()
     };
     if !runs.iter().all(stood_still) {
         return Ok(None);

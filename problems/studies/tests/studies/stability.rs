@@ -1,6 +1,7 @@
 //! Groups of the stability study, contraction factors, and random scenes: certificates, not numbers.
 
 use contact::body::elasticity::{Formulation, Material};
+use contact::contact_shape::SolverKind;
 use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
 use contact::error::ContactError;
@@ -91,8 +92,11 @@ fn accurate_successive_approximations_contract_as_diagnosed() {
     let controls = vec![100.0; 36];
     let solver = newton(&problem);
     let settings = AugmentedLagrangianSettings { adaptivity: 1e-3, ..AugmentedLagrangianSettings::to(1e-9) };
-    let (state, counts) =
-        solver.solve_by(&controls, 0.0, |contact| contact.solve_by_successive_approximations(None, &settings)).unwrap();
+    let (state, counts) = solver
+        .solve_by(SolverKind::AugmentedLagrangian, &controls, 0.0, |contact| {
+            contact.solve_by_successive_approximations(None, &settings)
+        })
+        .unwrap();
     let observed = counts.contraction;
     let diagnosed = solver.diagnose(&state.solution).unwrap().contraction;
     println!("observed {observed:.4}, diagnosed {diagnosed:.4}");

@@ -48,7 +48,7 @@ impl CondensedCoarse {
         for (p, &row) in contact.iter().enumerate() {
             schur[(p, p)] -= weight;
             for (q, &column) in contact.iter().enumerate() {
-                // Amplitudes and G are dimensionless, so a unit weight is of the size of G Gᵀ.
+                // Amplitudes of unit length are of the size of G Gᵀ.
                 schur[(p, q)] += grounded.iter().map(|motion| motion[row] * motion[column]).sum::<f64>();
             }
         }

@@ -118,7 +118,10 @@ impl SubdomainFactors {
         let forward_error = check_generalised_inverse(pattern, &stiffness, &inverse, &modes)?;
         let interior = match interior.and_then(|class| class.symbolic.as_ref().map(|symbolic| (class, symbolic))) {
             Some((class, symbolic)) => {
-                Some(symbolic.factorize(&class.submatrix.gather(compressible.as_ref().unwrap_or(&stiffness)))?)
+                let factored = symbolic.factorize(&class.submatrix.gather(compressible.as_ref().unwrap_or(&stiffness)));
+                // Rows may leave a motion of the interior free. Every principal submatrix of the regularised matrix is definite.
+                let definite = |_| symbolic.factorize(&class.submatrix.gather(&regularised));
+                Some(factored.or_else(definite)?)
             }
             None => None,
         };

@@ -10,7 +10,7 @@ use crate::lattice;
 use crate::linear::cholesky::SymbolicFactor;
 use crate::linear::csr::Csr;
 use crate::linear::entry::Entry;
-use crate::linear::vector::dot;
+use crate::linear::vector::{dot, norm};
 use crate::scene::BodyScene;
 use crate::tfeti::torn::cluster_factors::{ClusterFactors, moves_as_one_body};
 use crate::tfeti::torn::cluster_rows::ClusterRows;
@@ -245,7 +245,7 @@ impl TornModel {
         TornVector(vec![0.0; self.interface.torn_count()])
     }
 
-    /// Coarse amplitudes of the motions that nothing holds: Rᵀ of their displacement on every subdomain.
+    /// Coarse amplitudes of the motions that nothing holds: Rᵀ of their displacement on every subdomain, of unit length together.
     pub fn grounded_amplitudes(&self, system: &TornSystem, configuration: &Configuration) -> Vec<Vec<f64>> {
         let Configuration { blocks, rigid, grounded, .. } = configuration;
         let amplitudes = |motion: &Vec<f64>| {
@@ -263,7 +263,10 @@ impl TornModel {
                 }
                 amplitudes.extend(part.modes.iter().map(|mode| dot(mode, &displacement)));
             }
-            self.clusters.gather(&system.cluster_resultants(amplitudes), 6)
+            let mut amplitudes = self.clusters.gather(&system.cluster_resultants(amplitudes), 6);
+            let length = norm(&amplitudes);
+            amplitudes.iter_mut().for_each(|amplitude| *amplitude /= length);
+            amplitudes
         };
         grounded.iter().map(amplitudes).collect()
     }

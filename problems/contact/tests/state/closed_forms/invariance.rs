@@ -23,7 +23,7 @@ fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
     let state = objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
     let evaluation = objective.differentiate(control, &state).unwrap();
     let displacement = match &state.solution {
-        AnyState::Torn(state, _) => state.displacement().to_vec(),
+        AnyState::Torn(state) => state.displacement().to_vec(),
         AnyState::Direct(_) => Vec::new(),
     };
     Outcome { evaluation, status: state.forces.status.clone(), opening: state.forces.opening.clone(), displacement }
