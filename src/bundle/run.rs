@@ -23,7 +23,7 @@ use std::time::Instant;
 const REFINEMENT_SHARE: f64 = 0.03;
 /// A trial point that differs from the center by less than this share of every variable cannot be told from it.
 const SHORTEST_MOVE: f64 = 4.0 * f64::EPSILON;
-/// Failures end the run only where the oracle fails next to the center: within this share of the length scale or of the first step.
+/// Failures end the run only where the oracle fails next to the center: within this share of the length scale.
 const CLOSE: f64 = 1e-6;
 /// Known trial points in a row after which no weight leads away from them.
 const MAX_KNOWN_TRIALS: usize = 100;
@@ -142,7 +142,7 @@ impl Run<'_, '_> {
     /// Why the run ends at a step that brings nothing although the model promises a decrease.
     fn too_short(&self, proposal: &Proposal) -> Termination {
         if self.noise_level() > 0.0 {
-            Termination::NoiseLimit { estimate: self.noise_level().max(self.state.decrease_bound(proposal, &self.set)) }
+            Termination::NoiseLimit { estimate: self.noise_level().max(self.state.gap_bound(proposal, &self.set)) }
         } else {
             Termination::StepTooShort { predicted_decrease: proposal.predicted_decrease }
         }
@@ -325,7 +325,8 @@ impl Run<'_, '_> {
         state.failures += 1;
         state.longest_step = Some(0.5 * proposal.step_length);
         let failures = state.failures;
-        let close = proposal.step_length <= CLOSE * state.length_scale().max(state.first_step);
+        // The first step from a start at zero is no length of the variables: it follows from Θ, shifts included.
+        let close = proposal.step_length <= (CLOSE * state.length_scale()).max(f64::EPSILON * state.first_step);
         self.proposers.shorten(state, &self.method.config, proposal);
         self.shorten_composite(proposal);
         let failure = Some(error.to_string());

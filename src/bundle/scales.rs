@@ -9,6 +9,7 @@
 //! length    = ‖x̂‖ for distances up to ‖x̂‖,  else at least 1e-3 max(‖x̂‖, ‖x̂ − x⁰‖, ‖x⁰‖)
 //! least     = min( highest − Θ(x̂),  max( Σ_j λ_j Σ_i |g_ji| reach_i,  h(c ± |G| reach) − h(c) of a composite Θ ) )
 //! bound     = ẽ + Σ_i |z̃_i| reach_i ≥ Θ(x̂) − Θ(y)        if Θ is convex and |y_i − x̂_i| ≤ reach_i
+//! gap       = ẽ + Σ_i |z̃_i| max_k reach_k                  the bound that is told
 //! ```
 //! Here `highest` is the highest value at the start and in the bundle. Decreases and sums do not change if Θ is shifted, and the sums
 //! and the bound do not depend on the units of the variables. Cuts farther away than the variables are large tell nothing about the
@@ -135,10 +136,22 @@ impl State {
 
     /// ẽ + Σ |z̃_i| reach_i: what a convex Θ can still fall within reach and in the box.
     pub(crate) fn decrease_bound(&self, proposal: &Proposal, set: &Polyhedron) -> f64 {
-        let farthest = |i: usize| (set.upper()[i] - self.center[i]).max(self.center[i] - set.lower()[i]);
         let reach = self.reach();
+        self.decrease_within(proposal, set, |i| reach[i])
+    }
+
+    /// The same where every variable may move as far as the one that reaches farthest: how far one that has hardly moved is from the
+    /// minimum, its own reach does not tell.
+    pub(crate) fn gap_bound(&self, proposal: &Proposal, set: &Polyhedron) -> f64 {
+        let longest = self.reach().amax();
+        self.decrease_within(proposal, set, |_| longest)
+    }
+
+    /// ẽ + Σ |z̃_i| min(reach_i, distance to the farther side of the box).
+    fn decrease_within(&self, proposal: &Proposal, set: &Polyhedron, reach: impl Fn(usize) -> f64) -> f64 {
+        let farthest = |i: usize| (set.upper()[i] - self.center[i]).max(self.center[i] - set.lower()[i]);
         let sizes = self.aggregate_sizes(proposal, set);
-        let falls = sizes.iter().enumerate().map(|(i, slope)| slope * reach[i].min(farthest(i)));
+        let falls = sizes.iter().enumerate().map(|(i, slope)| slope * reach(i).min(farthest(i)));
         proposal.cut_error + proposal.slack_error + falls.sum::<f64>()
     }
 }

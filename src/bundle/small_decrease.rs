@@ -206,7 +206,7 @@ impl Run<'_, '_> {
     /// The bound of the decrease within reach; ∞ where the linearizations do not vary within reach by much more than the limit, because
     /// a reach that is a rounding of zero proves nothing.
     fn meaningful_bound(&self, proposal: &Proposal, limit: f64) -> f64 {
-        let bound = self.state.decrease_bound(proposal, &self.set);
+        let bound = self.state.gap_bound(proposal, &self.set);
         if self.has_seen_more_than(limit, proposal) { bound } else { f64::INFINITY }
     }
 

@@ -13,7 +13,8 @@ pub enum Termination {
     Stationary {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
-        /// If Θ is declared convex: how far Θ can lie above its minimum within reach, in units of Θ.
+        /// If Θ is declared convex: how far Θ can lie above its minimum within reach, in units of Θ. Every variable reaches as far as
+        /// the one does that lies farthest from zero or from its start.
         #[serde(default)]
         gap: Option<f64>,
     },
@@ -100,7 +101,10 @@ impl fmt::Display for Termination {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stationary { gap: Some(gap), .. } => {
-                write!(f, "stationary, confirmed: the cuts of the convex objective leave {gap:.1e} to its minimum")
+                write!(
+                    f,
+                    "stationary, confirmed: the cuts of the convex objective leave {gap:.1e} to its minimum within reach"
+                )
             }
             Self::Stationary { radius: 0.0, gap: None } => {
                 write!(

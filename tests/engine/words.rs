@@ -235,6 +235,62 @@ fn a_convex_bound_is_small_beside_more_than_a_far_start() {
     assert!(above.count() <= 1);
 }
 
+/// exp(x) − 2x + |x − ½| from zero, scaled and shifted: the first step follows from Θ(0) and is 5e13, where the function overflows.
+#[test]
+fn a_shift_does_not_end_a_run_from_zero_by_failures() {
+    for shift in [1e8, -1e8] {
+        let theta = FnObjective::new(1, |x: &Vector| {
+            let (x, side) = (x[0], if x[0] >= 0.5 { 1.0 } else { -1.0 });
+            let value = 1e-6 * (x.exp() - 2.0 * x + (x - 0.5).abs()) + shift;
+            (value, v(&[1e-6 * (x.exp() - 2.0 + side)]))
+        });
+        let config = BundleTrustConfig { convexity: Convexity::Convex, max_evaluations: 1000, ..Default::default() };
+        let report = BundleTrust::new(config).unwrap().minimize(&theta, v(&[0.0])).unwrap();
+        let gap = (report.value - shift) / 1e-6 - (0.5_f64.exp() - 1.0);
+        // Values are told to 1.5e-8, which is 0.015 of the unscaled function.
+        assert!(gap <= 0.1 && !matches!(report.termination, Termination::OracleFailing { .. }), "{gap:e} {report}");
+    }
+}
+
+/// Σ w_i |x_i − m_i| + 1 with slopes and distances of very different size, from starts near zero: what a variable that has hardly moved can
+/// still gain, its own value does not tell.
+#[test]
+fn a_variable_that_has_hardly_moved_is_not_at_its_minimum() {
+    let ends = |weights: &[f64], minimiser: &[f64], start: Vector, side: f64| {
+        let n = weights.len();
+        let theta = FnObjective::new(n, |x: &Vector| {
+            let steps = || x.iter().zip(minimiser).zip(weights);
+            let value = 1.0 + steps().map(|((x, m), w)| w * (x - m).abs()).sum::<f64>();
+            let slope = steps().map(|((x, m), w)| if x >= m { *w } else { -w });
+            (value, Vector::from_iterator(n, slope))
+        });
+        let config = BundleTrustConfig { convexity: Convexity::Convex, max_evaluations: 1000, ..Default::default() };
+        let set = Polyhedron::boxed(Vector::from_element(n, -side), Vector::from_element(n, side)).unwrap();
+        let report = BundleTrust::new(config).unwrap().constraints(set).minimize(&theta, start).unwrap();
+        let gap = match report.termination {
+            Termination::Stationary { gap, .. } => gap.expect("a declared convex function has a bound"),
+            _ => f64::INFINITY,
+        };
+        (gap, report.value - 1.0)
+    };
+    for (slope, start) in [(1e-3, [1.0, 0.0]), (3e-4, [0.0, 0.0]), (3e-4, [1e-3, 1e-3])] {
+        for side in [200.0, 1e9] {
+            let (bound, gap) = ends(&[1.0, slope], &[1.0, 100.0], v(&start), side);
+            assert!(gap <= bound.max(1e-10), "slope {slope}, {start:?}: {gap:e} where at most {bound:e} was told");
+        }
+    }
+    let below = (0..200).filter(|seed| {
+        let number = |index: usize| ((131 * seed + 17 * index + 1) as f64 * 0.618).sin();
+        let n = 2 + seed % 4;
+        let weights: Vec<f64> = (0..n).map(|i| 10f64.powf(2.0 * number(i) - 2.0)).collect();
+        let minimiser: Vec<f64> = (0..n).map(|i| number(10 + i) * 10f64.powf(1.0 + number(20 + i))).collect();
+        let start = Vector::from_fn(n, |i, _| 1e-3 * number(30 + i));
+        let (bound, gap) = ends(&weights, &minimiser, start, 1e9);
+        gap > bound.max(1e-10)
+    });
+    assert_eq!(below.count(), 0);
+}
+
 /// Fails at every tenth point, the same points whenever they are asked for.
 struct Riddled<'a>(&'a Problem);
 

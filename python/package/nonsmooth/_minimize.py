@@ -45,7 +45,7 @@ def minimize(
     options : dict, optional
         See Notes. An unknown name is refused.
     callback : callable, optional
-        ``callback(xk)`` or ``callback(intermediate_result=...)`` after every evaluation, with the best point so far;
+        ``callback(xk)`` or ``callback(intermediate_result=...)`` after every evaluation, with the best point accepted so far;
         the latter has ``x``, ``fun``, ``nfev`` and ``record``. ``StopIteration`` ends the run.
     journal, resume : path, optional
         ``journal``: every evaluation is kept in this new folder. ``resume``: continues the run of such a folder, which

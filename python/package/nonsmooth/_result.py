@@ -92,7 +92,8 @@ class Result(OptimizeResult):
     Attributes
     ----------
     x : ndarray
-        The best admissible point that was evaluated.
+        The best point that was accepted. A point that lowers the function by less than two per cent of what the model promised is not
+        accepted, so that ``history`` may hold a lower value.
     fun : float
         The value there.
     jac : ndarray or None
@@ -108,7 +109,8 @@ class Result(OptimizeResult):
     nfev, njev, nit : int
         Evaluations of value and subgradient, and steps.
     gap : float or None
-        Bound of ``fun`` minus the minimum, for a confirmed run with ``convex=True``.
+        Bound of ``fun`` minus the minimum within reach, for a confirmed run with ``convex=True``: every variable reaches as far as the
+        one does that lies farthest from zero or from its start.
     certificate : Certificate or None
         Cuts and multipliers of the last subproblem; None if there was none.
     history : History

@@ -315,6 +315,9 @@ mod tests {
     use crate::scene::{CounterSurface, Scene, Support, hertz, signorini};
     use crate::shape::ShapeBounds;
 
+    /// Supports of two bodies, friction, expected numbers.
+    type Stack<'a> = ([&'a [Support]; 2], f64, [usize; 3]);
+
     /// Numbers of motions that supports leave free to the lower body and to all, and of those that contact leaves free as well.
     fn counts(mut scene: Scene, supports: [&[Support]; 2], height: f64, friction: f64) -> [usize; 3] {
         (scene.size, scene.mesh, scene.friction) = ([1.0; 2], [4; 3], friction);
@@ -351,7 +354,7 @@ mod tests {
             (&[], 0.0, [6, 6, 3]),
             (&[], 0.3, [6, 6, 0]),
         ];
-        let two: [([&[Support]; 2], f64, [usize; 3]); 5] = [
+        let two: [Stack<'_>; 5] = [
             ([&[foot], &[]], 0.0, [0, 6, 3]),
             ([&[foot], &[]], 0.3, [0, 6, 0]),
             ([&[x1, plane], &[x1]], 0.0, [1, 4, 2]),

@@ -215,6 +215,26 @@ fn forces_in_balance_are_never_refused() {
     }
 }
 
+/// A free block that is pushed with nearly as much as friction can hold: the projection onto the cone of contact forces converges slowly there.
+#[test]
+fn statics_refuse_what_is_beyond_friction_alone() {
+    for (friction, mesh) in [(0.02, [2, 3, 5]), (1e-3, [1; 3]), (0.3, [3; 3])] {
+        for share in [1.0 - 1e-4, 1.0 - 1e-6, 1.0 + 1e-3] {
+            let mut scene = Scene { mesh, subdomains: [1; 3], friction, ..hertz().unwrap() };
+            scene.counter_surface = CounterSurface::Plane { height: 10.0 };
+            scene.lower.supports = vec![Support { face: Face::Bottom, components: [true; 3] }];
+            if let Some(upper) = &mut scene.upper {
+                upper.body.supports.clear();
+                upper.body.loads = vec![Load { face: Face::Top, traction: [100.0 * friction * share, 0.0, -100.0] }];
+            }
+            let problem = ContactProblem::new(scene).unwrap();
+            let refused = Configuration::new(&problem, &[10.0; 36]).map(|_| ());
+            let refused = matches!(refused, Err(ContactError::NoEquilibrium { .. }));
+            assert_eq!(refused, share > 1.0, "friction {friction}, {share}");
+        }
+    }
+}
+
 #[test]
 fn patch_test_uniform_pressure_with_edge_and_corner_weights() {
     let mut scene = small(signorini().unwrap(), 6, 3);
