@@ -127,8 +127,9 @@
 //!
 //! # What the report promises
 //!
-//! * [`Report::solution`] is the best point evaluated, and admissible. Θ was never evaluated outside U, up to the
-//!   rounding that [`Report::largest_violation`] states.
+//! * [`Report::solution`] is the point that [`Report::termination`] speaks about, or, where the run ends by a limit or a failure,
+//!   the lowest point evaluated; it is admissible. Θ was never evaluated outside U, up to the rounding that
+//!   [`Report::largest_violation`] states.
 //! * [`Report::termination`] says why the run ended, with numbers. Only [`Termination::Stationary`] calls the point a
 //!   confirmed stationary point; [`Termination::advice`] says what to try after each of the others.
 //! * [`Report::certificate`] holds all cuts and multipliers of the last subproblem. [`Certificate::recheck`] computes

@@ -48,6 +48,8 @@ impl Run<'_, '_> {
         self.add_cut(proposal.trial.clone(), &evaluation, !accurate);
         if serious {
             self.move_center(proposal.trial.clone(), value, accuracy);
+        } else if accurate {
+            self.remember_lowest();
         }
         let linearized = self.learn_structure(&trial, value, linearization);
         self.record(&proposal, accuracy, Event { kind, value: Some(value), failure: None, linearized, work });
@@ -90,6 +92,15 @@ impl Run<'_, '_> {
         state.bundle.push(cut, &state.norm);
         state.next_id += 1;
         self.forget_model();
+    }
+
+    /// Remembers the newest cut if it is the lowest so far and lies below the center.
+    fn remember_lowest(&mut self) {
+        let state = &mut self.state;
+        let lowest = state.lowest.as_ref().map_or(state.center_value, Cut::highest_value).min(state.center_value);
+        if let Some(newest) = state.bundle.cut(state.next_id - 1).filter(|cut| cut.highest_value() < lowest) {
+            state.lowest = Some(newest.clone());
+        }
     }
 
     /// Moves the center to the point of the newest cut, which must be that of the last evaluation.

@@ -75,6 +75,11 @@ impl Cut {
         }
     }
 
+    /// What Θ is at most at the point of an accurate cut.
+    pub(super) fn highest_value(&self) -> f64 {
+        self.value + self.error_bound
+    }
+
     /// How far the cut may lie above a convex Θ: the promised error of its value, 0 if it is certified.
     pub fn excess(&self) -> f64 {
         if self.certified { 0.0 } else { self.error_bound }

@@ -63,6 +63,7 @@ impl Run<'_, '_> {
 
     /// Ends the run and returns its report; the termination is [`Termination::Unfinished`] if the run had not ended by itself.
     pub fn finish(mut self) -> Report {
+        self.end_at_lowest();
         if self.proposal.is_none() && self.proof.is_none() {
             let _solved = self.try_subproblem();
         }
@@ -81,6 +82,27 @@ impl Run<'_, '_> {
             warnings: vec![],
             seconds,
         }
+    }
+
+    /// A run that ends with nothing to say about its center ends at the lowest point evaluated: a step that brings little of what the model
+    /// promised is a null step, also where it lowers Θ.
+    fn end_at_lowest(&mut self) {
+        let about_center = matches!(
+            self.termination,
+            Some(Termination::Stationary { .. } | Termination::StationaryUnconfirmed { .. } | Termination::NoiseLimit { .. })
+        );
+        let Some(lowest) = self.state.lowest.take().filter(|_| !about_center) else { return };
+        let state = &mut self.state;
+        if lowest.highest_value() >= state.center_value - state.center_error_bound() {
+            return;
+        }
+        (state.center, state.center_value, state.center_id) = (lowest.point.clone(), lowest.value, lowest.id);
+        if state.bundle.cut(lowest.id).is_none() {
+            state.bundle.push(lowest, &state.norm);
+        }
+        self.forget_model();
+        let (point, value) = (self.state.center.clone(), self.state.center_value);
+        self.rebase(&point, value, None);
     }
 
     fn certificate(&self) -> Option<Certificate> {

@@ -156,6 +156,7 @@ fn first_evaluation(
         center_value: value,
         center_id: 1,
         bundle: Bundle::default(),
+        lowest: None,
         next_id: 2,
         weight,
         first_weight: weight,

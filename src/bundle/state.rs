@@ -49,6 +49,8 @@ pub(crate) struct State {
     /// The cut of the center; never deleted.
     pub center_id: u64,
     pub bundle: Bundle,
+    /// The lowest of the null steps' points with less than Θ(x̂) at the time.
+    pub lowest: Option<Cut>,
     pub next_id: u64,
     pub weight: f64,
     pub first_weight: f64,

@@ -24,7 +24,7 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Report {
-    /// The best admissible point found.
+    /// The admissible point that the termination speaks about; where a limit or a failure ended the run, the lowest one evaluated.
     pub solution: Vector,
     /// Θ there.
     pub value: f64,

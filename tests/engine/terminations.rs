@@ -29,6 +29,29 @@ fn evaluation_limit() {
     assert!(report.certificate.is_some());
 }
 
+/// From 20, exp(5|x|) promises so much that a step to its minimum is a null step.
+#[test]
+fn a_limit_ends_at_the_lowest_point_evaluated() {
+    let steep = FnObjective::new(1, |x: &Vector| {
+        let value = (5.0 * x[0].abs()).exp();
+        (value, v(&[5.0 * value * x[0].signum()]))
+    });
+    let mut lower_null_steps = 0;
+    for max_evaluations in 2..60 {
+        let report =
+            method(BundleTrustConfig { max_evaluations, ..Default::default() }).minimize(&steep, v(&[20.0])).unwrap();
+        let lowest = report.history.iter().filter_map(|record| record.value).fold(f64::INFINITY, f64::min);
+        let last_center = report.history.last().unwrap().center_value;
+        if report.termination == Termination::EvaluationLimit {
+            assert_eq!(report.value, lowest, "{report}");
+            assert_eq!(report.value, steep.evaluate(&Request::tight(&report.solution)).unwrap().evaluation().value);
+            assert_eq!(report.certificate.unwrap().point, report.solution);
+            lower_null_steps += usize::from(lowest < last_center);
+        }
+    }
+    assert!(lower_null_steps > 0);
+}
+
 #[test]
 fn iteration_limit() {
     let report = method(BundleTrustConfig { max_iterations: 2, ..Default::default() })

@@ -92,8 +92,7 @@ class Result(OptimizeResult):
     Attributes
     ----------
     x : ndarray
-        The best point that was accepted. A point that lowers the function by less than two per cent of what the model promised is not
-        accepted, so that ``history`` may hold a lower value.
+        The admissible point that ``message`` speaks about; where a limit or a failure ended the run, the lowest one evaluated.
     fun : float
         The value there.
     jac : ndarray or None
