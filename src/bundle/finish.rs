@@ -89,7 +89,11 @@ impl Run<'_, '_> {
     fn end_at_lowest(&mut self) {
         let about_center = matches!(
             self.termination,
-            Some(Termination::Stationary { .. } | Termination::StationaryUnconfirmed { .. } | Termination::NoiseLimit { .. })
+            Some(
+                Termination::Stationary { .. }
+                    | Termination::StationaryUnconfirmed { .. }
+                    | Termination::NoiseLimit { .. }
+            )
         );
         let Some(lowest) = self.state.lowest.take().filter(|_| !about_center) else { return };
         let state = &mut self.state;

@@ -235,8 +235,8 @@ impl Run<'_, '_> {
             Some(noise) => self.look_within_reach(proposal.clone(), noise).bound,
             None => self.state.decrease_bound(proposal, &self.set),
         };
-        // Rounding that comes from cuts farther away than the variables are large is left behind by a restart.
-        let hidden = self.noise().is_some() || radius <= 1.0;
+        // What rounding hides at the active cuts, a restart may bring to light.
+        let hidden = self.noise().is_some();
         let word = self.word((remaining, MAX_REMAINING_DECREASES), Termination::Stationary { radius, gap: None })?;
         (radius <= CONFIRMING_RADIUS || hidden && matches!(word, Termination::NoiseLimit { .. })).then_some(word)
     }

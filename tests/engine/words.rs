@@ -326,3 +326,34 @@ fn a_point_that_fails_is_not_proposed_again() {
         }
     }
 }
+
+/// Beside a shift of 1e8, values have eight digits. They hide decreases, but a noise limit is said only where the gap is as small.
+#[test]
+fn a_shift_makes_no_noise_limit_far_from_the_minimum() {
+    const SHIFT: f64 = 1e8;
+    let (mut noise_limits, mut solved) = (0, 0);
+    for steepness in [1.0, 5.0, 50.0, 500.0] {
+        for start in 0..12 {
+            let start = v(&[3.0 * (1.1 * f64::from(start)).sin(), 3.0 * (2.3 * f64::from(start)).cos()]);
+            let valley = |x: &Vector| {
+                let bend = x[0] * x[0] - x[1];
+                let slope = steepness * bend.signum();
+                let slopes = v(&[2.0 * slope * x[0] - 2.0 * (1.0 - x[0]), -slope]);
+                (steepness * bend.abs() + (1.0 - x[0]).powi(2), slopes)
+            };
+            let shifted = FnObjective::new(2, |x: &Vector| {
+                let (value, slope) = valley(x);
+                (value + SHIFT, slope)
+            });
+            let mut method = BundleTrust::new(BundleTrustConfig::default()).unwrap();
+            let report = method.minimize(&shifted, start).unwrap();
+            let gap = valley(&report.solution).0;
+            if let Termination::NoiseLimit { estimate } = report.termination {
+                assert!(gap <= 10.0 * estimate, "{gap:.1e} {report}");
+                noise_limits += 1;
+            }
+            solved += usize::from(gap < 1e-4);
+        }
+    }
+    assert!(solved >= 28, "{noise_limits} noise limits, {solved} solved");
+}
