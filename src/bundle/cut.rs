@@ -16,6 +16,13 @@ pub(crate) const LEAST_ACTIVE_MULTIPLIER: f64 = 1e-9;
 /// A subgradient this many times longer than all before cannot be held beside them in double precision.
 pub(crate) const MAX_RELATIVE_SLOPE: f64 = 1e15;
 
+/// How far a cut lies below Θ(x̂) at x̂, as model and certificate count it: the linearization error e, what convexification adds, and the
+/// errors that the oracle promised. A cut above a convex Θ by no more than those is lowered; one that is farther above shows noise, and
+/// counts as far below.
+pub(crate) fn offset(error: f64, convexified: f64, promised: f64, convex: bool) -> f64 {
+    if convex { (error + promised).abs() } else { (error + convexified).max(error.abs()) + promised }
+}
+
 /// One evaluation kept in the bundle, or several merged into one cut.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]

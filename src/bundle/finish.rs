@@ -110,10 +110,15 @@ impl Run<'_, '_> {
     }
 
     fn certificate(&self) -> Option<Certificate> {
-        match &self.proof {
-            Some(proof) => Some(proof.certificate(self.certificate_of(&proof.proposal), &self.set)),
-            None => self.proposal.as_ref().map(|proposal| self.certificate_of(proposal)),
+        let mut certificate = match &self.proof {
+            Some(proof) => proof.certificate(self.certificate_of(&proof.proposal)),
+            None => self.certificate_of(self.proposal.as_ref()?),
+        };
+        // As a later check computes them. Where the weight is small, the step tells them less accurately than the multipliers do.
+        if let Ok(check) = certificate.recheck(&self.set) {
+            (certificate.aggregate_norm, certificate.aggregate_error) = (check.aggregate_norm, check.aggregate_error);
         }
+        Some(certificate)
     }
 
     fn certificate_of(&self, proposal: &Proposal) -> Certificate {
@@ -126,6 +131,7 @@ impl Run<'_, '_> {
             predicted_decrease: proposal.predicted_decrease,
             weight: proposal.weight,
             convexification: proposal.convexification,
+            convex: self.is_declared_convex(),
             norm: self.state.norm.clone(),
             cuts: self.state.bundle.cuts().to_vec(),
             row_multipliers: proposal.row_multipliers.clone(),

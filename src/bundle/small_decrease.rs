@@ -66,7 +66,7 @@ impl Run<'_, '_> {
         }
     }
 
-    fn is_declared_convex(&self) -> bool {
+    pub(super) fn is_declared_convex(&self) -> bool {
         self.method.config.convexity == Convexity::Convex
     }
 

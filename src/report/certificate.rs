@@ -6,7 +6,7 @@
 //! ```
 
 use super::CompositeProof;
-use crate::bundle::cut::Cut;
+use crate::bundle::cut::{Cut, offset};
 use crate::bundle::norm::ScaledNorm;
 use crate::{Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
@@ -32,6 +32,9 @@ pub struct Certificate {
     pub weight: f64,
     /// Curvature c added to make the model convex; 0 if Θ looks convex.
     pub convexification: f64,
+    /// Whether Θ was declared convex: errors of cuts then count with their signs.
+    #[serde(default)]
+    pub convex: bool,
     /// The norm of the run.
     pub norm: ScaledNorm,
     /// All cuts of the subproblem, with their points, values, subgradients and multipliers.
@@ -100,12 +103,12 @@ impl Certificate {
         let mut aggregate = set.rows().tr_mul(&self.row_multipliers) + &self.bound_multipliers;
         let (mut error, mut total, mut negative) = (0.0, 0.0, 0.0_f64);
         for cut in &self.cuts {
-            let offset = &self.point - &cut.point;
+            let way = &self.point - &cut.point;
             let linear = cut.linearization_error(&self.point, self.value);
-            let convexified = linear + self.convexification * self.norm.squared(&offset);
             let promised = if cut.point == self.point { 0.0 } else { cut.excess() + self.error_bound };
-            error += cut.multiplier * (convexified.max(linear.abs()) + promised);
-            let tilt = self.norm.lower_index(&offset) * (2.0 * self.convexification);
+            let convexified = self.convexification * self.norm.squared(&way);
+            error += cut.multiplier * offset(linear, convexified, promised, self.convex);
+            let tilt = self.norm.lower_index(&way) * (2.0 * self.convexification);
             aggregate += (&cut.subgradient - tilt) * cut.multiplier;
             total += cut.multiplier;
             negative = negative.max(-cut.multiplier);

@@ -1,12 +1,22 @@
 //! The certificate is recomputed from its own data.
 use crate::common::{cb3, distance_1, minimize, plane, v};
-use nonsmooth::{Certificate, Polyhedron};
+use nonsmooth::{
+    Answer, BundleTrust, BundleTrustConfig, Certificate, Convexity, Evaluation, NonsmoothObjective, OracleError,
+    Polyhedron, Request, Vector,
+};
+use std::cell::Cell;
+use testset::Family;
 
+/// Norm and error follow from the multipliers, the predicted decrease from the step: −v = ‖z̃‖²/u + ẽ at the solution of a subproblem.
 fn assert_agrees(certificate: &Certificate, set: &Polyhedron) {
     let check = certificate.recheck(set).unwrap();
+    assert_eq!(
+        (check.aggregate_norm, check.aggregate_error),
+        (certificate.aggregate_norm, certificate.aggregate_error)
+    );
     // The multipliers carry the subproblem's KKT residual (1e-10 relative) times slopes of order one.
-    assert!((check.aggregate_norm - certificate.aggregate_norm).abs() < 1e-8, "{check:?} {certificate}");
-    assert!(check.aggregate_error <= certificate.aggregate_error + 1e-8, "{check:?} {certificate}");
+    let predicted = check.aggregate_norm.powi(2) / certificate.weight + check.aggregate_error;
+    assert!((predicted - certificate.predicted_decrease).abs() < 1e-8, "{check:?} {certificate}");
     assert!(check.multiplier_defect <= 1e-9 && check.violation <= 1e-9 && check.open_side_multiplier == 0.0);
 }
 
@@ -29,6 +39,65 @@ fn constrained_certificate_uses_the_multipliers_of_rows_and_bounds() {
     assert!(certificate.row_multipliers[0].abs() > 1e-3);
     let check = certificate.recheck(&set).unwrap();
     assert!(check.proves(1e-3, 1e-5), "{check:?} {:?} {}", report.termination, report.value);
+}
+
+/// Values and slopes off at random, values by no more than is promised.
+struct Inaccurate<'p> {
+    problem: &'p testset::Problem,
+    error: f64,
+    draws: Cell<u64>,
+}
+
+impl Inaccurate<'_> {
+    /// A number in [−1, 1).
+    fn draw(&self) -> f64 {
+        let next = self.draws.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.draws.set(next);
+        (next >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+impl NonsmoothObjective for Inaccurate<'_> {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        self.problem.dimension
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let (value, slope) = self.problem.evaluate(request.point.as_slice());
+        let mut evaluation = Evaluation::exact(value + self.error * self.draw(), Vector::from_vec(slope), ());
+        evaluation.error_bound = self.error;
+        Ok(Answer::Accurate(evaluation))
+    }
+}
+
+/// Θ(y) ≥ Θ(x̂) − ‖z̃‖‖y − x̂‖ − ẽ, with the exact Θ on both sides, for functions whose values are inaccurate.
+#[test]
+fn a_convex_certificate_bounds_the_exact_function() {
+    let (mut certificates, mut predicted) = (0, 0);
+    for problem in testset::all().iter().filter(|p| p.convex && p.family == Family::Unconstrained && p.dimension <= 20)
+    {
+        for error in [1e-6, 1e-3, 1e-1] {
+            let inaccurate = Inaccurate { problem, error, draws: Cell::new(77) };
+            let config = BundleTrustConfig { convexity: Convexity::Convex, max_evaluations: 300, ..Default::default() };
+            let report = BundleTrust::new(config).unwrap().minimize(&inaccurate, v(&problem.start)).unwrap();
+            let certificate = report.certificate.unwrap();
+            let check = certificate.recheck(&Polyhedron::unbounded(problem.dimension)).unwrap();
+            let from_step = check.aggregate_norm.powi(2) / certificate.weight + check.aggregate_error;
+            predicted += usize::from((from_step - certificate.predicted_decrease).abs() <= 1e-6 * from_step);
+            let at = |x: &Vector| problem.evaluate(x.as_slice()).0;
+            for trial in 0..200 {
+                let length = 0.3_f64.powi(trial % 8);
+                let way = Vector::from_fn(problem.dimension, |_, _| length * inaccurate.draw());
+                let bound = certificate.aggregate_norm * way.norm() + certificate.aggregate_error;
+                let (here, there) = (at(&certificate.point), at(&(&certificate.point + way)));
+                assert!(there >= here - bound - 1e-12 * here.abs(), "{} {error:.0e}: {bound:.1e}", problem.name);
+            }
+            certificates += 1;
+        }
+    }
+    assert!(certificates >= 30 && 2 * predicted > certificates, "{predicted} of {certificates}");
 }
 
 #[test]

@@ -10,6 +10,7 @@
 
 use crate::Vector;
 use crate::bundle::config::{BundleTrustConfig, Convexity};
+use crate::bundle::cut::offset;
 use crate::bundle::proposers::subproblem::Cuts;
 use crate::bundle::state::{NOISE_MARGIN, State};
 use crate::linalg::upper_median;
@@ -49,10 +50,8 @@ impl Model {
         let center = state.bundle.position(state.center_id);
         let (errors, distances) = state.errors_at_center(center.unwrap_or(0));
         let rounding = state.rounding();
-        let c = match config.convexity {
-            Convexity::Unknown => convexification(state, config, &errors, &distances),
-            Convexity::Convex => 0.0,
-        };
+        let convex = config.convexity == Convexity::Convex;
+        let c = if convex { 0.0 } else { convexification(state, config, &errors, &distances) };
         let mut known = former.into_iter().flat_map(Self::into_plain_slopes).peekable();
         let mut model = Self {
             slopes: vec![],
@@ -66,17 +65,10 @@ impl Model {
         for (cut, (&error, &distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(&distances)) {
             // A value that may be too high by its promised error must not put the cut above Θ.
             let promised = if cut.id == state.center_id { 0.0 } else { cut.excess() + state.center_error_bound() };
-            let offset = match config.convexity {
-                // A cut above a convex Θ by no more than its value leaves open is lowered. One that is far above shows noise.
-                Convexity::Convex => {
-                    let excess = -(error + promised);
-                    if excess > NOISE_MARGIN * (promised + rounding) {
-                        state.noise = state.noise.max(excess);
-                    }
-                    excess.abs()
-                }
-                Convexity::Unknown => (error + c * distance).max(error.abs()) + promised,
-            };
+            let excess = -(error + promised);
+            if convex && excess > NOISE_MARGIN * (promised + rounding) {
+                state.noise = state.noise.max(excess);
+            }
             model.slopes.push(if c > 0.0 {
                 let tilt = state.norm.lower_index(&(&state.center - &cut.point));
                 &cut.subgradient - tilt * (2.0 * c)
@@ -84,7 +76,7 @@ impl Model {
                 while known.next_if(|(id, _)| *id < cut.id).is_some() {}
                 known.next_if(|(id, _)| *id == cut.id).map_or_else(|| cut.subgradient.clone(), |(_, slope)| slope)
             });
-            model.offsets.push(offset);
+            model.offsets.push(offset(error, c * distance, promised, convex));
             model.ids.push(cut.id);
         }
         state.nonconvex |= c > 0.0;
