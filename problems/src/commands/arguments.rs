@@ -135,8 +135,8 @@ pub struct Arguments {
     /// What export writes.
     #[command(flatten)]
     pub export: ExportOptions,
-    /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --new-version,
-    /// --json only).
+    /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks,
+    /// --new-version, --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
     /// With --resume: continue a run that another version of the program has begun.
@@ -285,6 +285,7 @@ impl Arguments {
             time_limit: self.time_limit,
             threads: self.threads,
             vtk_history: self.vtk_history,
+            no_checks: self.no_checks,
             new_version: self.new_version,
             json: self.json,
             ..nothing
@@ -292,7 +293,7 @@ impl Arguments {
         if *self == allowed {
             return Ok(());
         }
-        let allowed = "with --max-evaluations, --time-limit, --threads, --vtk-history, --new-version, --json only: all else is in the folder";
+        let allowed = "with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks, --new-version, --json only: all else is in the folder";
         Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
 }

@@ -276,6 +276,15 @@ pub fn resume_command(folder: &Path, kind: RunKind) -> String {
     format!("{program}{}--resume {}", kind.command(), quoted(folder.display().to_string()))
 }
 
+/// The same with the options of this command that its folder does not hold.
+pub fn continuation(folder: &Path, arguments: &Arguments) -> String {
+    let mut command = resume_command(folder, arguments.command.kind());
+    for (given, option) in [(arguments.vtk_history, " --vtk-history"), (arguments.no_checks, " --no-checks")] {
+        command += if given { option } else { "" };
+    }
+    command
+}
+
 /// The first free `DIR.1`, `DIR.2`, …
 fn free_name(path: &Path) -> Result<PathBuf, Failure> {
     let unnamed =

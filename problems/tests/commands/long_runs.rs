@@ -172,13 +172,15 @@ fn an_interrupted_run_reports_says_how_to_resume_and_resumes() {
 fn limits_end_a_run_with_a_report_and_can_be_raised() {
     let scratch = kit::scratch();
     let folder = scratch.path().join("run");
-    let timed = succeeded(&["--mesh", "6", "--time-limit", "0.05", "--json", "--out", text(&folder)]);
+    let timed = succeeded(&["--mesh", "6", "--time-limit", "0.05", "--no-checks", "--json", "--out", text(&folder)]);
     assert_eq!(timed["termination"]["reason"], "time_limit");
     let page = std::fs::read_to_string(folder.join("report.txt")).unwrap();
-    assert!(page.contains(&format!("to continue: {SIGNORINI} --resume {}", text(&folder))), "{page}");
+    assert!(page.contains(&format!("to continue: {SIGNORINI} --resume {} --no-checks\n", text(&folder))), "{page}");
     let done = timed["evaluations"].as_u64().unwrap();
     let limit = (done + 3).to_string();
-    let resumed = succeeded(&["--resume", text(&folder), "--max-evaluations", &limit, "--time-limit", "60", "--json"]);
+    let larger = ["--max-evaluations", &limit, "--time-limit", "60", "--no-checks", "--json"];
+    let resumed = succeeded(&[&["--resume", text(&folder)], &larger[..]].concat());
+    assert!(resumed["left_out"].to_string().contains("--no-checks"), "{}", resumed["left_out"]);
     assert_eq!(resumed["termination"]["reason"], "evaluation_limit");
     assert_eq!(resumed["resumed_evaluations"], done);
     assert_eq!(found(&resumed), found(&succeeded(&["--mesh", "6", "--max-evaluations", &limit, "--json"])));

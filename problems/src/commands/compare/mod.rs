@@ -6,7 +6,7 @@ pub mod comparison;
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{SolvedShape, optimized_objective};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{COMPARED, Folder, REPORT, json, printed_with_files, resume_command};
+use crate::commands::folder::{COMPARED, Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::STATUS;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
@@ -34,7 +34,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         session,
     )?;
     let folder = folder.as_ref();
-    let continued = folder.map(|folder| resume_command(folder.folder().path(), RunKind::Comparison));
+    let continued = folder.map(|folder| continuation(folder.folder().path(), session.arguments));
     let (as_json, parts) = (session.arguments.json, parts(loaded, folder)?);
     if let Some(folder) = folder.filter(|folder| folder.is_resumed()) {
         check(&parts, session)?;

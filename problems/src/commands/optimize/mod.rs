@@ -9,7 +9,7 @@ mod vtk_history;
 
 use crate::commands::contact_objective::{SolvedShape, checks};
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, REPORT, json, printed_with_files, resume_command};
+use crate::commands::folder::{Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::{STATUS, interrupted};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
@@ -17,13 +17,12 @@ use crate::commands::optimize::run::{OptimizationRun, optimize};
 use crate::commands::optimize::standstill::standstill;
 use crate::commands::optimize::summary::{page, stages_page, summary};
 use crate::commands::report::files;
-use crate::commands::run_kind::RunKind;
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let optimization = optimize(loaded, None, session)?;
     let folder = optimization.folder.as_ref();
-    let continued = folder.map(|folder| resume_command(folder.folder().path(), RunKind::Optimization));
+    let continued = folder.map(|folder| continuation(folder.folder().path(), session.arguments));
     let (text, _shapes) = report(&optimization, loaded, session, continued.as_deref())?;
     match (interruption(continued.as_deref()), optimization.failure()) {
         (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),

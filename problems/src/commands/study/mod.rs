@@ -14,7 +14,7 @@ pub mod varied;
 use crate::commands::contact_objective;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
-use crate::commands::folder::{Folder, REPORT, STUDY, file_error, json, printed_with_files, resume_command};
+use crate::commands::folder::{Folder, REPORT, STUDY, continuation, file_error, json, printed_with_files};
 use crate::commands::interrupt::{STATUS, interrupted, watch_interrupts};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
@@ -155,7 +155,7 @@ fn finished(
     let printed = session.arguments.printed(text.clone(), object.clone());
     let text = printed_with_files(printed, session.arguments.json, folder.map(RunFolder::folder), write)?;
     if let Some(reason) = cut {
-        let continued = folder.map(|folder| resume_command(folder.folder().path(), RunKind::Study));
+        let continued = folder.map(|folder| continuation(folder.folder().path(), session.arguments));
         let continued = continued.map_or_else(String::new, |command| format!("; continue with `{command}`"));
         let status = if interrupted() { STATUS } else { 1 };
         return Err(Failure::Incomplete { text, reason: reason + &continued, status });
