@@ -60,10 +60,12 @@ impl Run<'_, '_> {
         let state = &mut self.state;
         let change = evaluation.value - state.center_value;
         let promised = evaluation.error_bound + state.center_error_bound() + state.rounding();
-        if proposal.step_length <= NOISE_STEP * state.length_scale() {
+        if proposal.step_length <= NOISE_STEP * state.length_scale().max(state.first_step) {
             let steepest = state.bundle.dual_lengths().fold(state.norm.dual_length(&evaluation.subgradient), f64::max);
             if change.abs() > STEEPNESS_MARGIN * steepest * proposal.step_length + NOISE_MARGIN * promised {
                 state.noise = state.noise.max(change.abs());
+                // Pairs that seemed to prove Θ nonconvex may have shown noise; the others prove it again.
+                state.nonconvex = false;
             }
         }
         if self.method.config.convexity == Convexity::Convex {

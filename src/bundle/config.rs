@@ -112,8 +112,9 @@ pub struct BundleTrustConfig {
     /// Largest factor by which the weight rises after one null step; where Θ bends down along the step, the weight at least doubles.
     /// Default 10; > 1.
     pub weight_increase: f64,
-    /// Range of the weight relative to its first value: u stays within [first/range, first·range]. Default 1e10; > 1. This
-    /// is the finite floor and ceiling of the trust parameter t.
+    /// Range of the weight relative to its first value: u stays within [first/range, first·range], the floor divided further by how many
+    /// times longer than the first step the variables have become. Default 1e10; > 1. This is the finite floor and ceiling of the trust
+    /// parameter t.
     pub weight_range: f64,
     /// Quantile of the curvatures that pairs of cuts prove, used to make the model convex. Default 0.8; in [0, 1].
     pub curvature_quantile: f64,

@@ -7,8 +7,11 @@ use crate::Accuracy;
 use crate::report::{Certificate, IterationRecord, Origin, Report, StepKind, Termination};
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// A decrease of Θ beyond this many times |Θ(x⁰)| + u₀·(first step)² ends the run as unbounded below.
+/// A decrease of Θ beyond this many times |Θ(x⁰)| + ‖g⁰‖·max(first step, 1) ends the run as unbounded below.
 const UNBOUNDED_DECREASE: f64 = 1e12;
+/// Next to zero, the first step may be a rounding, beside which every decrease is large. Lengths of 1 cost an unbounded run some steps more
+/// and say nothing about bounded ones, whatever their units.
+const LEAST_LENGTH: f64 = 1.0;
 
 impl Run<'_, '_> {
     pub(super) fn record(&mut self, proposal: &Proposal, accuracy: Accuracy, event: Event) {
@@ -53,8 +56,9 @@ impl Run<'_, '_> {
         if let Some(rule) = self.method.stop.as_ref().and_then(|rule| rule.holds(&self.state.history)) {
             return Break(Termination::StopRule { rule });
         }
-        let first_promise = self.state.first_weight * self.state.first_step * self.state.first_step;
-        let limit = UNBOUNDED_DECREASE * (self.state.start_value.abs() + first_promise);
+        let slope = self.state.first_weight * self.state.first_step;
+        let limit =
+            UNBOUNDED_DECREASE * (self.state.start_value.abs() + slope * self.state.first_step.max(LEAST_LENGTH));
         if self.state.start_value - self.state.center_value > limit {
             return Break(Termination::UnboundedBelow);
         }

@@ -158,13 +158,18 @@ impl Run<'_, '_> {
         cuts.into_iter().any(|cut| cut.point == proposal.trial && accurate(cut))
     }
 
-    /// Shortens the step to a known point without an evaluation. The run ends where the weight cannot rise any more, or does not lead
-    /// away: values and subgradients contradict each other, since the cuts of exact ones would predict what is known.
+    /// Shortens the step to a known point without an evaluation, or lengthens it where noise hides what it promises. The run ends where
+    /// the weight cannot change any more, or does not lead away: values and subgradients contradict each other, since the cuts of exact
+    /// ones would predict what is known.
     fn leave_known_point(&mut self, proposal: &Proposal) -> ControlFlow<Termination> {
         let before = self.state.weight;
         self.state.known_trials += 1;
-        self.proposers.shorten(&mut self.state, &self.method.config, proposal);
-        self.shorten_composite(proposal);
+        if proposal.origin == Origin::Cuts && self.is_hidden_by_noise(proposal) {
+            self.state.set_weight(before / 10.0, &self.method.config);
+        } else {
+            self.proposers.shorten(&mut self.state, &self.method.config, proposal);
+            self.shorten_composite(proposal);
+        }
         self.proposal = None;
         let stuck = proposal.origin == Origin::Cuts && self.state.weight == before;
         if stuck || self.state.known_trials >= MAX_KNOWN_TRIALS {

@@ -22,7 +22,7 @@ const MAX_REMAINING_DECREASES: f64 = 1.0 / LEAST_STEP_LENGTH;
 const MAX_CONVEX_DECREASES: f64 = 10.0;
 /// The bound of a convex Θ, rounding included, up to which its end counts as confirmed, in wanted decreases.
 const MAX_BOUND_DECREASES: f64 = 2.0 * MAX_CONVEX_DECREASES;
-/// The bound of a convex Θ that ends a run with noise, in units of the noise of two values.
+/// Noise explains decreases up to this many times the noise of two values: predicted ones, and the bound of a convex Θ that ends a run.
 const MAX_NOISY_DECREASES: f64 = 4.0;
 /// A bound counts only if the linearizations of the active cuts vary within reach by this many times the limit.
 const LEAST_SEEN_VARIATION: f64 = 10.0;
@@ -95,8 +95,7 @@ impl Run<'_, '_> {
     fn word(&self, (remaining, allowed): (f64, f64), confirmed: Termination) -> Option<Termination> {
         let (wanted, rounding) = (self.wanted_decrease(), self.state.rounding());
         if let Some(noise) = self.noise() {
-            let bound = if remaining.is_finite() { remaining } else { 0.0 };
-            Some(Termination::NoiseLimit { estimate: noise.max(bound) })
+            remaining.is_finite().then(|| Termination::NoiseLimit { estimate: noise.max(remaining) })
         } else if remaining == 0.0 || remaining + rounding <= allowed * wanted {
             Some(confirmed)
         } else {
@@ -128,6 +127,11 @@ impl Run<'_, '_> {
             }
         };
         self.state.noise.max(promised)
+    }
+
+    /// Whether the noise of the values behind the model explains the predicted decrease.
+    pub(super) fn is_hidden_by_noise(&self, proposal: &Proposal) -> bool {
+        self.noise().is_some_and(|noise| proposal.predicted_decrease <= MAX_NOISY_DECREASES * noise)
     }
 
     /// Lowers the weight tenfold; the answer at the lower weight, or none if the subproblem cannot be solved there.

@@ -122,9 +122,16 @@ impl State {
         self.bundle.cut(self.center_id).map_or(0.0, |cut| cut.error_bound)
     }
 
+    /// Least and largest weight. The least one falls as the run comes to lengths beyond that of its first step, which is arbitrary where
+    /// it starts at zero.
+    pub(crate) fn weight_limits(&self, config: &BundleTrustConfig) -> (f64, f64) {
+        let share = self.first_step / self.first_step.max(self.length_scale());
+        (share * self.first_weight / config.weight_range, self.first_weight * config.weight_range)
+    }
+
     /// Sets the weight within its floor and ceiling; returns whether it changed.
     pub(crate) fn set_weight(&mut self, weight: f64, config: &BundleTrustConfig) -> bool {
-        let (floor, ceiling) = (self.first_weight / config.weight_range, self.first_weight * config.weight_range);
+        let (floor, ceiling) = self.weight_limits(config);
         let weight = weight.clamp(floor, ceiling);
         let changed = weight != self.weight;
         self.weight = weight;

@@ -1,10 +1,7 @@
 //! The certificate is recomputed from its own data.
-use crate::common::{cb3, distance_1, minimize, plane, v};
-use nonsmooth::{
-    Answer, BundleTrust, BundleTrustConfig, Certificate, Convexity, Evaluation, NonsmoothObjective, OracleError,
-    Polyhedron, Request, Vector,
-};
-use std::cell::Cell;
+use crate::common::{Inaccurate, cb3, distance_1, minimize, plane, v};
+use nonsmooth::verify::seeded_direction;
+use nonsmooth::{BundleTrust, BundleTrustConfig, Certificate, Convexity, Polyhedron, Vector};
 use testset::Family;
 
 /// Norm and error follow from the multipliers, the predicted decrease from the step: −v = ‖z̃‖²/u + ẽ at the solution of a subproblem.
@@ -41,37 +38,6 @@ fn constrained_certificate_uses_the_multipliers_of_rows_and_bounds() {
     assert!(check.proves(1e-3, 1e-5), "{check:?} {:?} {}", report.termination, report.value);
 }
 
-/// Values and slopes off at random, values by no more than is promised.
-struct Inaccurate<'p> {
-    problem: &'p testset::Problem,
-    error: f64,
-    draws: Cell<u64>,
-}
-
-impl Inaccurate<'_> {
-    /// A number in [−1, 1).
-    fn draw(&self) -> f64 {
-        let next = self.draws.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        self.draws.set(next);
-        (next >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-}
-
-impl NonsmoothObjective for Inaccurate<'_> {
-    type WarmStart = ();
-
-    fn dimension(&self) -> usize {
-        self.problem.dimension
-    }
-
-    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
-        let (value, slope) = self.problem.evaluate(request.point.as_slice());
-        let mut evaluation = Evaluation::exact(value + self.error * self.draw(), Vector::from_vec(slope), ());
-        evaluation.error_bound = self.error;
-        Ok(Answer::Accurate(evaluation))
-    }
-}
-
 /// Θ(y) ≥ Θ(x̂) − ‖z̃‖‖y − x̂‖ − ẽ, with the exact Θ on both sides, for functions whose values are inaccurate.
 #[test]
 fn a_convex_certificate_bounds_the_exact_function() {
@@ -79,7 +45,7 @@ fn a_convex_certificate_bounds_the_exact_function() {
     for problem in testset::all().iter().filter(|p| p.convex && p.family == Family::Unconstrained && p.dimension <= 20)
     {
         for error in [1e-6, 1e-3, 1e-1] {
-            let inaccurate = Inaccurate { problem, error, draws: Cell::new(77) };
+            let inaccurate = Inaccurate { problem, shift: 0.0, error, promised: error };
             let config = BundleTrustConfig { convexity: Convexity::Convex, max_evaluations: 300, ..Default::default() };
             let report = BundleTrust::new(config).unwrap().minimize(&inaccurate, v(&problem.start)).unwrap();
             let certificate = report.certificate.unwrap();
@@ -89,7 +55,7 @@ fn a_convex_certificate_bounds_the_exact_function() {
             let at = |x: &Vector| problem.evaluate(x.as_slice()).0;
             for trial in 0..200 {
                 let length = 0.3_f64.powi(trial % 8);
-                let way = Vector::from_fn(problem.dimension, |_, _| length * inaccurate.draw());
+                let way = seeded_direction(problem.dimension, trial as u64) * length;
                 let bound = certificate.aggregate_norm * way.norm() + certificate.aggregate_error;
                 let (here, there) = (at(&certificate.point), at(&(&certificate.point + way)));
                 assert!(there >= here - bound - 1e-12 * here.abs(), "{} {error:.0e}: {bound:.1e}", problem.name);

@@ -1,8 +1,11 @@
 //! Small objectives and sets that several tests share.
 
-use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, NonsmoothObjective, Polyhedron, Report, Vector};
+use nonsmooth::{
+    Answer, BundleTrust, BundleTrustConfig, Evaluation, FnObjective, Matrix, NonsmoothObjective, OracleError,
+    Polyhedron, Report, Request, Vector,
+};
 use testset::Problem;
-use testset::kit::jitters;
+use testset::kit::{jitter, jitters};
 
 /// A vector from its entries.
 pub fn v(entries: &[f64]) -> Vector {
@@ -17,6 +20,29 @@ pub fn nearby_starts(problem: &Problem, count: u64) -> impl Iterator<Item = Vect
         let factors = jitters(start.as_slice(), seed).map(|entry| 1.0 + size * entry);
         Vector::from_iterator(start.len(), start.iter().zip(factors).map(|(x, factor)| x * factor))
     })
+}
+
+/// A problem above a shift, with values off by up to `error`, of which `promised` is told.
+pub struct Inaccurate<'p> {
+    pub problem: &'p Problem,
+    pub shift: f64,
+    pub error: f64,
+    pub promised: f64,
+}
+
+impl NonsmoothObjective for Inaccurate<'_> {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        self.problem.dimension
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let (value, slope) = self.problem.evaluate(request.point.as_slice());
+        let value = value + self.shift + self.error * jitter(request.point.as_slice(), 0);
+        let evaluation = Evaluation::exact(value, Vector::from_vec(slope), ());
+        Ok(Answer::Accurate(Evaluation { error_bound: self.promised, ..evaluation }))
+    }
 }
 
 /// The median of an odd number of values.

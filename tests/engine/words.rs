@@ -1,5 +1,5 @@
 //! The last word of a run is true, whatever the start, a shift, units, a wide side, failures and huge answers.
-use crate::common::{maximum, median, nearby_starts, v};
+use crate::common::{Inaccurate, maximum, median, nearby_starts, v};
 use nonsmooth::{
     Answer, BundleTrust, BundleTrustConfig, Convexity, Evaluation, FnObjective, NonsmoothObjective, OracleError,
     Polyhedron, Report, Request, Termination, Vector,
@@ -356,4 +356,22 @@ fn a_shift_makes_no_noise_limit_far_from_the_minimum() {
         }
     }
     assert!(solved >= 28, "{noise_limits} noise limits, {solved} solved");
+}
+
+/// 10 max x_i + ‖x‖²/2 has its minimum −2.5 for 20 variables. At the start 0 its value is a rounding, an error or noise, from which no
+/// length of a first step can be told.
+#[test]
+fn a_start_at_zero_with_hardly_a_value_is_left() {
+    let problem = testset::all().into_iter().find(|problem| problem.name == "NesterovWorst_20").unwrap();
+    for convexity in [Convexity::Convex, Convexity::Unknown] {
+        for (shift, noise, promised) in
+            [(1e-17, 0.0, 0.0), (1e-14, 0.0, 0.0), (1e-10, 1e-10, 0.0), (0.0, 1e-10, 1e-10), (0.0, 1e-6, 1e-6)]
+        {
+            let theta = Inaccurate { problem: &problem, shift, error: noise, promised };
+            let config = BundleTrustConfig { convexity, ..Default::default() };
+            let report = BundleTrust::new(config).unwrap().minimize(&theta, v(&problem.start)).unwrap();
+            let gap = report.value - problem.optimal_value;
+            assert!(gap < 1e-5 + 20.0 * noise, "{shift:.0e} {noise:.0e} {promised:.0e}: {gap:.1e} {report}");
+        }
+    }
 }

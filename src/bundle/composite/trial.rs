@@ -20,7 +20,7 @@ impl Run<'_, '_> {
             return self.continue_excursion(excursion);
         }
         let Some(base) = composite.base.clone().filter(|_| composite.pause.pass()) else { return Continue(None) };
-        let least = self.state.first_weight / self.method.config.weight_range;
+        let (least, _) = self.state.weight_limits(&self.method.config);
         let mut weight = composite.weight.max(least);
         if let Some(rejected) = composite.rejected.take() {
             if let Some(proposal) = self.correction(&base, &rejected)? {

@@ -65,7 +65,7 @@ impl Curved {
         let (u, comparison) = (self.weight, &trial.comparison);
         if comparison.change <= config.good_fraction * comparison.model_change {
             let next = missing_weight(comparison, trial.proposal.step_length).max(u / config.weight_decrease).min(u);
-            self.weight = next.max(state.first_weight / config.weight_range);
+            self.weight = next.max(state.weight_limits(config).0);
         }
     }
 
@@ -82,7 +82,7 @@ impl Curved {
         let u = self.weight;
         let range = (LEAST_INCREASE.min(config.weight_increase) * u, config.weight_increase * u);
         let next = missing_weight(&trial.comparison, trial.proposal.step_length).clamp(range.0, range.1);
-        self.weight = next.min(state.first_weight * config.weight_range);
+        self.weight = next.min(state.weight_limits(config).1);
     }
 }
 
@@ -116,7 +116,7 @@ impl Proposer for Curved {
     fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
         if proposal.origin == Origin::CurvedModel {
             self.pause.fail(self.settings.max_pause);
-            self.weight = (self.weight * config.weight_increase).min(state.first_weight * config.weight_range);
+            self.weight = (self.weight * config.weight_increase).min(state.weight_limits(config).1);
         }
     }
 

@@ -167,11 +167,12 @@ impl Model {
 fn convexification(state: &State, config: &BundleTrustConfig, errors: &[f64], distances: &[f64]) -> f64 {
     let resolution = LEAST_PAIR_DISTANCE * state.length_scale();
     let value_resolution = LEAST_PAIR_ERROR * state.value_scale(config);
-    let curvatures = state.bundle.proven_curvatures(resolution, value_resolution);
+    let noise = NOISE_MARGIN * state.noise;
+    let curvatures = state.bundle.proven_curvatures(resolution, value_resolution + noise);
     let pairs = quantile(&curvatures, config.curvature_quantile);
     let mut at_center = 0.0_f64;
     for (cut, (error, distance)) in state.bundle.cuts().iter().zip(errors.iter().zip(distances)) {
-        let allowance = cut.excess() + state.center_error_bound();
+        let allowance = cut.excess() + state.center_error_bound() + noise;
         if *error < -CENTER_SHARE * value_resolution - allowance && *distance > 0.0 {
             at_center = at_center.max(-error / distance);
         }
