@@ -4,8 +4,8 @@
 //! m(d) = max_i { ⟨h_i, d⟩ − a_i },   h_i = g_i − 2c W p_i,   a_i = max(e_i + c‖p_i‖², |e_i|),   p_i = x̂ − y_i
 //! c = max( quantile of −E_ij/‖y_i − y_j‖² over concave pairs,  −e_i/‖p_i‖² )
 //! ```
-//! c = 0 as long as no pair of cuts proves Θ nonconvex: m is then the plain cutting-plane model. The errors that the oracle promised are
-//! added to a_i.
+//! c = 0 as long as no pair of cuts proves Θ nonconvex: m is then the plain cutting-plane model. The errors p that the oracle promised are
+//! added to a_i; for Θ declared convex, a_i = |e_i + p|.
 //! References: \[SchrammZowe1992\] (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
 
 use crate::Vector;
