@@ -9,6 +9,9 @@ use super::norm::ScaledNorm;
 use super::pairs::Pairs;
 use std::cell::Cell;
 
+/// Linearization errors below this share of the values may be rounding.
+const VALUE_ROUNDING: f64 = 1e-9;
+
 /// A pair of cuts of which one lies above the other's point: Θ is not convex between them.
 #[derive(Debug, Clone, Copy)]
 struct ConcavePair {
@@ -17,6 +20,11 @@ struct ConcavePair {
     squared_distance: f64,
     /// What promised errors and rounding of the two values explain of the error.
     allowance: f64,
+}
+
+/// What promised errors and rounding of the values of two cuts explain of their linearization errors.
+pub(crate) fn allowance(one: &Cut, other: &Cut) -> f64 {
+    one.error_bound + other.error_bound + VALUE_ROUNDING * (one.value.abs() + other.value.abs())
 }
 
 /// ‖g‖* and ‖y‖ of a cut, and how far its linearization varies, with the center for which this spread was formed.
@@ -142,7 +150,7 @@ impl Bundle {
             for (i, j) in [(i, newest), (newest, i)].into_iter().filter(|(_, j)| !self.cuts[*j].certified) {
                 let (error, from, to) = (self.pair_error(i, j), &self.cuts[i], &self.cuts[j]);
                 if error < 0.0 {
-                    let allowance = from.error_bound + to.error_bound + 1e-9 * (from.value.abs() + to.value.abs());
+                    let allowance = allowance(from, to);
                     self.concave.push(ConcavePair { ids: (from.id, to.id), error, squared_distance, allowance });
                 }
             }

@@ -172,6 +172,16 @@ impl ScaledNorm {
         }
     }
 
+    /// MᵀBM, a quadratic form B in the coordinates.
+    pub(crate) fn form_in_coordinates(&self, form: Matrix) -> Matrix {
+        match &self.0 {
+            Scale::Weights(weights) => {
+                Matrix::from_fn(form.nrows(), form.ncols(), |i, j| form[(i, j)] / (weights[i] * weights[j]).sqrt())
+            }
+            Scale::Linear(Coordinates { matrix, .. }) => matrix.tr_mul(&form) * matrix,
+        }
+    }
+
     /// M⁻ᵀ B M⁻¹ for a quadratic form B of the coordinates.
     pub(crate) fn form_of_coordinates(&self, form: Matrix) -> Matrix {
         match &self.0 {

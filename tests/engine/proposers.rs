@@ -2,8 +2,10 @@
 
 use crate::common::{crescent, v};
 use nonsmooth::{
-    BundleTrust, BundleTrustConfig, CurvedModelConfig, ExplorationConfig, Origin, Report, StepKind, Termination, Vector,
+    BundleTrust, BundleTrustConfig, CurvedModelConfig, ExplorationConfig, FnObjective, Origin, Report, StepKind,
+    Termination, Vector,
 };
+use std::cell::Cell;
 
 fn run(config: BundleTrustConfig) -> Report {
     // The valley of a steep quadratic with a kink beside it: the curved model earns its trust here.
@@ -66,4 +68,27 @@ fn a_report_of_a_run_that_has_not_ended_says_so() {
     let mut run = method.start(&theta, v(&[-1.2, 1.0])).unwrap();
     assert!(run.step().is_continue());
     assert_eq!(run.finish().termination, Termination::Unfinished);
+}
+
+/// |x₂ − 2x₁² + 1| is a curved valley of which one piece bends down: a model that knows that follows it.
+#[test]
+fn a_curved_valley_is_followed_where_pieces_may_bend_down() {
+    let problem = testset::find("ChebRosenN1_2").unwrap();
+    let evaluations = |bending_down| {
+        let (count, hit) = (Cell::new(0), Cell::new(None));
+        let theta = FnObjective::new(problem.dimension, |x: &Vector| {
+            let (value, subgradient) = problem.evaluate(x.as_slice());
+            count.set(count.get() + 1);
+            if hit.get().is_none() && value - problem.optimal_value <= 1e-6 {
+                hit.set(Some(count.get()));
+            }
+            (value, Vector::from_vec(subgradient))
+        });
+        let curved_model = Some(CurvedModelConfig { bending_down, ..CurvedModelConfig::default() });
+        let config = BundleTrustConfig { curved_model, ..BundleTrustConfig::default() };
+        BundleTrust::new(config).unwrap().minimize(&theta, Vector::from_vec(problem.start.clone())).unwrap();
+        hit.get().unwrap()
+    };
+    // 16 and 102 where the pins were written.
+    assert!(2 * evaluations(true) < evaluations(false));
 }

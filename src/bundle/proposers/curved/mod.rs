@@ -42,7 +42,8 @@ impl Curved {
     /// The step that minimises the model and its penalty.
     fn step(&self, at: &mut Position<'_>) -> Result<Vector, SubproblemError> {
         let (state, model) = (at.state, &self.model);
-        let penalised = Penalised { model, weight: self.weight, norm: &state.norm, set: at.set, center: &state.center };
+        let (weight, radius) = (self.weight, longest_step(state, &self.settings));
+        let penalised = Penalised { model, weight, radius, norm: &state.norm, set: at.set, center: &state.center };
         Ok(penalised.minimum(model.first_multipliers(state), at.solver, &self.settings)?)
     }
 
@@ -92,6 +93,18 @@ const AGREEMENT: f64 = 1e-10;
 /// Least factor by which the weight beside B rises after a null step, unless `weight_increase` is smaller.
 const LEAST_INCREASE: f64 = 2.0;
 
+/// Longest step where pieces may bend down, relative to the distance of the farthest cut.
+const LONGEST_STEP: f64 = 0.7;
+
+/// How far the curvatures of the pieces are trusted.
+fn longest_step(state: &State, settings: &CurvedModelConfig) -> f64 {
+    if !(settings.bending_down && state.nonconvex) {
+        return f64::INFINITY;
+    }
+    let distances = state.bundle.cuts().iter().map(|cut| state.norm.squared_distance(&cut.point, &state.center));
+    LONGEST_STEP * distances.fold(0.0, f64::max).sqrt()
+}
+
 /// The weight beside B that the observed change asks for.
 fn missing_weight(comparison: &Comparison, step_length: f64) -> f64 {
     2.0 * (comparison.change - comparison.model_change) / (step_length * step_length)
@@ -104,7 +117,7 @@ impl Proposer for Curved {
         proposed: &[Proposal],
         small: f64,
     ) -> Result<Option<Proposal>, SubproblemError> {
-        self.model = CurvedModel::new(at.state, at.model.cuts(), &self.settings);
+        self.model = CurvedModel::new(at.state, at.model, &self.settings);
         let may_propose = self.pause.pass() && self.score > self.settings.trust;
         let Some(plain) = proposed.first().filter(|_| may_propose) else { return Ok(None) };
         let step = self.step(at)?;

@@ -5,11 +5,13 @@
 //! over the cut of the center, the cuts that contradict its quadratic, and all certified cuts
 //! ```
 //! Every piece has its own curvature B_i (pieces.rs); step.rs minimises the model with its penalty.
-//! The curvatures come from symmetric rank-one updates. Reference: \[LuksanVlcek1998\] (cuts transported by their own curvature).
+//! Where pieces may bend down (setting `bending_down`, Θ known to be nonconvex), a piece of known curvature keeps its subgradient, without the tilt of the plain cuts, and its offset is
+//! |e_i − ½ p_iᵀB_i p_i|. The curvatures come from symmetric rank-one updates. Reference: \[LuksanVlcek1998\] (cuts transported by their own curvature).
 
 use super::config::CurvedModelConfig;
 use super::pieces::Curvature;
-use crate::bundle::proposers::subproblem::Cuts;
+use crate::bundle::cut;
+use crate::bundle::proposers::cuts::model::Model;
 use crate::bundle::state::State;
 use crate::{Matrix, Vector};
 
@@ -24,13 +26,13 @@ pub(super) struct CurvedModel {
 
 impl CurvedModel {
     /// The model q at the center, from the bundle and its plain model.
-    pub(super) fn new(state: &State, plain: Cuts<'_>, settings: &CurvedModelConfig) -> Self {
+    pub(super) fn new(state: &State, plain: &Model, settings: &CurvedModelConfig) -> Self {
         let mut model = Self::default();
         let Some(center) = state.bundle.position(state.center_id) else { return model };
-        let curvature = |position, same_piece| Curvature::around(position, state, (same_piece, settings.least_cosine));
+        let curvature = |position, same_piece| Curvature::around(position, state, settings, same_piece);
         let around = curvature(center, settings.same_piece_at_center);
         for (i, (cut, (slope, &offset))) in
-            state.bundle.cuts().iter().zip(plain.slopes.iter().zip(plain.offsets)).enumerate()
+            state.bundle.cuts().iter().zip(plain.cuts().slopes.iter().zip(plain.cuts().offsets)).enumerate()
         {
             let p = &state.center - &cut.point;
             let half = 0.5 * around.along(&p);
@@ -41,8 +43,17 @@ impl CurvedModel {
                 continue;
             }
             let piece = if is_center { around.clone() } else { curvature(i, settings.same_piece) };
-            model.slopes.push(slope + piece.apply(&p));
-            model.offsets.push((offset - 0.5 * piece.along(&p)).max(0.0));
+            let transported = 0.5 * piece.along(&p);
+            if settings.bending_down && state.nonconvex && piece.is_known() && plain.is_whole(i) {
+                // The tilt of the plain cuts stands for curvature that is not known.
+                let left = state.bundle.pair_error(i, center) - transported;
+                let promised = if is_center { 0.0 } else { cut.excess() + state.center_error_bound() };
+                model.slopes.push(&cut.subgradient + piece.apply(&p));
+                model.offsets.push(cut::offset(left, 0.0, promised, false));
+            } else {
+                model.slopes.push(slope + piece.apply(&p));
+                model.offsets.push((offset - transported).max(0.0));
+            }
             model.ids.push(cut.id);
             model.pieces.push(piece);
         }

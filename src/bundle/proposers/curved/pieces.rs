@@ -5,11 +5,15 @@
 //!       same piece:   cut B down to sᵀBs ≤ sᵀz, then B += r rᵀ/⟨r, s⟩, r = z − B s
 //!       other piece:  cut B down to sᵀBs ≤ 2 min(E_ij, E_ji), so that the piece stays below Θ at y_j
 //! ```
-//! B_i starts from zero and stays positive semidefinite; on a quadratic it is the multisecant matrix. A pair lies on one
-//! piece if its two linearization errors agree: on a quadratic both are ½ sᵀBs, and a kink between the points drives them apart.
+//! B_i starts from zero; on a quadratic it is the multisecant matrix. A pair lies on one piece if its two linearization errors agree: on
+//! a quadratic both are ½ sᵀBs, and a kink between the points drives them apart. As long as Θ looks convex, B_i stays positive
+//! semidefinite. Afterwards, with the setting `bending_down`, ⟨r, s⟩ may have either sign and pairs of one piece cut nothing down: a curved valley between two pieces bends
+//! one of them down, and a model without that bend sees the valley rise on both sides of every step along it.
 
+use super::config::CurvedModelConfig;
 use crate::bundle::cut::Cut;
-use crate::bundle::state::State;
+use crate::bundle::kept_cuts::allowance;
+use crate::bundle::state::{NOISE_MARGIN, State};
 use crate::{Matrix, Vector};
 
 /// A symmetric matrix Σ c v vᵀ.
@@ -19,10 +23,11 @@ pub(super) struct Curvature {
 }
 
 impl Curvature {
-    /// The curvature around the cut at a position; errors of a pair agree if the smaller is at least `same_piece` times the larger,
-    /// and r and s of a rank-one update have at least the cosine given.
-    pub(super) fn around(base: usize, state: &State, (same_piece, least_cosine): (f64, f64)) -> Self {
+    /// The curvature around the cut at a position. Errors of a pair agree if the smaller is at least `same_piece` times the larger; where
+    /// both are negative, which a convex kink cannot cause, the share of the center's pairs does for every cut.
+    pub(super) fn around(base: usize, state: &State, settings: &CurvedModelConfig, same_piece: f64) -> Self {
         let mut curvature = Self::default();
+        let (may_bend_down, least_cosine) = (settings.bending_down && state.nonconvex, settings.least_cosine);
         let (bundle, own) = (&state.bundle, base);
         let base = &bundle.cuts()[own];
         // The value of a certified cut says nothing about curvature.
@@ -38,20 +43,31 @@ impl Curvature {
             let (low, high) = (errors[0].min(errors[1]), errors[0].max(errors[1]));
             // What the oracle leaves open must not pass for curvature.
             let open = base.error_bound + cut.error_bound;
-            let one_piece = low >= same_piece * high && high > 0.0 && open <= (1.0 - same_piece) * high;
+            let proven = NOISE_MARGIN * state.noise + allowance(base, cut);
+            let bends_down = may_bend_down && -high > proven && high <= settings.same_piece_at_center * low;
+            let bends_up = low >= same_piece * high && high > 0.0 && open <= (1.0 - same_piece) * high;
+            let one_piece = bends_down || bends_up;
             if !one_piece && curvature.terms.is_empty() {
                 continue;
             }
             let s = &cut.point - &base.point;
             let z = &cut.subgradient - &base.subgradient;
-            curvature.cut_down(&s, if one_piece { z.dot(&s) } else { 2.0 * (low + open).max(0.0) });
+            if !(one_piece && may_bend_down) {
+                curvature.cut_down(&s, if one_piece { z.dot(&s) } else { 2.0 * (low + open).max(0.0) });
+            }
             let r = &z - curvature.apply(&s);
             let along = r.dot(&s);
-            if one_piece && along > least_cosine * state.norm.dual_length(&r) * state.norm.length(&s) {
+            let size = if may_bend_down { along.abs() } else { along };
+            if one_piece && size > least_cosine * state.norm.dual_length(&r) * state.norm.length(&s) {
                 curvature.terms.push((1.0 / along, r));
             }
         }
         curvature
+    }
+
+    /// Whether a pair has shown any curvature.
+    pub(super) fn is_known(&self) -> bool {
+        !self.terms.is_empty()
     }
 
     #[cfg(test)]

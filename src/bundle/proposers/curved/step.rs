@@ -5,7 +5,9 @@
 //! round:  p minimises  max_i { (h_i + B_i d + w W d)·p − (m(d) − m_i(d)) } + ½ pᵀ(Σ λ_i B_i + w W) p       x̂ + d + p ∈ U
 //!         d ← d + t p,  t = 1, ½, ¼ … until m falls;   λ: multipliers of the round before
 //! ```
-//! m is convex, so that every p ≠ 0 is a direction of descent. The tangents are taken at the newest step: multipliers alone, with
+//! If m is convex, every p ≠ 0 is a direction of descent. Pieces that bend down may make it nonconvex: where Σ λ_i B_i + w W is not
+//! positive definite, its eigenvalues (relative to W) are replaced by their absolute values, and the step stays within a radius: what was
+//! seen of a piece that bends down says nothing about points far beyond. The tangents are taken at the newest step: multipliers alone, with
 //! the pieces always transported to d = 0, leave a step that raises m wherever the active pieces bend differently.
 
 use super::config::CurvedModelConfig;
@@ -13,10 +15,15 @@ use super::model::CurvedModel;
 use crate::bundle::norm::ScaledNorm;
 use crate::bundle::proposers::subproblem::{self, Cuts};
 use crate::qp::{EpigraphQpSolver, Metric, QpError};
-use crate::{Polyhedron, Vector};
+use crate::{Matrix, Polyhedron, Vector};
+use nalgebra::{Cholesky, SymmetricEigen};
 
 /// Halvings of one step before the round counts as failed.
 const MAX_HALVINGS: i32 = 9;
+/// Least eigenvalue of a matrix that had to be made positive definite, relative to the weight.
+const LEAST_CURVATURE: f64 = 1e-3;
+/// Steps of the eigenvalue iteration at most, per variable.
+const MAX_ROTATIONS: usize = 100;
 /// Failed rounds in a row that end the search. One may fail because its multipliers are those of pieces that have left.
 const MAX_FAILURES: usize = 2;
 
@@ -24,6 +31,8 @@ const MAX_FAILURES: usize = 2;
 pub(super) struct Penalised<'a> {
     pub model: &'a CurvedModel,
     pub weight: f64,
+    /// The longest step; infinite where no piece bends down.
+    pub radius: f64,
     pub norm: &'a ScaledNorm,
     pub set: &'a Polyhedron,
     pub center: &'a Vector,
@@ -76,8 +85,7 @@ impl Penalised<'_> {
         multipliers: &[f64],
         solver: &mut EpigraphQpSolver,
     ) -> Result<(Vector, Vec<f64>), QpError> {
-        let mut metric = self.model.matrix(step.len(), multipliers);
-        self.norm.add_to(&mut metric, self.weight);
+        let metric = self.metric(multipliers)?;
         let (mut slopes, values) = self.model.tangents(step);
         let pull = self.norm.lower_index(step) * self.weight;
         slopes.iter_mut().for_each(|slope| *slope += &pull);
@@ -89,12 +97,28 @@ impl Penalised<'_> {
         Ok((solution.step, solution.cut_multipliers))
     }
 
-    /// The first of the halved steps that lowers m, and its value.
+    /// Σ λ_i B_i + w W, made positive definite.
+    fn metric(&self, multipliers: &[f64]) -> Result<Matrix, QpError> {
+        let mut metric = self.model.matrix(self.center.len(), multipliers);
+        self.norm.add_to(&mut metric, self.weight);
+        if self.radius == f64::INFINITY || Cholesky::new(metric.clone()).is_some() {
+            return Ok(metric);
+        }
+        let form = self.norm.form_in_coordinates(metric);
+        let rotations = MAX_ROTATIONS * form.nrows();
+        let finite = form.iter().all(|entry| entry.is_finite());
+        let eigen = finite.then(|| SymmetricEigen::try_new(form, f64::EPSILON, rotations)).flatten();
+        let mut eigen = eigen.ok_or(QpError::NotSolved { kkt_residual: f64::INFINITY })?;
+        eigen.eigenvalues.apply(|value| *value = value.abs().max(LEAST_CURVATURE * self.weight));
+        Ok(self.norm.form_of_coordinates(eigen.recompose()))
+    }
+
+    /// The first of the halved steps within the radius that lowers m, and its value.
     fn lower(&self, step: &Vector, value: f64, correction: &Vector) -> Option<(Vector, f64)> {
         (0..=MAX_HALVINGS).find_map(|halvings| {
             let trial = step + correction * 0.5_f64.powi(halvings);
             let lower = self.value(&trial);
-            (lower < value).then_some((trial, lower))
+            (lower < value && self.norm.length(&trial) <= self.radius).then_some((trial, lower))
         })
     }
 }

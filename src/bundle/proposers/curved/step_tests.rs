@@ -17,9 +17,14 @@ fn vector(values: &[f64]) -> Vector {
 
 /// The step around the origin in a set.
 fn minimum(model: &CurvedModel, weight: f64, set: &Polyhedron) -> Vector {
+    minimum_within(f64::INFINITY, model, weight, set)
+}
+
+/// The same, of at most the length given.
+fn minimum_within(radius: f64, model: &CurvedModel, weight: f64, set: &Polyhedron) -> Vector {
     let center = Vector::zeros(set.dimension());
     let norm = ScaledNorm::euclidean(set.dimension());
-    let penalised = Penalised { model, weight, norm: &norm, set, center: &center };
+    let penalised = Penalised { model, weight, radius, norm: &norm, set, center: &center };
     let mut multipliers = vec![0.0; model.ids().len()];
     multipliers[0] = 1.0;
     penalised.minimum(multipliers, &mut EpigraphQpSolver::new(), &CurvedModelConfig::default()).expect("feasible")
@@ -44,6 +49,23 @@ fn one_quadratic_has_the_step_of_newton() {
     assert!((step - vector(&[-1.0, 2.0])).amax() <= 1e-12);
     let set = Polyhedron::boxed(vector(&[-0.5, -9.0]), vector(&[9.0, 9.0])).expect("a box");
     assert!((minimum(&model, 1.0, &set) - vector(&[-0.5, 2.0])).amax() <= 1e-12);
+}
+
+#[test]
+fn a_step_follows_a_valley_of_which_one_side_bends_down() {
+    // 4 |y − x²| − x: the minimum with ½ w‖d‖² over the valley y = x² solves 1 = w (x + 2x³).
+    let bend = |factor| Curvature::from_terms(vec![(factor, vector(&[1.0, 0.0]))]);
+    let pieces = vec![(vector(&[-1.0, 4.0]), 0.0, bend(-8.0)), (vector(&[-1.0, -4.0]), 0.0, bend(8.0))];
+    let step = minimum_within(10.0, &CurvedModel::from_pieces(pieces), 1.0 / 3.0, &Polyhedron::unbounded(2));
+    assert!((&step - vector(&[1.0, 1.0])).amax() <= 1e-3, "{step}");
+}
+
+#[test]
+fn a_piece_that_bends_down_without_end_gives_a_step_within_the_radius() {
+    let bend = Curvature::from_terms(vec![(-2.0, vector(&[1.0, 0.0]))]);
+    let model = CurvedModel::from_pieces(vec![(vector(&[-1.0, 1.0]), 0.0, bend)]);
+    let step = minimum_within(3.0, &model, 1.0, &Polyhedron::unbounded(2));
+    assert!(step.norm() <= 3.0 && step.norm() > 1.0 && step[0] > 0.0 && step[1] < 0.0, "{step}");
 }
 
 /// A model of random pieces, the first of them through zero, in a box around the origin.
@@ -71,7 +93,8 @@ proptest! {
         let (model, set) = random_model(seed, (n, pieces), 10f64.powf(power));
         let (center, norm, weight) = (Vector::zeros(n), ScaledNorm::euclidean(n), 0.1);
         let step = minimum(&model, weight, &set);
-        let penalised = Penalised { model: &model, weight, norm: &norm, set: &set, center: &center };
+        let radius = f64::INFINITY;
+        let penalised = Penalised { model: &model, weight, radius, norm: &norm, set: &set, center: &center };
         let value = penalised.value(&step);
         prop_assert!(value <= penalised.value(&center));
         prop_assert!(set.violation(&step) <= 1e-12);

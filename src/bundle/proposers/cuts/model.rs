@@ -116,6 +116,11 @@ impl Model {
         }
     }
 
+    /// Whether the cut at a position stands in the model alone, not mixed with the center's cut.
+    pub(crate) fn is_whole(&self, position: usize) -> bool {
+        self.shares[position] == 1.0
+    }
+
     /// The inner products of the slopes with the weight of the run, formed from those of the bundle; none where a cut was mixed, or tilted
     /// without a table of its own.
     pub(crate) fn products<'s>(&'s self, state: &'s State) -> Option<Gram<'s>> {
