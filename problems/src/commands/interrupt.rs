@@ -14,7 +14,7 @@ pub const STATUS: u8 = 130;
 
 /// The signals that ask for an end.
 const REQUESTS: [i32; 2] = [SIGINT, SIGTERM];
-/// Longest time between a request and the words about it. What sends a request twice at once, as `timeout` does, sends one.
+/// Requests of this distance are one: what sends a request twice at once, as `timeout` does, sends one.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Whether an end was asked for.
@@ -36,10 +36,12 @@ pub fn watch_interrupts(said: bool) {
             while !interrupted() {
                 thread::sleep(PATIENCE);
             }
+            thread::sleep(PATIENCE);
+            // The words promise what the next request does.
+            ANSWERED.store(true, Ordering::SeqCst);
             if said {
                 notice("interrupted: the current evaluation is finished first; once more ends the program at once");
             }
-            ANSWERED.store(true, Ordering::SeqCst);
         };
         let watched = REQUESTS.into_iter().try_for_each(watch);
         if let Err(error) = watched.and_then(|()| thread::Builder::new().spawn(answer).map(|_| ())) {
