@@ -1,12 +1,10 @@
 //! Runs the collection of test problems with one setting and prints evaluations beside the best peers.
 //!
-//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--perturb K] [--without PROPOSER]
-//! [--bending-down]`
+//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--perturb K] [--without PROPOSER]`
 //!
 //! `--perturb K` replaces every count by the median over 2K + 1 runs from x0 (1 + 1e-13 N(0, 1)), the first of them from x0 itself: a
 //! single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size.
-//! `--without` switches off a proposer of trial points, `curved-model` or `exploration`; it may be given twice. `--bending-down` lets pieces
-//! of the curved model bend down.
+//! `--without` switches off a proposer of trial points, `curved-model` or `exploration`; it may be given twice.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 use serde::Serialize;
@@ -99,9 +97,6 @@ fn main() {
 /// The defaults, without the proposers that `--without` names.
 fn config(args: &[String]) -> Result<BundleTrustConfig, String> {
     let mut config = BundleTrustConfig::default();
-    if args.iter().any(|arg| arg == "--bending-down") {
-        config.curved_model.iter_mut().for_each(|settings| settings.bending_down = true);
-    }
     for (index, _) in args.iter().enumerate().filter(|(_, arg)| *arg == "--without") {
         match args.get(index + 1).map(String::as_str) {
             Some("curved-model") => config.curved_model = None,

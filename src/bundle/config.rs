@@ -113,13 +113,13 @@ pub struct BundleTrustConfig {
     /// Default 10; > 1.
     pub weight_increase: f64,
     /// Range of the weight relative to its first value: u stays within [first/range, first·range], the floor divided further by how many
-    /// times longer than the first step the variables have become. Default 1e10; > 1. This is the finite floor and ceiling of the trust
+    /// times longer than the first step the variables have become, and lowered to what good serious steps ask for. Default 1e10; > 1. This is the finite floor and ceiling of the trust
     /// parameter t.
     pub weight_range: f64,
     /// Quantile of the curvatures that pairs of cuts prove, used to make the model convex. Default 0.8; in [0, 1].
     pub curvature_quantile: f64,
     /// Largest number of times that the weight is lowered tenfold, without an evaluation, where the predicted decrease is small.
-    /// Default 12; ≥ 0.
+    /// Default 16, because a restart may raise it by a factor of 1e12; ≥ 0.
     pub attenuation_steps: usize,
     /// Restarts with a local bundle, without progress between them, before the run ends although the small predicted decrease
     /// rests on cuts far from the center; at most one while no pair of cuts has proved Θ nonconvex. Default 5; ≥ 0.
@@ -155,7 +155,7 @@ impl Default for BundleTrustConfig {
             weight_increase: 10.0,
             weight_range: 1e10,
             curvature_quantile: 0.8,
-            attenuation_steps: 12,
+            attenuation_steps: 16,
             max_restarts: 5,
             restart_radius: 0.1,
             max_failures: 10,

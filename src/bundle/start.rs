@@ -160,6 +160,7 @@ fn first_evaluation(
         next_id: 2,
         weight,
         first_weight: weight,
+        floor_share: 1.0,
         first_step,
         streak: 0,
         variation: None,

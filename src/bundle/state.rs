@@ -54,6 +54,8 @@ pub(crate) struct State {
     pub next_id: u64,
     pub weight: f64,
     pub first_weight: f64,
+    /// What is left of the floor of the weight: beside a pole, the first subgradient can be 1e10 times as long as those far from it.
+    pub floor_share: f64,
     pub first_step: f64,
     /// Serious steps in a row (> 0), or minus the null steps in a row (< 0), of the plain cuts, counted from the one that last changed
     /// the weight.
@@ -126,7 +128,13 @@ impl State {
     /// it starts at zero.
     pub(crate) fn weight_limits(&self, config: &BundleTrustConfig) -> (f64, f64) {
         let share = self.first_step / self.first_step.max(self.length_scale());
-        (share * self.first_weight / config.weight_range, self.first_weight * config.weight_range)
+        let floor = self.floor_share * share * self.first_weight / config.weight_range;
+        (floor, self.first_weight * config.weight_range)
+    }
+
+    /// Lowers the floor to a weight that good steps ask for.
+    pub(crate) fn lower_floor(&mut self, weight: f64, config: &BundleTrustConfig) {
+        self.floor_share *= (weight / self.weight_limits(config).0).min(1.0);
     }
 
     /// Sets the weight within its floor and ceiling; returns whether it changed.

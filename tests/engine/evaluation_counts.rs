@@ -12,7 +12,7 @@ use testset::{Family, Problem};
 /// Evaluations to f − f* ≤ 1e-6 (1 + |f*|). Not pinned: ChebRosenN1_5, which is not solved, and ShellDual, where the last bit
 /// decides whether 2000 are enough.
 const MEASURED: [(&str, usize); 42] = [
-    ("Rosenbrock", 68),
+    ("Rosenbrock", 69),
     ("CB2", 10),
     ("CB3", 12),
     ("DEM", 7),
@@ -28,37 +28,37 @@ const MEASURED: [(&str, usize); 42] = [
     ("MAXL", 38),
     ("Goffin", 52),
     ("L1HILB", 15),
-    ("WF", 39),
+    ("WF", 24),
     ("EVD52", 21),
-    ("PBC3", 43),
-    ("KowalikOsborne", 52),
+    ("PBC3", 41),
+    ("KowalikOsborne", 73),
     ("Davidon2", 24),
-    ("OET6", 222),
-    ("PBC1", 50),
+    ("OET6", 243),
+    ("PBC1", 46),
     ("Wong1", 46),
     ("Wong3", 140),
     ("Polak3", 43),
-    ("Watson20", 134),
+    ("Watson20", 125),
     ("MAD1", 8),
-    ("MAD4", 20),
+    ("MAD4", 13),
     ("PENTAGON", 13),
     ("EQUIL", 54),
     ("Wong3lin", 122),
-    ("HS114", 51),
-    ("Dembo5", 71),
+    ("HS114", 53),
+    ("Dembo5", 67),
     ("GenMXHILB", 13),
     ("ChainedLQ", 91),
     ("ChainedCB3II", 28),
     ("ActiveFaces", 2),
-    ("ChainedCrescentI", 76),
-    ("ChainedCrescentII", 325),
-    ("ChebRosenN1_2", 102),
+    ("ChainedCrescentI", 47),
+    ("ChainedCrescentII", 255),
+    ("ChebRosenN1_2", 16),
     ("NesterovWorst_20", 137),
 ];
 /// Sum over the unconstrained problems that all nine peers solve.
-const COMMON_SUM: f64 = 438.0;
+const COMMON_SUM: f64 = 392.0;
 /// Geometric mean of the ratio to MPBNGC over the problems both solve.
-const MEAN: f64 = 0.726;
+const MEAN: f64 = 0.671;
 
 fn evaluations(problem: &Problem) -> Option<usize> {
     let (count, hit) = (Cell::new(0), Cell::new(None));

@@ -216,7 +216,8 @@ fn a_negative_error_bound_is_a_typed_error() {
     assert_eq!(error.to_string(), "the first evaluation failed: error bound = -1 is not allowed; allowed: ≥ 0");
 }
 
-/// On these functions Θ bends down along a null step, after which the weight at least doubles.
+/// On these functions Θ bends down along a null step, after which the weight at least doubles. Rosenbrock's run ends where rounding of values of
+/// 1e-26 hides the rest.
 #[test]
 fn the_weight_may_rise_slowly() {
     for name in ["OET6", "Rosenbrock", "WF"] {
@@ -227,6 +228,8 @@ fn the_weight_may_rise_slowly() {
         });
         let config = BundleTrustConfig { weight_increase: 1.5, ..Default::default() };
         let report = method(config).minimize(&theta, v(&problem.start)).unwrap();
-        assert!(report.termination.is_stationary() && report.value < report.start_value, "{name}: {report}");
+        let rounding = matches!(report.termination, Termination::NoiseLimit { .. });
+        assert!(report.termination.is_stationary() || rounding, "{name}: {report}");
+        assert!(report.value - problem.optimal_value <= 1e-6, "{name}: {report}");
     }
 }

@@ -32,6 +32,9 @@
 //! instead of over condensed loads. Measured: Θ by at most 4.6e-14, every entry of ξ by at most 4.6e-14 of the largest.
 //! They were replaced again by the commit "Tall and flat bodies keep their restraints": rotations refer to a centre among the held nodes.
 //! Measured: Θ by at most 1.1e-15, every entry of ξ by at most 2.9e-15 of the largest.
+//! Histories of hertz3d were replaced by the commit "Curved valleys are followed by default": pieces of the curved model may bend down.
+//! Measured: they leave the histories before by more than 1e-8 at evaluation 30 and 31 (mesh 6 and 12); the best of 60 is higher by 1.3 %
+//! and lower by 4.7 %. Those of signorini3d are the same to the bit.
 
 use crate::binary;
 use serde_json::Value;

@@ -73,4 +73,9 @@ impl Comparison {
     pub(crate) fn is_serious(&self, config: &BundleTrustConfig) -> bool {
         self.change < 0.0 && self.change <= config.serious_fraction * self.model_change
     }
+
+    /// Whether so much of the predicted decrease was found that the next step may be longer.
+    pub(crate) fn is_good(&self, config: &BundleTrustConfig) -> bool {
+        self.change <= config.good_fraction * self.model_change
+    }
 }

@@ -13,8 +13,7 @@ pub struct CurvedModelConfig {
     /// Default 200.
     pub max_dimension: usize,
     /// Ratio of the smaller to the larger linearization error of a pair with the center from which on both points count as lying on one
-    /// smooth piece; pairs of any cuts whose errors are both negative too, with [`bending_down`](Self::bending_down). Default 0.6; in
-    /// \[0, 1\]. Smaller sees curvature across kinks.
+    /// smooth piece; pairs of any cuts whose errors are both negative too. Default 0.6; in \[0, 1\]. Smaller sees curvature across kinks.
     pub same_piece_at_center: f64,
     /// The same for pairs of other cuts, whose curvature bends the model from afar. Default 0.995; in \[0, 1\].
     pub same_piece: f64,
@@ -46,10 +45,6 @@ pub struct CurvedModelConfig {
     pub weight_after_pause: f64,
     /// Longest pause in evaluations; pauses double from one with every failure. Default 64; ≥ 1.
     pub max_pause: usize,
-    /// Whether pieces may bend down once Θ is known to be nonconvex, so that the model follows curved valleys such as |y − x²|. Default
-    /// false: it saves evaluations, but one of 3082 runs of the study `stability --optimizer` ends confirmed where Θ still falls, none
-    /// without it (docs/bundle.md).
-    pub bending_down: bool,
 }
 
 impl Default for CurvedModelConfig {
@@ -70,7 +65,6 @@ impl Default for CurvedModelConfig {
             max_null_steps: 3,
             weight_after_pause: 10.0,
             max_pause: 64,
-            bending_down: false,
         }
     }
 }

@@ -42,7 +42,7 @@ impl Curved {
     /// The step that minimises the model and its penalty.
     fn step(&self, at: &mut Position<'_>) -> Result<Vector, SubproblemError> {
         let (state, model) = (at.state, &self.model);
-        let (weight, radius) = (self.weight, longest_step(state, &self.settings));
+        let (weight, radius) = (self.weight, longest_step(state));
         let penalised = Penalised { model, weight, radius, norm: &state.norm, set: at.set, center: &state.center };
         Ok(penalised.minimum(model.first_multipliers(state), at.solver, &self.settings)?)
     }
@@ -64,7 +64,7 @@ impl Curved {
         self.nulls = 0;
         self.pause.succeed();
         let (u, comparison) = (self.weight, &trial.comparison);
-        if comparison.change <= config.good_fraction * comparison.model_change {
+        if comparison.is_good(config) {
             let next = missing_weight(comparison, trial.proposal.step_length).max(u / config.weight_decrease).min(u);
             self.weight = next.max(state.weight_limits(config).0);
         }
@@ -97,8 +97,8 @@ const LEAST_INCREASE: f64 = 2.0;
 const LONGEST_STEP: f64 = 0.7;
 
 /// How far the curvatures of the pieces are trusted.
-fn longest_step(state: &State, settings: &CurvedModelConfig) -> f64 {
-    if !(settings.bending_down && state.nonconvex) {
+fn longest_step(state: &State) -> f64 {
+    if !state.nonconvex {
         return f64::INFINITY;
     }
     let distances = state.bundle.cuts().iter().map(|cut| state.norm.squared_distance(&cut.point, &state.center));

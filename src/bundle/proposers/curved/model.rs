@@ -5,8 +5,8 @@
 //! over the cut of the center, the cuts that contradict its quadratic, and all certified cuts
 //! ```
 //! Every piece has its own curvature B_i (pieces.rs); step.rs minimises the model with its penalty.
-//! Where pieces may bend down (setting `bending_down`, Θ known to be nonconvex), a piece of known curvature keeps its subgradient, without the tilt of the plain cuts, and its offset is
-//! |e_i − ½ p_iᵀB_i p_i|. The curvatures come from symmetric rank-one updates. Reference: \[LuksanVlcek1998\] (cuts transported by their own curvature).
+//! Once Θ is known to be nonconvex, pieces may bend down: a piece of known curvature then keeps its subgradient, without the tilt of the
+//! plain cuts, and its offset is |e_i − ½ p_iᵀB_i p_i|. Reference: \[LuksanVlcek1998\] (cuts transported by their own curvature).
 
 use super::config::CurvedModelConfig;
 use super::pieces::Curvature;
@@ -44,7 +44,7 @@ impl CurvedModel {
             }
             let piece = if is_center { around.clone() } else { curvature(i, settings.same_piece) };
             let transported = 0.5 * piece.along(&p);
-            if settings.bending_down && state.nonconvex && piece.is_known() && plain.is_whole(i) {
+            if state.nonconvex && piece.is_known() && plain.is_whole(i) {
                 // The tilt of the plain cuts stands for curvature that is not known.
                 let left = state.bundle.pair_error(i, center) - transported;
                 let promised = if is_center { 0.0 } else { cut.excess() + state.center_error_bound() };

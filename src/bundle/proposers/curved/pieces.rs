@@ -7,8 +7,8 @@
 //! ```
 //! B_i starts from zero; on a quadratic it is the multisecant matrix. A pair lies on one piece if its two linearization errors agree: on
 //! a quadratic both are ½ sᵀBs, and a kink between the points drives them apart. As long as Θ looks convex, B_i stays positive
-//! semidefinite. Afterwards, with the setting `bending_down`, ⟨r, s⟩ may have either sign and pairs of one piece cut nothing down: a curved valley between two pieces bends
-//! one of them down, and a model without that bend sees the valley rise on both sides of every step along it.
+//! semidefinite. Afterwards ⟨r, s⟩ may have either sign, and pairs whose errors are both negative cut nothing down: a curved valley between
+//! two pieces bends one of them down, and a model without that bend sees the valley rise on both sides of every step along it.
 
 use super::config::CurvedModelConfig;
 use crate::bundle::cut::Cut;
@@ -27,7 +27,7 @@ impl Curvature {
     /// both are negative, which a convex kink cannot cause, the share of the center's pairs does for every cut.
     pub(super) fn around(base: usize, state: &State, settings: &CurvedModelConfig, same_piece: f64) -> Self {
         let mut curvature = Self::default();
-        let (may_bend_down, least_cosine) = (settings.bending_down && state.nonconvex, settings.least_cosine);
+        let (may_bend_down, least_cosine) = (state.nonconvex, settings.least_cosine);
         let (bundle, own) = (&state.bundle, base);
         let base = &bundle.cuts()[own];
         // The value of a certified cut says nothing about curvature.
@@ -52,7 +52,7 @@ impl Curvature {
             }
             let s = &cut.point - &base.point;
             let z = &cut.subgradient - &base.subgradient;
-            if !(one_piece && may_bend_down) {
+            if !bends_down {
                 curvature.cut_down(&s, if one_piece { z.dot(&s) } else { 2.0 * (low + open).max(0.0) });
             }
             let r = &z - curvature.apply(&s);

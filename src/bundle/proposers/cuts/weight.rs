@@ -3,6 +3,7 @@
 //! ```text
 //! u_int = 2u(1 − (Θ(y) − Θ(x̂))/v)                 minimiser of the parabola through both values and the slope v
 //! serious:  u ← max(u_int, u/8)   if the step before was serious too and Θ(y) − Θ(x̂) ≤ m_R v;   u/2 after three before this one
+//!           where u is to fall below its floor after such a step, the floor falls to u
 //! null:     u ← min(u_int, 10u)   if the new error exceeds max(ε_v, 2|v|), after four before this one
 //!           u ← 2u                if ẽ > 10 u‖d‖², after three before this one, for many variables, and if Θ looks convex
 //!           u ← u_int in [2u, 10u]   at once, if Θ bends down along the step
@@ -30,8 +31,9 @@ const MANY_VARIABLES: usize = 100;
 pub(super) fn after_serious(state: &mut State, config: &BundleTrustConfig, comparison: &Comparison) {
     let u = state.weight;
     let mut changed = false;
-    if state.streak > 0 && comparison.change <= config.good_fraction * comparison.model_change {
+    if state.streak > 0 && comparison.is_good(config) {
         let next = interpolated_weight(comparison, u).max(u / config.weight_decrease).min(u);
+        state.lower_floor(next, config);
         changed = state.set_weight(next, config);
     } else if state.streak > 2 {
         changed = state.set_weight(u / 2.0, config);

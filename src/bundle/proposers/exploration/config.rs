@@ -24,6 +24,9 @@ pub struct ExplorationConfig {
     /// Least cosine of s and z, the differences of two points and of their subgradients, with which a pair enters the matrix
     /// S = Σ z zᵀ/⟨z, s⟩ of curvature seen. Default 1e-2; in (0, 1). A smaller cosine counts as this one.
     pub least_cosine: f64,
+    /// Factor by which S shrinks after an exploration that kept its promise, as a good serious step does, and by which it grows again, up to
+    /// its own size, after any other one. Default 0.5; in (0, 1].
+    pub metric_decrease: f64,
     /// Longest pause in evaluations; pauses double from one with every failure. Default 64; ≥ 1.
     pub max_pause: usize,
 }
@@ -37,6 +40,7 @@ impl Default for ExplorationConfig {
             weight_factor: 100.0,
             weights: 2,
             least_cosine: 1e-2,
+            metric_decrease: 0.5,
             max_pause: 64,
         }
     }
@@ -53,6 +57,8 @@ impl ExplorationConfig {
         check_setting("exploration.weight_factor", self.weight_factor, "> 1, finite", factor)?;
         let cosine = self.least_cosine > 0.0 && self.least_cosine < 1.0;
         check_setting("exploration.least_cosine", self.least_cosine, "0 < x < 1", cosine)?;
+        let decrease = self.metric_decrease > 0.0 && self.metric_decrease <= 1.0;
+        check_setting("exploration.metric_decrease", self.metric_decrease, "0 < x ≤ 1", decrease)?;
         check_setting("exploration.weights", self.weights, "≥ 1", self.weights >= 1)?;
         check_setting("exploration.max_pause", self.max_pause, "≥ 1", self.max_pause >= 1)
     }

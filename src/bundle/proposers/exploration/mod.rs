@@ -1,8 +1,9 @@
 //! Exploration: far trial points along directions in which no subgradient changes.
 //!
 //! ```text
-//! min over d   max_i { slope_i·d − offset_i } + ½ dᵀ(S + w W) d
+//! min over d   max_i { slope_i·d − offset_i } + ½ dᵀ(σ S + w W) d
 //! S = Σ z zᵀ/⟨z, s⟩                           at least the curvature seen; none in directions in which no subgradient changed
+//! σ ← σ/2 after a good exploration, 2σ ≤ 1 after another one
 //! ```
 //! s and z are the differences of points and subgradients between the other cuts and the center. When the promised decrease
 //! has become tiny beside what the run has gained, one such trial looks along long flat valleys. Failures double the pause
@@ -27,12 +28,14 @@ pub(crate) struct Exploration {
     settings: ExplorationConfig,
     /// Weight added to S in the next exploration.
     weight: f64,
+    /// The share σ of S in the next exploration.
+    share: f64,
     pause: Pause,
 }
 
 impl Exploration {
     pub(crate) fn new(settings: ExplorationConfig, weight: f64) -> Self {
-        Self { settings, weight, pause: Pause::default() }
+        Self { settings, weight, share: 1.0, pause: Pause::default() }
     }
 
     /// Whether the promised decrease is tiny beside what the run has gained per evaluation.
@@ -89,7 +92,7 @@ impl Proposer for Exploration {
             return Ok(None);
         }
         let worthwhile = small.max(self.settings.min_gain * best.predicted_decrease);
-        let seen = self.seen_curvature(at.state);
+        let seen = self.seen_curvature(at.state) * self.share;
         let mut weight = self.weight.min(at.state.weight / self.settings.weight_factor);
         for _ in 0..self.settings.weights {
             if let Ok(far) = self.far(at, plain, (&seen, weight))
@@ -113,6 +116,9 @@ impl Proposer for Exploration {
         if trial.proposal.origin != Origin::Exploration {
             return;
         }
+        let kept = trial.serious && trial.comparison.is_good(config);
+        let factor = if kept { self.settings.metric_decrease } else { 1.0 / self.settings.metric_decrease };
+        self.share = (self.share * factor).min(1.0);
         if trial.serious {
             self.weight = trial.proposal.weight / self.settings.weight_factor;
             self.pause.succeed();
