@@ -11,6 +11,9 @@ use std::rc::Rc;
 /// Promised errors and rounding explain a change of Θ, or a cut above a convex Θ, up to this many times their sum; more is noise.
 pub(crate) const NOISE_MARGIN: f64 = 8.0;
 
+/// The floor of the weight never falls below this: a weight of zero gives no step.
+const LEAST_WEIGHT: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
 /// How large the variables are at a center.
 #[derive(Debug)]
 pub(crate) struct Lengths {
@@ -54,7 +57,7 @@ pub(crate) struct State {
     pub next_id: u64,
     pub weight: f64,
     pub first_weight: f64,
-    /// What is left of the floor of the weight: beside a pole, the first subgradient can be 1e10 times as long as those far from it.
+    /// What is left of the floor of the weight: beside a pole, the first subgradient can be 1e16 times as long as those at the minimum.
     pub floor_share: f64,
     pub first_step: f64,
     /// Serious steps in a row (> 0), or minus the null steps in a row (< 0), of the plain cuts, counted from the one that last changed
@@ -129,12 +132,13 @@ impl State {
     pub(crate) fn weight_limits(&self, config: &BundleTrustConfig) -> (f64, f64) {
         let share = self.first_step / self.first_step.max(self.length_scale());
         let floor = self.floor_share * share * self.first_weight / config.weight_range;
-        (floor, self.first_weight * config.weight_range)
+        let ceiling = self.first_weight * config.weight_range;
+        (floor.max(LEAST_WEIGHT).min(ceiling), ceiling)
     }
 
-    /// Lowers the floor to a weight that good steps ask for.
+    /// Lowers the floor towards a weight that a good step asks for, as far as one step may lower the weight.
     pub(crate) fn lower_floor(&mut self, weight: f64, config: &BundleTrustConfig) {
-        self.floor_share *= (weight / self.weight_limits(config).0).min(1.0);
+        self.floor_share *= (weight / self.weight_limits(config).0).clamp(1.0 / config.weight_decrease, 1.0);
     }
 
     /// Sets the weight within its floor and ceiling; returns whether it changed.

@@ -31,20 +31,20 @@ const MEASURED: [(&str, usize); 42] = [
     ("WF", 24),
     ("EVD52", 21),
     ("PBC3", 41),
-    ("KowalikOsborne", 73),
+    ("KowalikOsborne", 90),
     ("Davidon2", 24),
-    ("OET6", 243),
+    ("OET6", 204),
     ("PBC1", 46),
     ("Wong1", 46),
     ("Wong3", 140),
     ("Polak3", 43),
-    ("Watson20", 125),
+    ("Watson20", 147),
     ("MAD1", 8),
     ("MAD4", 13),
     ("PENTAGON", 13),
     ("EQUIL", 54),
     ("Wong3lin", 122),
-    ("HS114", 53),
+    ("HS114", 58),
     ("Dembo5", 67),
     ("GenMXHILB", 13),
     ("ChainedLQ", 91),
@@ -58,7 +58,7 @@ const MEASURED: [(&str, usize); 42] = [
 /// Sum over the unconstrained problems that all nine peers solve.
 const COMMON_SUM: f64 = 392.0;
 /// Geometric mean of the ratio to MPBNGC over the problems both solve.
-const MEAN: f64 = 0.671;
+const MEAN: f64 = 0.672;
 
 fn evaluations(problem: &Problem) -> Option<usize> {
     let (count, hit) = (Cell::new(0), Cell::new(None));

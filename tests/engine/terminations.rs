@@ -228,7 +228,7 @@ fn the_weight_may_rise_slowly() {
         });
         let config = BundleTrustConfig { weight_increase: 1.5, ..Default::default() };
         let report = method(config).minimize(&theta, v(&problem.start)).unwrap();
-        let rounding = matches!(report.termination, Termination::NoiseLimit { .. });
+        let rounding = name == "Rosenbrock" && matches!(report.termination, Termination::NoiseLimit { .. });
         assert!(report.termination.is_stationary() || rounding, "{name}: {report}");
         assert!(report.value - problem.optimal_value <= 1e-6, "{name}: {report}");
     }

@@ -14,7 +14,8 @@ pub const STATUS: u8 = 130;
 
 /// The signals that ask for an end.
 const REQUESTS: [i32; 2] = [SIGINT, SIGTERM];
-/// Requests of this distance are one: what sends a request twice at once, as `timeout` does, sends one.
+/// Further requests within one to two of these times after the first one are the same: what sends a request twice at once, as `timeout`
+/// does, sends one.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Whether an end was asked for.

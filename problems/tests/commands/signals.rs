@@ -53,7 +53,7 @@ fn a_request_after_the_answer_ends_the_program_at_once() {
 fn a_request_that_is_sent_twice_at_once_is_one() {
     let scratch = kit::scratch();
     let folder = scratch.path().join("run");
-    let mut child = kit::command(SIGNORINI, &[&run("12")[..], &["--out", text(&folder)]].concat()).spawn().unwrap();
+    let mut child = kit::command(SIGNORINI, &[&run("20")[..], &["--out", text(&folder)]].concat()).spawn().unwrap();
     wait_for_the_first(&mut child, &folder);
     let twice = format!("kill -TERM {0}; kill -TERM {0}", child.id());
     assert!(Command::new("sh").args(["-c", &twice]).status().unwrap().success());

@@ -1,10 +1,11 @@
 //! Whether a point is Clarke stationary, from true gradients around it and nothing that the optimizer computed.
 //!
 //! ```text
-//! r = min |D (Σ λ_j g_j + Aᵀμ + ν)| / max |D g_j|       over gradients at x + D d, |d|∞ ≤ ρ,  λ ≥ 0, Σ λ = 1
-//! D = diag max(|x_i|, 1e-3 (1 + |x|∞))
+//! r = |D (Σ λ_j g_j + Aᵀμ + ν)| / Σ λ_j |D g_j|       over gradients at x + D d, |d|∞ ≤ ρ,  λ ≥ 0, Σ λ = 1
+//! D = diag max(|x_i|, 1e-3 (c + |x|∞))
 //! ```
-//! The gradients are those at random points, and then, as long as r is large, one more along the step that they propose: where a piece is the
+//! λ, μ and ν make the numerator least; c is the unit of the variables. r compares with what cancels: beside the longest gradient, a slope along a
+//! steep wall would count as nothing. The gradients are those at random points, and then, as long as r is large, one more along the step that they propose: where a piece is the
 //! largest one in a narrow part of the ball only, random points miss it. A step along which f does fall shows that x is not stationary at ρ.
 
 use crate::stability::optimizer_variants::Changed;
@@ -20,7 +21,7 @@ const LARGEST_RESIDUAL: f64 = 1e-3;
 const ACTIVE_SIDE: f64 = 1e-6;
 /// Length that a step has where the combination is as long as the longest gradient: short beside the sides that are not active.
 const SHORT: f64 = 1e-3 * ACTIVE_SIDE;
-/// Least size of a variable relative to 1 + |x|∞.
+/// Least size of a variable relative to c + |x|∞.
 const LEAST_SIZE: f64 = 1e-3;
 /// Gradients that are looked for along steps, per variable.
 const ROUNDS_PER_VARIABLE: usize = 10;
@@ -38,7 +39,7 @@ struct Around<'a> {
 
 impl<'a> Around<'a> {
     fn new(changed: &'a Changed<'a>, x: &'a Vector) -> Self {
-        let least = LEAST_SIZE * (1.0 + x.amax()) * changed.variant.unit.min(1.0);
+        let least = LEAST_SIZE * (changed.variant.unit + x.amax());
         Self { changed, x, sizes: x.map(|entry| entry.abs().max(least)) }
     }
 
@@ -71,7 +72,7 @@ impl<'a> Around<'a> {
         for _ in 0..BISECTIONS {
             let middle: f64 = 0.5 * (near.0 + far.0);
             let (value, gradient) = self.at(&(step * middle));
-            if !value.is_finite() {
+            if !value.is_finite() || gradient.iter().any(|entry| !entry.is_finite()) {
                 return None;
             }
             if gradient.dot(step) > enough {
@@ -102,8 +103,9 @@ fn relative_set(around: &Around<'_>) -> Result<Polyhedron, InputError> {
     Polyhedron::boxed(lower, upper)?.with_rows(&rows, &row_lower, &row_upper)
 }
 
-/// Minus the shortest combination of gradients and active sides, relative to the longest gradient; none where it cannot be found.
-fn steepest_step(gradients: &[Vector], largest: f64, set: &Polyhedron) -> Option<Vector> {
+/// Minus the shortest combination of gradients and active sides, relative to the longest gradient, and Σ λ_j |D g_j| relative to it; none where
+/// they cannot be found.
+fn steepest_step(gradients: &[Vector], largest: f64, set: &Polyhedron) -> Option<(Vector, f64)> {
     let slopes: Vec<Vector> = gradients.iter().map(|g| g / largest).collect();
     let ids: Vec<u64> = (0..slopes.len() as u64).collect();
     let qp = EpigraphQp {
@@ -117,33 +119,39 @@ fn steepest_step(gradients: &[Vector], largest: f64, set: &Polyhedron) -> Option
         lower: set.lower(),
         upper: set.upper(),
     };
-    EpigraphQpSolver::new().solve(&qp).ok().map(|answer| answer.step / SHORT)
+    let answer = EpigraphQpSolver::new().solve(&qp).ok()?;
+    let cancelled =
+        slopes.iter().zip(&answer.cut_multipliers).map(|(slope, multiplier)| multiplier * slope.norm()).sum();
+    Some((answer.step / SHORT, cancelled))
 }
 
 /// Whether the gradients around a point of the changed problem balance each other and the active constraints.
 pub fn is_clarke_stationary(changed: &Changed<'_>, x: &Vector) -> Result<bool, InputError> {
     let around = Around::new(changed, x);
     let set = relative_set(&around)?;
-    for radius in RADII {
-        let mut gradients = around.random_gradients(radius);
-        for _ in 0..=ROUNDS_PER_VARIABLE * x.len() {
-            let largest = gradients.iter().map(Vector::norm).fold(0.0, f64::max);
-            if largest <= 0.0 {
-                return Ok(true);
-            }
-            let Some(step) = steepest_step(&gradients, largest, &set) else { break };
-            let residual = step.norm();
-            if residual <= LARGEST_RESIDUAL {
-                return Ok(true);
-            }
-            let step = step * (radius / residual);
-            match around.missing_gradient(&step, -largest * residual * radius) {
-                Some(gradient) => gradients.push(gradient),
-                None => break,
-            }
+    Ok(RADII.into_iter().any(|radius| balance_within(radius, &around, &set)))
+}
+
+/// The same for the gradients within one radius.
+fn balance_within(radius: f64, around: &Around<'_>, set: &Polyhedron) -> bool {
+    let mut gradients = around.random_gradients(radius);
+    for _ in 0..=ROUNDS_PER_VARIABLE * around.x.len() {
+        let largest = gradients.iter().map(Vector::norm).fold(0.0, f64::max);
+        if largest <= 0.0 {
+            return true;
+        }
+        let Some((step, cancelled)) = steepest_step(&gradients, largest, set) else { return false };
+        let residual = step.norm();
+        if residual <= LARGEST_RESIDUAL * cancelled {
+            return true;
+        }
+        let step = step * (radius / residual);
+        match around.missing_gradient(&step, -largest * residual * radius) {
+            Some(gradient) => gradients.push(gradient),
+            None => return false,
         }
     }
-    Ok(false)
+    false
 }
 
 #[cfg(test)]
@@ -168,9 +176,30 @@ mod tests {
 
     #[test]
     fn a_piece_that_random_points_miss_is_found_along_the_step() {
-        assert!(judged("PBC1", Variant::PLAIN, &LOCAL_MINIMUM));
+        let problem = testset::find("PBC1").expect("a problem of the collection");
+        let (changed, x) = (Changed::new(&problem, Variant::PLAIN), Vector::from_column_slice(&LOCAL_MINIMUM));
+        let around = Around::new(&changed, &x);
+        let set = relative_set(&around).expect("a set");
+        let gradients = around.random_gradients(RADII[0]);
+        let largest = gradients.iter().map(Vector::norm).fold(0.0, f64::max);
+        let (step, cancelled) = steepest_step(&gradients, largest, &set).expect("a step");
+        assert!(step.norm() > LARGEST_RESIDUAL * cancelled);
+        assert!(balance_within(RADII[0], &around, &set));
+    }
+
+    #[test]
+    fn stationarity_does_not_depend_on_the_unit() {
         let scaled = LOCAL_MINIMUM.map(|x| 100.0 * x);
         assert!(judged("PBC1", Variant { unit: 100.0, ..Variant::PLAIN }, &scaled));
+    }
+
+    /// f = max(−x₁, 1e4 x₁) − x₂ falls along the foot of a steep wall.
+    #[test]
+    fn a_steep_wall_hides_no_slope_along_it() {
+        let gradients = [Vector::from_vec(vec![-1.0, -1.0]), Vector::from_vec(vec![1e4, -1.0])];
+        let (step, cancelled) =
+            steepest_step(&gradients, gradients[1].norm(), &Polyhedron::unbounded(2)).expect("a step");
+        assert!(step.norm() > 0.1 * cancelled, "{} of {cancelled}", step.norm());
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub struct CurvedModelConfig {
     /// Default 200.
     pub max_dimension: usize,
     /// Ratio of the smaller to the larger linearization error of a pair with the center from which on both points count as lying on one
-    /// smooth piece; pairs of any cuts whose errors are both negative too. Default 0.6; in \[0, 1\]. Smaller sees curvature across kinks.
+    /// smooth piece; also for pairs of any two cuts whose errors are both negative. Default 0.6; in \[0, 1\]. Smaller sees curvature across kinks.
     pub same_piece_at_center: f64,
     /// The same for pairs of other cuts, whose curvature bends the model from afar. Default 0.995; in \[0, 1\].
     pub same_piece: f64,

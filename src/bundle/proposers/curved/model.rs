@@ -38,7 +38,7 @@ impl CurvedModel {
             let half = 0.5 * around.along(&p);
             let error = state.bundle.pair_error(center, i);
             let is_center = i == center;
-            let contradicts = error - half > settings.contradiction * (half + error.abs());
+            let contradicts = error - half > settings.contradiction * (half.abs() + error.abs());
             if !is_center && !cut.certified && !contradicts {
                 continue;
             }

@@ -3,11 +3,11 @@
 //! ```text
 //! B_i:  per other cut j, farthest first, s = y_j − y_i, z = g_j − g_i:
 //!       same piece:   cut B down to sᵀBs ≤ sᵀz, then B += r rᵀ/⟨r, s⟩, r = z − B s
-//!       other piece:  cut B down to sᵀBs ≤ 2 min(E_ij, E_ji), so that the piece stays below Θ at y_j
+//!       other piece:  cut B down to sᵀBs ≤ 2 min(E_ij, E_ji)₊, so that the piece stays below Θ at y_j where it can
 //! ```
 //! B_i starts from zero; on a quadratic it is the multisecant matrix. A pair lies on one piece if its two linearization errors agree: on
 //! a quadratic both are ½ sᵀBs, and a kink between the points drives them apart. As long as Θ looks convex, B_i stays positive
-//! semidefinite. Afterwards ⟨r, s⟩ may have either sign, and pairs whose errors are both negative cut nothing down: a curved valley between
+//! semidefinite. Afterwards ⟨r, s⟩ may have either sign, and pairs of one piece whose errors are both negative cut nothing down: a curved valley between
 //! two pieces bends one of them down, and a model without that bend sees the valley rise on both sides of every step along it.
 
 use super::config::CurvedModelConfig;
@@ -53,7 +53,10 @@ impl Curvature {
             let s = &cut.point - &base.point;
             let z = &cut.subgradient - &base.subgradient;
             if !bends_down {
-                curvature.cut_down(&s, if one_piece { z.dot(&s) } else { 2.0 * (low + open).max(0.0) });
+                let limit = if one_piece { z.dot(&s) } else { 2.0 * (low + open).max(0.0) };
+                // Where B is indefinite, the terms of sᵀBs may nearly cancel, and a multiple of B s sᵀB would be huge.
+                let least = if may_bend_down { least_cosine * state.norm.length(&s) } else { 0.0 };
+                curvature.cut_down(&s, limit, |bent| least * state.norm.dual_length(bent));
             }
             let r = &z - curvature.apply(&s);
             let along = r.dot(&s);
@@ -97,10 +100,10 @@ impl Curvature {
     }
 
     /// Lowers sᵀB s to the limit, if it is larger.
-    fn cut_down(&mut self, s: &Vector, limit: f64) {
+    fn cut_down(&mut self, s: &Vector, limit: f64, least: impl Fn(&Vector) -> f64) {
         let bent = self.apply(s);
         let along = s.dot(&bent);
-        if along > limit {
+        if along > limit && along > least(&bent) {
             self.terms.push(((limit / along - 1.0) / along, bent));
         }
     }

@@ -14,7 +14,7 @@
 use crate::BundleTrustConfig;
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::{Comparison, Trial};
-use crate::bundle::state::State;
+use crate::bundle::state::{NOISE_MARGIN, State};
 
 /// A linearization error below minus this share of the size of Θ is no rounding: Θ bends down.
 const CONCAVITY: f64 = 1e-10;
@@ -33,7 +33,9 @@ pub(super) fn after_serious(state: &mut State, config: &BundleTrustConfig, compa
     let mut changed = false;
     if state.streak > 0 && comparison.is_good(config) {
         let next = interpolated_weight(comparison, u).max(u / config.weight_decrease).min(u);
-        state.lower_floor(next, config);
+        if -comparison.change > NOISE_MARGIN * state.noise + state.rounding() {
+            state.lower_floor(next, config);
+        }
         changed = state.set_weight(next, config);
     } else if state.streak > 2 {
         changed = state.set_weight(u / 2.0, config);

@@ -22,6 +22,9 @@ use crate::report::Origin;
 use crate::{Matrix, Vector};
 use config::ExplorationConfig;
 
+/// Least share of S: with none, explorations overshoot in directions that no cut has shown.
+const LEAST_SHARE: f64 = 1e-6;
+
 /// Explorations of a run.
 #[derive(Debug)]
 pub(crate) struct Exploration {
@@ -60,6 +63,12 @@ impl Exploration {
         }
         // Rounding makes the sum of rank-one updates unsymmetric.
         (&matrix + matrix.transpose()) * 0.5
+    }
+
+    /// Lowers the share of S where an exploration has kept its promise, raises it otherwise.
+    fn trust_curvature(&mut self, kept: bool) {
+        let decrease = self.settings.metric_decrease;
+        self.share = (self.share * if kept { decrease } else { 1.0 / decrease }).clamp(LEAST_SHARE, 1.0);
     }
 
     /// The trial point with one weight beside S, with the decrease that the plain cuts promise there.
@@ -109,6 +118,7 @@ impl Proposer for Exploration {
         if proposal.origin == Origin::Exploration {
             self.weight = proposal.weight * self.settings.weight_factor;
             self.pause.fail(self.settings.max_pause);
+            self.trust_curvature(false);
         }
     }
 
@@ -116,12 +126,10 @@ impl Proposer for Exploration {
         if trial.proposal.origin != Origin::Exploration {
             return;
         }
-        let kept = trial.serious && trial.comparison.is_good(config);
-        let factor = if kept { self.settings.metric_decrease } else { 1.0 / self.settings.metric_decrease };
-        self.share = (self.share * factor).min(1.0);
         if trial.serious {
             self.weight = trial.proposal.weight / self.settings.weight_factor;
             self.pause.succeed();
+            self.trust_curvature(trial.comparison.is_good(config));
         } else {
             self.shorten(state, config, trial.proposal);
         }
