@@ -113,8 +113,8 @@ pub struct BundleTrustConfig {
     /// Default 10; > 1.
     pub weight_increase: f64,
     /// Range of the weight relative to its first value: u stays within [first/range, first·range], the floor divided further by how many
-    /// times longer than the first step the variables have become, and lowered to what good serious steps ask for. Default 1e10; > 1. These are the ceiling and the floor of the trust
-    /// parameter t.
+    /// times longer than the first step the variables have become, and lowered to what good serious steps ask for. These are the ceiling
+    /// and the floor of the trust parameter t. Default 1e10; > 1.
     pub weight_range: f64,
     /// Quantile of the curvatures that pairs of cuts prove, used to make the model convex. Default 0.8; in [0, 1].
     pub curvature_quantile: f64,

@@ -4,9 +4,10 @@
 //! r = |D (Σ λ_j g_j + Aᵀμ + ν)| / Σ λ_j |D g_j|       over gradients at x + D d, |d|∞ ≤ ρ,  λ ≥ 0, Σ λ = 1
 //! D = diag max(|x_i|, 1e-3 (c + |x|∞))
 //! ```
-//! λ, μ and ν make the numerator least; c is the unit of the variables. r compares with what cancels: beside the longest gradient, a slope along a
-//! steep wall would count as nothing. The gradients are those at random points, and then, as long as r is large, one more along the step that they propose: where a piece is the
-//! largest one in a narrow part of the ball only, random points miss it. A step along which f does fall shows that x is not stationary at ρ.
+//! λ, μ and ν make the numerator least; c is the unit of the variables. r compares with what cancels: beside the longest gradient, a slope
+//! along a steep wall would count as nothing. The gradients are those at random points, and then, as long as r is large, one more along the
+//! step that they propose: where a piece is the largest one in a narrow part of the ball only, random points miss it. A step along which f
+//! does fall shows that x is not stationary at ρ.
 
 use crate::stability::optimizer_variants::Changed;
 use nonsmooth::qp::{EpigraphQp, EpigraphQpSolver, Metric};

@@ -7,8 +7,9 @@
 //! ```
 //! B_i starts from zero; on a quadratic it is the multisecant matrix. A pair lies on one piece if its two linearization errors agree: on
 //! a quadratic both are ½ sᵀBs, and a kink between the points drives them apart. As long as Θ looks convex, B_i stays positive
-//! semidefinite. Afterwards ⟨r, s⟩ may have either sign, and pairs of one piece whose errors are both negative cut nothing down: a curved valley between
-//! two pieces bends one of them down, and a model without that bend sees the valley rise on both sides of every step along it.
+//! semidefinite. Afterwards ⟨r, s⟩ may have either sign, and pairs of one piece whose errors are both negative cut nothing down: a curved
+//! valley between two pieces bends one of them down, and a model without that bend sees the valley rise on both sides of every step along
+//! it.
 
 use super::config::CurvedModelConfig;
 use crate::bundle::cut::Cut;
@@ -106,5 +107,33 @@ impl Curvature {
         if along > limit && along > least(&bent) {
             self.terms.push(((limit / along - 1.0) / along, bent));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// B = diag(1, −1) and s = (1, 1 − 1e-6), for which sᵀBs = 2e-6: cut down to 0, B would get the eigenvalue −1e6.
+    #[test]
+    fn an_indefinite_matrix_is_cut_down_only_where_its_terms_do_not_cancel() {
+        let axis = |i| Vector::from_fn(2, |k, _| if k == i { 1.0 } else { 0.0 });
+        let indefinite = || Curvature::from_terms(vec![(1.0, axis(0)), (-1.0, axis(1))]);
+        let largest = |curvature: &Curvature| {
+            let mut matrix = Matrix::zeros(2, 2);
+            curvature.add_to(&mut matrix, 1.0);
+            matrix.amax()
+        };
+        let across = Vector::from_vec(vec![1.0, 1.0 - 1e-6]);
+        let cosine = 1e-3;
+        let mut kept = indefinite();
+        kept.cut_down(&across, 0.0, |bent| cosine * bent.norm() * across.norm());
+        assert_eq!(largest(&kept), 1.0);
+        let mut unguarded = indefinite();
+        unguarded.cut_down(&across, 0.0, |_| 0.0);
+        assert!(largest(&unguarded) > 1e5);
+        let mut cut = indefinite();
+        cut.cut_down(&axis(0), 0.25, |bent| cosine * bent.norm());
+        assert!((cut.along(&axis(0)) - 0.25).abs() < 1e-15 && (cut.along(&axis(1)) + 1.0).abs() < 1e-15);
     }
 }
