@@ -25,7 +25,7 @@ pub struct CurvedModelConfig {
     pub contradiction: f64,
     /// Quadratic programs for one trial point at most; each takes the tangents of the pieces at the newest step. Default 30; ≥ 1.
     pub max_rounds: usize,
-    /// The step is accurate enough once a round lowers the model by at most this share of its value. Default 1e-6; in \[0, 1).
+    /// The step is accurate enough once a round promises to lower the model by at most this share of its value. Default 1e-6; in \[0, 1).
     pub accuracy: f64,
     /// Running mean of the log ratio of the prediction errors, plain over curved, above which the curved model proposes.
     /// Default 1. Larger uses it less often.

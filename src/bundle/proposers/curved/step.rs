@@ -38,6 +38,15 @@ pub(super) struct Penalised<'a> {
     pub center: &'a Vector,
 }
 
+/// What the quadratic program of one round gives.
+struct Round {
+    /// p.
+    correction: Vector,
+    /// By how much p lowers the objective of the program.
+    promise: f64,
+    multipliers: Vec<f64>,
+}
+
 impl Penalised<'_> {
     /// m(d).
     pub(super) fn value(&self, step: &Vector) -> f64 {
@@ -56,16 +65,15 @@ impl Penalised<'_> {
         let mut value = self.value(&step);
         let (mut moved, mut failures) = (false, 0);
         for _ in 0..settings.max_rounds {
-            let (correction, next) = match self.round(&step, &multipliers, solver) {
+            let Round { correction, promise, multipliers: next } = match self.round(&step, &multipliers, solver) {
                 Ok(round) => round,
                 Err(_) if moved => break,
                 Err(error) => return Err(error),
             };
             multipliers = next;
             if let Some((lower, lower_value)) = self.lower(&step, value, &correction) {
-                let gain = value - lower_value;
                 (step, value, moved, failures) = (lower, lower_value, true, 0);
-                if gain <= settings.accuracy * value.abs() {
+                if promise <= settings.accuracy * value.abs() {
                     break;
                 }
             } else {
@@ -79,12 +87,7 @@ impl Penalised<'_> {
     }
 
     /// The correction p of one round, and its multipliers.
-    fn round(
-        &self,
-        step: &Vector,
-        multipliers: &[f64],
-        solver: &mut EpigraphQpSolver,
-    ) -> Result<(Vector, Vec<f64>), QpError> {
+    fn round(&self, step: &Vector, multipliers: &[f64], solver: &mut EpigraphQpSolver) -> Result<Round, QpError> {
         let metric = self.metric(multipliers)?;
         let (mut slopes, values) = self.model.tangents(step);
         let pull = self.norm.lower_index(step) * self.weight;
@@ -94,7 +97,8 @@ impl Penalised<'_> {
         let cuts = Cuts { slopes: &slopes, offsets: &offsets, ids: self.model.ids(), gram: None };
         let base = self.center + step;
         let solution = subproblem::solve(solver, self.set, &base, Metric::Dense(&metric), cuts)?;
-        Ok((solution.step, solution.cut_multipliers))
+        let promise = -cuts.change(&solution.step) - 0.5 * solution.step.dot(&(&metric * &solution.step));
+        Ok(Round { correction: solution.step, promise, multipliers: solution.cut_multipliers })
     }
 
     /// Σ λ_i B_i + w W, made positive definite.
