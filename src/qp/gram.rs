@@ -59,6 +59,9 @@ struct Dual<'a> {
     shift: f64,
     held: Vec<usize>,
     multipliers: Vec<f64>,
+    /// What the multipliers have changed since d was formed, by cuts: finer than the multipliers, whose last bit moves w_j by as much as
+    /// ‖g‖²/u times the machine precision.
+    moved: Vec<f64>,
     /// w_j, by slots.
     gradient: Vec<f64>,
     is_held: Vec<bool>,
@@ -104,6 +107,7 @@ impl<'a> Dual<'a> {
             shift,
             held: vec![],
             multipliers: vec![],
+            moved: vec![0.0; qp.slopes.len()],
             gradient: vec![],
             is_held: vec![false; qp.slopes.len()],
             skipped: vec![],
@@ -199,10 +203,13 @@ impl<'a> Dual<'a> {
         self.pivots += 1;
     }
 
-    /// Adds to w what changes of multipliers contribute, given by the cuts.
+    /// Adds to w and to what d lacks the changes of multipliers, given by the cuts.
     fn shift_gradient(&mut self, changes: &[(usize, f64)]) {
         let (gram, weight) = (self.gram, self.gram.weight);
-        changes.iter().for_each(|&(j, change)| self.drift += change.abs() * self.norms[j] / weight);
+        for &(j, change) in changes {
+            self.moved[j] += change;
+            self.drift += change.abs() * self.norms[j] / weight;
+        }
         let rows = changes.iter().map(|&(j, change)| (change / weight, gram.rows[gram.slots[j]].as_slice()));
         add_all_scaled(&mut self.gradient, &rows.collect::<Vec<_>>());
     }
@@ -234,11 +241,10 @@ impl<'a> Dual<'a> {
         }
         let held: Vec<(usize, f64)> = self.held.iter().copied().zip(self.multipliers.iter().copied()).collect();
         self.shift_gradient(&held);
-        let mut placed = vec![0.0; self.qp.slopes.len()];
         let mut step = Vector::zeros(self.qp.dimension());
         for _ in 0..ROUNDS {
             self.pivot()?;
-            self.place(&mut step, &mut placed);
+            self.place(&mut step);
             let values = self.values(&step);
             let epigraph = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let residual = self.residual(&step, &values, epigraph);
@@ -255,15 +261,12 @@ impl<'a> Dual<'a> {
     }
 
     /// Moves d by what the multipliers have changed since the last call.
-    fn place(&self, step: &mut Vector, placed: &mut [f64]) {
-        let mut now = vec![0.0; placed.len()];
-        self.held.iter().zip(&self.multipliers).for_each(|(&j, &multiplier)| now[j] = multiplier);
-        let changes = now.iter().zip(&*placed).zip(self.qp.slopes).filter(|((now, placed), _)| now != placed);
-        let moved: Vec<(f64, &[f64])> =
-            changes.map(|((now, placed), slope)| (now - placed, slope.as_slice())).collect();
+    fn place(&mut self, step: &mut Vector) {
+        let changes = self.moved.iter().zip(self.qp.slopes).filter(|(change, _)| **change != 0.0);
+        let moved: Vec<(f64, &[f64])> = changes.map(|(change, slope)| (*change, slope.as_slice())).collect();
         let mut sum = vec![0.0; step.len()];
         add_all_scaled(&mut sum, &moved);
-        placed.copy_from_slice(&now);
+        self.moved.fill(0.0);
         for ((step, sum), diagonal) in step.as_mut_slice().iter_mut().zip(sum).zip(&*self.diagonal) {
             *step -= sum / diagonal;
         }

@@ -26,8 +26,8 @@ impl Sequence {
         Self { slopes, offsets, diagonal: Vector::from_fn(n, |i, _| 1.0 + (i % 3) as f64) }
     }
 
-    /// Solves the problem of the cuts from `first` up to `last` with all three: warm and cold with products, cold without.
-    fn compare(&self, (first, last): (usize, usize), weight: f64, warm: &mut EpigraphQpSolver) {
+    /// Hands over the problem of the cuts from `first` up to `last`, and the inner products of all.
+    fn with_products(&self, (first, last): (usize, usize), weight: f64, act: impl FnOnce(&EpigraphQp<'_>, Gram<'_>)) {
         let n = self.diagonal.len();
         let metric = &self.diagonal * weight;
         let ids: Vec<u64> = (first as u64..last as u64).collect();
@@ -47,17 +47,23 @@ impl Sequence {
         let rows: Vec<Vec<f64>> =
             self.slopes.iter().map(|slope| raised.iter().map(|other| slope.dot(other)).collect()).collect();
         let slots: Vec<usize> = (first..last).collect();
-        let gram = Gram { rows: &rows, slots: &slots, weight, lasting: true };
-        let expected = EpigraphQpSolver::new().solve(&qp).expect("no sides");
-        let again = warm.solve_with_products(&qp, gram).expect("no sides");
-        let cold = EpigraphQpSolver::new().solve_with_products(&qp, gram).expect("no sides");
-        let size = expected.step.amax().max(1e-3 / weight);
-        for answer in [&again, &cold] {
-            assert!(kkt_residual(&qp, answer) <= 1e-12, "{:e}", kkt_residual(&qp, answer));
-            // The residual bounds the step through the strong convexity, as a square root where cuts are nearly dependent.
-            assert!((&answer.step - &expected.step).amax() <= 1e-9 * size);
-            assert!((answer.epigraph - expected.epigraph).abs() <= 1e-11 * (1.0 + expected.epigraph.abs()));
-        }
+        act(&qp, Gram { rows: &rows, slots: &slots, weight, lasting: true });
+    }
+
+    /// Solves the problem of the cuts from `first` up to `last` with all three: warm and cold with products, cold without.
+    fn compare(&self, range: (usize, usize), weight: f64, warm: &mut EpigraphQpSolver) {
+        self.with_products(range, weight, |qp, gram| {
+            let expected = EpigraphQpSolver::new().solve(qp).expect("no sides");
+            let again = warm.solve_with_products(qp, gram).expect("no sides");
+            let cold = EpigraphQpSolver::new().solve_with_products(qp, gram).expect("no sides");
+            let size = expected.step.amax().max(1e-3 / weight);
+            for answer in [&again, &cold] {
+                assert!(kkt_residual(qp, answer) <= 1e-12, "{:e}", kkt_residual(qp, answer));
+                // The residual bounds the step through the strong convexity, as a square root where cuts are nearly dependent.
+                assert!((&answer.step - &expected.step).amax() <= 1e-9 * size);
+                assert!((answer.epigraph - expected.epigraph).abs() <= 1e-11 * (1.0 + expected.epigraph.abs()));
+            }
+        });
     }
 }
 
@@ -74,6 +80,25 @@ proptest! {
             sequence.compare((last.saturating_sub(25), last), weight, &mut warm);
         }
     }
+}
+
+/// Steep cuts of a flat valley: the last bit of a multiplier moves the values of the cuts by 1e-12 of the step's change or more, and the
+/// step is found to rounding nevertheless.
+#[test]
+fn multipliers_of_finite_accuracy_give_the_step_to_rounding() {
+    let (n, weight) = (30, 0.3);
+    let mut random = Random(5);
+    let steep = Vector::from_fn(n, |_, _| 1e4 * random.signed());
+    let slopes = (0..8).map(|j| {
+        let other = Vector::from_fn(n, |_, _| random.signed());
+        if j % 2 == 0 { &steep + other } else { other - &steep }
+    });
+    let (slopes, offsets) = (slopes.collect(), (0..8).map(|j| 0.1 * f64::from(j)).collect());
+    let sequence = Sequence { slopes, offsets, diagonal: Vector::from_element(n, 1.0) };
+    sequence.with_products((0, 8), weight, |qp, gram| {
+        let solution = GramMemory::default().solve(qp, gram, 1e-14).expect("no sides");
+        assert!(kkt_residual(qp, &solution) <= 1e-14, "{:e}", kkt_residual(qp, &solution));
+    });
 }
 
 #[test]
