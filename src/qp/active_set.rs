@@ -30,6 +30,9 @@ pub(super) enum Outcome {
 /// Relative violation above which a contradiction means an empty set; a smaller one is rounding of the data.
 const CONTRADICTION: f64 = 1e-9;
 
+/// Share of the largest rate of an exchange, in the metric's coordinates, up to which a rate is rounding.
+const NOISE: f64 = 1e-10;
+
 enum Entry {
     Held,
     Refused,
@@ -130,8 +133,9 @@ impl WorkingSet<'_> {
                 self.hold(active, column, split);
                 return Entry::Held;
             }
-            let rates = self.exchange_rates(&column, &split.coefficients, sign);
-            let Some((length, place)) = self.exchange_block(&rates, norm(&column)) else { return Entry::Refused };
+            let mut rates = self.exchange_rates(&column, &split.coefficients, sign);
+            self.keep_sum(&mut rates, if matches!(active.member, Member::Cut(_)) { -1.0 } else { 0.0 });
+            let Some((length, place)) = self.exchange_block(&rates) else { return Entry::Refused };
             self.exchange(&rates, length);
             active.multiplier += sign * length * unit;
             self.release(place);
@@ -149,32 +153,49 @@ impl WorkingSet<'_> {
         }
         let coordinates =
             (0..self.fixed.len()).map(|k| if self.fixed[k].is_some() { -total[k] } else { 0.0 }).collect();
-        ExchangeRates { columns, coordinates }
+        let sizes: Vec<f64> = self.factor.columns().iter().map(|normal| norm(normal)).collect();
+        let scaled = columns.iter().zip(&sizes).map(|(rate, size)| (rate * size).abs());
+        let noise = NOISE * scaled.fold(norm(column), f64::max);
+        let column_noise = sizes.into_iter().map(|size| noise / size).collect();
+        ExchangeRates { columns, column_noise, coordinates, noise }
+    }
+
+    /// The rates of the cuts have a known sum. Beside steep cuts, whose rates are small, it tells that of the flattest cut better than its
+    /// own equation, in whose rounding it may vanish.
+    fn keep_sum(&self, rates: &mut ExchangeRates, sum: f64) {
+        let held = self.general.iter().enumerate().filter(|(_, active)| matches!(active.member, Member::Cut(_)));
+        let cuts: Vec<usize> = held.map(|(position, _)| position).collect();
+        let noise = &mut rates.column_noise;
+        let flattest = cuts.iter().copied().max_by(|&i, &j| noise[i].total_cmp(&noise[j]));
+        let Some(flattest) = flattest else { return };
+        let others = || cuts.iter().copied().filter(|&position| position != flattest);
+        let noise_of_sum = others().map(|position| noise[position]).sum();
+        if noise_of_sum < noise[flattest] {
+            noise[flattest] = noise_of_sum;
+            rates.columns[flattest] = sum - others().map(|position| rates.columns[position]).sum::<f64>();
+        }
     }
 
     /// The first held multiplier that reaches zero; rates that are rounding are passed over.
-    fn exchange_block(&self, rates: &ExchangeRates, entering: f64) -> Option<(f64, Place)> {
-        let sizes: Vec<f64> = self.factor.columns().iter().map(|normal| norm(normal)).collect();
-        let largest = rates.columns.iter().zip(&sizes).map(|(rate, size)| (rate * size).abs()).fold(entering, f64::max);
+    fn exchange_block(&self, rates: &ExchangeRates) -> Option<(f64, Place)> {
         let mut first: Option<(f64, Place)> = None;
-        let mut consider = |active: &Active, rate: f64, scaled: f64, place: Place| {
+        let mut consider = |active: &Active, rate: f64, noise: f64, place: Place| {
             let falls = match active.side {
                 Side::Upper => rate < 0.0,
                 Side::Lower => rate > 0.0,
                 Side::Both => false,
             };
             let length = (active.multiplier / rate).abs();
-            if falls && scaled.abs() > 1e-10 * largest && first.is_none_or(|(shortest, _)| length < shortest) {
+            if falls && rate.abs() > noise && first.is_none_or(|(shortest, _)| length < shortest) {
                 first = Some((length, place));
             }
         };
         for (position, active) in self.general.iter().enumerate() {
-            let rate = rates.columns[position];
-            consider(active, rate, rate * sizes[position], Place::Column(position));
+            consider(active, rates.columns[position], rates.column_noise[position], Place::Column(position));
         }
         for (k, rate) in rates.coordinates.iter().enumerate() {
             if let (Some(active), Some(length)) = (&self.fixed[k], self.coordinates.axis_length(k)) {
-                consider(active, rate * length, *rate, Place::Coordinate(k));
+                consider(active, rate * length, rates.noise * length, Place::Coordinate(k));
             }
         }
         first
@@ -194,6 +215,10 @@ impl WorkingSet<'_> {
 
 struct ExchangeRates {
     columns: Vec<f64>,
+    /// Rates up to this are rounding.
+    column_noise: Vec<f64>,
     /// In the metric's coordinates: the multiplier divided by √H_ii.
     coordinates: Vec<f64>,
+    /// Their rounding.
+    noise: f64,
 }

@@ -7,7 +7,7 @@
 //!                   lower ≤ d ≤ upper           (multipliers ν, signed likewise)
 //! KKT:              H d + Σ π_j g_j + Aᵀ μ + ν = 0
 //! ```
-//! [`EpigraphQpSolver`] is a warm-started dual active-set method. What it cannot finish it tries again in another scale of the cuts; what it
+//! [`EpigraphQpSolver`] is a warm-started dual active-set method. What it cannot finish it tries again in other scales of the cuts; what it
 //! cannot finish then goes to an interior-point method (feature `interior-point`, on by default), whose answer it polishes. Every
 //! answer carries its [`kkt_residual`], computed from the data alone. [`project`] is the Euclidean projection onto a polyhedron, a
 //! special case.

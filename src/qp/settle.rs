@@ -158,6 +158,7 @@ impl WorkingSet<'_> {
         let shift = -(deficit + dot(&cut_row, &general)) / dot(&cut_row, &cut_row);
         general.iter_mut().zip(&cut_row).for_each(|(y, h)| *y = -*y - h * shift);
         self.factor.solve(&mut general);
+        self.keep_only_cut(&mut general, deficit);
         let mut reply = Vector::zeros(n);
         for (active, change) in self.general.iter().zip(&general) {
             self.add_gradient(reply.as_mut_slice(), *change, active.member);
@@ -170,6 +171,17 @@ impl WorkingSet<'_> {
         }
         let fixed = self.fixed_correction(&general);
         Correction { general, fixed, step, epigraph: shift + self.cut_entry * self.cut_entry * deficit }
+    }
+
+    /// The multiplier of the only cut held is one. Where the terms of its column are small beside its value, rounding may say that it is to
+    /// leave.
+    fn keep_only_cut(&self, changes: &mut [f64], deficit: f64) {
+        let mut cuts = self.general.iter().zip(changes).filter(|(active, _)| matches!(active.member, Member::Cut(_)));
+        if let (Some((active, change)), None) = (cuts.next(), cuts.next())
+            && block_length(active, *change).is_some()
+        {
+            *change = deficit;
+        }
     }
 
     /// Changes of the multipliers of fixed coordinates, from their stationarity equations.

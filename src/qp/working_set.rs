@@ -57,6 +57,9 @@ pub(super) enum CutEntry {
     Median,
     /// The geometric mean of the median and the least norm: where most cuts are far steeper than the active ones.
     Lower,
+    /// The geometric mean of the median and the largest norm: where the active cuts are far steeper than most, and beside them a side looks
+    /// as if it depended on those held.
+    Upper,
 }
 
 pub(super) struct WorkingSet<'a> {
@@ -296,6 +299,9 @@ impl<'a> WorkingSet<'a> {
 }
 
 impl CutEntry {
+    /// In the order in which they are tried.
+    pub(super) const ALL: [Self; 3] = [Self::Median, Self::Lower, Self::Upper];
+
     /// Its value for cuts of these norms.
     fn of(self, norms: &[f64]) -> f64 {
         let mut positive: Vec<f64> = norms.iter().copied().filter(|norm| *norm > 0.0).collect();
@@ -303,6 +309,7 @@ impl CutEntry {
         match self {
             Self::Median => median,
             Self::Lower => median.sqrt() * positive.into_iter().fold(median, f64::min).sqrt(),
+            Self::Upper => median.sqrt() * positive.into_iter().fold(median, f64::max).sqrt(),
         }
     }
 }

@@ -49,6 +49,42 @@ fn metric_norm(qp: &OwnedQp, step: &Vector) -> f64 {
     step.dot(&qp.view().metric.apply(step)).max(0.0).sqrt()
 }
 
+/// The problem with cuts taken near poles, up to 10^power times as steep as the others; none excludes 0, some are active.
+fn with_poles(mut qp: OwnedQp, seed: u64, poles: usize, power: f64) -> OwnedQp {
+    let (mut random, dimension) = (Random(seed ^ 1), qp.slopes[0].len());
+    let first = qp.slopes.len() as u64;
+    for id in first..first + poles as u64 {
+        let factor = 10f64.powf(power * (0.5 + 0.5 * random.signed().abs()));
+        let slope = qps::vector(&mut random, dimension) * factor;
+        qp.offsets.push(slope.norm() * random.signed().abs());
+        qp.slopes.push(slope);
+        qp.cut_ids.push(id);
+    }
+    qp
+}
+
+/// A flat cut falls by what a steep one rises, a steep cut makes independent rows look dependent, the only cut seems to leave: such draws
+/// are too rare for the properties below, and ended as contradictions of sides that have common points.
+#[test]
+fn rare_draws_are_solved() {
+    let shape = |dimension, cuts, rows| Shape { dimension, cuts, rows };
+    for (seed, shape, poles, power) in [
+        (17_733, shape(18, 31, 53), 19, 8.911_399_740_239_702),
+        (51_001, shape(18, 39, 54), 7, 8.529_784_206_436_382),
+        (147_295, shape(2, 31, 55), 10, 9.984_715_879_053_077),
+        (20_043, shape(3, 42, 35), 7, 9.903_644_428_749_878),
+    ] {
+        let solution = solve(&with_poles(random_qp(seed, shape), seed, poles, power));
+        assert!(solution.kkt_residual <= KKT, "{seed}: {:e}", solution.kkt_residual);
+    }
+    for (seed, shape, power) in [(13_259, shape(1, 15, 17), 10.2), (82_224, shape(16, 49, 47), 11.955_703_370_180_007)]
+    {
+        let mut qp = random_qp(seed, shape);
+        scale_metric(&mut qp.metric, 10f64.powf(power));
+        assert!(solve(&qp).kkt_residual <= KKT, "{seed}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -70,20 +106,11 @@ proptest! {
         prop_assert!(solve(&qp).kkt_residual <= KKT);
     }
 
-    /// Cuts taken near poles are up to 1e10 times as steep as the others; none excludes 0, some are active. In one scale of the columns, and
-    /// with v from the steepest cut, one in a hundred of these programs fails from 1e8 on, and one in ten needs another method.
+    /// In one scale of the columns, and with v from the steepest cut, one in a hundred of these programs fails from 1e8 on, and one in ten
+    /// needs another method.
     #[test]
     fn cuts_of_poles_hide_no_others(seed: u64, shape in shapes(), poles in 1usize..20, power in 4.0..10.0f64) {
-        let mut qp = random_qp(seed, shape);
-        let mut random = Random(seed ^ 1);
-        let first = qp.slopes.len() as u64;
-        for id in first..first + poles as u64 {
-            let factor = 10f64.powf(power * (0.5 + 0.5 * random.signed().abs()));
-            let slope = qps::vector(&mut random, shape.dimension) * factor;
-            qp.offsets.push(slope.norm() * random.signed().abs());
-            qp.slopes.push(slope);
-            qp.cut_ids.push(id);
-        }
+        let qp = with_poles(random_qp(seed, shape), seed, poles, power);
         let solution = solve(&qp);
         prop_assert!(solution.kkt_residual <= KKT, "{:e}", solution.kkt_residual);
     }
