@@ -143,7 +143,10 @@ impl Polyhedron {
     pub fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
         let mut worst: f64 = 0.0;
         let sides = self.lower.as_slice().iter().zip(self.upper.as_slice());
-        for ((x, reference), (&lower, &upper)) in x.as_slice().iter().zip(reference.as_slice()).zip(sides) {
+        let entries = x.as_slice().iter().zip(reference.as_slice()).zip(sides);
+        for ((x, reference), (&lower, &upper)) in
+            entries.filter(|((x, _), (lower, upper))| !(**lower..=**upper).contains(*x))
+        {
             worst = worst.max(side_violation(*x, lower, upper, x.abs().max(reference.abs())));
         }
         for (i, row) in self.rows.row_iter().enumerate() {

@@ -115,9 +115,10 @@ impl Proposal {
     /// admissible: a little where the violation is small, by a factor of 0.7 at a time otherwise.
     pub(crate) fn admissible(mut self, set: &Polyhedron, state: &State) -> Result<Self, SubproblemError> {
         let violation = |x: &Vector| set.violation_near(x, &state.center);
-        let allowed = FEASIBILITY.max(violation(&state.center));
         self.trial = set.clamp_to_box(&self.trial);
         self.violation = violation(&self.trial);
+        let allowed =
+            if self.violation > FEASIBILITY { FEASIBILITY.max(violation(&state.center)) } else { FEASIBILITY };
         if self.violation > allowed
             && self.violation < LARGEST_PROJECTED_VIOLATION
             && let Ok(projected) = project(set, &self.trial)
