@@ -160,8 +160,8 @@ impl WorkingSet<'_> {
         ExchangeRates { columns, column_noise, coordinates, noise }
     }
 
-    /// The rates of the cuts have a known sum. Beside steep cuts, whose rates are small, it tells that of the flattest cut better than its
-    /// own equation, in whose rounding it may vanish.
+    /// The rates of the cuts have a known sum. It gives the rate of the flattest cut more accurately than that cut's own equation does: steeper
+    /// cuts have smaller rates, and these have smaller rounding.
     fn keep_sum(&self, rates: &mut ExchangeRates, sum: f64) {
         let held = self.general.iter().enumerate().filter(|(_, active)| matches!(active.member, Member::Cut(_)));
         let cuts: Vec<usize> = held.map(|(position, _)| position).collect();

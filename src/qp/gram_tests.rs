@@ -82,8 +82,8 @@ proptest! {
     }
 }
 
-/// Steep cuts of a flat valley: the last bit of a multiplier moves the values of the cuts by 1e-12 of the step's change or more, and the
-/// step is found to rounding nevertheless.
+/// Steep cuts of a flat valley: half the last bit of a multiplier moves the value of a cut by ‖g‖²/u · 3e-17 = 1e-7, which is 1e-12 of its
+/// terms, and the step is found to 1e-14 of them nevertheless.
 #[test]
 fn multipliers_of_finite_accuracy_give_the_step_to_rounding() {
     let (n, weight) = (30, 0.3);

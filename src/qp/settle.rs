@@ -173,8 +173,8 @@ impl WorkingSet<'_> {
         Correction { general, fixed, step, epigraph: shift + self.cut_entry * self.cut_entry * deficit }
     }
 
-    /// The multiplier of the only cut held is one. Where the terms of its column are small beside its value, rounding may say that it is to
-    /// leave.
+    /// The only cut held does not leave: its multiplier is one. Where v is large beside the square of its column, rounding may change that
+    /// multiplier by more than one. What the other changes owe to that rounding, later passes repair.
     fn keep_only_cut(&self, changes: &mut [f64], deficit: f64) {
         let mut cuts = self.general.iter().zip(changes).filter(|(active, _)| matches!(active.member, Member::Cut(_)));
         if let (Some((active, change)), None) = (cuts.next(), cuts.next())

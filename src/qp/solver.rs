@@ -8,7 +8,6 @@ use super::gram::{Gram, GramMemory};
 use super::interior_point;
 use super::problem::{EpigraphQp, QpCounts, QpError, QpMethod, QpSolution};
 use super::working_set::{Active, CutEntry, Member, Side, WorkingSet};
-use crate::Vector;
 
 /// Largest residual with which an answer is returned at all.
 const REQUIRED: f64 = 1e-10;
@@ -106,10 +105,8 @@ impl EpigraphQpSolver {
                 break;
             }
         }
-        // Where cuts are far steeper than others, rounding in one scale of the columns may look like a contradiction, or in all.
-        if let Some(&violation) = contradictions.first().filter(|_| contradictions.len() == scales.len())
-            && sides_contradict(qp, &coordinates)
-        {
+        // Where cuts are far steeper than others, rounding in one scale of the columns may look like a contradiction.
+        if let Some(&violation) = contradictions.first().filter(|_| contradictions.len() == scales.len()) {
             return Err(QpError::Infeasible { violation });
         }
         let best = match best {
@@ -171,7 +168,6 @@ impl EpigraphQpSolver {
             }
             // The sides contradict each other by rounding only: the active-set method has found a point.
             (Err(_), Some(known)) if known.outcome == Outcome::Solved => return Ok(known),
-            (Err(QpError::Infeasible { .. }), Some(known)) if !sides_contradict(qp, coordinates) => return Ok(known),
             (Err(error), _) => return Err(error),
         };
         let polished = run_active_set(qp, coordinates, (&answer.actives, CutEntry::Median));
@@ -213,13 +209,6 @@ fn keep_better(best: &mut Option<Attempt>, attempt: Attempt) {
     }
 }
 
-/// Whether rows and bounds have no common point, by the problem of the shortest step, which no cut disturbs.
-fn sides_contradict(qp: &EpigraphQp<'_>, coordinates: &Coordinates) -> bool {
-    let flat = [Vector::zeros(qp.dimension())];
-    let shortest = EpigraphQp { slopes: &flat, offsets: &[0.0], cut_ids: &[0], ..*qp };
-    run_active_set(&shortest, coordinates, (&[], CutEntry::Median)).outcome != Outcome::Solved
-}
-
 fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, (warm, cut_entry): (&[Active], CutEntry)) -> Attempt {
     let mut set = WorkingSet::new(qp, coordinates, cut_entry);
     set.start(warm);
@@ -229,37 +218,12 @@ fn run_active_set(qp: &EpigraphQp<'_>, coordinates: &Coordinates, (warm, cut_ent
     Attempt { outcome, solution, actives }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "interior-point"))]
 mod tests {
     use super::super::Metric;
     use super::*;
-    use crate::Matrix;
+    use crate::{Matrix, Vector};
 
-    #[test]
-    fn sides_contradict_whatever_the_cuts_are() {
-        // x ≥ 1 by a row and x ≤ upper by the bound, beside a cut of 1e10 in a metric of 1e-10.
-        let qp = |upper: &Vector, row_upper: &Vector| {
-            let (rows, one) = (Matrix::from_element(1, 1, 2.0), Vector::from_element(1, 2.0));
-            let qp = EpigraphQp {
-                metric: Metric::ScaledIdentity(1e-10),
-                slopes: &[Vector::from_element(1, 1e10)],
-                offsets: &[0.0],
-                cut_ids: &[0],
-                rows: &rows,
-                row_lower: &one,
-                row_upper,
-                lower: &-upper,
-                upper,
-            };
-            sides_contradict(&qp, &CoordinatesCache::default().factorise(qp.metric, 1).expect("positive"))
-        };
-        let open = Vector::from_element(1, f64::INFINITY);
-        assert!(qp(&Vector::from_element(1, 0.999), &open));
-        assert!(!qp(&Vector::from_element(1, 1.0), &open));
-        assert!(!qp(&open, &Vector::from_element(1, 2.0)));
-    }
-
-    #[cfg(feature = "interior-point")]
     #[test]
     fn the_fallback_is_polished_to_the_accuracy_of_the_active_set_method() {
         let n = 6;

@@ -73,14 +73,11 @@ impl Penalised<'_> {
             multipliers = next;
             if let Some((lower, lower_value)) = self.lower(&step, value, &correction) {
                 (step, value, moved, failures) = (lower, lower_value, true, 0);
-                if promise <= settings.accuracy * value.abs() {
-                    break;
-                }
             } else {
                 failures += 1;
-                if failures == MAX_FAILURES {
-                    break;
-                }
+            }
+            if promise <= settings.accuracy * value.abs() || failures == MAX_FAILURES {
+                break;
             }
         }
         Ok(step)
