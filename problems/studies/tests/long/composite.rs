@@ -13,6 +13,10 @@ const LARGEST_MEAN: f64 = 0.5;
 /// Rounding differs between processors, and a few courses with it.
 const MARGIN: f64 = 0.03;
 
+fn max_evaluations(dimension: usize) -> usize {
+    if dimension >= 50 { 3000 } else { 2000 }
+}
+
 /// Evaluations to value − optimum ≤ 1e-6 max(1, |optimum|).
 fn evaluations(problem: &Problem, composition: &Composition, composite_model: bool) -> Option<usize> {
     let n = problem.dimension;
@@ -30,8 +34,8 @@ fn evaluations(problem: &Problem, composition: &Composition, composite_model: bo
     let set = Polyhedron::boxed(vector(&problem.lower), vector(&problem.upper))
         .and_then(|set| set.with_rows(&rows, &vector(&problem.row_lower), &vector(&problem.row_upper)))
         .unwrap();
-    let max_evaluations = if n >= 50 { 3000 } else { 2000 };
-    let config = BundleTrustConfig { composite_model, max_evaluations, ..BundleTrustConfig::default() };
+    let config =
+        BundleTrustConfig { composite_model, max_evaluations: max_evaluations(n), ..BundleTrustConfig::default() };
     let level = problem.optimal_value + 1e-6 * problem.optimal_value.abs().max(1.0);
     let mut method = BundleTrust::new(config).unwrap().constraints(set).stop_when(StopRule::ValueBelow(level));
     let report = method.minimize(&theta, vector(&problem.start)).unwrap();
@@ -45,9 +49,11 @@ fn all_pieces_at_once_halve_the_evaluations_on_the_collection_and_lose_no_proble
         let Some(composition) = problem.composition() else { continue };
         let [with, without] = [true, false].map(|composite| evaluations(&problem, composition, composite));
         table.push(format!("{} {with:?} {without:?}", problem.name));
-        match (with, without) {
-            (Some(with), Some(without)) => logs.push((with as f64 / without as f64).ln()),
-            _ => lost.push(problem.name),
+        // The last bit decides whether cuts alone solve ShellDual: where they do not, they count with their limit.
+        let without = without.unwrap_or_else(|| max_evaluations(problem.dimension));
+        match with {
+            Some(with) => logs.push((with as f64 / without as f64).ln()),
+            None => lost.push(problem.name),
         }
     }
     let mean = (logs.iter().sum::<f64>() / logs.len() as f64).exp();
