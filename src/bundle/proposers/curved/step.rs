@@ -94,7 +94,7 @@ impl Penalised<'_> {
         let cuts = Cuts { slopes: &slopes, offsets: &offsets, ids: self.model.ids(), gram: None };
         let base = self.center + step;
         let solution = subproblem::solve(solver, self.set, &base, Metric::Dense(&metric), cuts)?;
-        let promise = -cuts.change(&solution.step) - 0.5 * solution.step.dot(&(&metric * &solution.step));
+        let promise = -solution.epigraph - 0.5 * solution.step.dot(&(&metric * &solution.step));
         Ok(Round { correction: solution.step, promise, multipliers: solution.cut_multipliers })
     }
 
