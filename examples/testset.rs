@@ -4,7 +4,7 @@
 //!
 //! `--perturb K` replaces every count by the median over 2K + 1 runs from x0 (1 + 1e-13 N(0, 1)), the first of them from x0 itself: a
 //! single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size.
-//! `--without` switches off a proposer of trial points, `curved-model` or `exploration`; it may be given twice.
+//! `--without curved-model` switches off the curved model.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 use serde::Serialize;
@@ -100,8 +100,7 @@ fn config(args: &[String]) -> Result<BundleTrustConfig, String> {
     for (index, _) in args.iter().enumerate().filter(|(_, arg)| *arg == "--without") {
         match args.get(index + 1).map(String::as_str) {
             Some("curved-model") => config.curved_model = None,
-            Some("exploration") => config.exploration = None,
-            other => return Err(format!("--without {}: expected curved-model or exploration", other.unwrap_or(""))),
+            other => return Err(format!("--without {}: expected curved-model", other.unwrap_or(""))),
         }
     }
     Ok(config)

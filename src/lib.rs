@@ -202,7 +202,7 @@ mod panics;
 
 pub use accuracy::Accuracy;
 pub use bundle::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, CurvedModelConfig, Cut, ExplorationConfig, Run,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, CurvedModelConfig, Cut, Run,
     ScaledNorm, VariableScaling,
 };
 pub use composite_objective::{CompositeFunction, CompositeObjective, OutputJacobian};

@@ -2,7 +2,6 @@
 
 use super::coordinates::Coordinates;
 use super::proposers::curved::config::CurvedModelConfig;
-use super::proposers::exploration::config::ExplorationConfig;
 use crate::checks::check_setting;
 use crate::{InputError, Matrix, Vector};
 use serde::{Deserialize, Serialize};
@@ -102,11 +101,6 @@ pub struct BundleTrustConfig {
     /// Largest number of cuts. Default none: n + 15, at most 500. ≥ 3: the cut of the center, the newest one, and one for all others
     /// together. A large bundle remembers cuts that mislead a nonconvex run; a small one merges active cuts, and needs more evaluations.
     pub bundle_size: Option<usize>,
-    /// Share m_S of the predicted decrease that makes a step serious. Default 0.02; in (0, 0.5).
-    pub serious_fraction: f64,
-    /// Share m_R of the predicted decrease from which on a serious step lowers the weight; that of the plain cuts only if their
-    /// step before was serious too. Default 0.5; in [m_S, 1).
-    pub good_fraction: f64,
     /// Largest factor by which the weight u = 1/t falls after one serious step. Default 8; > 1.
     pub weight_decrease: f64,
     /// Largest factor by which the weight rises after one null step; where Θ bends down along the step, the weight at least doubles.
@@ -118,22 +112,13 @@ pub struct BundleTrustConfig {
     pub weight_range: f64,
     /// Quantile of the curvatures that pairs of cuts prove, used to make the model convex. Default 0.8; in [0, 1].
     pub curvature_quantile: f64,
-    /// Largest number of times that the weight is lowered tenfold, without an evaluation, where the predicted decrease is small.
-    /// Default 16, because a restart may raise it by a factor of 1e12; ≥ 0.
-    pub attenuation_steps: usize,
-    /// Restarts with a local bundle, without progress between them, before the run ends although the small predicted decrease
-    /// rests on cuts far from the center; at most one while no pair of cuts has proved Θ nonconvex. Default 5; ≥ 0.
-    pub max_restarts: usize,
-    /// Share of the radius of the active cuts within which a restart keeps cuts. Default 0.1; in (0, 1).
-    pub restart_radius: f64,
-    /// Failed evaluations in a row after which the run ends once its steps are short beside the variables. Default 10; ≥ 1.
-    pub max_failures: usize,
+    /// Whether an end whose active cuts lie away from the best point is confirmed by evaluations next to it, at most one more than there are
+    /// variables. Default true; of no effect where Θ is declared convex. Where false, such a run ends as unconfirmed.
+    pub confirm: bool,
     /// The composite model, for objectives that have an outer function and return Jacobians. Default on.
     pub composite_model: bool,
     /// The curved model as a second proposer of trial points; none switches it off. Default on, with its own defaults.
     pub curved_model: Option<CurvedModelConfig>,
-    /// Exploration as a third proposer of trial points; none switches it off. Default on, with its own defaults.
-    pub exploration: Option<ExplorationConfig>,
 }
 
 impl Default for BundleTrustConfig {
@@ -149,19 +134,13 @@ impl Default for BundleTrustConfig {
             scaling: VariableScaling::FromBox,
             accuracy: AccuracyPolicy::Tightest,
             bundle_size: None,
-            serious_fraction: 0.02,
-            good_fraction: 0.5,
             weight_decrease: 8.0,
             weight_increase: 10.0,
             weight_range: 1e10,
             curvature_quantile: 0.8,
-            attenuation_steps: 16,
-            max_restarts: 5,
-            restart_radius: 0.1,
-            max_failures: 10,
+            confirm: true,
             composite_model: true,
             curved_model: Some(CurvedModelConfig::default()),
-            exploration: Some(ExplorationConfig::default()),
         }
     }
 }
@@ -183,10 +162,6 @@ impl BundleTrustConfig {
         positive("max_seconds", self.max_seconds)?;
         positive("first_step", self.first_step)?;
         self.bundle_size.map_or(Ok(()), |size| check_setting("bundle_size", size, BUNDLE_SIZES, size >= 3))?;
-        let serious = self.serious_fraction > 0.0 && self.serious_fraction < 0.5;
-        check_setting("serious_fraction", self.serious_fraction, "0 < x < 0.5", serious)?;
-        let good = self.good_fraction >= self.serious_fraction && self.good_fraction < 1.0;
-        check_setting("good_fraction", self.good_fraction, "serious_fraction ≤ x < 1", good)?;
         for (setting, value) in [
             ("weight_decrease", self.weight_decrease),
             ("weight_increase", self.weight_increase),
@@ -196,9 +171,6 @@ impl BundleTrustConfig {
         }
         let quantile = (0.0..=1.0).contains(&self.curvature_quantile);
         check_setting("curvature_quantile", self.curvature_quantile, "0 ≤ x ≤ 1", quantile)?;
-        let radius = self.restart_radius > 0.0 && self.restart_radius < 1.0;
-        check_setting("restart_radius", self.restart_radius, "0 < x < 1", radius)?;
-        check_setting("max_failures", self.max_failures, "≥ 1", self.max_failures >= 1)?;
         self.validate_policies()
     }
 
@@ -215,7 +187,6 @@ impl BundleTrustConfig {
         if let VariableScaling::Linear(matrix) = &self.scaling {
             Coordinates::try_from(matrix.clone())?;
         }
-        self.curved_model.iter().try_for_each(CurvedModelConfig::validate)?;
-        self.exploration.iter().try_for_each(ExplorationConfig::validate)
+        self.curved_model.iter().try_for_each(CurvedModelConfig::validate)
     }
 }

@@ -1,78 +1,22 @@
-//! Records, observers, and the report at the end.
+//! The report at the end of a run.
 
-use super::event::Event;
+use super::config::Convexity;
+use super::evidence::active_cuts;
+use super::proof::Proof;
 use super::proposers::proposal::Proposal;
 use super::run::Run;
-use crate::Accuracy;
-use crate::report::{Certificate, IterationRecord, Origin, Report, StepKind, Termination};
-use std::ops::ControlFlow::{self, Break, Continue};
-
-/// A decrease of Θ beyond this many times |Θ(x⁰)| + ‖g⁰‖·max(first step, 1) ends the run as unbounded below.
-const UNBOUNDED_DECREASE: f64 = 1e12;
-/// Next to zero, the first step may be a rounding, beside which every decrease is large. Lengths of 1 cost an unbounded run some steps more
-/// and say nothing about bounded ones, whatever their units.
-const LEAST_LENGTH: f64 = 1.0;
+use crate::report::{Certificate, Report, Termination};
 
 impl Run<'_, '_> {
-    pub(super) fn record(&mut self, proposal: &Proposal, accuracy: Accuracy, event: Event) {
-        let Event { kind, value, failure, linearized, work } = event;
-        let origin = if kind == StepKind::Refinement { Origin::Given } else { proposal.origin };
-        self.state.counts.trials.add(origin);
-        let mut record = IterationRecord {
-            evaluation: self.state.counts.evaluations,
-            kind,
-            origin,
-            value,
-            center_value: self.state.center_value,
-            predicted_decrease: proposal.predicted_decrease,
-            aggregate_norm: proposal.aggregate_norm,
-            aggregate_error: proposal.aggregate_error,
-            weight: proposal.weight,
-            step_length: proposal.step_length,
-            violation: proposal.violation,
-            cuts: self.state.bundle.cuts().len(),
-            convexification: proposal.convexification,
-            accuracy: accuracy.tolerance(),
-            failure,
-            jacobian: false,
-            note: None,
-            work,
-            seconds: self.seconds(),
-        };
-        record.set_linearized(linearized);
-        self.state.history.push(record);
-    }
-
-    /// Calls the observers, and tests the stopping rules and divergence.
-    pub(super) fn after_evaluation(&mut self) -> ControlFlow<Termination> {
-        let Some(record) = self.state.history.last().cloned() else { return Continue(()) };
-        let mut stop = false;
-        for observer in &mut self.method.observers {
-            stop |= observer.observe(&record).is_break();
-        }
-        if stop {
-            return Break(Termination::StoppedByObserver);
-        }
-        if let Some(rule) = self.method.stop.as_ref().and_then(|rule| rule.holds(&self.state.history)) {
-            return Break(Termination::StopRule { rule });
-        }
-        let slope = self.state.first_weight * self.state.first_step;
-        let limit =
-            UNBOUNDED_DECREASE * (self.state.start_value.abs() + slope * self.state.first_step.max(LEAST_LENGTH));
-        if self.state.start_value - self.state.center_value > limit {
-            return Break(Termination::UnboundedBelow);
-        }
-        Continue(())
-    }
-
     /// Ends the run and returns its report; the termination is [`Termination::Unfinished`] if the run had not ended by itself.
     pub fn finish(mut self) -> Report {
         self.end_at_lowest();
-        if self.proposal.is_none() && self.proof.is_none() {
-            let _solved = self.try_subproblem();
-        }
-        let certificate = self.certificate();
-        let seconds = self.seconds();
+        let proof = match self.proof.take() {
+            Some(proof) => Some(proof),
+            None => self.ask(|proposers, at| proposers.plain_proof(at)),
+        };
+        let certificate = proof.map(|proof| self.certificate(&proof));
+        let seconds = self.clock.elapsed().as_secs_f64();
         let state = self.state;
         Report {
             solution: state.center,
@@ -99,49 +43,41 @@ impl Run<'_, '_> {
                     | Termination::NoiseLimit { .. }
             )
         );
-        let Some(lowest) = self.state.lowest.take().filter(|_| !about_center) else { return };
-        let state = &mut self.state;
-        if lowest.highest_value() >= state.center_value - state.center_error_bound() {
-            return;
+        if !about_center && self.state.move_to_lowest() {
+            self.proof = None;
+            self.ask(|proposers, at| proposers.recenter(at, None));
         }
-        (state.center, state.center_value, state.center_id) = (lowest.point.clone(), lowest.value, lowest.id);
-        if state.bundle.cut(lowest.id).is_none() {
-            state.bundle.push(lowest, &state.norm);
-        }
-        self.forget_model();
-        let (point, value) = (self.state.center.clone(), self.state.center_value);
-        self.rebase(&point, value, None);
     }
 
-    fn certificate(&self) -> Option<Certificate> {
-        let mut certificate = match &self.proof {
-            Some(proof) => proof.certificate(self.certificate_of(&proof.proposal)),
-            None => self.certificate_of(self.proposal.as_ref()?),
-        };
+    fn certificate(&mut self, proof: &Proof) -> Certificate {
+        let mut certificate = proof.certificate(self.of_bundle(&proof.proposal));
         // As a later check computes them. Where the weight is small, the step tells them less accurately than the multipliers do.
         if let Ok(check) = certificate.recheck(&self.set) {
             (certificate.aggregate_norm, certificate.aggregate_error) = (check.aggregate_norm, check.aggregate_error);
         }
-        Some(certificate)
+        certificate
     }
 
-    fn certificate_of(&self, proposal: &Proposal) -> Certificate {
+    fn of_bundle(&mut self, proposal: &Proposal) -> Certificate {
+        let noise = self.ask(|_, at| at.resolution().noise_level);
+        let state = &self.state;
+        let radius = active_cuts(state, proposal).map(|cut| cut.farthest_from(&state.center, &state.norm));
         Certificate {
-            point: self.state.center.clone(),
-            value: self.state.center_value,
-            error_bound: self.state.center_error_bound(),
+            point: state.center.clone(),
+            value: state.center_value,
+            error_bound: state.center_error_bound(),
             aggregate_norm: proposal.aggregate_norm,
             aggregate_error: proposal.aggregate_error,
             predicted_decrease: proposal.predicted_decrease,
             weight: proposal.weight,
             convexification: proposal.convexification,
-            convex: self.is_declared_convex(),
-            norm: self.state.norm.clone(),
-            cuts: self.state.bundle.cuts().to_vec(),
+            convex: self.method.config.convexity == Convexity::Convex,
+            norm: state.norm.clone(),
+            cuts: state.bundle.cuts().to_vec(),
             row_multipliers: proposal.row_multipliers.clone(),
             bound_multipliers: proposal.bound_multipliers.clone(),
-            active_radius: self.active_radius(proposal),
-            noise: self.noise_level(),
+            active_radius: radius.fold(0.0, f64::max),
+            noise,
             composite: None,
         }
     }

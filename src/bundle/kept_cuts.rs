@@ -7,6 +7,7 @@
 use super::cut::Cut;
 use super::norm::ScaledNorm;
 use super::pairs::Pairs;
+use crate::Vector;
 use std::cell::Cell;
 
 /// Linearization errors below this share of the values may be rounding.
@@ -49,6 +50,8 @@ pub(crate) struct Bundle {
     sizes: Vec<Sizes>,
     concave: Vec<ConcavePair>,
     pairs: Pairs,
+    /// Grows whenever a cut comes or goes.
+    revision: u64,
 }
 
 impl Bundle {
@@ -56,13 +59,25 @@ impl Bundle {
         &self.cuts
     }
 
+    /// Changes whenever a cut comes or goes.
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
+    }
+
     pub(crate) fn cut(&self, id: u64) -> Option<&Cut> {
         self.cuts.iter().find(|cut| cut.id == id)
+    }
+
+    /// Whether a cut knows a point, with a promised error of at most the one given: an evaluation would tell nothing new.
+    pub(crate) fn knows(&self, point: &Vector, largest_error: f64) -> bool {
+        let known = |cut: &Cut| !cut.certified && cut.point == *point && cut.error_bound <= largest_error;
+        self.cuts.iter().any(known)
     }
 
     /// Takes in a cut and compares it with all others.
     pub(crate) fn push(&mut self, cut: Cut, norm: &ScaledNorm) {
         let (dual_length, point_length) = (norm.dual_length(&cut.subgradient), norm.length(&cut.point));
+        self.revision += 1;
         self.sizes.push(Sizes { dual_length, point_length, spread: Cell::new(None) });
         self.cuts.push(cut);
         self.pairs.push(&self.cuts, norm);
@@ -128,6 +143,7 @@ impl Bundle {
     }
 
     fn remove(&mut self, index: usize) {
+        self.revision += 1;
         let cut = self.cuts.remove(index);
         self.sizes.remove(index);
         self.concave.retain(|pair| pair.ids.0 != cut.id && pair.ids.1 != cut.id);

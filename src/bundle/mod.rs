@@ -12,25 +12,31 @@
 //! ```
 //! References: \[SchrammZowe1992\] for model, trust parameter t and the tests SS/NS; \[Kiwiel1990\] for the weight.
 
-mod acceptance;
 mod builder;
 mod composite;
 mod config;
 mod coordinates;
 pub(crate) mod cut;
-mod event;
+mod demand;
+mod evidence;
 mod finish;
 mod kept_cuts;
+mod limits;
+mod noise;
 pub(crate) mod norm;
 mod oracle;
 mod pairs;
+mod proof;
 mod proposers;
+mod record;
+mod resolution;
 mod run;
 mod scales;
-mod second_look;
-mod small_decrease;
+mod seen;
 mod start;
 mod state;
+mod trial;
+mod verdict;
 
 pub use builder::BundleTrust;
 pub use composite::OuterCut;
@@ -38,5 +44,4 @@ pub use config::{AccuracyPolicy, BundleTrustConfig, Convexity, VariableScaling};
 pub use cut::Cut;
 pub use norm::ScaledNorm;
 pub use proposers::curved::config::CurvedModelConfig;
-pub use proposers::exploration::config::ExplorationConfig;
 pub use run::Run;

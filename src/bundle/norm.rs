@@ -151,6 +151,14 @@ impl ScaledNorm {
         }
     }
 
+    /// How far a step of length 1 can change variable i.
+    pub(crate) fn unit(&self, i: usize) -> f64 {
+        match &self.0 {
+            Scale::Weights(weights) => 1.0 / weights[i].sqrt(),
+            Scale::Linear(Coordinates { matrix, .. }) => matrix.row(i).norm(),
+        }
+    }
+
     /// Whether W is the identity.
     pub(crate) fn is_euclidean(&self) -> bool {
         matches!(&self.0, Scale::Weights(weights) if weights.iter().all(|weight| *weight == 1.0))

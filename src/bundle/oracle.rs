@@ -1,6 +1,7 @@
 //! The one place where the user's objective is called: panics, wrong sizes and numbers that are not finite become errors. Nothing else
 //! in the engine depends on the type of the objective, so that the engine is compiled once, not once per objective.
 
+use super::norm::ScaledNorm;
 use crate::linalg::first_non_finite;
 use crate::panics::evaluate_without_panic;
 use crate::{Answer, Evaluation, InputError, NonsmoothObjective, OracleError, Request};
@@ -60,10 +61,25 @@ impl<O: NonsmoothObjective> Oracle for WarmStarted<'_, O> {
     }
 }
 
-/// Evaluates the objective; never panics.
-pub(super) fn evaluate(oracle: &mut dyn Oracle, request: &Request<'_, ()>) -> Outcome {
+/// Evaluates the objective; never panics. `longest` is the largest ‖g‖* that can be held beside the subgradients known, with the norm in
+/// which it is measured; none as long as none is known.
+pub(super) fn evaluate(
+    oracle: &mut dyn Oracle,
+    request: &Request<'_, ()>,
+    longest: Option<(f64, &ScaledNorm)>,
+) -> Outcome {
     match oracle.answer(request) {
-        Ok(answer) => check(answer, request.point.len()),
+        Ok(answer) => match (check(answer, request.point.len()), longest) {
+            (Outcome::Answer(answer), Some((allowed, norm))) => {
+                let size = norm.dual_length(&answer.evaluation().subgradient);
+                if size <= allowed {
+                    Outcome::Answer(answer)
+                } else {
+                    Outcome::Failure(OracleError::TooLarge { what: "subgradient", size, allowed })
+                }
+            }
+            (outcome, _) => outcome,
+        },
         Err(error) => Outcome::Failure(error),
     }
 }

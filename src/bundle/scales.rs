@@ -6,30 +6,22 @@
 //!                                        Σ_k size_k Σ_i |w_i| |G_ik| of a composite Θ ) )
 //!             then times 10 variation/|Θ(x̂)|, clamped to [0.02, 1]
 //! scale     = |Θ(x̂)| clamped to [1e-6 least, variation], or to [1e-7 least, variation] for a Θ declared convex
-//! length    = ‖x̂‖ for distances up to ‖x̂‖,  else at least 1e-3 max(‖x̂‖, ‖x̂ − x⁰‖, ‖x⁰‖)
 //! least     = min( highest − Θ(x̂),  max( Σ_j λ_j Σ_i |g_ji| reach_i,  h(c ± |G| reach) − h(c) of a composite Θ ) )
-//! bound     = ẽ + Σ_i |z̃_i| reach_i ≥ Θ(x̂) − Θ(y)        if Θ is convex and |y_i − x̂_i| ≤ reach_i
-//! gap       = ẽ + Σ_i |z̃_i| max_k reach_k                  the bound that is told
 //! ```
 //! Here `highest` is the highest value at the start and in the bundle. Decreases and sums do not change if Θ is shifted, and the sums
-//! and the bound do not depend on the units of the variables. Cuts farther away than the variables are large tell nothing about the
+//! do not depend on the units of the variables. Cuts farther away than the variables are large tell nothing about the
 //! values near x̂. A run that has not gone anywhere has seen no variation: nothing is small yet.
 
 use super::config::{BundleTrustConfig, Convexity};
 use super::kept_cuts::Spread;
-use super::proposers::aggregate::aggregate_sizes;
-use super::proposers::proposal::Proposal;
 use super::state::{Lengths, OutputScales, State};
 use crate::linalg::upper_median;
 use crate::qp::kernels::{dot_terms, two_dot_terms};
-use crate::{Polyhedron, Vector};
+use crate::Vector;
 use std::rc::Rc;
 
 /// Sizes of a variable below this share of its reach are not told from zero.
 const LEAST_SHARE: f64 = 1e-8;
-/// The least length of all variables together where they cannot be told from zero, as a share of the length scale. Elsewhere, after a
-/// far start, it would let cuts from both sides of a curved kink count as near to the center and cancel.
-const LEAST_LENGTH_SHARE: f64 = 1e-3;
 /// The least scale of Θ, as a share of what the active cuts vary within reach.
 const LEAST_VALUE_SHARE: f64 = 1e-6;
 /// The same for a Θ that is declared convex. Its word is a bound, which is that much sharper: after starts 1e6 times too far, bounds of 2e-5
@@ -42,9 +34,14 @@ const MAX_VALUE_SHARE: f64 = 10.0;
 const SHIFTED_SHARE: f64 = 0.02;
 
 impl State {
-    /// How far each variable lies from zero or from its start, whichever is more.
-    pub(crate) fn reach(&self) -> Vector {
-        self.center.zip_map(&self.start, |x, start| x.abs().max((x - start).abs()))
+    /// How far a variable lies from zero or from its start, whichever is more.
+    pub(crate) fn reach(&self, i: usize) -> f64 {
+        self.center[i].abs().max((self.center[i] - self.start[i]).abs())
+    }
+
+    /// How far each variable lies from zero or from its start.
+    pub(crate) fn reaches(&self) -> Vector {
+        Vector::from_fn(self.center.len(), |i, _| self.reach(i))
     }
 
     /// The lengths that belong to the center; formed once per center.
@@ -53,20 +50,13 @@ impl State {
         match &*known {
             Some((center, lengths)) if *center == self.center_id => Rc::clone(lengths),
             _ => {
-                let reach = self.reach();
+                let reach = self.reaches();
                 let size = self.center.zip_map(&reach, |x, reach| x.abs().max(LEAST_SHARE * reach));
                 let lengths = Rc::new(Lengths { squared: self.norm.squared(&size), size, reach });
                 *known = Some((self.center_id, Rc::clone(&lengths)));
                 lengths
             }
         }
-    }
-
-    /// The length of the variables that a distance from the center refers to: their own if it is the larger one, otherwise at least a share
-    /// of the length scale, because such a distance does not tell the center from zero.
-    pub(crate) fn local_length(&self, distance: f64) -> f64 {
-        let own = self.norm.length(&self.center);
-        if own >= distance { own } else { own.max(LEAST_LENGTH_SHARE * self.length_scale()) }
     }
 
     /// The scale of Θ near the center that relative tolerances refer to.
@@ -119,39 +109,5 @@ impl State {
         let lengths = self.lengths();
         let cuts = self.bundle.cuts().iter().enumerate().filter(|(_, cut)| cut.is_active());
         cuts.map(|(i, cut)| cut.multiplier * self.spread(i, &lengths).reach).sum()
-    }
-
-    /// |z̃| of the subgradients as they are, entry by entry, plus what rounding of the sum can hide.
-    fn aggregate_sizes(&self, proposal: &Proposal, set: &Polyhedron) -> Vector {
-        let sides = (&proposal.row_multipliers, &proposal.bound_multipliers);
-        match &proposal.composite_aggregate {
-            Some(aggregate) => aggregate_sizes(std::iter::once((1.0, aggregate)), sides, set),
-            None => {
-                let cuts = self.bundle.cuts().iter().zip(&proposal.cut_multipliers);
-                let active = cuts.filter(|(_, multiplier)| **multiplier > 0.0);
-                aggregate_sizes(active.map(|(cut, &multiplier)| (multiplier, &cut.subgradient)), sides, set)
-            }
-        }
-    }
-
-    /// ẽ + Σ |z̃_i| reach_i: what a convex Θ can still fall within reach and in the box.
-    pub(crate) fn decrease_bound(&self, proposal: &Proposal, set: &Polyhedron) -> f64 {
-        let reach = self.reach();
-        self.decrease_within(proposal, set, |i| reach[i])
-    }
-
-    /// The same where every variable may move as far as the one that reaches farthest: how far one that has hardly moved is from the
-    /// minimum, its own reach does not tell.
-    pub(crate) fn gap_bound(&self, proposal: &Proposal, set: &Polyhedron) -> f64 {
-        let longest = self.reach().amax();
-        self.decrease_within(proposal, set, |_| longest)
-    }
-
-    /// ẽ + Σ |z̃_i| min(reach_i, distance to the farther side of the box).
-    fn decrease_within(&self, proposal: &Proposal, set: &Polyhedron, reach: impl Fn(usize) -> f64) -> f64 {
-        let farthest = |i: usize| (set.upper()[i] - self.center[i]).max(self.center[i] - set.lower()[i]);
-        let sizes = self.aggregate_sizes(proposal, set);
-        let falls = sizes.iter().enumerate().map(|(i, slope)| slope * reach(i).min(farthest(i)));
-        proposal.cut_error + proposal.slack_error + falls.sum::<f64>()
     }
 }

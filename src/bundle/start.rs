@@ -1,7 +1,6 @@
 //! The ways to run a method, and the first evaluation: admissible start, norm, first weight.
 
 use super::builder::BundleTrust;
-use super::composite::Composite;
 use super::config::{AccuracyPolicy, BundleTrustConfig};
 use super::cut::Cut;
 use super::kept_cuts::Bundle;
@@ -11,8 +10,11 @@ use super::proposers::list::Proposers;
 use super::proposers::proposal::FEASIBILITY;
 use super::run::Run;
 use super::state::State;
+use super::seen::Seen;
+use super::limits;
+use super::verdict;
 use crate::checks::check_size;
-use crate::composite::{Linearization, OuterFunction};
+use crate::composite::{Linearization, LinearizationRequest, OuterFunction};
 use crate::qp::{EpigraphQpSolver, QpError, is_only_point, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{
@@ -62,11 +64,10 @@ impl<'o> BundleTrust<'o> {
     ) -> Result<Run<'r, 'o>, OptimizeError> {
         let set = self.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
         let start = admissible_start(&set, dimension, x0)?;
-        let structured = outer.is_some() && self.config.composite_model;
-        let (state, linearization) = first_evaluation(oracle.as_mut(), structured, &self.config, &set, start)?;
+        let outer = outer.filter(|_| self.config.composite_model);
+        let (state, linearization) = first_evaluation(oracle.as_mut(), outer.is_some(), &self.config, &set, start)?;
         oracle.keep_warm_start();
-        let composite = structured.then(|| Composite::new(state.first_weight));
-        let proposers = Proposers::new(&self.config, dimension, state.first_weight);
+        let proposers = Proposers::new(&self.config, outer.is_some(), dimension, state.first_weight);
         let mut run = Run {
             method: self,
             oracle,
@@ -75,28 +76,22 @@ impl<'o> BundleTrust<'o> {
             state,
             solver: EpigraphQpSolver::default(),
             proposers,
-            model: None,
-            former_model: None,
-            proposal: None,
             termination: None,
-            composite,
             proof: None,
             clock,
         };
-        let start = run.state.center.clone();
-        let noted = run.note(&start, linearization);
-        let (known, linearized) = noted.unwrap_or((None, None));
-        run.rebase(&start, run.state.center_value, known);
-        let seconds = run.seconds();
+        let (known, linearized) = run.take_linearization(linearization);
+        run.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
+        let seconds = clock.elapsed().as_secs_f64();
         if let Some(first) = run.state.history.first_mut() {
             first.seconds = seconds;
             first.set_linearized(linearized);
         }
-        if let Break(termination) = run.after_evaluation() {
+        if let Break(termination) = limits::after_evaluation(&run.state, run.method) {
             run.termination = Some(termination);
-        } else if is_only_point(&run.set, &start, run.state.length_scale().max(run.state.first_step)) {
+        } else if is_only_point(&run.set, &run.state.center, run.state.length_scale().max(run.state.first_step)) {
             // Every subgradient is balanced by the constraints: nothing is left to find.
-            run.termination = run.word_at_point(0.0);
+            run.termination = Some(run.ask(|_, at| verdict::only_point(at)));
         }
         Ok(run)
     }
@@ -134,9 +129,9 @@ fn first_evaluation(
         AccuracyPolicy::OnDemand { coarsest, .. } => Accuracy::relative(coarsest)?,
         AccuracyPolicy::Tightest => Accuracy::TIGHTEST,
     };
-    let wanted = structured.then(|| Composite::request(f64::INFINITY));
+    let wanted = structured.then(|| LinearizationRequest::below(f64::INFINITY));
     let request = Request { linearization: wanted, accuracy, ..Request::tight(&start) };
-    let evaluation = match evaluate(oracle, &request) {
+    let evaluation = match evaluate(oracle, &request, None) {
         Outcome::Answer(answer) => answer.into_evaluation(),
         Outcome::MinusInfinity => return Err(OptimizeError::Oracle(OracleError::NotFinite { what: "value" })),
         Outcome::Failure(error) => return Err(OptimizeError::Oracle(error)),
@@ -146,6 +141,7 @@ fn first_evaluation(
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
     let point = start.clone();
+    let seen = Seen::new(value, &subgradient);
     let cut =
         Cut { id: 1, point, radius: 0.0, value, subgradient, error_bound, certified: false, multiplier: 0.0, idle: 0 };
     let mut state = State {
@@ -156,6 +152,7 @@ fn first_evaluation(
         center_value: value,
         center_id: 1,
         bundle: Bundle::default(),
+        seen,
         lowest: None,
         next_id: 2,
         weight,
@@ -164,8 +161,6 @@ fn first_evaluation(
         first_step,
         streak: 0,
         variation: None,
-        restarts: 0,
-        first_proof: None,
         center_accuracy: accuracy.tolerance(),
         nonconvex: false,
         noise: 0.0,

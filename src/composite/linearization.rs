@@ -12,6 +12,17 @@ pub struct LinearizationRequest {
     pub below: f64,
 }
 
+/// Relative accuracy that the engine asks of a Jacobian: a model of first order needs no more.
+const JACOBIAN_ACCURACY: f64 = 1e-4;
+
+impl LinearizationRequest {
+    /// What the engine asks for, at points where Θ is at most the value given.
+    pub(crate) fn below(below: f64) -> Self {
+        let accuracy = Accuracy::relative(JACOBIAN_ACCURACY).unwrap_or(Accuracy::TIGHTEST);
+        Self { accuracy, below }
+    }
+}
+
 /// Outputs c(x) and one element G of their generalized Jacobian; m outputs, n variables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linearization {

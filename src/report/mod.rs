@@ -87,8 +87,8 @@ impl fmt::Display for Report {
         let trials = &counts.trials;
         writeln!(
             f,
-            "             trial points: {} of the cuts, {} of the curved model, {} explorations, {} of the composite model",
-            trials.cuts, trials.curved_model, trials.exploration, trials.composite_model
+            "             trial points: {} of the cuts, {} of the curved model, {} of the composite model, {} for the proof",
+            trials.cuts, trials.curved_model, trials.composite_model, trials.confirmation
         )?;
         if counts.jacobians > 0 {
             writeln!(f, "             {} Jacobians", counts.jacobians)?;

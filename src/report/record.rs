@@ -45,10 +45,10 @@ pub enum Origin {
     Cuts,
     /// The curved model.
     CurvedModel,
-    /// An exploration.
-    Exploration,
     /// The composite model.
     CompositeModel,
+    /// Nobody: the point lies next to the center, for the proof of an end.
+    Confirmation,
 }
 
 impl std::fmt::Display for Origin {
@@ -57,8 +57,8 @@ impl std::fmt::Display for Origin {
             Self::Given => "given",
             Self::Cuts => "cuts",
             Self::CurvedModel => "curved model",
-            Self::Exploration => "exploration",
             Self::CompositeModel => "composite",
+            Self::Confirmation => "confirmation",
         })
     }
 }
@@ -146,6 +146,20 @@ pub struct Counts {
     pub qp_fallbacks: usize,
 }
 
+impl Counts {
+    /// Counts an evaluation by what became of it and by who proposed its point.
+    pub(crate) fn add(&mut self, kind: StepKind, origin: Origin) {
+        match kind {
+            StepKind::Start => {}
+            StepKind::Serious => self.serious += 1,
+            StepKind::Null | StepKind::NoDescent => self.null += 1,
+            StepKind::Refinement => self.refined += 1,
+            StepKind::Failed => self.failed += 1,
+        }
+        self.trials.add(origin);
+    }
+}
+
 /// Evaluations of trial points, failed ones included, by who proposed them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -154,10 +168,11 @@ pub struct TrialCounts {
     pub cuts: usize,
     /// The curved model.
     pub curved_model: usize,
-    /// Explorations.
-    pub exploration: usize,
     /// The composite model.
     pub composite_model: usize,
+    /// Points next to the center, for the proof of an end.
+    #[serde(default)]
+    pub confirmation: usize,
 }
 
 impl TrialCounts {
@@ -167,8 +182,8 @@ impl TrialCounts {
             Origin::Given => {}
             Origin::Cuts => self.cuts += 1,
             Origin::CurvedModel => self.curved_model += 1,
-            Origin::Exploration => self.exploration += 1,
             Origin::CompositeModel => self.composite_model += 1,
+            Origin::Confirmation => self.confirmation += 1,
         }
     }
 }

@@ -23,6 +23,10 @@ pub enum Termination {
     StationaryUnconfirmed {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
+        /// A variable, counted from 0, about which the subgradients say nothing: along it, they do not cancel, and its unit hides what is
+        /// left to gain.
+        #[serde(default)]
+        undecided: Option<usize>,
     },
     /// What the model promises is below the noise of the oracle.
     NoiseLimit {
@@ -81,6 +85,9 @@ impl Termination {
     pub fn advice(&self) -> &'static str {
         match self {
             Self::Stationary { .. } => "the certificate can be re-checked offline",
+            Self::StationaryUnconfirmed { undecided: Some(_), .. } => {
+                "give typical sizes of the variables, or bounds"
+            }
             Self::StationaryUnconfirmed { .. } => {
                 "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
             }
@@ -115,7 +122,10 @@ impl fmt::Display for Termination {
             Self::Stationary { radius, gap: None } => {
                 write!(f, "stationary, confirmed by cuts within relative distance {radius:.1e}")
             }
-            Self::StationaryUnconfirmed { radius } => {
+            Self::StationaryUnconfirmed { undecided: Some(variable), .. } => {
+                write!(f, "stationary, unconfirmed: nothing can be said about variable {variable} (counted from 0)")
+            }
+            Self::StationaryUnconfirmed { radius, .. } => {
                 write!(f, "stationary, unconfirmed: active cuts reach out to relative distance {radius:.1e}")
             }
             Self::NoiseLimit { estimate } => write!(f, "noise limit: values are uncertain by about {estimate:.1e}"),

@@ -2,7 +2,7 @@
 
 use crate::common::{crescent, v};
 use nonsmooth::{
-    BundleTrust, BundleTrustConfig, CurvedModelConfig, ExplorationConfig, FnObjective, IterationRecord, Matrix, Origin,
+    BundleTrust, BundleTrustConfig, CurvedModelConfig, FnObjective, IterationRecord, Matrix, Origin,
     Polyhedron, Report, StepKind, Termination, Vector,
 };
 
@@ -27,21 +27,20 @@ fn every_record_names_its_origin_and_the_counts_agree() {
     let trials = report.counts.trials;
     assert_eq!(trials.cuts, named(&report, Origin::Cuts));
     assert_eq!(trials.curved_model, named(&report, Origin::CurvedModel));
-    assert_eq!(trials.exploration, named(&report, Origin::Exploration));
+    assert_eq!(trials.confirmation, named(&report, Origin::Confirmation));
     assert!(trials.curved_model > 0, "{report}");
     assert!(report.history.iter().all(|record| (record.kind == StepKind::Start) == (record.origin == Origin::Given)));
-    assert_eq!(trials.cuts + trials.curved_model + trials.exploration, report.counts.evaluations - 1);
+    assert_eq!(trials.cuts + trials.curved_model + trials.confirmation, report.counts.evaluations - 1);
 }
 
 #[test]
 fn what_is_switched_off_proposes_nothing() {
-    let plain = run(BundleTrustConfig { curved_model: None, exploration: None, ..BundleTrustConfig::default() });
-    assert_eq!((plain.counts.trials.curved_model, plain.counts.trials.exploration), (0, 0));
+    let plain = run(BundleTrustConfig { curved_model: None, ..BundleTrustConfig::default() });
+    assert_eq!(plain.counts.trials.curved_model, 0);
     assert!(plain.counts.trials.cuts > 0);
-    // The largest number of variables is a setting: below the three of this problem it switches both off.
+    // The largest number of variables is a setting: below the three of this problem it switches it off.
     let curved_model = Some(CurvedModelConfig { max_dimension: 2, ..CurvedModelConfig::default() });
-    let exploration = Some(ExplorationConfig { max_dimension: 2, ..ExplorationConfig::default() });
-    let small = run(BundleTrustConfig { curved_model, exploration, ..BundleTrustConfig::default() });
+    let small = run(BundleTrustConfig { curved_model, ..BundleTrustConfig::default() });
     let values = |report: &Report| report.history.iter().map(|record| record.value).collect::<Vec<_>>();
     assert_eq!(values(&plain), values(&small));
 }
@@ -51,12 +50,8 @@ fn settings_are_checked_and_survive_json() {
     let wrong = CurvedModelConfig { newest_share: 0.0, ..CurvedModelConfig::default() };
     let config = BundleTrustConfig { curved_model: Some(wrong), ..BundleTrustConfig::default() };
     assert!(config.validate().unwrap_err().to_string().contains("curved_model.newest_share"));
-    let wrong = ExplorationConfig { min_gain: f64::NAN, ..ExplorationConfig::default() };
-    let config = BundleTrustConfig { exploration: Some(wrong), ..BundleTrustConfig::default() };
-    assert!(config.validate().unwrap_err().to_string().contains("exploration.min_gain"));
-    let text = r#"{"exploration": null, "curved_model": {"trust": 2.0}}"#;
+    let text = r#"{"curved_model": {"trust": 2.0}}"#;
     let config: BundleTrustConfig = serde_json::from_str(text).unwrap();
-    assert_eq!(config.exploration, None);
     assert_eq!(config.curved_model, Some(CurvedModelConfig { trust: 2.0, ..CurvedModelConfig::default() }));
 }
 
@@ -94,19 +89,6 @@ fn a_curved_valley_is_followed() {
     assert!(matches!(report.termination, Termination::Stationary { .. }), "{}", report.termination);
 }
 
-#[test]
-fn explorations_that_keep_their_promise_trust_the_seen_curvature_less() {
-    let evaluations = |metric_decrease| {
-        let exploration = Some(ExplorationConfig { metric_decrease, ..ExplorationConfig::default() });
-        solve("MAD4", BundleTrustConfig { exploration, ..BundleTrustConfig::default() }).1
-    };
-    // 14 and 20 where this was written.
-    let (falling, fixed) = (evaluations(0.5), evaluations(1.0));
-    assert!(falling < fixed, "{falling}, {fixed}");
-}
-
-/// Beside a pole the first subgradient is 1e16 times as long as those at the minimum: the floor of the weight must not keep the scale of
-/// the pole.
 #[test]
 fn a_start_beside_a_pole_is_left() {
     let theta = FnObjective::new(1, |x: &Vector| {

@@ -6,23 +6,21 @@
 //! ```
 //! One linearization is pessimistic where a constraint becomes active inside c, so that ratios above 1 are common. A rejected
 //! step is corrected from the model at its end. Where the correction fails too, the subproblem takes the curvature of the outputs
-//! that earlier Jacobians show. After repeated failures, and as soon as a step fails on kinks of c, the model pauses, and cuts,
-//! curved model and exploration go on.
+//! that earlier Jacobians show. After repeated failures, and as soon as a step fails on kinks of c, the model pauses, and the cuts go on.
 
 mod base;
 #[cfg(feature = "interior-point")]
 mod cones;
 mod curvature;
-mod excursion;
+mod escape;
 mod kinks;
-mod learning;
 mod model;
 mod proof;
-mod state;
-mod step;
+mod proposer;
+mod steps;
 mod subproblem;
-mod trial;
+mod trust;
 
 pub use model::OuterCut;
-pub(crate) use proof::Proof;
-pub(crate) use state::Composite;
+pub(crate) use proof::PointProof;
+pub(crate) use proposer::Composite;

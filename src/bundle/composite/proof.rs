@@ -3,23 +3,18 @@
 use super::base::Base;
 use super::model::{CompositeStep, OuterCut};
 use crate::bundle::cut::Cut;
-use crate::bundle::proposers::proposal::Proposal;
-use crate::report::{Certificate, CompositeProof, Termination};
+use crate::report::{Certificate, CompositeProof};
 
-/// What proves that a point is stationary.
+/// Outputs, Jacobian and cuts of the outer function that prove a point stationary.
 #[derive(Debug, Clone)]
-pub(crate) struct Proof {
-    /// The termination that the proof justifies.
-    pub word: Termination,
+pub(crate) struct PointProof {
     pub base: Base,
     pub step: CompositeStep,
-    /// The step with what it says about the base.
-    pub proposal: Proposal,
 }
 
-impl Proof {
+impl PointProof {
     /// The certificate with the cuts of the outer function, seen in the variables, in place of the bundle.
-    pub(crate) fn certificate(&self, of_proposal: Certificate) -> Certificate {
+    pub(crate) fn certificate(&self, of_bundle: Certificate) -> Certificate {
         let Base { point, value, linearization } = &self.base;
         let cut = |(index, cut): (usize, &OuterCut)| Cut {
             id: index as u64 + 1,
@@ -39,6 +34,6 @@ impl Proof {
             cuts: self.step.cuts.clone(),
         };
         let cuts = self.step.cuts.iter().enumerate().map(cut).collect();
-        Certificate { cuts, composite: Some(proof), active_radius: 0.0, ..of_proposal }
+        Certificate { cuts, composite: Some(proof), active_radius: 0.0, ..of_bundle }
     }
 }

@@ -1,62 +1,78 @@
-//! The proposers of a run: the plain cuts, which need no memory, and their rivals.
+//! The proposers of a run, in the order in which they are asked.
 
-use super::curved::Curved;
-use super::cuts;
-use super::exploration::Exploration;
+use super::cuts::PlainCuts;
 use super::proposal::Proposal;
-use super::proposer::{Position, Proposer, Trial};
+use super::proposer::{Answer, Position, Proposer};
+use crate::bundle::composite::Composite;
 use crate::bundle::config::BundleTrustConfig;
-use crate::bundle::state::State;
+use crate::bundle::proof::{Ending, Proof};
+use crate::bundle::trial::Trial;
+use crate::composite::Linearization;
 
-/// The plain cuts and their rivals, in the order in which they are asked.
+/// The proposers before the plain cuts, and the plain cuts, which always have an answer.
 pub(crate) struct Proposers {
-    rivals: Vec<Box<dyn Proposer>>,
+    first: Vec<Box<dyn Proposer>>,
+    cuts: PlainCuts,
 }
 
 impl Proposers {
-    /// The proposers that the settings ask for; `weight` is the first weight of the run.
-    pub(crate) fn new(config: &BundleTrustConfig, dimension: usize, weight: f64) -> Self {
-        let mut rivals: Vec<Box<dyn Proposer>> = vec![];
-        if let Some(settings) = config.curved_model.filter(|settings| dimension <= settings.max_dimension) {
-            rivals.push(Box::new(Curved::new(settings, weight)));
+    /// The proposers of an objective with or without a known outer function; `weight` is the first weight of the run.
+    pub(crate) fn new(config: &BundleTrustConfig, composite: bool, dimension: usize, weight: f64) -> Self {
+        let mut first: Vec<Box<dyn Proposer>> = vec![];
+        if composite {
+            first.push(Box::new(Composite::new(weight)));
         }
-        if let Some(settings) = config.exploration.filter(|settings| dimension <= settings.max_dimension) {
-            rivals.push(Box::new(Exploration::new(settings, weight)));
-        }
-        Self { rivals }
+        Self { first, cuts: PlainCuts::new(config, dimension, weight) }
     }
 
-    /// Whether anybody proposes trial points beside the plain cuts.
-    pub(crate) fn has_rivals(&self) -> bool {
-        !self.rivals.is_empty()
+    fn all(&mut self) -> impl Iterator<Item = &mut dyn Proposer> {
+        let first = self.first.iter_mut().map(|proposer| &mut **proposer as &mut dyn Proposer);
+        first.chain(std::iter::once(&mut self.cuts as &mut dyn Proposer))
     }
 
-    /// The proposal worth an evaluation: that of the cuts, unless a rival has a better one, which must promise more than `small`.
-    pub(crate) fn choose(&mut self, position: &mut Position<'_>, plain: Proposal, small: f64) -> Proposal {
-        let mut proposed = vec![plain.clone()];
-        for rival in &mut self.rivals {
-            if let Ok(Some(better)) = rival.propose(position, &proposed, small) {
-                proposed.push(better);
+    /// The answer of the first proposer that has one.
+    pub(crate) fn propose(&mut self, at: &mut Position<'_>) -> Answer {
+        for proposer in self.all() {
+            match proposer.propose(at) {
+                Answer::Silent => {}
+                answer => return answer,
             }
         }
-        let mut chosen = proposed.pop().unwrap_or(plain);
-        chosen.cut_change = position.model.cuts().change(&chosen.step);
-        chosen
+        Answer::Silent
+    }
+
+    /// Tells all proposers what came of a trial point; the center has not moved yet.
+    pub(crate) fn learn(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
+        self.all().for_each(|proposer| proposer.learn(at, trial));
+    }
+
+    /// Tells all proposers that bundle and center have been updated.
+    pub(crate) fn update(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
+        self.all().for_each(|proposer| proposer.update(at, trial));
     }
 
     /// Tells all proposers that the oracle failed at a trial point.
-    pub(crate) fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
-        for rival in &mut self.rivals {
-            rival.shorten(state, config, proposal);
-        }
-        cuts::shorten(state, config, proposal);
+    pub(crate) fn shorten(&mut self, at: &mut Position<'_>, proposal: &Proposal) {
+        self.all().for_each(|proposer| proposer.shorten(at, proposal));
     }
 
-    /// Tells all proposers what came of a trial point.
-    pub(crate) fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
-        for rival in &mut self.rivals {
-            rival.learn(state, config, trial);
-        }
-        cuts::learn(state, config, trial);
+    /// Tells all proposers that a trial point is known.
+    pub(crate) fn leave_known_point(&mut self, at: &mut Position<'_>, proposal: &Proposal) {
+        self.all().for_each(|proposer| proposer.leave_known_point(at, proposal));
+    }
+
+    /// Tells all proposers that the center has been evaluated, for the first time or anew.
+    pub(crate) fn recenter(&mut self, at: &mut Position<'_>, linearization: Option<&Linearization>) {
+        self.all().for_each(|proposer| proposer.recenter(at, linearization));
+    }
+
+    /// The proof of the present center that a proposer has found before.
+    pub(crate) fn standing_proof(&mut self) -> Option<Ending> {
+        self.all().find_map(Proposer::standing_proof)
+    }
+
+    /// What the plain cuts say about the center.
+    pub(crate) fn plain_proof(&mut self, at: &mut Position<'_>) -> Option<Proof> {
+        self.cuts.answer(at).map(|proposal| Proof { proposal, composite: None })
     }
 }

@@ -47,6 +47,9 @@ const LARGEST_PROJECTED_VIOLATION: f64 = 1e-6;
 /// A step is shortened to no less than this share.
 const SHORTEST_SHARE: f64 = 1e-3;
 
+/// A trial point that differs from the center by less than this share of every variable cannot be told from it.
+const SHORTEST_MOVE: f64 = 2.0 * f64::EPSILON;
+
 /// Why there is no trial point.
 #[derive(Debug, Clone, thiserror::Error)]
 pub(crate) enum SubproblemError {
@@ -109,6 +112,17 @@ impl Proposal {
         } else {
             Err(SubproblemError::Unusable)
         }
+    }
+
+    /// Whether the trial point cannot be told from the center in any variable.
+    pub(crate) fn is_too_short(&self, center: &Vector) -> bool {
+        self.trial.iter().zip(center.iter()).all(|(y, x)| (y - x).abs() <= SHORTEST_MOVE * x.abs())
+    }
+
+    /// The same multipliers at another trial point, which promises nothing by itself.
+    pub(crate) fn moved_to(&self, trial: Vector, set: &Polyhedron, state: &State) -> Result<Self, SubproblemError> {
+        let step = &trial - &state.center;
+        Self { trial, step, violation: 0.0, ..self.clone() }.admissible(set, state)
     }
 
     /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the center, which is

@@ -1,81 +1,84 @@
-//! What the engine asks of whoever proposes trial points beside the plain cuts.
+//! What the loop asks of whoever proposes trial points.
+//!
+//! ```text
+//! propose   a trial point, or the end of the run with its proof, or nothing: the next proposer of the list is asked
+//! learn     an evaluated trial point of any proposer, before the center moves;   update: afterwards
+//! shorten   the oracle failed at a trial point
+//! recenter  the center has been evaluated anew
+//! ```
 
-use super::cuts::model::Model;
-use super::proposal::{Proposal, SubproblemError};
+use super::proposal::Proposal;
 use crate::bundle::config::BundleTrustConfig;
+use crate::bundle::proof::Ending;
+use crate::bundle::resolution::Resolution;
 use crate::bundle::state::State;
+use crate::bundle::trial::Trial;
+use crate::composite::{Linearization, OuterFunction};
+use crate::Polyhedron;
 use crate::qp::EpigraphQpSolver;
-use crate::{Polyhedron, Vector};
 
-/// A rival of the plain cuts.
+/// The answer of a proposer.
+pub(crate) enum Answer {
+    /// Nothing: the next proposer is asked.
+    Silent,
+    /// A trial point worth an evaluation.
+    Trial(Box<Proposal>),
+    /// The end of the run.
+    End(Box<Ending>),
+}
+
+impl Answer {
+    pub(crate) fn trial(proposal: Proposal) -> Self {
+        Self::Trial(Box::new(proposal))
+    }
+
+    pub(crate) fn end(ending: Ending) -> Self {
+        Self::End(Box::new(ending))
+    }
+}
+
+/// What a proposer sees of the run, and may change.
+pub(crate) struct Position<'a> {
+    pub state: &'a mut State,
+    pub set: &'a Polyhedron,
+    pub config: &'a BundleTrustConfig,
+    pub solver: &'a mut EpigraphQpSolver,
+    /// The convex function of a composite objective.
+    pub outer: Option<&'a dyn OuterFunction>,
+}
+
+impl Position<'_> {
+    /// What counts as small at the present center.
+    pub(crate) fn resolution(&self) -> Resolution {
+        Resolution::new(self.state, self.config)
+    }
+}
+
+/// A proposer of trial points.
 pub(crate) trait Proposer {
-    /// A trial point that should replace the last of those `proposed` so far; none if that one should stay. The first entry of
-    /// `proposed` comes from the plain cuts. A predicted decrease up to `small` is not worth an evaluation.
-    ///
-    /// # Errors
-    /// [`SubproblemError`]: the rival proposes nothing.
-    fn propose(
-        &mut self,
-        position: &mut Position<'_>,
-        proposed: &[Proposal],
-        small: f64,
-    ) -> Result<Option<Proposal>, SubproblemError>;
+    /// The next trial point, or the end of the run.
+    fn propose(&mut self, at: &mut Position<'_>) -> Answer;
+
+    /// Takes note of an evaluated trial point of any proposer; the center has not moved yet.
+    fn learn(&mut self, at: &mut Position<'_>, trial: &Trial<'_>);
+
+    /// Takes note of the same trial point once bundle and center have been updated.
+    fn update(&mut self, _at: &mut Position<'_>, _trial: &Trial<'_>) {}
 
     /// Takes note that the oracle failed at a trial point of any proposer. Where the point was its own, a proposer takes a shorter step
     /// next, or pauses.
-    fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal);
+    fn shorten(&mut self, at: &mut Position<'_>, proposal: &Proposal);
 
-    /// Takes note of an evaluated trial point of any proposer; the center has not moved yet.
-    fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>);
-}
-
-/// What a proposer sees.
-pub(crate) struct Position<'a> {
-    pub state: &'a State,
-    pub set: &'a Polyhedron,
-    pub solver: &'a mut EpigraphQpSolver,
-    /// The cutting-plane model at the center.
-    pub model: &'a Model,
-}
-
-/// A trial point and what came of it.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Trial<'a> {
-    pub proposal: &'a Proposal,
-    pub comparison: Comparison,
-    /// Whether the value is that of Θ; otherwise it is a lower bound of Θ that rules out a serious step.
-    pub accurate: bool,
-    pub serious: bool,
-}
-
-/// Comparison of a trial point with what the model said.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Comparison {
-    /// Θ(y) − Θ(x̂).
-    pub change: f64,
-    /// ⟨g, d⟩ with the subgradient at the trial point.
-    pub slope: f64,
-    /// v = −predicted decrease.
-    pub model_change: f64,
-}
-
-impl Comparison {
-    pub(crate) fn new(state: &State, proposal: &Proposal, value: f64, subgradient: &Vector) -> Self {
-        Self {
-            change: value - state.center_value,
-            slope: subgradient.dot(&proposal.step),
-            model_change: -proposal.predicted_decrease,
-        }
+    /// Takes note that a trial point of any proposer is known, so that its evaluation would tell nothing new.
+    fn leave_known_point(&mut self, at: &mut Position<'_>, proposal: &Proposal) {
+        self.shorten(at, proposal);
     }
 
-    /// Test SS(i) of \[SchrammZowe1992\]: Θ has fallen by enough of the predicted decrease. The values themselves must fall, because a
-    /// predicted decrease can be so small that no change at all would be enough.
-    pub(crate) fn is_serious(&self, config: &BundleTrustConfig) -> bool {
-        self.change < 0.0 && self.change <= config.serious_fraction * self.model_change
-    }
+    /// Takes note that the center has been evaluated, for the first time or anew, with its linearization if there is one.
+    fn recenter(&mut self, _at: &mut Position<'_>, _linearization: Option<&Linearization>) {}
 
-    /// Whether so much of the predicted decrease was found that the next step may be longer.
-    pub(crate) fn is_good(&self, config: &BundleTrustConfig) -> bool {
-        self.change <= config.good_fraction * self.model_change
+    /// The proof of the present center that has been found before, where the run goes on to look for something lower.
+    fn standing_proof(&mut self) -> Option<Ending> {
+        None
     }
 }

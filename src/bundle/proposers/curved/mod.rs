@@ -10,10 +10,12 @@ mod step_tests;
 
 use super::pause::Pause;
 use super::proposal::{Proposal, SubproblemError};
-use super::proposer::{Comparison, Position, Proposer, Trial};
+use super::cuts::model::Model;
+use super::proposer::Position;
 use crate::Vector;
 use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::state::State;
+use crate::bundle::trial::{Comparison, Trial};
 use crate::report::Origin;
 use config::CurvedModelConfig;
 use model::CurvedModel;
@@ -41,7 +43,7 @@ impl Curved {
 
     /// The step that minimises the model and its penalty.
     fn step(&self, at: &mut Position<'_>) -> Result<Vector, SubproblemError> {
-        let (state, model) = (at.state, &self.model);
+        let (state, model) = (&*at.state, &self.model);
         let (weight, radius) = (self.weight, longest_step(state));
         let penalised = Penalised { model, weight, radius, norm: &state.norm, set: at.set, center: &state.center };
         Ok(penalised.minimum(model.first_multipliers(state), at.solver, &self.settings)?)
@@ -110,30 +112,39 @@ fn missing_weight(comparison: &Comparison, step_length: f64) -> f64 {
     2.0 * (comparison.change - comparison.model_change) / (step_length * step_length)
 }
 
-impl Proposer for Curved {
-    fn propose(
+impl Curved {
+    /// A trial point that should replace that of the plain cuts; none if theirs should stay. A predicted decrease up to `small` is not worth
+    /// an evaluation.
+    ///
+    /// # Errors
+    /// [`SubproblemError`]: the model proposes nothing.
+    pub(crate) fn propose(
         &mut self,
         at: &mut Position<'_>,
-        proposed: &[Proposal],
+        cuts: &Model,
+        plain: &Proposal,
         small: f64,
     ) -> Result<Option<Proposal>, SubproblemError> {
-        self.model = CurvedModel::new(at.state, at.model, &self.settings);
-        let may_propose = self.pause.pass() && self.score > self.settings.trust;
-        let Some(plain) = proposed.first().filter(|_| may_propose) else { return Ok(None) };
+        self.model = CurvedModel::new(at.state, cuts, &self.settings);
+        if !(self.pause.pass() && self.score > self.settings.trust) {
+            return Ok(None);
+        }
         let step = self.step(at)?;
         let change = |step: &Vector| self.model.change(step);
         let better = plain.replaced((step, self.weight, Origin::CurvedModel), (at.set, at.state), change)?;
         Ok(Some(better).filter(|better| better.predicted_decrease > self.settings.least_promise * small))
     }
 
-    fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
+    /// Takes note that the oracle failed at a trial point of any proposer.
+    pub(crate) fn shorten(&mut self, state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
         if proposal.origin == Origin::CurvedModel {
             self.pause.fail(self.settings.max_pause);
             self.weight = (self.weight * config.weight_increase).min(state.weight_limits(config).1);
         }
     }
 
-    fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+    /// Takes note of an evaluated trial point of any proposer; the center has not moved yet.
+    pub(crate) fn learn(&mut self, state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
         if trial.accurate {
             let curved = self.model.change(&trial.proposal.step);
             self.compare(trial.comparison.change, trial.proposal.cut_change, curved);

@@ -1,92 +1,111 @@
-//! The plain cuts: every run has this proposer, and stopping test and certificate rest on it.
-//!
-//! ```text
-//! min over (d, v)  v + u‖d‖²/2,   ⟨h_i, d⟩ − a_i ≤ v,   x̂ + d ∈ U
-//! z̃ = Σ λ_i h_i + Aᵀμ + ν = −u W d      aggregate subgradient, constraints included
-//! ẽ = −v − u‖d‖² = Σ λ_i a_i + slack of the active constraints ≥ 0      aggregate error
-//! ```
+//! The plain cuts: every run has this proposer, and its certificate rests on them unless the composite model has a proof.
 
+mod confirmation;
 pub(crate) mod model;
+pub(crate) mod planes;
+mod stationarity;
 mod weight;
 
-use super::aggregate::slack_error;
-use super::proposal::{Proposal, SubproblemError};
-use super::proposer::{Position, Trial};
-use super::subproblem::{self, Cuts};
+use super::curved::Curved;
+use super::proposal::Proposal;
+use super::proposer::{Answer, Position, Proposer};
 use crate::bundle::config::BundleTrustConfig;
-use crate::bundle::norm::WeightedMetric;
-use crate::bundle::state::State;
-use crate::qp::QpSolution;
+use crate::bundle::demand;
+use crate::bundle::trial::Trial;
 use crate::report::Origin;
-use crate::{Polyhedron, Vector};
-use model::{Model, PRODUCTS_DIMENSION};
+use planes::CuttingPlanes;
+use stationarity::{Next, StationarityTest};
 
-/// The trial point of the cutting-plane model with the weight of the run.
-///
-/// # Errors
-/// [`SubproblemError`] if the subproblem has no usable answer.
-pub(crate) fn propose(at: &mut Position<'_>) -> Result<Proposal, SubproblemError> {
-    let (state, model) = (at.state, at.model);
-    let quadratic = state.norm.weighted(state.weight);
-    let many = state.center.len() >= PRODUCTS_DIMENSION && matches!(quadratic, WeightedMetric::Diagonal(_));
-    let gram = if many { model.products(state) } else { None };
-    let cuts = Cuts { gram, ..model.cuts() };
-    let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
-    let proposal = interpret(solution, (state, at.set), model);
-    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution.
-    let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
-    if !(proposal.predicted_decrease >= least && proposal.step_length.is_finite()) {
-        return Err(SubproblemError::Unusable);
-    }
-    proposal.admissible(at.set, state)
+/// The cutting-plane model, the curved model that may propose in its place, and the test for the end.
+#[derive(Debug)]
+pub(crate) struct PlainCuts {
+    planes: CuttingPlanes,
+    curved: Option<Curved>,
+    test: StationarityTest,
 }
 
-/// Takes note that the oracle failed at a trial point of any proposer.
-pub(crate) fn shorten(state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
-    if proposal.origin == Origin::Cuts {
-        state.streak = -1;
-        state.set_weight(proposal.weight * config.weight_increase, config);
+impl PlainCuts {
+    /// The proposer of a run with the first weight given.
+    pub(crate) fn new(config: &BundleTrustConfig, dimension: usize, weight: f64) -> Self {
+        let settings = config.curved_model.filter(|settings| dimension <= settings.max_dimension);
+        let curved = settings.map(|settings| Curved::new(settings, weight));
+        Self { planes: CuttingPlanes::default(), curved, test: StationarityTest::default() }
+    }
+
+    /// The proposal worth an evaluation: that of the cuts, unless the curved model has a better one.
+    fn choose(&mut self, at: &mut Position<'_>, plain: Proposal) -> Proposal {
+        let Some(curved) = &mut self.curved else { return plain };
+        let small = at.resolution().small();
+        let model = self.planes.model(at);
+        match curved.propose(at, model, &plain, small) {
+            Ok(Some(better)) => Proposal { cut_change: model.cuts().change(&better.step), ..better },
+            _ => plain,
+        }
+    }
+
+    /// The proposal itself, or its step shortened to the length that a failed evaluation has left. A larger weight alone leaves the step as
+    /// it is where cuts meet in a point.
+    fn shortened(&mut self, at: &mut Position<'_>, proposal: Proposal) -> Proposal {
+        let Some(longest) = at.state.longest_step.filter(|longest| proposal.step_length > *longest) else {
+            return proposal;
+        };
+        let step = &proposal.step * (longest / proposal.step_length);
+        let cut_change = self.planes.model(at).cuts().change(&step);
+        let (weight, origin) = (proposal.weight, proposal.origin);
+        match proposal.replaced((step, weight, origin), (at.set, at.state), |_| cut_change) {
+            Ok(shorter) => Proposal { cut_change, ..shorter },
+            Err(_) => proposal,
+        }
+    }
+
+    /// The answer of the subproblem at the center; none where it cannot be solved.
+    pub(crate) fn answer(&mut self, at: &mut Position<'_>) -> Option<Proposal> {
+        match self.planes.answer(at.state) {
+            Some(proposal) => Some(proposal.clone()),
+            None => self.planes.try_solve(at).ok(),
+        }
     }
 }
 
-/// Sets the next weight, after trial points of the plain cuts only; the center has not moved yet.
-pub(crate) fn learn(state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
-    if trial.proposal.origin != Origin::Cuts {
-        return;
+impl Proposer for PlainCuts {
+    fn propose(&mut self, at: &mut Position<'_>) -> Answer {
+        match self.test.next(at, &mut self.planes) {
+            Next::End(ending) => Answer::end(ending),
+            Next::Given(proposal) => Answer::trial(proposal),
+            Next::Trial(proposal) => {
+                let refines = demand::center_is_too_coarse(at.state, at.config, proposal.predicted_decrease);
+                let chosen = if refines { proposal } else { self.choose(at, proposal) };
+                Answer::trial(self.shortened(at, chosen))
+            }
+        }
     }
-    if trial.serious {
-        weight::after_serious(state, config, &trial.comparison);
-    } else {
-        weight::after_null(state, config, trial);
-    }
-}
 
-fn interpret(mut solution: QpSolution, (state, set): (&State, &Polyhedron), model: &Model) -> Proposal {
-    let step = std::mem::take(&mut solution.step);
-    let squared = state.norm.squared(&step);
-    let predicted_decrease = (-solution.epigraph).max(0.0);
-    let offsets = model.cuts().offsets;
-    let cut_error: f64 = solution.cut_multipliers.iter().zip(offsets).map(|(l, a)| l * a).sum();
-    model.distribute(&mut solution.cut_multipliers);
-    let multipliers = (Vector::from_vec(solution.row_multipliers), Vector::from_vec(solution.bound_multipliers));
-    let sides = (&multipliers.0, &multipliers.1);
-    Proposal {
-        trial: &state.center + &step,
-        step_length: squared.sqrt(),
-        composite_aggregate: None,
-        slack_error: slack_error(sides, &state.center, set),
-        step,
-        predicted_decrease,
-        cut_change: -predicted_decrease,
-        aggregate_norm: state.weight * squared.sqrt(),
-        aggregate_error: (predicted_decrease - state.weight * squared).max(0.0),
-        cut_error,
-        cut_multipliers: solution.cut_multipliers,
-        row_multipliers: multipliers.0,
-        bound_multipliers: multipliers.1,
-        convexification: model.convexification,
-        weight: state.weight,
-        violation: 0.0,
-        origin: Origin::Cuts,
+    fn learn(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
+        if let Some(curved) = &mut self.curved {
+            curved.learn(at.state, at.config, trial);
+        }
+        self.test.learn(at, trial);
+        weight::learn(at.state, at.config, trial);
+    }
+
+    fn update(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
+        self.test.update(at, trial);
+    }
+
+    fn shorten(&mut self, at: &mut Position<'_>, proposal: &Proposal) {
+        if let Some(curved) = &mut self.curved {
+            curved.shorten(at.state, at.config, proposal);
+        }
+        weight::shorten(at.state, at.config, proposal);
+    }
+
+    /// Lengthens the step where noise hides what it promises, and shortens it elsewhere.
+    fn leave_known_point(&mut self, at: &mut Position<'_>, proposal: &Proposal) {
+        let hidden = at.resolution().hidden_by_noise();
+        if proposal.origin == Origin::Cuts && proposal.predicted_decrease <= hidden {
+            at.state.set_weight(at.state.weight / 10.0, at.config);
+        } else {
+            self.shorten(at, proposal);
+        }
     }
 }

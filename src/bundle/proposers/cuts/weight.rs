@@ -13,7 +13,8 @@
 
 use crate::BundleTrustConfig;
 use crate::bundle::proposers::proposal::Proposal;
-use crate::bundle::proposers::proposer::{Comparison, Trial};
+use crate::bundle::trial::{Comparison, Trial};
+use crate::report::Origin;
 use crate::bundle::state::{NOISE_MARGIN, State};
 
 /// A linearization error below minus this share of the size of Θ is no rounding: Θ bends down.
@@ -27,8 +28,28 @@ const ERROR_INCREASE: f64 = 2.0;
 /// such errors matter.
 const MANY_VARIABLES: usize = 100;
 
+/// Takes note that the oracle failed at a trial point of any proposer.
+pub(super) fn shorten(state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
+    if proposal.origin == Origin::Cuts {
+        state.streak = -1;
+        state.set_weight(proposal.weight * config.weight_increase, config);
+    }
+}
+
+/// Sets the next weight, after trial points of the plain cuts only; the center has not moved yet.
+pub(super) fn learn(state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+    if trial.proposal.origin != Origin::Cuts {
+        return;
+    }
+    if trial.serious {
+        after_serious(state, config, &trial.comparison);
+    } else {
+        after_null(state, config, trial);
+    }
+}
+
 /// Sets the weight after a serious step, before the center moves.
-pub(super) fn after_serious(state: &mut State, config: &BundleTrustConfig, comparison: &Comparison) {
+fn after_serious(state: &mut State, config: &BundleTrustConfig, comparison: &Comparison) {
     let u = state.weight;
     let mut changed = false;
     if state.streak > 0 && comparison.is_good(config) {
@@ -45,7 +66,7 @@ pub(super) fn after_serious(state: &mut State, config: &BundleTrustConfig, compa
 }
 
 /// Sets the weight after a null step.
-pub(super) fn after_null(state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+fn after_null(state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
     let comparison = &trial.comparison;
     let u = state.weight;
     let seen = trial.proposal.aggregate_norm + trial.proposal.cut_error;

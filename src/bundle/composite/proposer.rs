@@ -1,0 +1,321 @@
+//! The trial points of the composite model, and the end of the run at a point that it proves stationary.
+
+use super::base::Base;
+use super::escape::Escape;
+use super::kinks::{Kinks, Seen};
+use super::proof::PointProof;
+use super::steps::{Changes, Steps};
+use super::trust::{FACTOR, Trust};
+use crate::Vector;
+use crate::bundle::config::Convexity;
+use crate::bundle::evidence::Evidence;
+use crate::bundle::proof::{Ending, Proof};
+use crate::bundle::proposers::proposal::Proposal;
+use crate::bundle::proposers::proposer::{Answer, Position, Proposer};
+use crate::bundle::state::OutputScales;
+use crate::bundle::trial::Trial;
+use crate::bundle::verdict::{Verdict, allowed, verdict};
+use crate::composite::{Linearization, OuterFunction};
+use crate::panics::without_panic;
+use crate::report::{Origin, Termination};
+
+/// Weights tried, upwards and downwards, for one trial point.
+const MAX_WEIGHTS: usize = 20;
+/// A small predicted decrease that grows by less than this factor as the weight falls does not depend on the weight any more.
+const LEAST_GAIN: f64 = 1.1;
+/// Longest correction from a rejected trial point, in lengths of the rejected step.
+const CONTRACTION: f64 = 0.5;
+
+/// The composite model of a run.
+#[derive(Debug)]
+pub(crate) struct Composite {
+    trust: Trust,
+    steps: Steps,
+    kinks: Kinks,
+    /// Where the model is built: the center, if its Jacobian is known.
+    base: Option<Base>,
+    /// A rejected trial point with its Jacobian.
+    rejected: Option<Base>,
+    /// Whether the pending trial point is a correction.
+    correcting: bool,
+    escape: Option<Escape>,
+    /// Whether the center is the end of a last step that has brought a small decrease only.
+    ends_last_step: bool,
+}
+
+impl Composite {
+    pub(crate) fn new(first_weight: f64) -> Self {
+        Self {
+            trust: Trust::new(first_weight),
+            steps: Steps::default(),
+            kinks: Kinks::default(),
+            base: None,
+            rejected: None,
+            correcting: false,
+            escape: None,
+            ends_last_step: false,
+        }
+    }
+
+    /// A step on from a rejected trial point, if it is short beside the rejected step and promises a value below the center's.
+    ///
+    /// A step along a curved kink of h leaves the kink by second order in its length, and loses by first order in this distance
+    /// (Maratos effect): the model at the end of the step leads back to the kink.
+    fn correction(
+        &mut self,
+        at: &mut Position<'_>,
+        base: &Base,
+        rejected: &Base,
+    ) -> Result<Option<Proposal>, Termination> {
+        let origin = &base.point - &rejected.point;
+        let changes = Changes { set: None, origin: Some(&origin) };
+        let Some((proposal, _)) = self.steps.step(at, rejected, self.trust.weight / FACTOR, changes)? else {
+            return Ok(None);
+        };
+        let length = at.state.norm.length(&(&proposal.trial - &rejected.point));
+        let predicted_decrease = base.value - rejected.value + proposal.predicted_decrease;
+        if length > CONTRACTION * at.state.norm.length(&origin) || predicted_decrease <= at.resolution().small() {
+            return Ok(None);
+        }
+        Ok(Some(Proposal { predicted_decrease, ..proposal }))
+    }
+
+    /// A step from the base that is worth an evaluation, or the proof that the base is stationary; silent where there is neither.
+    fn step(&mut self, at: &mut Position<'_>, base: &Base) -> Result<Answer, Termination> {
+        let small = at.resolution().small();
+        let (least, _) = at.state.weight_limits(at.config);
+        let mut weight = self.trust.weight.max(least);
+        let (mut raised, mut last) = (false, 0.0);
+        for _ in 0..MAX_WEIGHTS {
+            let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
+                (weight, raised) = (weight * FACTOR, true);
+                continue;
+            };
+            let promised = proposal.predicted_decrease;
+            if promised > small {
+                if proposal.step_length <= self.trust.longest {
+                    return Ok(Answer::trial(proposal));
+                }
+                (weight, raised) = (weight * FACTOR, true);
+                continue;
+            }
+            let evidence = Evidence::new(at.state, at.set, &proposal);
+            if let Verdict::End(termination) = verdict(at, &evidence) {
+                let composite = Some(PointProof { base: base.clone(), step });
+                let proof = Some(Proof { proposal: proposal.clone(), composite });
+                return Ok(self.leave(at, (Ending { termination, proof }, base.clone()), proposal));
+            }
+            weight /= FACTOR;
+            let decided = evidence.undecided(allowed(&at.resolution(), is_convex(at))).is_none();
+            if raised || decided && promised < LEAST_GAIN * last {
+                // No step that has not been rejected promises more. What is small already may be proved to be all that is left.
+                return Ok(match self.lighter_proof(at, base, weight)? {
+                    Some(ending) => self.leave(at, (ending, base.clone()), proposal),
+                    None if raised => Answer::Silent,
+                    None => self.small_step(at, proposal),
+                });
+            }
+            last = promised;
+        }
+        Ok(Answer::Silent)
+    }
+
+    /// A step that promises little: the model may prove the point at its end stationary. Silent within a limit of length, where a longer step
+    /// has been rejected: the cuts go on.
+    fn small_step(&mut self, at: &Position<'_>, proposal: Proposal) -> Answer {
+        if self.trust.longest < f64::INFINITY {
+            self.trust.pause();
+            Answer::Silent
+        } else if proposal.predicted_decrease > at.state.rounding() {
+            Answer::trial(proposal)
+        } else {
+            Answer::Silent
+        }
+    }
+
+    /// The proof that a center is stationary from a subproblem with a lower weight and without the curvature of the outputs, if there is one.
+    ///
+    /// Gᵀw = −(u W + B) d − Aᵀμ − ν: where weight and curvature hold the step, a lower weight lets the multipliers balance. The bound
+    /// of the decrease within reach is the same, whatever subproblem the multipliers come from.
+    fn lighter_proof(
+        &mut self,
+        at: &mut Position<'_>,
+        base: &Base,
+        mut weight: f64,
+    ) -> Result<Option<Ending>, Termination> {
+        let needed = self.steps.share.replace(false);
+        let mut least = f64::INFINITY;
+        let mut found = Ok(None);
+        for _ in 0..MAX_WEIGHTS {
+            let (proposal, step) = match self.steps.step(at, base, weight, Changes::default()) {
+                Ok(Some(solved)) => solved,
+                Ok(None) => break,
+                Err(termination) => {
+                    found = Err(termination);
+                    break;
+                }
+            };
+            let evidence = Evidence::new(at.state, at.set, &proposal);
+            if let Verdict::End(termination) = verdict(at, &evidence) {
+                let composite = Some(PointProof { base: base.clone(), step });
+                found = Ok(Some(Ending { termination, proof: Some(Proof { proposal, composite }) }));
+                break;
+            }
+            let bound = evidence.remaining();
+            let decided = evidence.undecided(allowed(&at.resolution(), is_convex(at))).is_none();
+            if decided && bound >= least {
+                break;
+            }
+            (least, weight) = (bound, weight / FACTOR);
+        }
+        self.steps.share.replace(needed);
+        found
+    }
+
+    /// The end of the run with a proof, or a step that looks for something lower first.
+    fn leave(&mut self, at: &mut Position<'_>, found: (Ending, Base), last: Proposal) -> Answer {
+        let last = Some(last).filter(|_| !self.ends_last_step);
+        let (escape, answer) = Escape::begin(at, &mut self.steps, found, last);
+        self.escape = escape;
+        answer
+    }
+
+    fn answer(&mut self, at: &mut Position<'_>) -> Result<Answer, Termination> {
+        if let Some(escape) = self.escape.take() {
+            let (escape, answer) = escape.next(at, &mut self.steps);
+            self.escape = escape;
+            return Ok(answer);
+        }
+        let Some(base) = self.base.clone().filter(|_| self.trust.pass()) else { return Ok(Answer::Silent) };
+        if let Some(rejected) = self.rejected.take() {
+            if let Some(proposal) = self.correction(at, &base, &rejected)? {
+                self.correcting = true;
+                return Ok(Answer::trial(proposal));
+            }
+            self.steps.share.need();
+        }
+        self.step(at, &base)
+    }
+
+    /// Builds the model at the center from now on. Without a Jacobian there, the model is silent until the center moves again.
+    fn rebase(&mut self, at: &mut Position<'_>, linearization: Option<&Linearization>) {
+        let (point, value) = (at.state.center.clone(), at.state.center_value);
+        let known = at.outer.zip(linearization);
+        let reach = at.state.reaches();
+        at.state.output_scales = known.and_then(|(outer, known)| output_scales(outer, known, &reach));
+        self.rejected = None;
+        self.base = linearization.map(|known| Base { point, value, linearization: known.clone() });
+    }
+
+    /// Learns from a step whether the outputs have met kinks.
+    fn watch_kinks(&mut self, outer: &dyn OuterFunction, trial: &Trial<'_>) {
+        let Some(base) = &self.base else { return };
+        let Trial { proposal, comparison, linearization, .. } = trial;
+        let seen = Seen { outer, base, point: &proposal.trial, change: comparison.change, end: *linearization };
+        if proposal.origin != Origin::CompositeModel {
+            if self.kinks.remain(&seen) {
+                self.trust.prolong();
+            }
+        } else if self.kinks.met(&seen, proposal.predicted_decrease, trial.serious) {
+            self.trust.pause();
+        }
+    }
+}
+
+fn is_convex(at: &Position<'_>) -> bool {
+    at.config.convexity == Convexity::Convex
+}
+
+/// A base at a trial point, where its Jacobian is known.
+fn base_at(trial: &Trial<'_>) -> Option<Base> {
+    let (point, value) = (trial.proposal.trial.clone(), trial.value);
+    trial.linearization.map(|known| Base { point, value, linearization: known.clone() })
+}
+
+impl Proposer for Composite {
+    fn propose(&mut self, at: &mut Position<'_>) -> Answer {
+        self.answer(at).unwrap_or_else(|termination| Answer::end(termination.into()))
+    }
+
+    fn learn(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
+        let Some(outer) = at.outer else { return };
+        if let Some(known) = trial.linearization {
+            self.steps.remember(outer, &trial.proposal.trial, known);
+        }
+        if self.escape.is_some() {
+            return;
+        }
+        self.watch_kinks(outer, trial);
+        let own = trial.proposal.origin == Origin::CompositeModel;
+        let correcting = std::mem::take(&mut self.correcting);
+        if !own {
+            return;
+        }
+        let ratio = trial.comparison.change / trial.comparison.model_change;
+        if trial.serious {
+            self.trust.accept(trial.proposal, ratio);
+            self.steps.share.accept(ratio);
+        } else if correcting {
+            self.steps.share.need();
+        } else {
+            self.trust.reject(trial.proposal);
+            self.steps.share.reject();
+            self.rejected = base_at(trial);
+        }
+    }
+
+    fn update(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
+        let small = at.resolution().small();
+        match (self.escape.take(), trial.serious) {
+            (Some(escape), true) => {
+                self.trust.weight = escape.weight;
+                self.ends_last_step = escape.last_step && -trial.comparison.change <= small;
+            }
+            (Some(mut escape), false) => {
+                escape.learn(trial.value, base_at(trial));
+                self.escape = Some(escape);
+            }
+            (None, true) => self.ends_last_step = false,
+            (None, false) => {}
+        }
+        if trial.serious {
+            self.rebase(at, trial.linearization);
+        }
+    }
+
+    fn shorten(&mut self, _at: &mut Position<'_>, proposal: &Proposal) {
+        if let Some(escape) = &mut self.escape {
+            escape.give_up();
+        } else if proposal.origin == Origin::CompositeModel {
+            self.correcting = false;
+            self.trust.reject(proposal);
+            self.steps.share.reject();
+        }
+    }
+
+    fn recenter(&mut self, at: &mut Position<'_>, linearization: Option<&Linearization>) {
+        // The center evaluated anew has outdated the proof.
+        self.escape = None;
+        if let (Some(outer), Some(known)) = (at.outer, linearization) {
+            self.steps.remember(outer, &at.state.center, known);
+        }
+        self.rebase(at, linearization);
+    }
+
+    fn standing_proof(&mut self) -> Option<Ending> {
+        self.escape.take().map(|escape| escape.ending)
+    }
+}
+
+/// What outputs, their Jacobian and h tell about the scale of Θ; none where h gives no subgradient of the right size.
+fn output_scales(outer: &dyn OuterFunction, known: &Linearization, reach: &Vector) -> Option<OutputScales> {
+    let Linearization { outputs, jacobian, .. } = known;
+    let weights = without_panic(|| outer.subgradient(outputs)).ok().filter(|w| w.len() == outputs.len())?;
+    let sizes = jacobian.abs();
+    let change = &sizes * reach;
+    let rise = |sign: f64| outer.value(&(outputs + &change * sign)) - outer.value(outputs);
+    // h need not be defined, or finite, on both sides.
+    let known_rise = |sign: f64| without_panic(|| rise(sign)).ok().filter(|rise| rise.is_finite());
+    let within_reach = [1.0, -1.0].into_iter().filter_map(known_rise).fold(0.0, f64::max);
+    Some(OutputScales { slopes: sizes.tr_mul(&weights.abs()), within_reach })
+}

@@ -1,0 +1,141 @@
+//! Steps of the composite model from a base, with or without the curvature of the outputs.
+
+use super::base::Base;
+use super::curvature::{Memory, Share};
+use super::model::{CompositeModel, CompositeStep};
+use crate::bundle::proposers::aggregate::slack_error;
+use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
+use crate::bundle::proposers::proposer::Position;
+use crate::composite::{Linearization, OuterFunction};
+use crate::panics::without_panic;
+use crate::report::{Origin, Termination};
+use crate::{Polyhedron, Vector};
+
+/// Subproblems solved in turn so that the weights of the outputs and the curvature formed with them fit together.
+const PASSES: usize = 2;
+
+/// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h overflows along the step.
+pub(super) type Found = Option<(Proposal, CompositeStep)>;
+
+/// Where a subproblem differs from that of the run.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Changes<'a> {
+    /// The admissible set, if it is not that of the run.
+    pub set: Option<&'a Polyhedron>,
+    /// The vector from the base to the point that lengths are measured from, if this point is not the base.
+    pub origin: Option<&'a Vector>,
+}
+
+/// The subproblems of a run, with what they learn about the curvature of the outputs.
+#[derive(Debug, Default)]
+pub(super) struct Steps {
+    /// The share of the curvature of the outputs that counts; none as long as steps do without it.
+    pub share: Share,
+    memory: Memory,
+    /// Weights of the outputs at the last subproblem's solution.
+    weights: Option<Vector>,
+}
+
+impl Steps {
+    /// The step of the model at a base with a weight.
+    ///
+    /// # Errors
+    /// The end of the run: the outer function is not what it should be, or nobody waits for the answer.
+    pub(super) fn step(
+        &mut self,
+        at: &mut Position<'_>,
+        base: &Base,
+        weight: f64,
+        changes: Changes<'_>,
+    ) -> Result<Found, Termination> {
+        let solved = without_panic(|| self.solve(at, base, weight, changes));
+        let step = solved.unwrap_or_else(|message| Err(SubproblemError::OuterPanicked { message }));
+        match step.and_then(|step| Ok((proposal(at, base, &step, weight)?, step))) {
+            Err(SubproblemError::Interrupted) => Err(Termination::StoppedByObserver),
+            Err(error) if error.blames_outer() => Err(Termination::SubproblemFailed { reason: error.to_string() }),
+            Err(_) => Ok(None),
+            Ok(found) => Ok(Some(found)),
+        }
+    }
+
+    /// Remembers a Jacobian, unless h has a curvature of its own: the model then uses no curvature of the outputs.
+    pub(super) fn remember(&mut self, outer: &dyn OuterFunction, point: &Vector, known: &Linearization) {
+        let Linearization { outputs, jacobian, .. } = known;
+        if without_panic(|| outer.curvature(outputs, jacobian).is_none()).unwrap_or_default() {
+            self.memory.remember(point, jacobian);
+        }
+    }
+
+    /// Solves the subproblem. Once steps have failed without it, the curvature of the outputs is added, for the weights of the solution.
+    fn solve(
+        &mut self,
+        at: &mut Position<'_>,
+        base: &Base,
+        weight: f64,
+        changes: Changes<'_>,
+    ) -> Result<CompositeStep, SubproblemError> {
+        let Some(outer) = at.outer else { return Err(SubproblemError::Unusable) };
+        let Linearization { outputs, jacobian, .. } = &base.linearization;
+        let model = CompositeModel {
+            outer,
+            linearization: &base.linearization,
+            value: outer.value(outputs),
+            base: &base.point,
+            norm: &at.state.norm,
+            set: changes.set.unwrap_or(at.set),
+            weight,
+            curvature: None,
+            origin: changes.origin,
+        };
+        self.share.used = false;
+        if !self.share.counts() || outer.curvature(outputs, jacobian).is_some() {
+            return model.solve(at.solver);
+        }
+        if self.weights.is_none() {
+            self.weights = Some(model.solve(at.solver)?.weights());
+        }
+        let mut step = None;
+        for _ in 0..PASSES {
+            let Some(weights) = &self.weights else { break };
+            let curvature = self.memory.curvature((&base.point, jacobian), weights, model.norm);
+            let curvature = curvature.map(|curvature| curvature * self.share.value());
+            self.share.used = curvature.is_some();
+            let found = CompositeModel { curvature: curvature.as_ref(), ..model }.solve(at.solver)?;
+            self.weights = Some(found.weights());
+            step = Some(found);
+        }
+        step.ok_or(SubproblemError::Unusable)
+    }
+}
+
+fn proposal(at: &Position<'_>, base: &Base, step: &CompositeStep, weight: f64) -> Result<Proposal, SubproblemError> {
+    let (state, set) = (&*at.state, at.set);
+    let outputs = &base.linearization.outputs;
+    let errors = step.cuts.iter().map(|cut| cut.multiplier * cut.error(outputs, base.value).max(0.0));
+    let (error, length) = (errors.sum::<f64>(), state.norm.length(&step.step));
+    let rows = step.row_multipliers.rows(0, set.rows().nrows()).into_owned();
+    let slack = slack_error((&rows, &step.bound_multipliers), &base.point, set);
+    let aggregate = base.linearization.jacobian.tr_mul(&step.weights());
+    let trial = &base.point + &step.step;
+    let aggregate_norm = state.norm.dual_length(&(&aggregate + set.rows().tr_mul(&rows) + &step.bound_multipliers));
+    let proposal = Proposal {
+        step: &trial - &state.center,
+        trial,
+        step_length: length,
+        predicted_decrease: step.decrease,
+        cut_change: 0.0,
+        composite_aggregate: Some(aggregate),
+        slack_error: slack,
+        aggregate_norm,
+        aggregate_error: error + slack,
+        cut_error: error,
+        cut_multipliers: vec![0.0; state.bundle.cuts().len()],
+        bound_multipliers: step.bound_multipliers.clone(),
+        row_multipliers: rows,
+        convexification: 0.0,
+        weight,
+        violation: 0.0,
+        origin: Origin::CompositeModel,
+    };
+    proposal.admissible(set, state)
+}

@@ -1,0 +1,67 @@
+//! How far the composite model is trusted: weight, longest step, pauses.
+
+use crate::bundle::proposers::pause::Pause;
+use crate::bundle::proposers::proposal::Proposal;
+
+/// The first weight, relative to the first weight of the cuts: h is exact, so that first steps ten times as long as those of the cuts pay.
+const FIRST_WEIGHT: f64 = 1e-2;
+/// A step that brings this share of the predicted decrease lets the weight fall.
+const GOOD_RATIO: f64 = 0.5;
+/// Largest length of the step after a rejected one, in lengths of the rejected step.
+const SHORTER: f64 = 0.3;
+/// Longest pause after failures, evaluations.
+const MAX_PAUSE: usize = 64;
+/// Rejected or failed steps in a row before a pause.
+const PATIENCE: usize = 3;
+/// Factor by which the weight falls or rises.
+pub(super) const FACTOR: f64 = 10.0;
+
+/// Weight and limits of the next step.
+#[derive(Debug)]
+pub(super) struct Trust {
+    pub weight: f64,
+    /// Length that the next step must not exceed, after a rejected one.
+    pub longest: f64,
+    failures: usize,
+    pause: Pause,
+}
+
+impl Trust {
+    pub(super) fn new(first_weight: f64) -> Self {
+        let weight = FIRST_WEIGHT * first_weight;
+        Self { weight, longest: f64::INFINITY, failures: 0, pause: Pause::default() }
+    }
+
+    /// Whether no pause is left. Counts one evaluation of the pause.
+    pub(super) fn pass(&mut self) -> bool {
+        self.pause.pass()
+    }
+
+    /// Begins a pause.
+    pub(super) fn pause(&mut self) {
+        self.pause.fail(MAX_PAUSE);
+    }
+
+    /// Lengthens the pause by one evaluation.
+    pub(super) fn prolong(&mut self) {
+        self.pause.prolong();
+    }
+
+    /// A step has been accepted that brought `ratio` times the predicted decrease.
+    pub(super) fn accept(&mut self, proposal: &Proposal, ratio: f64) {
+        self.weight = if ratio >= GOOD_RATIO { proposal.weight / FACTOR } else { proposal.weight };
+        self.longest = f64::INFINITY;
+        self.failures = 0;
+        self.pause.succeed();
+    }
+
+    /// A step has been rejected, or the oracle has failed at its end.
+    pub(super) fn reject(&mut self, proposal: &Proposal) {
+        self.weight = FACTOR * proposal.weight;
+        self.longest = SHORTER * proposal.step_length;
+        self.failures += 1;
+        if self.failures >= PATIENCE {
+            self.pause();
+        }
+    }
+}

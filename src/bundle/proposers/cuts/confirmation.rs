@@ -1,0 +1,125 @@
+//! Evaluations next to the center, for the proof of an end.
+//!
+//! ```text
+//! points of the active cuts, drawn towards the center on the straight line
+//! x̂ + d for the step d of the cuts next to the center alone, shortened          until they prove the center stationary, or Θ falls
+//! ```
+//! Where Θ need not be convex, active cuts away from the center prove nothing, although their pieces may meet at the center. At most one
+//! evaluation more than there are variables is spent on pieces next to it. A point that is clearly lower becomes the center and ends the
+//! confirmation.
+
+use super::planes::CuttingPlanes;
+use crate::Vector;
+use crate::bundle::cut::Cut;
+use crate::bundle::evidence::{Distances, Evidence, active_cuts};
+use crate::bundle::kept_cuts::Bundle;
+use crate::bundle::proof::Ending;
+use crate::bundle::proposers::proposal::Proposal;
+use crate::bundle::proposers::proposer::Position;
+use crate::bundle::trial::SERIOUS_FRACTION;
+use crate::bundle::verdict::{Near, confirmed, near, near_verdict};
+use crate::report::{Origin, Termination};
+
+/// The confirmation of an end.
+#[derive(Debug)]
+pub(super) struct Confirmation {
+    /// Drawn points left to evaluate.
+    points: Vec<Vector>,
+    /// The cuts next to the center.
+    near: Vec<Cut>,
+    /// What all cuts say about the center.
+    of: Proposal,
+    /// The end of the run if the cuts next to the center do not suffice.
+    unconfirmed: Termination,
+    /// The weight at which they are asked.
+    weight: f64,
+    /// Evaluations left.
+    left: usize,
+    /// Whether a step has been evaluated that promises more than may be left.
+    probed: bool,
+}
+
+/// What comes next.
+pub(super) enum Confirmed {
+    Trial(Proposal),
+    End(Ending),
+}
+
+impl Confirmation {
+    /// The confirmation of a center whose active cuts lie away from it.
+    pub(super) fn new(at: &Position<'_>, of: Proposal, unconfirmed: Termination) -> Self {
+        let state = &*at.state;
+        let (distances, near) = (Distances::new(state), near(&at.resolution()));
+        let cuts = active_cuts(state, &of).map(|cut| (distances.of(cut), cut));
+        let toward = |(distance, cut): (f64, &Cut)| &state.center + (&cut.point - &state.center) * (0.5 * near / distance);
+        let points = cuts.filter(|(distance, _)| *distance > near).map(toward).collect();
+        let kept = state.bundle.cuts().iter().filter(|cut| cut.id == state.center_id || distances.of(cut) <= near);
+        let left = state.center.len() + 1;
+        Self { points, near: kept.cloned().collect(), of, unconfirmed, weight: state.weight, left, probed: false }
+    }
+
+    /// The next point to evaluate, or the end of the run.
+    pub(super) fn next(&mut self, at: &mut Position<'_>) -> Confirmed {
+        while let Some(point) = self.points.pop().filter(|_| self.left > 0) {
+            if let Some(proposal) = self.trial(at, point) {
+                return Confirmed::Trial(proposal);
+            }
+        }
+        let all = self.look_near(at);
+        let Some(proposal) = CuttingPlanes::default().try_solve(at).ok() else { return self.give_up(at, all) };
+        let evidence = Evidence::new(at.state, at.set, &proposal);
+        match near_verdict(at, &evidence, &proposal) {
+            Near::Confirmed => return Confirmed::End(Ending::by_cuts(confirmed(&evidence), proposal)),
+            Near::Falls if self.probed => return Confirmed::End(Ending::by_cuts(confirmed(&evidence), proposal)),
+            _ if self.left == 0 => return self.give_up(at, all),
+            Near::Falls => {
+                self.probed = true;
+                let promise = 10.0 * at.resolution().small();
+                let point = &at.state.center + &proposal.step * (promise / proposal.predicted_decrease).min(1.0);
+                at.state.bundle = all;
+                self.evaluation(at, point)
+            }
+            Near::Open => {
+                let length = Distances::new(at.state).length(&proposal.step);
+                let share = (0.5 * near(&at.resolution()) / length).min(1.0);
+                let point = &at.state.center + &proposal.step * share;
+                at.state.bundle = all;
+                self.evaluation(at, point)
+            }
+        }
+    }
+
+    /// Puts the cuts next to the center in the place of all cuts, which are returned.
+    fn look_near(&self, at: &mut Position<'_>) -> Bundle {
+        let mut local = Bundle::default();
+        self.near.iter().for_each(|cut| local.push(cut.clone(), &at.state.norm));
+        at.state.weight = self.weight;
+        std::mem::replace(&mut at.state.bundle, local)
+    }
+
+    fn evaluation(&mut self, at: &Position<'_>, point: Vector) -> Confirmed {
+        match self.trial(at, point) {
+            Some(proposal) => Confirmed::Trial(proposal),
+            None => Confirmed::End(self.unconfirmed.clone().into()),
+        }
+    }
+
+    fn give_up(&self, at: &mut Position<'_>, all: Bundle) -> Confirmed {
+        at.state.bundle = all;
+        Confirmed::End(self.unconfirmed.clone().into())
+    }
+
+    /// Takes in the newest cut.
+    pub(super) fn learn(&mut self, newest: Option<&Cut>) {
+        self.near.extend(newest.cloned());
+    }
+
+    /// The evaluation of a point, which counts as clearly lower if it brings a small decrease.
+    fn trial(&mut self, at: &Position<'_>, point: Vector) -> Option<Proposal> {
+        let predicted_decrease = at.resolution().small() / SERIOUS_FRACTION;
+        let proposal = self.of.moved_to(point, at.set, at.state).ok()?;
+        let new = !proposal.is_too_short(&at.state.center) && !at.state.bundle.knows(&proposal.trial, f64::INFINITY);
+        self.left -= usize::from(new);
+        new.then_some(Proposal { origin: Origin::Confirmation, predicted_decrease, ..proposal })
+    }
+}

@@ -1,0 +1,138 @@
+//! The cutting-plane subproblem of a run, with model and answer kept as long as center and bundle stay.
+//!
+//! ```text
+//! min over (d, v)  v + u‖d‖²/2,   ⟨h_i, d⟩ − a_i ≤ v,   x̂ + d ∈ U
+//! z̃ = Σ λ_i h_i + Aᵀμ + ν = −u W d      aggregate subgradient, constraints included
+//! ẽ = −v − u‖d‖² = Σ λ_i a_i + slack of the active constraints ≥ 0      aggregate error
+//! ```
+
+use super::model::{Model, PRODUCTS_DIMENSION};
+use crate::bundle::norm::WeightedMetric;
+use crate::bundle::proposers::aggregate::slack_error;
+use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
+use crate::bundle::proposers::proposer::Position;
+use crate::bundle::proposers::subproblem::{self, Cuts};
+use crate::bundle::state::State;
+use crate::interruption::interrupted;
+use crate::qp::QpSolution;
+use crate::report::{Origin, Termination};
+use crate::{Polyhedron, Vector};
+
+/// Weights tried, each ten times the one before, until a subproblem counts as unsolvable. With one less, a subproblem near a pole may end a
+/// run; more have not been needed.
+const MAX_TRIALS: usize = 4;
+
+/// The subproblem with the model of center and bundle.
+#[derive(Debug, Default)]
+pub(crate) struct CuttingPlanes {
+    model: Option<(Key, Model)>,
+    /// The answer of the last subproblem.
+    proposal: Option<(Key, Proposal)>,
+}
+
+/// Center and revision of the bundle that a model or an answer belongs to.
+type Key = (u64, u64);
+
+fn key(state: &State) -> Key {
+    (state.center_id, state.bundle.revision())
+}
+
+impl CuttingPlanes {
+    /// The model of center and bundle.
+    pub(crate) fn model(&mut self, at: &mut Position<'_>) -> &Model {
+        let wanted = key(at.state);
+        let model = match self.model.take() {
+            Some((known, model)) if known == wanted => model,
+            former => Model::new(at.state, at.config, former.map(|(_, model)| model)),
+        };
+        &self.model.insert((wanted, model)).1
+    }
+
+    /// The answer of the last subproblem, where center and bundle are still those it was solved for.
+    pub(crate) fn answer(&self, state: &State) -> Option<&Proposal> {
+        self.proposal.as_ref().filter(|(known, _)| *known == key(state)).map(|(_, proposal)| proposal)
+    }
+
+    /// Solves the subproblem; where this fails, larger weights are tried before the run ends.
+    pub(crate) fn solve(&mut self, at: &mut Position<'_>) -> Result<Proposal, Termination> {
+        let mut last = SubproblemError::Unusable;
+        for _ in 0..MAX_TRIALS {
+            match self.try_solve(at) {
+                // What an interrupted subproblem leaves says nothing about the objective.
+                _ if interrupted() => return Err(Termination::StoppedByObserver),
+                Ok(proposal) => return Ok(proposal),
+                Err(error) => last = error,
+            }
+            at.state.set_weight(10.0 * at.state.weight, at.config);
+        }
+        Err(Termination::SubproblemFailed { reason: last.to_string() })
+    }
+
+    /// Solves the subproblem at the weight of the run.
+    ///
+    /// # Errors
+    /// [`SubproblemError`] if the subproblem has no usable answer.
+    pub(crate) fn try_solve(&mut self, at: &mut Position<'_>) -> Result<Proposal, SubproblemError> {
+        let proposal = propose(self.model(at), at)?;
+        at.state.bundle.set_multipliers(&proposal.cut_multipliers);
+        self.proposal = Some((key(at.state), proposal.clone()));
+        Ok(proposal)
+    }
+
+    /// Lowers the weight tenfold; the answer at the lower weight, or none if the subproblem cannot be solved there.
+    pub(crate) fn lower_weight(&mut self, at: &mut Position<'_>) -> Option<Proposal> {
+        let kept = at.state.weight;
+        at.state.weight = kept / 10.0;
+        let lower = self.try_solve(at).ok();
+        if lower.is_none() {
+            at.state.weight = kept;
+        }
+        lower
+    }
+}
+
+fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemError> {
+    let state = &*at.state;
+    let quadratic = state.norm.weighted(state.weight);
+    let many = state.center.len() >= PRODUCTS_DIMENSION && matches!(quadratic, WeightedMetric::Diagonal(_));
+    let gram = if many { model.products(state) } else { None };
+    let cuts = Cuts { gram, ..model.cuts() };
+    let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
+    let proposal = interpret(solution, (state, at.set), model);
+    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution.
+    let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
+    if !(proposal.predicted_decrease >= least && proposal.step_length.is_finite()) {
+        return Err(SubproblemError::Unusable);
+    }
+    proposal.admissible(at.set, state)
+}
+
+fn interpret(mut solution: QpSolution, (state, set): (&State, &Polyhedron), model: &Model) -> Proposal {
+    let step = std::mem::take(&mut solution.step);
+    let squared = state.norm.squared(&step);
+    let predicted_decrease = (-solution.epigraph).max(0.0);
+    let offsets = model.cuts().offsets;
+    let cut_error: f64 = solution.cut_multipliers.iter().zip(offsets).map(|(l, a)| l * a).sum();
+    model.distribute(&mut solution.cut_multipliers);
+    let multipliers = (Vector::from_vec(solution.row_multipliers), Vector::from_vec(solution.bound_multipliers));
+    let sides = (&multipliers.0, &multipliers.1);
+    Proposal {
+        trial: &state.center + &step,
+        step_length: squared.sqrt(),
+        composite_aggregate: None,
+        slack_error: slack_error(sides, &state.center, set),
+        step,
+        predicted_decrease,
+        cut_change: -predicted_decrease,
+        aggregate_norm: state.weight * squared.sqrt(),
+        aggregate_error: (predicted_decrease - state.weight * squared).max(0.0),
+        cut_error,
+        cut_multipliers: solution.cut_multipliers,
+        row_multipliers: multipliers.0,
+        bound_multipliers: multipliers.1,
+        convexification: model.convexification,
+        weight: state.weight,
+        violation: 0.0,
+        origin: Origin::Cuts,
+    }
+}

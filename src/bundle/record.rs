@@ -1,0 +1,49 @@
+//! The record of an evaluation.
+
+use super::proposers::proposal::Proposal;
+use super::state::State;
+use crate::Accuracy;
+use crate::report::{IterationRecord, Origin, StepKind};
+use std::time::Instant;
+
+/// What became of an evaluation.
+#[derive(Debug)]
+pub(super) struct Event {
+    pub kind: StepKind,
+    pub value: Option<f64>,
+    pub failure: Option<String>,
+    /// Whether a Jacobian was returned, or the reason why it could not be had; none if neither was reported.
+    pub linearized: Option<Result<(), String>>,
+    /// Work that the evaluation took.
+    pub work: usize,
+}
+
+/// Counts an evaluation and adds its record to the history.
+pub(super) fn record(state: &mut State, proposal: &Proposal, accuracy: Accuracy, event: Event, clock: Instant) {
+    let Event { kind, value, failure, linearized, work } = event;
+    let origin = if kind == StepKind::Refinement { Origin::Given } else { proposal.origin };
+    state.counts.add(kind, origin);
+    let mut record = IterationRecord {
+        evaluation: state.counts.evaluations,
+        kind,
+        origin,
+        value,
+        center_value: state.center_value,
+        predicted_decrease: proposal.predicted_decrease,
+        aggregate_norm: proposal.aggregate_norm,
+        aggregate_error: proposal.aggregate_error,
+        weight: proposal.weight,
+        step_length: proposal.step_length,
+        violation: proposal.violation,
+        cuts: state.bundle.cuts().len(),
+        convexification: proposal.convexification,
+        accuracy: accuracy.tolerance(),
+        failure,
+        jacobian: false,
+        note: None,
+        work,
+        seconds: clock.elapsed().as_secs_f64(),
+    };
+    record.set_linearized(linearized);
+    state.history.push(record);
+}

@@ -1,0 +1,131 @@
+//! The verdict on a center: evidence in, termination out. No other file decides that a point is stationary.
+//!
+//! ```text
+//! exact        subgradients of the center and the normal cone cancel to rounding                 confirmed
+//! undecided    along some variable the aggregate subgradient has not cancelled                   go on, or unconfirmed
+//! remaining    ẽ + Σ |z̃_i| reach_i small beside the wanted decrease, active cuts near, or Θ declared convex          confirmed
+//! noise        noise or rounding hides what remains                                              noise limit
+//! ```
+//! A small aggregate error alone proves nothing, nor does a small predicted decrease: both are small for a variable whose unit hides it.
+
+use super::config::Convexity;
+use super::evidence::Evidence;
+use super::proposers::proposal::Proposal;
+use super::proposers::proposer::Position;
+use super::resolution::Resolution;
+use crate::report::Termination;
+
+/// What may be left within reach at a confirmed end, in small decreases: a decrease that is small at a step of a hundredth of the variables
+/// is at most 100 times as large within reach.
+const MAX_REMAINING_DECREASES: f64 = 100.0;
+/// The same where Θ is declared convex, so that what is left is a bound.
+const MAX_CONVEX_DECREASES: f64 = 10.0;
+
+/// What the evidence at a center amounts to.
+pub(crate) enum Verdict {
+    /// The run may end.
+    End(Termination),
+    /// Stationary but for active cuts away from the center.
+    Far,
+    /// Too much is left, or a variable is undecided.
+    Open,
+}
+
+/// Judges the evidence that a subproblem gives.
+pub(crate) fn verdict(at: &Position<'_>, evidence: &Evidence) -> Verdict {
+    let resolution = at.resolution();
+    let convex = at.config.convexity == Convexity::Convex;
+    let confirmed = || Termination::Stationary { radius: evidence.radius, gap: convex.then(|| evidence.gap()) };
+    if evidence.is_exact(resolution.rounding) {
+        return Verdict::End(confirmed());
+    }
+    let allowed = allowed(&resolution, convex);
+    if evidence.undecided(allowed).is_some() {
+        return Verdict::Open;
+    }
+    let remaining = evidence.remaining();
+    if let Some(noise) = resolution.noise() {
+        let hidden = !convex || remaining <= resolution.hidden_by_noise();
+        return if hidden && remaining.is_finite() {
+            Verdict::End(Termination::NoiseLimit { estimate: noise.max(remaining) })
+        } else {
+            Verdict::Open
+        };
+    }
+    if remaining > allowed {
+        Verdict::Open
+    } else if !convex && evidence.distance > near(&resolution) {
+        Verdict::Far
+    } else if resolution.rounding > resolution.wanted {
+        Verdict::End(Termination::NoiseLimit { estimate: resolution.rounding.max(remaining) })
+    } else {
+        Verdict::End(confirmed())
+    }
+}
+
+/// What the cuts next to a center say that all cuts together call stationary.
+pub(crate) enum Near {
+    /// They promise as little.
+    Confirmed,
+    /// They promise more, although their subgradients nearly cancel: only the curvature of Θ, which they do not show, bounds what is left.
+    Falls,
+    /// Their subgradients do not cancel.
+    Open,
+}
+
+/// Judges the cuts next to a center by their subproblem at the weight of the run.
+pub(crate) fn near_verdict(at: &Position<'_>, evidence: &Evidence, proposal: &Proposal) -> Near {
+    let resolution = at.resolution();
+    if evidence.undecided(resolution.small()).is_some() {
+        Near::Open
+    } else if proposal.predicted_decrease > near(&resolution) {
+        Near::Falls
+    } else {
+        Near::Confirmed
+    }
+}
+
+/// The confirmed end by cuts next to the center.
+pub(crate) fn confirmed(near: &Evidence) -> Termination {
+    Termination::Stationary { radius: near.radius, gap: None }
+}
+
+/// The distance, in units of Θ, up to which a cut lies next to the center: Θ varies by no more in between than what may be left.
+pub(crate) fn near(resolution: &Resolution) -> f64 {
+    MAX_REMAINING_DECREASES * resolution.small()
+}
+
+/// What may be left within reach.
+pub(crate) fn allowed(resolution: &Resolution, convex: bool) -> f64 {
+    resolution.tolerance() * if convex { MAX_CONVEX_DECREASES } else { MAX_REMAINING_DECREASES }
+}
+
+/// Why a run ends whose predicted decrease stays small although the evidence does not suffice.
+pub(crate) fn unconfirmed(at: &Position<'_>, evidence: &Evidence) -> Termination {
+    let allowed = allowed(&at.resolution(), at.config.convexity == Convexity::Convex);
+    Termination::StationaryUnconfirmed { radius: evidence.radius, undecided: evidence.undecided(allowed) }
+}
+
+/// Why a run ends at a step that does not change the variables although the model promises a decrease.
+pub(crate) fn too_short(at: &Position<'_>, proposal: &Proposal) -> Termination {
+    let evidence = Evidence::new(at.state, at.set, proposal);
+    let resolution = at.resolution();
+    match verdict(at, &evidence) {
+        Verdict::End(termination) => termination,
+        _ if resolution.noise_level > 0.0 => {
+            Termination::NoiseLimit { estimate: resolution.noise_level.max(evidence.remaining()) }
+        }
+        Verdict::Far => unconfirmed(at, &evidence),
+        Verdict::Open if proposal.predicted_decrease <= resolution.tolerance() => unconfirmed(at, &evidence),
+        Verdict::Open => Termination::StepTooShort { predicted_decrease: proposal.predicted_decrease },
+    }
+}
+
+/// Why a run ends whose admissible set is a single point: the normal cone there is everything.
+pub(crate) fn only_point(at: &Position<'_>) -> Termination {
+    let resolution = at.resolution();
+    match resolution.noise() {
+        Some(noise) => Termination::NoiseLimit { estimate: noise },
+        None => Termination::Stationary { radius: 0.0, gap: (at.config.convexity == Convexity::Convex).then_some(0.0) },
+    }
+}
