@@ -1,6 +1,6 @@
 //! Composite objectives as oracles: a closure for outputs and Jacobian, or outputs of a state.
 
-use crate::composite::{Linearization, LinearizationRequest, OuterFunction};
+use crate::composite::{Linearization, LinearizationRequest, Linearized, OuterFunction};
 use crate::{
     Accuracy, Answer, Coderivative, Cost, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError,
     ReducedObjective, Request, Vector,
@@ -54,7 +54,7 @@ impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> NonsmoothObjective fo
         linearization.check(self.dimension)?;
         let value = self.outer.value(&linearization.outputs);
         let subgradient = linearization.jacobian.tr_mul(&self.outer.subgradient(&linearization.outputs));
-        let linearization = request.linearization.map(|_| Ok(linearization));
+        let linearization = Linearized::if_asked(request.linearization, linearization);
         let evaluation = Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) };
         Ok(Answer::Accurate(evaluation))
     }
@@ -121,19 +121,22 @@ impl<S, J> CompositeObjective<S, J> {
 }
 
 impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> CompositeObjective<S, J> {
-    /// Outputs and G at a state, G corrected so that Gᵀw is the subgradient ξ; the text of the error where there is none.
+    /// Outputs and G at a state, G corrected so that Gᵀw is the subgradient ξ.
     fn linearize(
         &self,
         control: &Vector,
         state: &S::State,
         subgradient: &Vector,
         request: LinearizationRequest,
-    ) -> Result<Linearization, String> {
-        let linearized = self.solver().linearize(control, state, request.accuracy);
-        let mut linearization = linearized.map_err(|error| error.to_string())?;
-        let weights = self.cost().subgradient(&linearization.outputs);
-        linearization.correct(&weights, subgradient);
-        Ok(linearization)
+    ) -> Linearized {
+        match self.solver().linearize(control, state, request.accuracy) {
+            Ok(mut linearization) => {
+                let weights = self.cost().subgradient(&linearization.outputs);
+                linearization.correct(&weights, subgradient);
+                Linearized::Known(linearization)
+            }
+            Err(error) => Linearized::Unavailable(error.to_string()),
+        }
     }
 }
 
@@ -156,7 +159,7 @@ impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> NonsmoothObjective fo
         let state = self.solver().solve(request.point, request.warm_start, request.accuracy)?;
         let mut evaluation = self.reduced.differentiate(request.point, &state)?;
         if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
-            evaluation.linearization = Some(self.linearize(request.point, &state, &evaluation.subgradient, wanted));
+            evaluation.linearization = self.linearize(request.point, &state, &evaluation.subgradient, wanted);
         }
         evaluation.work = self.solver().work(&state);
         Ok(Answer::Accurate(evaluation))

@@ -10,7 +10,7 @@ use crate::convert;
 use crate::errors::OutsideDomain;
 use crate::failure::Failure;
 use crate::outer::Outer;
-use nonsmooth::composite::{Linearization, OuterFunction};
+use nonsmooth::composite::{Linearization, Linearized, OuterFunction};
 use nonsmooth::{Answer, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
@@ -90,7 +90,7 @@ impl PythonOracle {
         let value = outer.value(&outputs);
         let subgradient: Vector = jacobian.tr_mul(&outer.subgradient(&outputs));
         let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
-        let linearization = request.linearization.map(|_| Ok(linearization));
+        let linearization = Linearized::if_asked(request.linearization, linearization);
         Ok(Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) })
     }
 

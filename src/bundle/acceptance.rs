@@ -24,7 +24,7 @@ impl Run<'_, '_> {
     pub(super) fn accept_or_reject(&mut self, proposal: Proposal, accuracy: Accuracy, answer: Answer<()>) {
         let accurate = matches!(answer, Answer::Accurate(_));
         let mut evaluation = answer.into_evaluation();
-        let linearization = evaluation.linearization.take();
+        let linearization = std::mem::take(&mut evaluation.linearization);
         let (value, work) = (evaluation.value, evaluation.work);
         let comparison = Comparison::new(&self.state, &proposal, value, &evaluation.subgradient);
         let serious = accurate && comparison.is_serious(&self.method.config);
@@ -51,8 +51,8 @@ impl Run<'_, '_> {
         } else if accurate {
             self.remember_lowest();
         }
-        let linearized = self.learn_structure(&trial, value, linearization);
-        self.record(&proposal, accuracy, Event { kind, value: Some(value), failure: None, linearized, work });
+        let noted = self.learn_structure(&trial, value, linearization);
+        self.record(&proposal, accuracy, Event { kind, value: Some(value), failure: None, noted, work });
     }
 
     /// Values that jump although the points almost coincide, and cuts above the values of a convex function, are noise.

@@ -15,7 +15,7 @@ const LEAST_LENGTH: f64 = 1.0;
 
 impl Run<'_, '_> {
     pub(super) fn record(&mut self, proposal: &Proposal, accuracy: Accuracy, event: Event) {
-        let Event { kind, value, failure, linearized, work } = event;
+        let Event { kind, value, failure, noted, work } = event;
         let origin = if kind == StepKind::Refinement { Origin::Given } else { proposal.origin };
         self.state.counts.trials.add(origin);
         let mut record = IterationRecord {
@@ -39,7 +39,7 @@ impl Run<'_, '_> {
             work,
             seconds: self.seconds(),
         };
-        record.set_linearized(linearized);
+        record.note(noted);
         self.state.history.push(record);
     }
 

@@ -14,7 +14,7 @@ use super::state::State;
 use crate::composite::OuterFunction;
 use crate::interruption::interrupted;
 use crate::qp::{EpigraphQpSolver, QpCounts};
-use crate::report::{IterationRecord, Origin, StepKind, Termination};
+use crate::report::{IterationRecord, Noted, Origin, StepKind, Termination};
 use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
@@ -284,13 +284,14 @@ impl Run<'_, '_> {
         let accuracy = self.wanted_accuracy(REFINEMENT_SHARE * proposal.predicted_decrease);
         let center = self.state.center.clone();
         self.state.center_accuracy = accuracy.tolerance();
-        let mut event = Event { kind: StepKind::Refinement, value: None, failure: None, linearized: None, work: 0 };
+        let mut event =
+            Event { kind: StepKind::Refinement, value: None, failure: None, noted: Noted::Nothing, work: 0 };
         match self.evaluate(&center, accuracy, None, f64::INFINITY) {
             Outcome::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;
                 (event.value, event.work) = (Some(evaluation.value), evaluation.work);
-                if let Some((known, noted)) = self.note(&center, evaluation.linearization.take()) {
-                    event.linearized = noted;
+                if let Some((known, noted)) = self.note(&center, std::mem::take(&mut evaluation.linearization)) {
+                    event.noted = noted;
                     self.forget_excursion();
                     self.rebase(&center, evaluation.value, known);
                 }
@@ -335,7 +336,7 @@ impl Run<'_, '_> {
         self.proposers.shorten(state, &self.method.config, proposal);
         self.shorten_composite(proposal);
         let failure = Some(error.to_string());
-        let event = Event { kind: StepKind::Failed, value: None, failure, linearized: None, work: 0 };
+        let event = Event { kind: StepKind::Failed, value: None, failure, noted: Noted::Nothing, work: 0 };
         self.record(proposal, accuracy, event);
         if failures >= self.method.config.max_failures && proposal.origin == Origin::Cuts && close {
             return Break(Termination::OracleFailing { failures, last: error.to_string() });

@@ -12,7 +12,7 @@ use super::proposers::proposal::FEASIBILITY;
 use super::run::Run;
 use super::state::State;
 use crate::checks::check_size;
-use crate::composite::{Linearization, OuterFunction};
+use crate::composite::{Linearized, OuterFunction};
 use crate::qp::{EpigraphQpSolver, QpError, is_only_point, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{
@@ -85,12 +85,12 @@ impl<'o> BundleTrust<'o> {
         };
         let start = run.state.center.clone();
         let noted = run.note(&start, linearization);
-        let (known, linearized) = noted.unwrap_or((None, None));
+        let (known, noted) = noted.unwrap_or_default();
         run.rebase(&start, run.state.center_value, known);
         let seconds = run.seconds();
         if let Some(first) = run.state.history.first_mut() {
             first.seconds = seconds;
-            first.set_linearized(linearized);
+            first.note(noted);
         }
         if let Break(termination) = run.after_evaluation() {
             run.termination = Some(termination);
@@ -118,8 +118,8 @@ fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Ve
     if violation <= MAX_START_VIOLATION { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }
 
-/// The state after the first evaluation, and the linearization that came with it.
-type FirstEvaluation = (State, Option<Result<Linearization, String>>);
+/// The state after the first evaluation, and what that said about outputs and Jacobian.
+type FirstEvaluation = (State, Linearized);
 
 /// Evaluates the start and sets up the state.
 fn first_evaluation(

@@ -1,7 +1,9 @@
 //! Jacobians and outer functions that fail: typed errors, notes, and the run that goes on with cuts.
 
 use crate::common::{cb3, v};
-use nonsmooth::composite::{FnOuter, InactiveConstraints, Linearization, Maximum, OuterFunction, weighted_gram};
+use nonsmooth::composite::{
+    FnOuter, InactiveConstraints, Linearization, Linearized, Maximum, OuterFunction, weighted_gram,
+};
 use nonsmooth::{
     Answer, BundleTrust, BundleTrustConfig, CompositeFunction, Evaluation, FnObjective, InputError, Matrix,
     NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Report, Request, StepKind, Termination, Vector,
@@ -61,9 +63,10 @@ impl<F: Fn(usize) -> Fault> NonsmoothObjective for Faulty<F> {
             Fault::None | Fault::Fails => {}
         }
         let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
-        evaluation.linearization = request
-            .linearization
-            .map(|_| if fault == Fault::Fails { Err("the factor is singular".to_owned()) } else { Ok(linearization) });
+        evaluation.linearization = match fault {
+            Fault::Fails => Linearized::Unavailable("the factor is singular".to_owned()),
+            _ => Linearized::if_asked(request.linearization, linearization),
+        };
         Ok(Answer::Accurate(evaluation))
     }
 }
@@ -222,8 +225,8 @@ impl NonsmoothObjective for Secret {
         let x = request.point[0];
         let mut evaluation = Evaluation::exact(x.abs(), v(&[x.signum()]), ());
         let (outputs, jacobian) = (v(&[x]), Matrix::identity(1, 1));
-        evaluation.linearization =
-            request.linearization.map(|_| Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None }));
+        let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
+        evaluation.linearization = Linearized::if_asked(request.linearization, linearization);
         Ok(Answer::Accurate(evaluation))
     }
 }
@@ -289,10 +292,10 @@ impl NonsmoothObjective for Threshold {
         let x = request.point[0];
         let mut evaluation = Evaluation::exact(x * x, v(&[2.0 * x]), ());
         let inactive = InactiveConstraints { slacks: v(&[0.05 - x]), jacobian: Matrix::from_element(1, 1, -1.0) };
-        evaluation.linearization = request.linearization.map(|_| {
-            let (outputs, jacobian) = (v(&[x]), Matrix::identity(1, 1));
-            Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: (x < 0.05).then_some(inactive) })
-        });
+        let (outputs, jacobian) = (v(&[x]), Matrix::identity(1, 1));
+        let linearization =
+            Linearization { outputs, jacobian, accuracy: 0.0, inactive: (x < 0.05).then_some(inactive) };
+        evaluation.linearization = Linearized::if_asked(request.linearization, linearization);
         Ok(Answer::Accurate(evaluation))
     }
 }

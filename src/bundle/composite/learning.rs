@@ -8,9 +8,9 @@ use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::Trial;
 use crate::bundle::run::Run;
 use crate::bundle::state::OutputScales;
-use crate::composite::{Linearization, OuterFunction};
+use crate::composite::{Linearization, Linearized, OuterFunction};
 use crate::panics::without_panic;
-use crate::report::Origin;
+use crate::report::{Noted, Origin};
 
 /// A step that brings this share of the predicted decrease lets the weight fall.
 const GOOD_RATIO: f64 = 0.5;
@@ -29,9 +29,6 @@ const SHORTER: f64 = 0.3;
 pub(super) const MAX_PAUSE: usize = 64;
 /// Rejected or failed steps in a row before a pause.
 const PATIENCE: usize = 3;
-
-/// Whether an evaluation brought a Jacobian, or why not; none where the oracle said nothing about a Jacobian.
-pub(in crate::bundle) type Noted = Option<Result<(), String>>;
 
 impl Composite {
     /// Learns what came of a step of the model: `ratio` is the decrease over the predicted one, none if the oracle failed.
@@ -63,16 +60,16 @@ impl Composite {
 }
 
 impl Run<'_, '_> {
-    /// Learns from a trial point and from what its evaluation says about the outputs. Returns whether the evaluation brought a Jacobian.
+    /// Learns from a trial point and from what its evaluation says about the outputs. Returns what to note about the Jacobian.
     pub(in crate::bundle) fn learn_structure(
         &mut self,
         trial: &Trial<'_>,
         value: f64,
-        linearization: Option<Result<Linearization, String>>,
+        linearization: Linearized,
     ) -> Noted {
         let point = &trial.proposal.trial;
-        let (known, noted) = self.note(point, linearization)?;
-        let composite = self.composite.as_mut()?;
+        let Some((known, noted)) = self.note(point, linearization) else { return Noted::Nothing };
+        let Some(composite) = self.composite.as_mut() else { return Noted::Nothing };
         if composite.excursion.is_some() {
             self.learn_excursion(trial, value, known);
             return noted;
@@ -110,13 +107,13 @@ impl Run<'_, '_> {
     pub(in crate::bundle) fn note(
         &mut self,
         point: &Vector,
-        linearization: Option<Result<Linearization, String>>,
+        linearization: Linearized,
     ) -> Option<(Option<Linearization>, Noted)> {
         let (composite, outer) = (self.composite.as_mut()?, self.outer);
         Some(match linearization {
-            None => (None, None),
-            Some(Err(reason)) => (None, Some(Err(reason))),
-            Some(Ok(linearization)) => {
+            Linearized::NotAsked => (None, Noted::Nothing),
+            Linearized::Unavailable(reason) => (None, Noted::NoJacobian(reason)),
+            Linearized::Known(linearization) => {
                 self.state.counts.jacobians += 1;
                 // Where h has a curvature of its own, the model uses no curvature of the outputs.
                 let Linearization { outputs, jacobian, .. } = &linearization;
@@ -124,7 +121,7 @@ impl Run<'_, '_> {
                 if outer.is_some_and(|outer| without_panic(|| bends(outer)).unwrap_or_default()) {
                     composite.memory.remember(point, jacobian);
                 }
-                (Some(linearization), Some(Ok(())))
+                (Some(linearization), Noted::Jacobian)
             }
         })
     }
