@@ -1,9 +1,10 @@
 //! Composite objectives as oracles: a closure for outputs and Jacobian, or outputs of a state.
 
 use crate::composite::{Linearization, LinearizationRequest, Linearized, OuterFunction};
+use crate::reduced::evaluate;
 use crate::{
-    Accuracy, Answer, Coderivative, Cost, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError,
-    ReducedObjective, Request, Vector,
+    Accuracy, Answer, Coderivative, Cost, Evaluation, Matrix, NonsmoothObjective, OracleError, ReducedObjective,
+    Request, Vector,
 };
 
 /// Θ = h∘c with a closure `x ↦ (c(x), G)`.
@@ -152,16 +153,12 @@ impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> NonsmoothObjective fo
     }
 
     fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
-        let (expected, found) = (self.dimension(), request.point.len());
-        if expected != found {
-            return Err(InputError::Dimension { what: "control", expected, found }.into());
-        }
-        let state = self.solver().solve(request.point, request.warm_start, request.accuracy)?;
-        let mut evaluation = self.reduced.differentiate(request.point, &state)?;
-        if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
-            evaluation.linearization = self.linearize(request.point, &state, &evaluation.subgradient, wanted);
-        }
-        evaluation.work = self.solver().work(&state);
-        Ok(Answer::Accurate(evaluation))
+        evaluate(self.solver(), request, |state| {
+            let mut evaluation = self.reduced.differentiate(request.point, state)?;
+            if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
+                evaluation.linearization = self.linearize(request.point, state, &evaluation.subgradient, wanted);
+            }
+            Ok(evaluation)
+        })
     }
 }

@@ -1,7 +1,8 @@
 //! Θ = J∘(I, S) and its subgradient by the chain rule; method.md (1.1), (1.2).
 
+use crate::checks::check_size;
 use crate::linalg::first_non_finite;
-use crate::{Answer, Coderivative, Cost, Evaluation, InputError, NonsmoothObjective, OracleError, Request, Vector};
+use crate::{Answer, Coderivative, Cost, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
 
 /// The objective Θ(α) = J(α, S(α)) of a state solver with coderivative and a cost.
 #[derive(Debug, Clone)]
@@ -59,12 +60,18 @@ impl<S: Coderivative, J: Cost<S::State>> NonsmoothObjective for ReducedObjective
     }
 
     fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
-        let (expected, found) = (self.dimension(), request.point.len());
-        if expected != found {
-            return Err(InputError::Dimension { what: "control", expected, found }.into());
-        }
-        let state = self.solver.solve(request.point, request.warm_start, request.accuracy)?;
-        let evaluation = self.differentiate(request.point, &state)?;
-        Ok(Answer::Accurate(Evaluation { work: self.solver.work(&state), ..evaluation }))
+        evaluate(&self.solver, request, |state| self.differentiate(request.point, state))
     }
+}
+
+/// The path of every objective with a state: solve, differentiate the state found, count the work of both.
+pub(crate) fn evaluate<S: Coderivative>(
+    solver: &S,
+    request: &Request<'_, S::WarmStart>,
+    differentiate: impl FnOnce(&S::State) -> Result<Evaluation<S::WarmStart>, OracleError>,
+) -> Result<Answer<S::WarmStart>, OracleError> {
+    check_size("control", solver.control_dimension(), request.point.len())?;
+    let state = solver.solve(request.point, request.warm_start, request.accuracy)?;
+    let evaluation = differentiate(&state)?;
+    Ok(Answer::Accurate(Evaluation { work: solver.work(&state), ..evaluation }))
 }
