@@ -1,10 +1,9 @@
 //! Composite objectives as oracles: a closure for outputs and Jacobian, or outputs of a state.
 
-use crate::composite::{Linearization, LinearizationRequest, Linearized, OuterFunction};
-use crate::reduced::evaluate;
+use crate::composite::{Linearization, Linearized, OuterFunction};
+use crate::reduced::{chain_rule, evaluate};
 use crate::{
-    Accuracy, Answer, Coderivative, Cost, Evaluation, Matrix, NonsmoothObjective, OracleError, ReducedObjective,
-    Request, Vector,
+    Accuracy, Answer, Coderivative, CostGradient, Evaluation, Matrix, NonsmoothObjective, OracleError, Request, Vector,
 };
 
 /// Θ = h∘c with a closure `x ↦ (c(x), G)`.
@@ -91,48 +90,57 @@ pub trait OutputJacobian: Coderivative {
     }
 }
 
-/// Θ(α) = J(α, S(α)) of a cost that is a convex function of the outputs alone: J = h∘c.
-///
-/// The cost is both a [`Cost`] of the state and an [`OuterFunction`] of the outputs, and must have the same value as either.
+/// Θ(α) = h(c(S(α))) of outputs c of a state and a convex function h of them, the cost.
 #[derive(Debug, Clone)]
-pub struct CompositeObjective<S, J> {
-    reduced: ReducedObjective<S, J>,
+pub struct CompositeObjective<S, H> {
+    solver: S,
+    cost: H,
 }
 
-impl<S, J> CompositeObjective<S, J> {
-    /// Composes a state solver and a cost.
-    pub fn new(solver: S, cost: J) -> Self {
-        Self { reduced: ReducedObjective::new(solver, cost) }
+impl<S, H> CompositeObjective<S, H> {
+    /// Composes a state solver with outputs and a cost of these outputs.
+    pub fn new(solver: S, cost: H) -> Self {
+        Self { solver, cost }
     }
 
     /// The state solver.
     pub fn solver(&self) -> &S {
-        self.reduced.solver()
+        &self.solver
     }
 
-    /// The cost.
-    pub fn cost(&self) -> &J {
-        self.reduced.cost()
-    }
-
-    /// The same objective without its structure.
-    pub fn reduced(&self) -> &ReducedObjective<S, J> {
-        &self.reduced
+    /// The cost h.
+    pub fn cost(&self) -> &H {
+        &self.cost
     }
 }
 
-impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> CompositeObjective<S, J> {
+impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
+    /// Θ = h(c) at a state already found.
+    pub fn value(&self, state: &S::State) -> f64 {
+        self.cost.value(&self.solver.outputs(state))
+    }
+
+    /// y* = (∂c/∂y)ᵀ w with w ∈ ∂h(c), at a state already found: what the coderivative is asked for.
+    pub fn state_dual(&self, state: &S::State) -> Vector {
+        self.solver.output_dual(state, &self.cost.subgradient(&self.solver.outputs(state)))
+    }
+
+    /// Θ and one subgradient at a state already found.
+    ///
+    /// # Errors
+    /// Whatever the coderivative reports, and [`OracleError::NotFinite`].
+    pub fn differentiate(&self, control: &Vector, state: &S::State) -> Result<Evaluation<S::WarmStart>, OracleError> {
+        chain_rule(&self.solver, control, state, self.value(state), || CostGradient {
+            control: Vector::zeros(control.len()),
+            state: self.state_dual(state),
+        })
+    }
+
     /// Outputs and G at a state, G corrected so that Gᵀw is the subgradient ξ.
-    fn linearize(
-        &self,
-        control: &Vector,
-        state: &S::State,
-        subgradient: &Vector,
-        request: LinearizationRequest,
-    ) -> Linearized {
-        match self.solver().linearize(control, state, request.accuracy) {
+    fn linearize(&self, control: &Vector, state: &S::State, subgradient: &Vector, accuracy: Accuracy) -> Linearized {
+        match self.solver.linearize(control, state, accuracy) {
             Ok(mut linearization) => {
-                let weights = self.cost().subgradient(&linearization.outputs);
+                let weights = self.cost.subgradient(&linearization.outputs);
                 linearization.correct(&weights, subgradient);
                 Linearized::Known(linearization)
             }
@@ -141,22 +149,23 @@ impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> CompositeObjective<S,
     }
 }
 
-impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> NonsmoothObjective for CompositeObjective<S, J> {
+impl<S: OutputJacobian, H: OuterFunction> NonsmoothObjective for CompositeObjective<S, H> {
     type WarmStart = S::WarmStart;
 
     fn dimension(&self) -> usize {
-        self.solver().control_dimension()
+        self.solver.control_dimension()
     }
 
     fn outer(&self) -> Option<&dyn OuterFunction> {
-        Some(self.cost())
+        Some(&self.cost)
     }
 
     fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
-        evaluate(self.solver(), request, |state| {
-            let mut evaluation = self.reduced.differentiate(request.point, state)?;
+        evaluate(&self.solver, request, |state| {
+            let mut evaluation = self.differentiate(request.point, state)?;
             if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
-                evaluation.linearization = self.linearize(request.point, state, &evaluation.subgradient, wanted);
+                evaluation.linearization =
+                    self.linearize(request.point, state, &evaluation.subgradient, wanted.accuracy);
             }
             Ok(evaluation)
         })

@@ -2,7 +2,7 @@
 
 use crate::checks::check_size;
 use crate::linalg::first_non_finite;
-use crate::{Answer, Coderivative, Cost, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
+use crate::{Answer, Coderivative, Cost, CostGradient, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
 
 /// The objective Θ(α) = J(α, S(α)) of a state solver with coderivative and a cost.
 #[derive(Debug, Clone)]
@@ -35,20 +35,7 @@ impl<S: Coderivative, J: Cost<S::State>> ReducedObjective<S, J> {
     /// Whatever the coderivative reports, and [`OracleError::NotFinite`].
     pub fn differentiate(&self, control: &Vector, state: &S::State) -> Result<Evaluation<S::WarmStart>, OracleError> {
         let value = self.cost.value(control, state);
-        if !value.is_finite() {
-            return Err(OracleError::NotFinite { what: "value" });
-        }
-        let gradient = self.cost.gradient(control, state);
-        let (product, weighted) = self.solver.coderivative_with_error(control, state, &gradient.state)?;
-        let error_bound = weighted.unwrap_or_else(|| match self.solver.state_error(state) {
-            0.0 => 0.0,
-            error => gradient.state.norm() * error,
-        });
-        let subgradient = gradient.control + product;
-        if first_non_finite(subgradient.as_slice()).is_some() {
-            return Err(OracleError::NotFinite { what: "subgradient" });
-        }
-        Ok(Evaluation { error_bound, ..Evaluation::exact(value, subgradient, self.solver.warm_start(state)) })
+        chain_rule(&self.solver, control, state, value, || self.cost.gradient(control, state))
     }
 }
 
@@ -74,4 +61,28 @@ pub(crate) fn evaluate<S: Coderivative>(
     let state = solver.solve(request.point, request.warm_start, request.accuracy)?;
     let evaluation = differentiate(&state)?;
     Ok(Answer::Accurate(Evaluation { work: solver.work(&state), ..evaluation }))
+}
+
+/// Θ with the subgradient ξ = ∇₁J + D*S(∇₂J), method.md (1.2). The gradient is asked for where the value is finite.
+pub(crate) fn chain_rule<S: Coderivative>(
+    solver: &S,
+    control: &Vector,
+    state: &S::State,
+    value: f64,
+    gradient: impl FnOnce() -> CostGradient,
+) -> Result<Evaluation<S::WarmStart>, OracleError> {
+    if !value.is_finite() {
+        return Err(OracleError::NotFinite { what: "value" });
+    }
+    let gradient = gradient();
+    let (product, weighted) = solver.coderivative_with_error(control, state, &gradient.state)?;
+    let error_bound = weighted.unwrap_or_else(|| match solver.state_error(state) {
+        0.0 => 0.0,
+        error => gradient.state.norm() * error,
+    });
+    let subgradient = gradient.control + product;
+    if first_non_finite(subgradient.as_slice()).is_some() {
+        return Err(OracleError::NotFinite { what: "subgradient" });
+    }
+    Ok(Evaluation { error_bound, ..Evaluation::exact(value, subgradient, solver.warm_start(state)) })
 }

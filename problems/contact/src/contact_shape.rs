@@ -298,11 +298,7 @@ impl<S: ContactSolver> Coderivative for ContactShape<S> {
 /// The outputs are the contact pressures σ = λ_N/A per contact node, MPa; the slacks are the gaps of the open nodes, mm.
 impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
     fn outputs(&self, state: &Self::State) -> Vector {
-        let points = self.problem().boundary.points.iter();
-        Vector::from_iterator(
-            points.len(),
-            state.forces.normal.iter().zip(points).map(|(force, point)| force / point.area),
-        )
+        self.problem().boundary.pressures(&state.forces.normal)
     }
 
     fn output_dual(&self, _state: &Self::State, weights: &Vector) -> Vector {
