@@ -84,7 +84,7 @@ pub trait OutputJacobian: Coderivative {
         for row in 0..outputs.len() {
             let unit = Vector::from_fn(outputs.len(), |i, _| f64::from(u8::from(i == row)));
             let sensitivity = self.coderivative(control, state, &self.output_dual(state, &unit))?;
-            jacobian.set_row(row, &sensitivity.transpose());
+            jacobian.set_row(row, &sensitivity.element.transpose());
         }
         Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None })
     }

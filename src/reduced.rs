@@ -2,7 +2,9 @@
 
 use crate::checks::check_size;
 use crate::linalg::first_non_finite;
-use crate::{Answer, Coderivative, Cost, CostGradient, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
+use crate::{
+    Answer, Coderivative, Cost, CostGradient, Evaluation, NonsmoothObjective, OracleError, Request, Sensitivity, Vector,
+};
 
 /// The objective Θ(α) = J(α, S(α)) of a state solver with coderivative and a cost.
 #[derive(Debug, Clone)]
@@ -75,12 +77,8 @@ pub(crate) fn chain_rule<S: Coderivative>(
         return Err(OracleError::NotFinite { what: "value" });
     }
     let gradient = gradient();
-    let (product, weighted) = solver.coderivative_with_error(control, state, &gradient.state)?;
-    let error_bound = weighted.unwrap_or_else(|| match solver.state_error(state) {
-        0.0 => 0.0,
-        error => gradient.state.norm() * error,
-    });
-    let subgradient = gradient.control + product;
+    let Sensitivity { element, error_bound } = solver.coderivative(control, state, &gradient.state)?;
+    let subgradient = gradient.control + element;
     if first_non_finite(subgradient.as_slice()).is_some() {
         return Err(OracleError::NotFinite { what: "subgradient" });
     }

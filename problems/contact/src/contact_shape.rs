@@ -20,7 +20,9 @@ use crate::scene::Scene;
 use crate::tfeti::PreconditionerKind;
 use nonsmooth::composite::{InactiveConstraints, Linearization};
 use nonsmooth::interruption::interrupted;
-use nonsmooth::{Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJacobian, StateSolver, Vector};
+use nonsmooth::{
+    Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJacobian, Sensitivity, StateSolver, Vector,
+};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -271,27 +273,17 @@ impl<S: ContactSolver> StateSolver for ContactShape<S> {
     fn work(&self, state: &Self::State) -> usize {
         state.work().dual_operator_applications
     }
-
-    /// Residual times load, N: the size of the error of the contact forces. For a cost, [`ContactShape::pull_back`] has the
-    /// sharper estimate.
-    fn state_error(&self, state: &Self::State) -> f64 {
-        state.forces.residuals.newton * state.load
-    }
 }
 
 impl<S: ContactSolver> Coderivative for ContactShape<S> {
-    fn coderivative(&self, control: &Vector, state: &Self::State, direction: &Vector) -> Result<Vector, OracleError> {
-        Ok(self.pull_back(control, state, direction)?.0)
-    }
-
-    fn coderivative_with_error(
+    fn coderivative(
         &self,
         control: &Vector,
         state: &Self::State,
         direction: &Vector,
-    ) -> Result<(Vector, Option<f64>), OracleError> {
-        let (product, error) = self.pull_back(control, state, direction)?;
-        Ok((product, Some(error.bound)))
+    ) -> Result<Sensitivity, OracleError> {
+        let (element, error) = self.pull_back(control, state, direction)?;
+        Ok(Sensitivity { element, error_bound: error.bound })
     }
 }
 
