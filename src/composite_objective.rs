@@ -1,5 +1,6 @@
 //! Composite objectives as oracles: a closure for outputs and Jacobian, or outputs of a state.
 
+use crate::checks::check_finite;
 use crate::composite::{Linearization, Linearized, OuterFunction};
 use crate::reduced::{chain_rule, evaluate};
 use crate::{
@@ -31,7 +32,7 @@ pub struct CompositeFunction<H, F> {
 }
 
 impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> CompositeFunction<H, F> {
-    /// An objective of `dimension` variables; the closure returns m outputs and their m × `dimension` Jacobian.
+    /// An objective of `dimension` variables; the closure returns m outputs, always as many, and their m × `dimension` Jacobian.
     pub fn new(dimension: usize, outer: H, function: F) -> Self {
         Self { dimension, outer, function }
     }
@@ -60,7 +61,8 @@ impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> NonsmoothObjective fo
     }
 }
 
-/// The outputs c of a state problem that a convex cost is a function of, with their generalized Jacobian.
+/// The outputs c of a state problem that a convex cost is a function of, with their generalized Jacobian. Their number does not depend on
+/// the state.
 pub trait OutputJacobian: Coderivative {
     /// c(S(α)), m entries.
     fn outputs(&self, state: &Self::State) -> Vector;
@@ -128,8 +130,9 @@ impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
     /// Θ and one subgradient at a state already found.
     ///
     /// # Errors
-    /// Whatever the coderivative reports, and [`OracleError::NotFinite`].
+    /// Whatever the coderivative reports, [`OracleError::NotFinite`], and [`OracleError::Input`] for outputs that are not finite.
     pub fn differentiate(&self, control: &Vector, state: &S::State) -> Result<Evaluation<S::WarmStart>, OracleError> {
+        check_finite("outputs", self.solver.outputs(state).as_slice())?;
         chain_rule(&self.solver, control, state, self.value(state), || CostGradient {
             control: Vector::zeros(control.len()),
             state: self.state_dual(state),

@@ -284,6 +284,7 @@ impl Run<'_, '_> {
         let accuracy = self.wanted_accuracy(REFINEMENT_SHARE * proposal.predicted_decrease);
         let center = self.state.center.clone();
         self.state.center_accuracy = accuracy.tolerance();
+        let mut contradiction = Continue(());
         let mut event =
             Event { kind: StepKind::Refinement, value: None, failure: None, noted: Noted::Nothing, work: 0 };
         match self.evaluate(&center, accuracy, None, f64::INFINITY) {
@@ -300,11 +301,15 @@ impl Run<'_, '_> {
                 self.state.bundle.retain(|cut| cut.id != old);
             }
             Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
-            Outcome::Failure(error) => event.failure = Some(error.to_string()),
+            Outcome::Failure(error) => {
+                event.failure = Some(error.to_string());
+                contradiction = Self::refuse_contradiction(&error);
+            }
             _ => event.failure = Some("no accurate value at the center".to_owned()),
         }
         self.state.counts.refined += 1;
         self.record(proposal, accuracy, event);
+        contradiction?;
         self.after_evaluation()
     }
 
@@ -338,10 +343,17 @@ impl Run<'_, '_> {
         let failure = Some(error.to_string());
         let event = Event { kind: StepKind::Failed, value: None, failure, noted: Noted::Nothing, work: 0 };
         self.record(proposal, accuracy, event);
+        Self::refuse_contradiction(error)?;
         if failures >= self.method.config.max_failures && proposal.origin == Origin::Cuts && close {
             return Break(Termination::OracleFailing { failures, last: error.to_string() });
         }
         Continue(())
+    }
+
+    /// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another function.
+    fn refuse_contradiction(error: &OracleError) -> ControlFlow<Termination> {
+        let OracleError::Contradiction(reason) = error else { return Continue(()) };
+        Break(Termination::OracleContradiction { reason: reason.to_string() })
     }
 
     /// Ends the run because the oracle was interrupted; the evaluation that was under way does not count.

@@ -32,6 +32,7 @@ impl Run<'_, '_> {
                 | Termination::StoppedByObserver
                 | Termination::StopRule { .. }
                 | Termination::UnboundedBelow
+                | Termination::OracleContradiction { .. }
                 | Termination::EvaluationLimit
                 | Termination::IterationLimit
                 | Termination::TimeLimit

@@ -15,7 +15,7 @@ pub struct LinearizationRequest {
 /// Outputs c(x) and one element G of their generalized Jacobian; m outputs, n variables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linearization {
-    /// c(x), m entries.
+    /// c(x), m entries; m is the same at all points.
     pub outputs: Vector,
     /// G, m × n.
     pub jacobian: Matrix,
