@@ -7,7 +7,7 @@
 
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, Coderivative, Cost, CostGradient, OracleError, Polyhedron,
-    ReducedObjective, Report, StateSolver, Vector,
+    ReducedObjective, Report, Sensitivity, StateSolver, Vector,
 };
 
 struct StringOverTable;
@@ -35,9 +35,9 @@ impl StateSolver for StringOverTable {
 
 impl Coderivative for StringOverTable {
     /// One element of D*S(a, T)(λ*): 0 where the string hangs free or just touches, otherwise λ* (4T, 4a).
-    fn coderivative(&self, control: &Vector, state: &Load, direction: &Vector) -> Result<Vector, OracleError> {
+    fn coderivative(&self, control: &Vector, state: &Load, direction: &Vector) -> Result<Sensitivity, OracleError> {
         let touching = if state.0 > 0.0 { direction[0] } else { 0.0 };
-        Ok(Vector::from_vec(vec![4.0 * control[1] * touching, 4.0 * control[0] * touching]))
+        Ok(Sensitivity::exact(Vector::from_vec(vec![4.0 * control[1] * touching, 4.0 * control[0] * touching])))
     }
 }
 

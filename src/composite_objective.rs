@@ -1,9 +1,10 @@
 //! Composite objectives as oracles: a closure for outputs and Jacobian, or outputs of a state.
 
-use crate::composite::{Linearization, LinearizationRequest, OuterFunction};
+use crate::checks::check_finite;
+use crate::composite::{Linearization, Linearized, OuterFunction};
+use crate::reduced::{chain_rule, evaluate};
 use crate::{
-    Accuracy, Answer, Coderivative, Cost, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError,
-    ReducedObjective, Request, Vector,
+    Accuracy, Answer, Coderivative, CostGradient, Evaluation, Matrix, NonsmoothObjective, OracleError, Request, Vector,
 };
 
 /// Θ = h∘c with a closure `x ↦ (c(x), G)`.
@@ -31,7 +32,7 @@ pub struct CompositeFunction<H, F> {
 }
 
 impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> CompositeFunction<H, F> {
-    /// An objective of `dimension` variables; the closure returns m outputs and their m × `dimension` Jacobian.
+    /// An objective of `dimension` variables; the closure returns m outputs, always as many, and their m × `dimension` Jacobian.
     pub fn new(dimension: usize, outer: H, function: F) -> Self {
         Self { dimension, outer, function }
     }
@@ -54,13 +55,14 @@ impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> NonsmoothObjective fo
         linearization.check(self.dimension)?;
         let value = self.outer.value(&linearization.outputs);
         let subgradient = linearization.jacobian.tr_mul(&self.outer.subgradient(&linearization.outputs));
-        let linearization = request.linearization.map(|_| Ok(linearization));
+        let linearization = Linearized::if_asked(request.linearization, linearization);
         let evaluation = Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) };
         Ok(Answer::Accurate(evaluation))
     }
 }
 
-/// The outputs c of a state problem that a convex cost is a function of, with their generalized Jacobian.
+/// The outputs c of a state problem that a convex cost is a function of, with their generalized Jacobian. Their number does not depend on
+/// the state.
 pub trait OutputJacobian: Coderivative {
     /// c(S(α)), m entries.
     fn outputs(&self, state: &Self::State) -> Vector;
@@ -84,81 +86,91 @@ pub trait OutputJacobian: Coderivative {
         for row in 0..outputs.len() {
             let unit = Vector::from_fn(outputs.len(), |i, _| f64::from(u8::from(i == row)));
             let sensitivity = self.coderivative(control, state, &self.output_dual(state, &unit))?;
-            jacobian.set_row(row, &sensitivity.transpose());
+            jacobian.set_row(row, &sensitivity.element.transpose());
         }
         Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None })
     }
 }
 
-/// Θ(α) = J(α, S(α)) of a cost that is a convex function of the outputs alone: J = h∘c.
-///
-/// The cost is both a [`Cost`] of the state and an [`OuterFunction`] of the outputs, and must have the same value as either.
+/// Θ(α) = h(c(S(α))) of outputs c of a state and a convex function h of them, the cost.
 #[derive(Debug, Clone)]
-pub struct CompositeObjective<S, J> {
-    reduced: ReducedObjective<S, J>,
+pub struct CompositeObjective<S, H> {
+    solver: S,
+    cost: H,
 }
 
-impl<S, J> CompositeObjective<S, J> {
-    /// Composes a state solver and a cost.
-    pub fn new(solver: S, cost: J) -> Self {
-        Self { reduced: ReducedObjective::new(solver, cost) }
+impl<S, H> CompositeObjective<S, H> {
+    /// Composes a state solver with outputs and a cost of these outputs.
+    pub fn new(solver: S, cost: H) -> Self {
+        Self { solver, cost }
     }
 
     /// The state solver.
     pub fn solver(&self) -> &S {
-        self.reduced.solver()
+        &self.solver
     }
 
-    /// The cost.
-    pub fn cost(&self) -> &J {
-        self.reduced.cost()
-    }
-
-    /// The same objective without its structure.
-    pub fn reduced(&self) -> &ReducedObjective<S, J> {
-        &self.reduced
+    /// The cost h.
+    pub fn cost(&self) -> &H {
+        &self.cost
     }
 }
 
-impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> CompositeObjective<S, J> {
-    /// Outputs and G at a state, G corrected so that Gᵀw is the subgradient ξ; the text of the error where there is none.
-    fn linearize(
-        &self,
-        control: &Vector,
-        state: &S::State,
-        subgradient: &Vector,
-        request: LinearizationRequest,
-    ) -> Result<Linearization, String> {
-        let linearized = self.solver().linearize(control, state, request.accuracy);
-        let mut linearization = linearized.map_err(|error| error.to_string())?;
-        let weights = self.cost().subgradient(&linearization.outputs);
-        linearization.correct(&weights, subgradient);
-        Ok(linearization)
+impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
+    /// Θ = h(c) at a state already found.
+    pub fn value(&self, state: &S::State) -> f64 {
+        self.cost.value(&self.solver.outputs(state))
+    }
+
+    /// y* = (∂c/∂y)ᵀ w with w ∈ ∂h(c), at a state already found: what the coderivative is asked for.
+    pub fn state_dual(&self, state: &S::State) -> Vector {
+        self.solver.output_dual(state, &self.cost.subgradient(&self.solver.outputs(state)))
+    }
+
+    /// Θ and one subgradient at a state already found.
+    ///
+    /// # Errors
+    /// Whatever the coderivative reports, [`OracleError::NotFinite`], and [`OracleError::Input`] for outputs that are not finite.
+    pub fn differentiate(&self, control: &Vector, state: &S::State) -> Result<Evaluation<S::WarmStart>, OracleError> {
+        check_finite("outputs", self.solver.outputs(state).as_slice())?;
+        chain_rule(&self.solver, control, state, self.value(state), || CostGradient {
+            control: Vector::zeros(control.len()),
+            state: self.state_dual(state),
+        })
+    }
+
+    /// Outputs and G at a state, G corrected so that Gᵀw is the subgradient ξ.
+    fn linearize(&self, control: &Vector, state: &S::State, subgradient: &Vector, accuracy: Accuracy) -> Linearized {
+        match self.solver.linearize(control, state, accuracy) {
+            Ok(mut linearization) => {
+                let weights = self.cost.subgradient(&linearization.outputs);
+                linearization.correct(&weights, subgradient);
+                Linearized::Known(linearization)
+            }
+            Err(error) => Linearized::Unavailable(error.to_string()),
+        }
     }
 }
 
-impl<S: OutputJacobian, J: Cost<S::State> + OuterFunction> NonsmoothObjective for CompositeObjective<S, J> {
+impl<S: OutputJacobian, H: OuterFunction> NonsmoothObjective for CompositeObjective<S, H> {
     type WarmStart = S::WarmStart;
 
     fn dimension(&self) -> usize {
-        self.solver().control_dimension()
+        self.solver.control_dimension()
     }
 
     fn outer(&self) -> Option<&dyn OuterFunction> {
-        Some(self.cost())
+        Some(&self.cost)
     }
 
     fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
-        let (expected, found) = (self.dimension(), request.point.len());
-        if expected != found {
-            return Err(InputError::Dimension { what: "control", expected, found }.into());
-        }
-        let state = self.solver().solve(request.point, request.warm_start, request.accuracy)?;
-        let mut evaluation = self.reduced.differentiate(request.point, &state)?;
-        if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
-            evaluation.linearization = Some(self.linearize(request.point, &state, &evaluation.subgradient, wanted));
-        }
-        evaluation.work = self.solver().work(&state);
-        Ok(Answer::Accurate(evaluation))
+        evaluate(&self.solver, request, |state| {
+            let mut evaluation = self.differentiate(request.point, state)?;
+            if let Some(wanted) = request.linearization.filter(|wanted| evaluation.value <= wanted.below) {
+                evaluation.linearization =
+                    self.linearize(request.point, state, &evaluation.subgradient, wanted.accuracy);
+            }
+            Ok(evaluation)
+        })
     }
 }

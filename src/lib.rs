@@ -41,7 +41,7 @@
 //! use nonsmooth::verify::{Direction, STEPS, taylor_test};
 //! use nonsmooth::{
 //!     Accuracy, BundleTrust, BundleTrustConfig, Coderivative, Cost, CostGradient, Matrix, OracleError, Polyhedron,
-//!     ReducedObjective, StateSolver, Vector,
+//!     ReducedObjective, Sensitivity, StateSolver, Vector,
 //! };
 //!
 //! struct SpringWithStop;
@@ -70,9 +70,10 @@
 //!
 //! // 2. The coderivative: S′(p, g)ᵀ y* of the piece that the state lies on; on the kink p = g that of the free spring.
 //! impl Coderivative for SpringWithStop {
-//!     fn coderivative(&self, _control: &Vector, state: &Travel, direction: &Vector) -> Result<Vector, OracleError> {
+//!     fn coderivative(&self, _control: &Vector, state: &Travel, direction: &Vector) -> Result<Sensitivity, OracleError> {
 //!         let dual = direction[0];
-//!         Ok(Vector::from_vec(if state.at_the_stop { vec![0.0, dual] } else { vec![dual, 0.0] }))
+//!         let element = if state.at_the_stop { vec![0.0, dual] } else { vec![dual, 0.0] };
+//!         Ok(Sensitivity::exact(Vector::from_vec(element)))
 //!     }
 //! }
 //!
@@ -211,7 +212,7 @@ pub use error::{InputError, OptimizeError, OracleError};
 pub use journal::{Journal, JournalError, Journaled};
 pub use linalg::{Matrix, Vector};
 pub use objective::{Answer, Evaluation, FnAnswer, FnObjective, NonsmoothObjective, Request};
-pub use problem::{Coderivative, Cost, CostGradient, StateSolver};
+pub use problem::{Coderivative, Cost, CostGradient, Sensitivity, StateSolver};
 pub use reduced::ReducedObjective;
 pub use report::{
     Certificate, CertificateCheck, CompositeProof, Counts, IterationRecord, Observer, Origin, ProofCheck, Report,

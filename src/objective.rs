@@ -4,7 +4,7 @@
 //! request: point, warm start, accuracy, descent target   →   accurate | certified no descent | failed with reason
 //! ```
 
-use crate::composite::{Linearization, LinearizationRequest, OuterFunction};
+use crate::composite::{LinearizationRequest, Linearized, OuterFunction};
 use crate::{Accuracy, OracleError, Vector};
 
 /// One question to a [`NonsmoothObjective`].
@@ -42,9 +42,8 @@ pub struct Evaluation<W> {
     pub error_bound: f64,
     /// Warm start for evaluations at nearby points.
     pub warm_start: W,
-    /// Outputs and Jacobian of a composite objective, if the request asked for them; the text of the error where they cannot be
-    /// had, which costs the run nothing but its composite model.
-    pub linearization: Option<Result<Linearization, String>>,
+    /// Outputs and Jacobian of a composite objective, or why there are none.
+    pub linearization: Linearized,
     /// Work that the evaluation took, in a unit of the oracle's own; 0 where none is counted. It goes into the records of a run.
     pub work: usize,
 }
@@ -52,7 +51,7 @@ pub struct Evaluation<W> {
 impl<W> Evaluation<W> {
     /// A value and a subgradient that are exact up to rounding.
     pub fn exact(value: f64, subgradient: Vector, warm_start: W) -> Self {
-        Self { value, subgradient, error_bound: 0.0, warm_start, linearization: None, work: 0 }
+        Self { value, subgradient, error_bound: 0.0, warm_start, linearization: Linearized::NotAsked, work: 0 }
     }
 }
 

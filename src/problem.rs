@@ -31,11 +31,6 @@ pub trait StateSolver {
     /// The part of a state that restarts a solve at a nearby control.
     fn warm_start(&self, state: &Self::State) -> Self::WarmStart;
 
-    /// Estimate of ‖y − S(α)‖ for the state returned, in the norm dual to that of `CostGradient::state`; 0 means exact.
-    fn state_error(&self, _state: &Self::State) -> f64 {
-        0.0
-    }
-
     /// Work that a state and what was derived from it have taken so far, in a unit of the solver's own (products with its operator,
     /// for example); 0 (the default) where none is counted. It goes into the records of a run.
     fn work(&self, _state: &Self::State) -> usize {
@@ -45,26 +40,32 @@ pub trait StateSolver {
 
 /// The derivative information of a [`StateSolver`]: one element of its coderivative; method.md (1.2).
 pub trait Coderivative: StateSolver {
-    /// One element of D*S(α)(y*), `control_dimension()` entries; `direction` is y*, a dual of the state in the layout
-    /// that the solver's documentation states.
+    /// One element of D*S(α)(y*); `direction` is y*, a dual of the state in the layout that the solver's documentation states.
     ///
     /// # Errors
     /// An [`OracleError`] when the adjoint system cannot be solved.
-    fn coderivative(&self, control: &Vector, state: &Self::State, direction: &Vector) -> Result<Vector, OracleError>;
-
-    /// As [`coderivative`](Self::coderivative), with an estimate of |⟨y*, y − S(α)⟩|, the error that an inexact state y
-    /// causes in ⟨y*, y⟩. An adjoint solver gets this estimate by weighing the residuals of the state, without any norm
-    /// of the state's error. `None` (the default) leaves the estimate to [`StateSolver::state_error`].
-    ///
-    /// # Errors
-    /// As [`coderivative`](Self::coderivative).
-    fn coderivative_with_error(
+    fn coderivative(
         &self,
         control: &Vector,
         state: &Self::State,
         direction: &Vector,
-    ) -> Result<(Vector, Option<f64>), OracleError> {
-        Ok((self.coderivative(control, state, direction)?, None))
+    ) -> Result<Sensitivity, OracleError>;
+}
+
+/// What a [`Coderivative`] returns for a dual y* at an inexact state y.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensitivity {
+    /// One element of D*S(α)(y*), `control_dimension()` entries.
+    pub element: Vector,
+    /// Bound or estimate of |⟨y*, y − S(α)⟩|, the error that y causes in a cost with the gradient y*; 0 means exact up to rounding. An
+    /// adjoint solver gets it by weighing the residuals of y. Where only ‖y − S(α)‖ is known, it is the product with the dual norm of y*.
+    pub error_bound: f64,
+}
+
+impl Sensitivity {
+    /// An element at a state that is exact up to rounding.
+    pub fn exact(element: Vector) -> Self {
+        Self { element, error_bound: 0.0 }
     }
 }
 

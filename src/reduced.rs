@@ -1,7 +1,10 @@
 //! Θ = J∘(I, S) and its subgradient by the chain rule; method.md (1.1), (1.2).
 
+use crate::checks::check_size;
 use crate::linalg::first_non_finite;
-use crate::{Answer, Coderivative, Cost, Evaluation, InputError, NonsmoothObjective, OracleError, Request, Vector};
+use crate::{
+    Answer, Coderivative, Cost, CostGradient, Evaluation, NonsmoothObjective, OracleError, Request, Sensitivity, Vector,
+};
 
 /// The objective Θ(α) = J(α, S(α)) of a state solver with coderivative and a cost.
 #[derive(Debug, Clone)]
@@ -34,20 +37,7 @@ impl<S: Coderivative, J: Cost<S::State>> ReducedObjective<S, J> {
     /// Whatever the coderivative reports, and [`OracleError::NotFinite`].
     pub fn differentiate(&self, control: &Vector, state: &S::State) -> Result<Evaluation<S::WarmStart>, OracleError> {
         let value = self.cost.value(control, state);
-        if !value.is_finite() {
-            return Err(OracleError::NotFinite { what: "value" });
-        }
-        let gradient = self.cost.gradient(control, state);
-        let (product, weighted) = self.solver.coderivative_with_error(control, state, &gradient.state)?;
-        let error_bound = weighted.unwrap_or_else(|| match self.solver.state_error(state) {
-            0.0 => 0.0,
-            error => gradient.state.norm() * error,
-        });
-        let subgradient = gradient.control + product;
-        if first_non_finite(subgradient.as_slice()).is_some() {
-            return Err(OracleError::NotFinite { what: "subgradient" });
-        }
-        Ok(Evaluation { error_bound, ..Evaluation::exact(value, subgradient, self.solver.warm_start(state)) })
+        chain_rule(&self.solver, control, state, value, || self.cost.gradient(control, state))
     }
 }
 
@@ -59,12 +49,38 @@ impl<S: Coderivative, J: Cost<S::State>> NonsmoothObjective for ReducedObjective
     }
 
     fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
-        let (expected, found) = (self.dimension(), request.point.len());
-        if expected != found {
-            return Err(InputError::Dimension { what: "control", expected, found }.into());
-        }
-        let state = self.solver.solve(request.point, request.warm_start, request.accuracy)?;
-        let evaluation = self.differentiate(request.point, &state)?;
-        Ok(Answer::Accurate(Evaluation { work: self.solver.work(&state), ..evaluation }))
+        evaluate(&self.solver, request, |state| self.differentiate(request.point, state))
     }
+}
+
+/// The path of every objective with a state: solve, differentiate the state found, count the work of both.
+pub(crate) fn evaluate<S: Coderivative>(
+    solver: &S,
+    request: &Request<'_, S::WarmStart>,
+    differentiate: impl FnOnce(&S::State) -> Result<Evaluation<S::WarmStart>, OracleError>,
+) -> Result<Answer<S::WarmStart>, OracleError> {
+    check_size("control", solver.control_dimension(), request.point.len())?;
+    let state = solver.solve(request.point, request.warm_start, request.accuracy)?;
+    let evaluation = differentiate(&state)?;
+    Ok(Answer::Accurate(Evaluation { work: solver.work(&state), ..evaluation }))
+}
+
+/// Θ with the subgradient ξ = ∇₁J + D*S(∇₂J), method.md (1.2). The gradient is asked for where the value is finite.
+pub(crate) fn chain_rule<S: Coderivative>(
+    solver: &S,
+    control: &Vector,
+    state: &S::State,
+    value: f64,
+    gradient: impl FnOnce() -> CostGradient,
+) -> Result<Evaluation<S::WarmStart>, OracleError> {
+    if !value.is_finite() {
+        return Err(OracleError::NotFinite { what: "value" });
+    }
+    let gradient = gradient();
+    let Sensitivity { element, error_bound } = solver.coderivative(control, state, &gradient.state)?;
+    let subgradient = gradient.control + element;
+    if first_non_finite(subgradient.as_slice()).is_some() {
+        return Err(OracleError::NotFinite { what: "subgradient" });
+    }
+    Ok(Evaluation { error_bound, ..Evaluation::exact(value, subgradient, solver.warm_start(state)) })
 }

@@ -7,7 +7,7 @@ use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::fields::{FieldState, Fields, vtk_files};
 use contact::scene::hertz;
-use nonsmooth::{Accuracy, Cost, StateSolver, Vector};
+use nonsmooth::{Accuracy, CompositeObjective, OutputJacobian, StateSolver, Vector};
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -18,10 +18,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let shape = ContactShape::new(scene, SolverKind::Newton)?;
     let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary)?;
     let start = shape.start();
-    let (first, subgradient) = solved(&shape, &cost, &start)?;
+    let objective = CompositeObjective::new(shape, cost);
+    let (first, subgradient) = solved(&objective, &start)?;
     // A tenth of a millimetre at most.
     let moved = &start - subgradient.scale(0.1 / subgradient.amax());
-    let (second, _) = solved(&shape, &cost, &moved)?;
+    let (second, _) = solved(&objective, &moved)?;
     let states = [
         FieldState { time: 0.0, name: "start", fields: &first, notes: &[] },
         FieldState { time: 1.0, name: "moved", fields: &second, notes: &[] },
@@ -35,17 +36,16 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// Fields with sensitivities, and the subgradient.
-fn solved(shape: &ContactShape, cost: &PressureCost, control: &Vector) -> Result<(Fields, Vector), Box<dyn Error>> {
+fn solved(
+    objective: &CompositeObjective<ContactShape, PressureCost>,
+    control: &Vector,
+) -> Result<(Fields, Vector), Box<dyn Error>> {
+    let shape = objective.solver();
     let state = shape.solve(control, None, Accuracy::TIGHTEST)?;
-    let dual = cost.gradient(control, &state).state;
-    let (heights, _) = shape.height_sensitivity(&state, &dual)?;
+    let (heights, _) = shape.height_sensitivity(&state, &objective.state_dual(&state))?;
     let subgradient = Vector::from_vec(shape.problem().height_map.pull_back(&heights));
     let mut fields = shape.fields(&state)?;
     fields.contact.sensitivity = Some(heights);
-    println!(
-        "Θ = {:.6e}, largest pressure {:.0} MPa",
-        cost.value(control, &state),
-        cost.pressures(&state).into_iter().fold(0.0, f64::max)
-    );
+    println!("Θ = {:.6e}, largest pressure {:.0} MPa", objective.value(&state), shape.outputs(&state).max());
     Ok((fields, subgradient))
 }

@@ -112,7 +112,7 @@ fn the_membrane_takes_what_cuts_take() {
         let values = state.displacement.iter().chain(state.reaction.iter());
         let rows = values.enumerate().map(|(i, value)| {
             let unit = Vector::from_fn(2 * nodes, |k, _| f64::from(u8::from(k == i)));
-            (*value, plain.solver().coderivative(x, &state, &unit).unwrap())
+            (*value, plain.solver().coderivative(x, &state, &unit).unwrap().element)
         });
         with_controls(rows.collect(), x)
     });

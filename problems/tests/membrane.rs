@@ -105,7 +105,7 @@ fn coderivative_is_the_adjoint_of_difference_quotients() {
     let t = 1e-4;
     // The state is piecewise linear: the quotient is exact up to rounding as long as the active set stays.
     let quotient = (packed(&(&point + &step * t)) - packed(&(&point - &step * t))).dot(&dual) / (2.0 * t);
-    let product = solver.coderivative(&point, &state, &dual).unwrap().dot(&step);
+    let product = solver.coderivative(&point, &state, &dual).unwrap().element.dot(&step);
     assert!((quotient - product).abs() < 1e-7 * product.abs(), "{quotient} {product}");
 }
 

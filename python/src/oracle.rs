@@ -10,7 +10,7 @@ use crate::convert;
 use crate::errors::OutsideDomain;
 use crate::failure::Failure;
 use crate::outer::Outer;
-use nonsmooth::composite::{Linearization, OuterFunction};
+use nonsmooth::composite::{Linearization, Linearized, OuterFunction};
 use nonsmooth::{Answer, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
@@ -34,6 +34,9 @@ pub struct PythonOracle {
     pub outside: Failure,
 }
 
+/// An evaluation, or an answer of the right form that the engine takes for a failure.
+type Evaluated = Result<Evaluation<()>, OracleError>;
+
 impl PythonOracle {
     fn call<'py>(&self, py: Python<'py>, request: &Request<'_, ()>) -> PyResult<Bound<'py, PyAny>> {
         let x = convert::array(py, request.point);
@@ -50,7 +53,8 @@ impl PythonOracle {
         answer
     }
 
-    fn evaluation(&self, answer: &Bound<'_, PyAny>, request: &Request<'_, ()>) -> PyResult<Evaluation<()>> {
+    /// The answer of the function; an exception where it has the wrong form.
+    fn evaluation(&self, answer: &Bound<'_, PyAny>, request: &Request<'_, ()>) -> PyResult<Evaluated> {
         let wanted = if self.outer.is_some() { "(outputs, Jacobian)" } else { "(value, subgradient)" };
         let parts = convert::parts(answer, "fun", wanted, true)?;
         let (first, second) = (parts.get_item(0)?, parts.get_item(1)?);
@@ -60,7 +64,10 @@ impl PythonOracle {
                 let subgradient = convert::vector(&second, "the subgradient that fun returns", Some(self.dimension))?;
                 Evaluation::exact(value, subgradient, ())
             }
-            Some(outer) => self.composite(outer, &first, &second, request)?,
+            Some(outer) => match self.composite(outer, &first, &second, request)? {
+                Ok(evaluation) => evaluation,
+                failed => return Ok(failed),
+            },
         };
         evaluation.error_bound = if parts.len() == 3 {
             convert::number(&parts.get_item(2)?, "the error bound that fun returns")?
@@ -69,7 +76,7 @@ impl PythonOracle {
         } else {
             0.0
         };
-        Ok(evaluation)
+        Ok(Ok(evaluation))
     }
 
     fn composite(
@@ -78,7 +85,7 @@ impl PythonOracle {
         outputs: &Bound<'_, PyAny>,
         jacobian: &Bound<'_, PyAny>,
         request: &Request<'_, ()>,
-    ) -> PyResult<Evaluation<()>> {
+    ) -> PyResult<Evaluated> {
         let outputs = convert::vector(outputs, "the vector of outputs that fun returns", None)?;
         let jacobian = convert::matrix(jacobian, "the Jacobian that fun returns")?;
         let (expected, found) = ((outputs.len(), self.dimension), jacobian.shape());
@@ -87,11 +94,16 @@ impl PythonOracle {
                 "the Jacobian that fun returns has shape {found:?}, expected {expected:?} (outputs, variables)"
             )));
         }
-        let value = outer.value(&outputs);
-        let subgradient: Vector = jacobian.tr_mul(&outer.subgradient(&outputs));
         let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
-        let linearization = request.linearization.map(|_| Ok(linearization));
-        Ok(Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) })
+        // Before the outer function sees outputs that are no numbers.
+        if let Err(error) = linearization.check(self.dimension) {
+            return Ok(Err(error.into()));
+        }
+        let Linearization { outputs, jacobian, .. } = &linearization;
+        let value = outer.value(outputs);
+        let subgradient: Vector = jacobian.tr_mul(&outer.subgradient(outputs));
+        let linearization = Linearized::if_asked(request.linearization, linearization);
+        Ok(Ok(Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) }))
     }
 
     /// What the engine is told of an exception.
@@ -126,7 +138,7 @@ impl NonsmoothObjective for PythonOracle {
             match evaluation {
                 // An outer function that raised has returned no number.
                 Ok(_) if self.failure.is_set() => Err(OracleError::Interrupted),
-                Ok(evaluation) => Ok(Answer::Accurate(evaluation)),
+                Ok(evaluation) => evaluation.map(Answer::Accurate),
                 Err(error) => Err(self.failed(py, error)),
             }
         })

@@ -52,6 +52,7 @@ impl Outcome {
             Termination::StoppedByObserver | Termination::Unfinished => "stopped",
             Termination::UnboundedBelow => "unbounded_below",
             Termination::OracleFailing { .. } => "function_failing",
+            Termination::OracleContradiction { .. } => "function_contradictory",
             Termination::SubproblemFailed { .. } => "subproblem_failed",
             _ => "other",
         }

@@ -115,3 +115,31 @@ def test_a_composite_run_is_resumed(tmp_path):
     nonsmooth.minimize_composite("max", curve, [2.0, 2.0], journal=tmp_path, options={"max_evaluations": 4})
     result = nonsmooth.minimize_composite("max", curve, [2.0, 2.0], resume=tmp_path)
     assert same_bits(result.x, whole.x) and result.nfev == whole.nfev
+
+
+def test_a_number_of_outputs_that_changes_ends_the_run():
+    calls = []
+
+    def outputs(x):
+        calls.append(x)
+        values, jacobian = curve(x)
+        count = 3 if len(calls) < 3 else 2
+        return values[:count], jacobian[:count]
+
+    result = nonsmooth.minimize_composite("max", outputs, [2.0, 2.0])
+    assert not result.success and (result.reason, result.status) == ("function_contradictory", 11)
+    assert "has 2 entries, expected 3" in result.message and result.nfev == 3 and result.fun <= 20
+
+
+@pytest.mark.parametrize("broken", [[0, 1], [0], [1]])
+@pytest.mark.parametrize("outer", ["max", "l1", lambda c: (np.abs(c).max(), np.eye(2)[np.abs(c).argmax()] * np.sign(c))])
+def test_outputs_that_are_no_numbers_shorten_the_step(outer, broken):
+    def outputs(x):
+        values = np.array([9 - x[0], 8 - x[0]])
+        if x[0] > 1:
+            values[broken] = np.nan
+        return values, np.array([[-1.0], [-1.0]])
+
+    result = nonsmooth.minimize_composite(outer, outputs, [0.0], bounds=[(0, 5)])
+    assert result.reason == "function_failing" and abs(result.x[0] - 1) < 1e-6
+    assert "is NaN, expected a finite number" in result.message

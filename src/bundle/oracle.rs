@@ -2,6 +2,7 @@
 //! in the engine depends on the type of the objective, so that the engine is compiled once, not once per objective.
 
 use super::norm::ScaledNorm;
+use crate::checks::check_size;
 use crate::linalg::first_non_finite;
 use crate::panics::evaluate_without_panic;
 use crate::{Answer, Evaluation, InputError, NonsmoothObjective, OracleError, Request};
@@ -31,11 +32,13 @@ pub(super) struct WarmStarted<'r, O: NonsmoothObjective> {
     objective: &'r O,
     kept: Option<O::WarmStart>,
     last: Option<O::WarmStart>,
+    /// Number of outputs of a composite objective, once it is known.
+    outputs: Option<usize>,
 }
 
 impl<'r, O: NonsmoothObjective> WarmStarted<'r, O> {
     pub(super) fn new(objective: &'r O) -> Self {
-        Self { objective, kept: None, last: None }
+        Self { objective, kept: None, last: None, outputs: None }
     }
 }
 
@@ -50,10 +53,16 @@ impl<O: NonsmoothObjective> Oracle for WarmStarted<'_, O> {
             self.last = Some(warm_start);
             Evaluation { value, subgradient, error_bound, warm_start: (), linearization, work }
         };
-        Ok(match evaluate_without_panic(self.objective, &request)? {
+        let answer = match evaluate_without_panic(self.objective, &request)? {
             Answer::Accurate(evaluation) => Answer::Accurate(without(evaluation)),
             Answer::NoDescent(evaluation) => Answer::NoDescent(without(evaluation)),
-        })
+        };
+        if let Some(linearization) = answer.evaluation().linearization.known() {
+            let found = linearization.outputs.len();
+            let expected = *self.outputs.get_or_insert(found);
+            check_size("the vector of outputs", expected, found).map_err(OracleError::Contradiction)?;
+        }
+        Ok(answer)
     }
 
     fn keep_warm_start(&mut self) {
@@ -97,7 +106,7 @@ fn check(answer: Answer<()>, expected: usize) -> Outcome {
     if evaluation.value == f64::NEG_INFINITY {
         return Outcome::MinusInfinity;
     }
-    if let Some(Ok(linearization)) = &evaluation.linearization
+    if let Some(linearization) = evaluation.linearization.known()
         && let Err(error) = linearization.check(expected)
     {
         return Outcome::Failure(error.into());

@@ -3,7 +3,7 @@
 use super::proposers::proposal::Proposal;
 use super::state::State;
 use crate::Accuracy;
-use crate::report::{IterationRecord, Origin, StepKind};
+use crate::report::{IterationRecord, Noted, Origin, StepKind};
 use std::time::Instant;
 
 /// What became of an evaluation.
@@ -12,15 +12,15 @@ pub(super) struct Event {
     pub kind: StepKind,
     pub value: Option<f64>,
     pub failure: Option<String>,
-    /// Whether a Jacobian was returned, or the reason why it could not be had; none if neither was reported.
-    pub linearized: Option<Result<(), String>>,
+    /// Whether there was a Jacobian.
+    pub noted: Noted,
     /// Work that the evaluation took.
     pub work: usize,
 }
 
 /// Counts an evaluation and adds its record to the history.
 pub(super) fn record(state: &mut State, proposal: &Proposal, accuracy: Accuracy, event: Event, clock: Instant) {
-    let Event { kind, value, failure, linearized, work } = event;
+    let Event { kind, value, failure, noted, work } = event;
     let origin = if kind == StepKind::Refinement { Origin::Given } else { proposal.origin };
     state.counts.add(kind, origin);
     let mut record = IterationRecord {
@@ -44,6 +44,6 @@ pub(super) fn record(state: &mut State, proposal: &Proposal, accuracy: Accuracy,
         work,
         seconds: clock.elapsed().as_secs_f64(),
     };
-    record.set_linearized(linearized);
+    record.note(noted);
     state.history.push(record);
 }

@@ -10,9 +10,9 @@ use super::record::{Event, record};
 use super::state::State;
 use super::trial::{Trial, descent_target};
 use super::{demand, limits, noise, verdict};
-use crate::composite::{Linearization, LinearizationRequest, OuterFunction};
+use crate::composite::{Linearization, LinearizationRequest, Linearized, OuterFunction};
 use crate::qp::EpigraphQpSolver;
-use crate::report::{IterationRecord, Origin, StepKind, Termination};
+use crate::report::{IterationRecord, Noted, Origin, StepKind, Termination};
 use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
@@ -152,7 +152,7 @@ impl Run<'_, '_> {
     fn accept_or_reject(&mut self, proposal: &Proposal, accuracy: Accuracy, answer: Answer<()>) {
         let accurate = matches!(answer, Answer::Accurate(_));
         let mut evaluation = answer.into_evaluation();
-        let (known, linearized) = self.take_linearization(evaluation.linearization.take());
+        let (known, noted) = self.take_linearization(std::mem::take(&mut evaluation.linearization));
         self.state.failures = 0;
         self.state.longest_step = None;
         if accurate {
@@ -172,21 +172,18 @@ impl Run<'_, '_> {
             StepKind::NoDescent
         };
         self.ask(|proposers, at| proposers.update(at, &trial));
-        let event = Event { kind, value: Some(evaluation.value), failure: None, linearized, work: evaluation.work };
+        let event = Event { kind, value: Some(evaluation.value), failure: None, noted, work: evaluation.work };
         record(&mut self.state, proposal, accuracy, event, self.clock);
     }
 
     /// Counts a Jacobian; returns the linearization, if there is one, and what the record says about it.
-    pub(super) fn take_linearization(
-        &mut self,
-        linearization: Option<Result<Linearization, String>>,
-    ) -> (Option<Linearization>, Option<Result<(), String>>) {
-        match linearization {
-            None => (None, None),
-            Some(Err(reason)) => (None, Some(Err(reason))),
-            Some(Ok(known)) => {
+    pub(super) fn take_linearization(&mut self, linearized: Linearized) -> (Option<Linearization>, Noted) {
+        match linearized {
+            Linearized::NotAsked => (None, Noted::Nothing),
+            Linearized::Unavailable(reason) => (None, Noted::NoJacobian(reason)),
+            Linearized::Known(known) => {
                 self.state.counts.jacobians += 1;
-                (Some(known), Some(Ok(())))
+                (Some(known), Noted::Jacobian)
             }
         }
     }
@@ -196,13 +193,14 @@ impl Run<'_, '_> {
         let accuracy = demand::for_center(&self.state, &self.method.config, proposal.predicted_decrease);
         let center = self.state.center.clone();
         self.state.center_accuracy = accuracy.tolerance();
-        let mut event = Event { kind: StepKind::Refinement, value: None, failure: None, linearized: None, work: 0 };
+        let mut contradiction = Continue(());
+        let mut event = Event { kind: StepKind::Refinement, value: None, failure: None, noted: Noted::Nothing, work: 0 };
         match self.evaluate(&center, accuracy, None, f64::INFINITY) {
             Outcome::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;
                 (event.value, event.work) = (Some(evaluation.value), evaluation.work);
-                let (known, linearized) = self.take_linearization(evaluation.linearization.take());
-                event.linearized = linearized;
+                let (known, noted) = self.take_linearization(std::mem::take(&mut evaluation.linearization));
+                event.noted = noted;
                 self.state.add_cut(&self.method.config, &center, &evaluation, false);
                 self.state.move_center(accuracy);
                 self.oracle.keep_warm_start();
@@ -210,10 +208,14 @@ impl Run<'_, '_> {
                 self.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
             }
             Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
-            Outcome::Failure(error) => event.failure = Some(error.to_string()),
+            Outcome::Failure(error) => {
+                event.failure = Some(error.to_string());
+                contradiction = refuse_contradiction(&error);
+            }
             _ => event.failure = Some("no accurate value at the center".to_owned()),
         }
         record(&mut self.state, proposal, accuracy, event, self.clock);
+        contradiction?;
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
     }
 
@@ -228,8 +230,9 @@ impl Run<'_, '_> {
         let close = proposal.step_length <= (CLOSE * state.length_scale()).max(f64::EPSILON * state.first_step);
         self.ask(|proposers, at| proposers.shorten(at, proposal));
         let failure = Some(error.to_string());
-        let event = Event { kind: StepKind::Failed, value: None, failure, linearized: None, work: 0 };
+        let event = Event { kind: StepKind::Failed, value: None, failure, noted: Noted::Nothing, work: 0 };
         record(&mut self.state, proposal, accuracy, event, self.clock);
+        refuse_contradiction(error)?;
         if failures >= MAX_FAILURES && proposal.origin == Origin::Cuts && close {
             return Break(Termination::OracleFailing { failures, last: error.to_string() }.into());
         }
@@ -261,4 +264,10 @@ impl Run<'_, '_> {
     pub fn history(&self) -> &[IterationRecord] {
         &self.state.history
     }
+}
+
+/// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another function.
+fn refuse_contradiction(error: &OracleError) -> ControlFlow<Ending> {
+    let OracleError::Contradiction(reason) = error else { return Continue(()) };
+    Break(Termination::OracleContradiction { reason: reason.to_string() }.into())
 }

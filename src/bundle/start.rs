@@ -14,7 +14,7 @@ use super::seen::Seen;
 use super::limits;
 use super::verdict;
 use crate::checks::check_size;
-use crate::composite::{Linearization, LinearizationRequest, OuterFunction};
+use crate::composite::{LinearizationRequest, Linearized, OuterFunction};
 use crate::qp::{EpigraphQpSolver, QpError, is_only_point, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{
@@ -80,12 +80,12 @@ impl<'o> BundleTrust<'o> {
             proof: None,
             clock,
         };
-        let (known, linearized) = run.take_linearization(linearization);
+        let (known, noted) = run.take_linearization(linearization);
         run.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
         let seconds = clock.elapsed().as_secs_f64();
         if let Some(first) = run.state.history.first_mut() {
             first.seconds = seconds;
-            first.set_linearized(linearized);
+            first.note(noted);
         }
         if let Break(termination) = limits::after_evaluation(&run.state, run.method) {
             run.termination = Some(termination);
@@ -113,8 +113,8 @@ fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Ve
     if violation <= MAX_START_VIOLATION { Ok(projected) } else { Err(OptimizeError::Infeasible { violation }) }
 }
 
-/// The state after the first evaluation, and the linearization that came with it.
-type FirstEvaluation = (State, Option<Result<Linearization, String>>);
+/// The state after the first evaluation, and what that said about outputs and Jacobian.
+type FirstEvaluation = (State, Linearized);
 
 /// Evaluates the start and sets up the state.
 fn first_evaluation(

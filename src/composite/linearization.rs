@@ -26,7 +26,7 @@ impl LinearizationRequest {
 /// Outputs c(x) and one element G of their generalized Jacobian; m outputs, n variables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linearization {
-    /// c(x), m entries.
+    /// c(x), m entries; m is the same at all points.
     pub outputs: Vector,
     /// G, m × n.
     pub jacobian: Matrix,
@@ -44,6 +44,33 @@ pub struct InactiveConstraints {
     pub slacks: Vector,
     /// Derivative S of the slacks with respect to the variables, k × n.
     pub jacobian: Matrix,
+}
+
+/// What an answer says about outputs and Jacobian.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Linearized {
+    /// Nothing: the request did not ask for them, or asked only where Θ is lower.
+    #[default]
+    NotAsked,
+    /// Both are known.
+    Known(Linearization),
+    /// The reason why they cannot be had, which costs the run nothing but its composite model.
+    Unavailable(String),
+}
+
+impl Linearized {
+    /// The answer of an oracle that has outputs and Jacobian at hand: they are known if the request asked for them.
+    pub fn if_asked(request: Option<LinearizationRequest>, linearization: Linearization) -> Self {
+        if request.is_some() { Self::Known(linearization) } else { Self::NotAsked }
+    }
+
+    /// Outputs and Jacobian, if they are known.
+    pub fn known(&self) -> Option<&Linearization> {
+        match self {
+            Self::Known(linearization) => Some(linearization),
+            Self::NotAsked | Self::Unavailable(_) => None,
+        }
+    }
 }
 
 impl Linearization {

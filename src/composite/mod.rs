@@ -17,5 +17,5 @@ mod linearization;
 mod outer;
 
 pub use epigraph::Epigraph;
-pub use linearization::{InactiveConstraints, Linearization, LinearizationRequest};
+pub use linearization::{InactiveConstraints, Linearization, LinearizationRequest, Linearized};
 pub use outer::{EuclideanNorm, FnOuter, Maximum, OuterFunction, SumOfPowers, weighted_gram};

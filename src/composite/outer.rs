@@ -42,13 +42,17 @@ impl<H: OuterFunction + ?Sized> OuterFunction for &H {
     }
 }
 
-/// h(c) = max_i c_i: minimax problems.
+/// h(c) = max_i c_i: minimax problems; NaN if one of the outputs is.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Maximum;
 
 impl OuterFunction for Maximum {
     fn value(&self, outputs: &Vector) -> f64 {
-        outputs.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+        // `f64::max` would leave out what is NaN.
+        outputs
+            .iter()
+            .copied()
+            .fold(f64::NEG_INFINITY, |most, next| if most.is_nan() || most > next { most } else { next })
     }
 
     /// The unit vector of the first largest output.
@@ -167,6 +171,14 @@ mod tests {
         let quotient = (at(step) - at(-step)) / (2.0 * step);
         let product = h.curvature(&c, &jacobian).expect("smooth") * &d;
         assert!((quotient - &product).norm() < 1e-8 * product.norm());
+    }
+
+    #[test]
+    fn functions_of_outputs_that_are_no_numbers_are_no_numbers() {
+        let functions: [&dyn OuterFunction; 3] = [&Maximum, &SumOfPowers { exponent: 1.0 }, &EuclideanNorm];
+        for outputs in [[f64::NAN; 2], [f64::NAN, 1.0], [1.0, f64::NAN]] {
+            assert!(functions.iter().all(|h| h.value(&Vector::from_row_slice(&outputs)).is_nan()), "{outputs:?}");
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::entry::{Entry, RecordedAnswer, RecordedLinearization, RecordedRequest};
 use super::error::JournalError;
 use super::writer::Writer;
-use crate::composite::{Linearization, OuterFunction};
+use crate::composite::{Linearization, Linearized, OuterFunction};
 use crate::panics::evaluate_without_panic;
 use crate::{Answer, Evaluation, NonsmoothObjective, OracleError, Report, Request, Vector};
 use serde::Serialize;
@@ -191,10 +191,11 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
             error_bound: *error_bound,
             no_descent: matches!(answer, Answer::NoDescent(_)),
             restart_data,
-            linearization: linearization.as_ref().map(|linearized| match linearized {
-                Ok(_) => RecordedLinearization::Stored,
-                Err(reason) => RecordedLinearization::Failed(reason.clone()),
-            }),
+            linearization: match linearization {
+                Linearized::NotAsked => None,
+                Linearized::Known(_) => Some(RecordedLinearization::Stored),
+                Linearized::Unavailable(reason) => Some(RecordedLinearization::Failed(reason.clone())),
+            },
             work: *work,
         };
         (recorded, text)
@@ -220,10 +221,11 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
                 let data = if restart_data { None } else { serde_json::from_str("null").ok() };
                 let warm_start = RestartData { evaluation: entry.evaluation, data };
                 let subgradient = Vector::from_vec(subgradient);
-                let linearization = linearization.map(|recorded| match recorded {
-                    RecordedLinearization::Stored => self.linearization(entry.evaluation, request),
-                    RecordedLinearization::Failed(reason) => Err(reason),
-                });
+                let linearization = match linearization {
+                    None => Linearized::NotAsked,
+                    Some(RecordedLinearization::Stored) => self.linearization(entry.evaluation, request),
+                    Some(RecordedLinearization::Failed(reason)) => Linearized::Unavailable(reason),
+                };
                 let exact = Evaluation::exact(value, subgradient, warm_start);
                 let evaluation = Evaluation { error_bound, linearization, work, ..exact };
                 Ok(if no_descent { Answer::NoDescent(evaluation) } else { Answer::Accurate(evaluation) })
@@ -232,24 +234,29 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
     }
 
     /// Outputs and Jacobian of an evaluation from their file; computed again, to the same bits, where that is lost.
-    fn linearization(
-        &self,
-        evaluation: usize,
-        request: &Request<'_, RestartData<O::WarmStart>>,
-    ) -> Result<Linearization, String> {
+    fn linearization(&self, evaluation: usize, request: &Request<'_, RestartData<O::WarmStart>>) -> Linearized {
         let stored = self.state.borrow().journal.linearization(evaluation);
         let error = match stored {
-            Ok(linearization) => return Ok(linearization),
+            Ok(linearization) => return Linearized::Known(linearization),
             Err(error) => error,
         };
         self.warn(format!("the Jacobian of evaluation {evaluation} is lost ({error}) and is computed again"));
-        let answer = self.ask(request).map_err(|error| error.to_string())?;
-        let linearization =
-            answer.into_evaluation().linearization.ok_or("the oracle returns no Jacobian any more")??;
-        if let Err(error) = self.state.borrow().journal.restore(evaluation, &linearization) {
-            self.warn(format!("the Jacobian of evaluation {evaluation} cannot be written: {error}"));
+        let linearization = match self.ask(request) {
+            Ok(answer) => answer.into_evaluation().linearization,
+            Err(error) => Linearized::Unavailable(error.to_string()),
+        };
+        match &linearization {
+            Linearized::NotAsked => {
+                return Linearized::Unavailable("the oracle returns no Jacobian any more".to_owned());
+            }
+            Linearized::Unavailable(_) => {}
+            Linearized::Known(known) => {
+                if let Err(error) = self.state.borrow().journal.restore(evaluation, known) {
+                    self.warn(format!("the Jacobian of evaluation {evaluation} cannot be written: {error}"));
+                }
+            }
         }
-        Ok(linearization)
+        linearization
     }
 
     /// Asks the oracle.
@@ -284,8 +291,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
             Ok(answer) => self.record(evaluation, answer),
             Err(error) => (RecordedAnswer::Failed(error.to_string()), None),
         };
-        let linearized = result.as_ref().ok().and_then(|answer| answer.evaluation().linearization.as_ref());
-        let linearization = linearized.and_then(|linearized| linearized.as_ref().ok());
+        let linearization = result.as_ref().ok().and_then(|answer| answer.evaluation().linearization.known());
         self.keep(evaluation, request, answer, text, linearization);
         let tag = |inner: Evaluation<O::WarmStart>| Evaluation {
             value: inner.value,

@@ -12,6 +12,7 @@ pub use certificate::{Certificate, CertificateCheck};
 pub use composite_proof::CompositeProof;
 pub use observer::{Observer, TablePrinter};
 pub use proof_check::ProofCheck;
+pub(crate) use record::Noted;
 pub use record::{Counts, IterationRecord, Origin, StepKind, TrialCounts};
 pub use stop::StopRule;
 pub use termination::Termination;

@@ -109,11 +109,26 @@ pub struct IterationRecord {
     pub seconds: f64,
 }
 
+/// What a record notes about the Jacobian of an evaluation.
+#[derive(Debug, PartialEq, Eq, Default)]
+pub(crate) enum Noted {
+    /// The oracle said nothing about a Jacobian.
+    #[default]
+    Nothing,
+    /// There was one.
+    Jacobian,
+    /// The reason why it could not be had.
+    NoJacobian(String),
+}
+
 impl IterationRecord {
-    /// Notes whether a Jacobian was returned, or why it could not be had.
-    pub(crate) fn set_linearized(&mut self, linearized: Option<Result<(), String>>) {
-        self.jacobian = linearized == Some(Ok(()));
-        self.note = linearized.and_then(Result::err).map(|error| format!("no Jacobian: {error}"));
+    /// Notes what an evaluation said about its Jacobian.
+    pub(crate) fn note(&mut self, noted: Noted) {
+        self.jacobian = noted == Noted::Jacobian;
+        self.note = match noted {
+            Noted::NoJacobian(reason) => Some(format!("no Jacobian: {reason}")),
+            Noted::Nothing | Noted::Jacobian => None,
+        };
     }
 }
 

@@ -63,6 +63,11 @@ pub enum Termination {
         /// Text of the last one.
         last: String,
     },
+    /// An answer of the oracle contradicts an earlier one; see [`OracleError::Contradiction`](crate::OracleError::Contradiction).
+    OracleContradiction {
+        /// The contradiction.
+        reason: String,
+    },
     /// The subproblem could not be solved.
     SubproblemFailed {
         /// What went wrong.
@@ -99,6 +104,7 @@ impl Termination {
             }
             Self::UnboundedBelow => "add bounds on the variables",
             Self::OracleFailing { .. } => "make the oracle robust near the best point, or restrict the admissible set",
+            Self::OracleContradiction { .. } => "return the same outputs in the same order at every point",
             Self::SubproblemFailed { .. } => "check the scale of the variables and of the constraint rows",
         }
     }
@@ -142,6 +148,7 @@ impl fmt::Display for Termination {
             Self::OracleFailing { failures, last } => {
                 write!(f, "the oracle failed {failures} times in a row near the best point; last: {last}")
             }
+            Self::OracleContradiction { reason } => write!(f, "the oracle contradicts its earlier answers: {reason}"),
             Self::SubproblemFailed { reason } => write!(f, "the subproblem failed: {reason}"),
         }
     }

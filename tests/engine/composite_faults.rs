@@ -1,12 +1,14 @@
 //! Jacobians and outer functions that fail: typed errors, notes, and the run that goes on with cuts.
 
 use crate::common::{cb3, v};
-use nonsmooth::composite::{FnOuter, InactiveConstraints, Linearization, Maximum, OuterFunction, weighted_gram};
-use nonsmooth::{
-    Answer, BundleTrust, BundleTrustConfig, CompositeFunction, Evaluation, FnObjective, InputError, Matrix,
-    NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Report, Request, StepKind, Termination, Vector,
+use nonsmooth::composite::{
+    FnOuter, InactiveConstraints, Linearization, Linearized, Maximum, OuterFunction, weighted_gram,
 };
-use std::cell::Cell;
+use nonsmooth::{
+    AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, CompositeFunction, Evaluation, FnObjective, InputError,
+    Matrix, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Report, Request, StepKind, Termination, Vector,
+};
+use std::cell::{Cell, RefCell};
 
 /// What becomes of a Jacobian.
 #[derive(Clone, Copy, PartialEq)]
@@ -61,9 +63,10 @@ impl<F: Fn(usize) -> Fault> NonsmoothObjective for Faulty<F> {
             Fault::None | Fault::Fails => {}
         }
         let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
-        evaluation.linearization = request
-            .linearization
-            .map(|_| if fault == Fault::Fails { Err("the factor is singular".to_owned()) } else { Ok(linearization) });
+        evaluation.linearization = match fault {
+            Fault::Fails => Linearized::Unavailable("the factor is singular".to_owned()),
+            _ => Linearized::if_asked(request.linearization, linearization),
+        };
         Ok(Answer::Accurate(evaluation))
     }
 }
@@ -222,8 +225,8 @@ impl NonsmoothObjective for Secret {
         let x = request.point[0];
         let mut evaluation = Evaluation::exact(x.abs(), v(&[x.signum()]), ());
         let (outputs, jacobian) = (v(&[x]), Matrix::identity(1, 1));
-        evaluation.linearization =
-            request.linearization.map(|_| Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None }));
+        let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
+        evaluation.linearization = Linearized::if_asked(request.linearization, linearization);
         Ok(Answer::Accurate(evaluation))
     }
 }
@@ -253,22 +256,82 @@ fn a_subgradient_that_is_no_number_is_named() {
 }
 
 #[test]
-fn the_number_of_outputs_may_change_from_point_to_point() {
+fn a_number_of_outputs_that_changes_ends_the_run() {
     let calls = Cell::new(0);
     let theta = CompositeFunction::new(2, Maximum, |x: &Vector| {
         calls.set(calls.get() + 1);
-        let (circle, a, b) = (x[0].powi(2) + (x[1] - 1.0).powi(2), x[0], x[1]);
-        let mut outputs = vec![circle + b - 1.0, -circle + b + 1.0];
-        let mut rows = vec![2.0 * a, 2.0 * b - 1.0, -2.0 * a, 3.0 - 2.0 * b];
-        if calls.get() % 2 == 0 {
-            outputs.push(-100.0);
-            rows.extend([0.0, 0.0]);
-        }
-        (v(&outputs), Matrix::from_row_slice(outputs.len(), 2, &rows))
+        let (outputs, jacobian) = linearize(x);
+        if calls.get() < 3 { (outputs, jacobian) } else { (outputs.remove_row(2), jacobian.remove_row(2)) }
     });
-    let report = method().minimize(&theta, v(&[-1.5, 2.0])).unwrap();
-    let ended = matches!(report.termination, Termination::Stationary { .. } | Termination::NoiseLimit { .. });
-    assert!(ended && report.value.abs() < 1e-6 && report.counts.failed == 0, "{report}");
+    let report = method().minimize(&theta, v(&[2.0, 2.0])).unwrap();
+    let reason = "the vector of outputs has 2 entries, expected 3".to_owned();
+    assert_eq!(report.termination, Termination::OracleContradiction { reason: reason.clone() });
+    assert_eq!((report.counts.evaluations, report.counts.failed, report.history.len()), (3, 1, 3));
+    let failure = format!("the oracle contradicts its earlier answers: {reason}");
+    assert_eq!((report.history[2].kind, report.history[2].failure.as_ref()), (StepKind::Failed, Some(&failure)));
+    assert!(report.value <= report.start_value && report.to_string().contains(&failure), "{report}");
+}
+
+/// x² + 1 in one output, with a value as coarse as it is asked for; a second output where a point is evaluated again.
+struct Growing {
+    last: RefCell<Vec<f64>>,
+}
+
+impl NonsmoothObjective for Growing {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        1
+    }
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        Some(&Maximum)
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let x = request.point[0];
+        let count = if self.last.borrow().contains(&x) { 2 } else { 1 };
+        self.last.borrow_mut().push(x);
+        let (value, slope) = (x * x + 1.0, 2.0 * x);
+        let (outputs, jacobian) = (Vector::from_element(count, value), Matrix::from_element(count, 1, slope));
+        let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
+        Ok(Answer::Accurate(Evaluation {
+            error_bound: request.accuracy.tolerance() * value,
+            linearization: Linearized::if_asked(request.linearization, linearization),
+            ..Evaluation::exact(value, v(&[slope]), ())
+        }))
+    }
+}
+
+#[test]
+fn a_number_of_outputs_that_changes_at_the_center_ends_the_run() {
+    let config = BundleTrustConfig { accuracy: AccuracyPolicy::ON_DEMAND, ..BundleTrustConfig::default() };
+    let theta = Growing { last: RefCell::default() };
+    let report = BundleTrust::new(config).unwrap().minimize(&theta, v(&[3.0])).unwrap();
+    let reason = "the vector of outputs has 2 entries, expected 1".to_owned();
+    assert_eq!(report.termination, Termination::OracleContradiction { reason });
+    assert_eq!(report.history.last().map(|record| record.kind), Some(StepKind::Refinement), "{report}");
+}
+
+#[test]
+fn outputs_that_are_no_numbers_shorten_the_step() {
+    // −x up to 1, and beyond it NaN in all outputs, in the first or in the last one.
+    for no_numbers in [[true, true], [true, false], [false, true]] {
+        let theta = CompositeFunction::new(1, Maximum, |x: &Vector| {
+            let outputs = [-x[0], -x[0] - 1.0];
+            let output = |i: usize| if x[0] > 1.0 && no_numbers[i] { f64::NAN } else { outputs[i] };
+            (v(&[output(0), output(1)]), Matrix::from_element(2, 1, -1.0))
+        });
+        let set = Polyhedron::boxed(v(&[0.0]), v(&[5.0])).unwrap();
+        let report = method().constraints(set).minimize(&theta, v(&[0.0])).unwrap();
+        let entry = usize::from(!no_numbers[0]);
+        let text = format!("outputs: entry {entry} is NaN, expected a finite number");
+        let failures: Vec<_> = report.history.iter().filter_map(|record| record.failure.as_ref()).collect();
+        assert!(!failures.is_empty() && failures.iter().all(|failure| **failure == text), "{failures:?}");
+        // The failures end the run next to the edge.
+        assert!((report.solution[0] - 1.0).abs() < 1e-6 && report.value == -report.solution[0], "{report}");
+        assert!(matches!(report.termination, Termination::OracleFailing { .. }), "{report}");
+    }
 }
 
 /// c(x) = x with the constraint x ≤ 0.05 inside, next to the minimum 0 of c².
@@ -289,10 +352,10 @@ impl NonsmoothObjective for Threshold {
         let x = request.point[0];
         let mut evaluation = Evaluation::exact(x * x, v(&[2.0 * x]), ());
         let inactive = InactiveConstraints { slacks: v(&[0.05 - x]), jacobian: Matrix::from_element(1, 1, -1.0) };
-        evaluation.linearization = request.linearization.map(|_| {
-            let (outputs, jacobian) = (v(&[x]), Matrix::identity(1, 1));
-            Ok(Linearization { outputs, jacobian, accuracy: 0.0, inactive: (x < 0.05).then_some(inactive) })
-        });
+        let (outputs, jacobian) = (v(&[x]), Matrix::identity(1, 1));
+        let linearization =
+            Linearization { outputs, jacobian, accuracy: 0.0, inactive: (x < 0.05).then_some(inactive) };
+        evaluation.linearization = Linearized::if_asked(request.linearization, linearization);
         Ok(Answer::Accurate(evaluation))
     }
 }

@@ -7,8 +7,8 @@ use crate::equilibrium::{ContactProblem, ContactSolver};
 use crate::error::SceneError;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
-    Answer, CompositeObjective, Cost, CostGradient, Evaluation, Matrix, NonsmoothObjective, OracleError,
-    OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
+    Answer, CompositeObjective, Cost, Evaluation, Matrix, NonsmoothObjective, OracleError, OutputJacobian,
+    ReducedObjective, Request, StateSolver, Vector,
 };
 
 /// Θ of a scene: a measure of the contact state that the control heights lead to. Where Σσ^p may lie outside the range of doubles, Θ is
@@ -68,30 +68,30 @@ impl<S: ContactSolver> ContactObjective<S> {
     /// Θ at a state already found.
     pub fn value(&self, control: &Vector, state: &ContactState<S::State>) -> f64 {
         match self {
-            Self::Pressure(objective) => Cost::value(objective.cost(), control, state),
+            Self::Pressure(objective) => objective.value(state),
             Self::Field(objective) => objective.cost().value(control, state),
         }
     }
 
-    /// The partial gradients of the cost at a state.
-    pub fn gradient(&self, control: &Vector, state: &ContactState<S::State>) -> CostGradient {
+    /// y*, the gradient of the cost by a state at fixed controls: what the coderivative is asked for.
+    pub fn state_dual(&self, control: &Vector, state: &ContactState<S::State>) -> Vector {
         match self {
-            Self::Pressure(objective) => objective.cost().gradient(control, state),
-            Self::Field(objective) => objective.cost().gradient(control, state),
+            Self::Pressure(objective) => objective.state_dual(state),
+            Self::Field(objective) => objective.cost().gradient(control, state).state,
         }
     }
 
     /// Θ and one subgradient at a state already found.
     ///
     /// # Errors
-    /// As [`ReducedObjective::differentiate`].
+    /// As [`CompositeObjective::differentiate`] and [`ReducedObjective::differentiate`].
     pub fn differentiate(
         &self,
         control: &Vector,
         state: &ContactState<S::State>,
     ) -> Result<Evaluation<ContactWarmStart>, OracleError> {
         match self {
-            Self::Pressure(objective) => objective.reduced().differentiate(control, state),
+            Self::Pressure(objective) => objective.differentiate(control, state),
             Self::Field(objective) => objective.differentiate(control, state),
         }
     }
@@ -105,7 +105,7 @@ impl<S: ContactSolver> ContactObjective<S> {
         control: &Vector,
         state: &ContactState<S::State>,
     ) -> Result<Vec<f64>, OracleError> {
-        let mut heights = self.solver().height_sensitivity(state, &self.gradient(control, state).state)?.0;
+        let mut heights = self.solver().height_sensitivity(state, &self.state_dual(control, state))?.0;
         // At fixed displacements, costs of the pressures do not depend on the shape.
         if let (Self::Field(objective), Some(bodies)) = (self, &state.bodies) {
             let direct = objective.cost().gradient_of(bodies).heights;

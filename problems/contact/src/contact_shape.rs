@@ -20,7 +20,9 @@ use crate::scene::Scene;
 use crate::tfeti::PreconditionerKind;
 use nonsmooth::composite::{InactiveConstraints, Linearization};
 use nonsmooth::interruption::interrupted;
-use nonsmooth::{Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJacobian, StateSolver, Vector};
+use nonsmooth::{
+    Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJacobian, Sensitivity, StateSolver, Vector,
+};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -271,38 +273,24 @@ impl<S: ContactSolver> StateSolver for ContactShape<S> {
     fn work(&self, state: &Self::State) -> usize {
         state.work().dual_operator_applications
     }
-
-    /// Residual times load, N: the size of the error of the contact forces. For a cost, [`ContactShape::pull_back`] has the
-    /// sharper estimate.
-    fn state_error(&self, state: &Self::State) -> f64 {
-        state.forces.residuals.newton * state.load
-    }
 }
 
 impl<S: ContactSolver> Coderivative for ContactShape<S> {
-    fn coderivative(&self, control: &Vector, state: &Self::State, direction: &Vector) -> Result<Vector, OracleError> {
-        Ok(self.pull_back(control, state, direction)?.0)
-    }
-
-    fn coderivative_with_error(
+    fn coderivative(
         &self,
         control: &Vector,
         state: &Self::State,
         direction: &Vector,
-    ) -> Result<(Vector, Option<f64>), OracleError> {
-        let (product, error) = self.pull_back(control, state, direction)?;
-        Ok((product, Some(error.bound)))
+    ) -> Result<Sensitivity, OracleError> {
+        let (element, error) = self.pull_back(control, state, direction)?;
+        Ok(Sensitivity { element, error_bound: error.bound })
     }
 }
 
 /// The outputs are the contact pressures σ = λ_N/A per contact node, MPa; the slacks are the gaps of the open nodes, mm.
 impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
     fn outputs(&self, state: &Self::State) -> Vector {
-        let points = self.problem().boundary.points.iter();
-        Vector::from_iterator(
-            points.len(),
-            state.forces.normal.iter().zip(points).map(|(force, point)| force / point.area),
-        )
+        self.problem().boundary.pressures(&state.forces.normal)
     }
 
     fn output_dual(&self, _state: &Self::State, weights: &Vector) -> Vector {

@@ -11,14 +11,14 @@
 //! use contact::contact_shape::{ContactShape, SolverKind};
 //! use contact::cost::{PressureCost, PressureMeasure};
 //! use contact::scene::{Scene, signorini};
-//! use nonsmooth::{NonsmoothObjective, ReducedObjective, Request, StateSolver};
+//! use nonsmooth::{CompositeObjective, NonsmoothObjective, Request, StateSolver};
 //!
 //! // The paper's Example 5.1, a block against a wavy obstacle, on 4 × 4 × 4 bricks.
 //! let scene = Scene { mesh: [4; 3], ..signorini()? };
 //! let shape = ContactShape::new(scene, SolverKind::Newton)?;
 //! let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary)?;
 //! let start = shape.start();
-//! let theta = ReducedObjective::new(shape, cost);
+//! let theta = CompositeObjective::new(shape, cost);
 //!
 //! let evaluation = theta.evaluate(&Request::tight(&start))?.into_evaluation();
 //! assert_eq!(evaluation.subgradient.len(), theta.solver().control_dimension());

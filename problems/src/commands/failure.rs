@@ -66,7 +66,12 @@ pub fn refused(option: &str, allowed: &str) -> Result<(), Failure> {
 
 /// The end of a run in words, if failures of the oracle or of the subproblem ended it; none for every other end.
 pub fn failed(termination: &Termination) -> Option<String> {
-    let failed = matches!(termination, Termination::OracleFailing { .. } | Termination::SubproblemFailed { .. });
+    let failed = matches!(
+        termination,
+        Termination::OracleFailing { .. }
+            | Termination::OracleContradiction { .. }
+            | Termination::SubproblemFailed { .. }
+    );
     failed.then(|| termination.to_string())
 }
 

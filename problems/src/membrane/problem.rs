@@ -11,7 +11,7 @@ use crate::membrane::active_set::{MembraneState, ReducedMembrane};
 use crate::membrane::grid::MembraneGrid;
 use contact::error::SceneError;
 use contact::linear::FactorizationError;
-use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
+use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, Sensitivity, StateSolver, Vector};
 use thiserror::Error;
 
 /// Why there is no membrane problem.
@@ -131,7 +131,7 @@ impl Coderivative for MembraneControl {
         _control: &Vector,
         state: &MembraneState,
         direction: &Vector,
-    ) -> Result<Vector, OracleError> {
+    ) -> Result<Sensitivity, OracleError> {
         let count = self.grid.node_count();
         if direction.len() != 2 * count {
             let (expected, found) = (2 * count, direction.len());
@@ -149,6 +149,6 @@ impl Coderivative for MembraneControl {
         for (i, &patch) in self.patch_of_node.iter().enumerate() {
             result[patch] += area * (adjoint[i] - pressing[i]);
         }
-        Ok(result)
+        Ok(Sensitivity::exact(result))
     }
 }

@@ -9,7 +9,7 @@
 //! any pair of one-sided derivatives is a limit of Jacobians and the result an element of D*S(α)(y*) and of the Clarke set.
 
 use super::node::{Kink, Node, NodeStatus, NodeValues};
-use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, StateSolver, Vector};
+use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, Sensitivity, StateSolver, Vector};
 
 /// B, control heights to heights under the nodes.
 pub const SURFACE: [[f64; 2]; 2] = [[0.75, 0.25], [0.25, 0.75]];
@@ -112,11 +112,16 @@ impl StateSolver for ToyContact {
 }
 
 impl Coderivative for ToyContact {
-    fn coderivative(&self, _control: &Vector, state: &ToyState, direction: &Vector) -> Result<Vector, OracleError> {
+    fn coderivative(
+        &self,
+        _control: &Vector,
+        state: &ToyState,
+        direction: &Vector,
+    ) -> Result<Sensitivity, OracleError> {
         if direction.len() != ToyState::LEN {
             let (expected, found) = (ToyState::LEN, direction.len());
             return Err(InputError::Dimension { what: "dual of the state", expected, found }.into());
         }
-        Ok(self.pull_back(state.nodes.map(|node| node.status), direction))
+        Ok(Sensitivity::exact(self.pull_back(state.nodes.map(|node| node.status), direction)))
     }
 }

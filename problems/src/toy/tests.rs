@@ -168,7 +168,7 @@ proptest! {
         let step = 1e-4;
         prop_assume!(margin(&toy, &control) > step);
         let dual = Vector::from_row_slice(&dual);
-        let adjoint = toy.coderivative(&control, &state(&toy, &control), &dual).expect("8 entries");
+        let adjoint = toy.coderivative(&control, &state(&toy, &control), &dual).expect("8 entries").element;
         for j in 0..2 {
             // S is affine between kinks: the difference is exact up to rounding / step
             let difference = central(&control, j, step, |moved| state(&toy, moved).packed().dot(&dual));

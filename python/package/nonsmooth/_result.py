@@ -18,7 +18,8 @@ STATUS = {
     "unbounded_below": 8,
     "function_failing": 9,
     "subproblem_failed": 10,
-    "other": 11,
+    "function_contradictory": 11,
+    "other": 12,
 }
 
 #: What a Python user can do beside what the engine advises.

@@ -7,8 +7,8 @@
 use crate::equilibrium::{ContactBoundary, ContactState};
 use crate::error::SceneError;
 use crate::scene::Scene;
-use nonsmooth::composite::{OuterFunction, weighted_gram};
-use nonsmooth::{Cost, CostGradient, Matrix, Vector};
+use nonsmooth::composite::{Maximum, OuterFunction, weighted_gram};
+use nonsmooth::{Matrix, Vector};
 use serde::Serialize;
 use std::fmt;
 
@@ -52,7 +52,7 @@ impl fmt::Display for ContactAreas {
     }
 }
 
-/// J(α, y) as a measure of the contact pressure.
+/// A measure of the contact pressures σ, a function of these outputs of [`ContactShape`](crate::contact_shape::ContactShape).
 #[derive(Debug, Clone)]
 pub struct PressureCost {
     measure: PressureMeasure,
@@ -144,7 +144,7 @@ impl PressureCost {
         let PressureMeasure::OpenArea { .. } = self.measure else { return None };
         let whole = self.areas.iter().sum::<f64>();
         let closed = self.boundary.closed_area(&state.forces.status);
-        let open = OuterFunction::value(self, &Vector::from_vec(self.pressures(state)));
+        let open = self.value(&self.boundary.pressures(&state.forces.normal));
         Some(ContactAreas { closed, smoothed: whole - open, whole })
     }
 
@@ -152,7 +152,7 @@ impl PressureCost {
     /// all pressures, or below those of all closed nodes. None for the other measures, and for other σ₀.
     pub fn why_flat<S>(&self, state: &ContactState<S>) -> Option<String> {
         let PressureMeasure::OpenArea { pressure: bound } = self.measure else { return None };
-        let pressures = self.pressures(state);
+        let pressures = self.boundary.pressures(&state.forces.normal);
         let largest = pressures.iter().copied().fold(0.0, f64::max);
         let least = pressures.iter().copied().filter(|pressure| *pressure > 0.0).fold(f64::INFINITY, f64::min);
         if largest < bound {
@@ -186,14 +186,8 @@ impl PressureCost {
             PressureMeasure::OpenArea { pressure } => (whole() - total_force / pressure).max(0.0),
         }
     }
-
-    /// σ per contact node, MPa.
-    pub fn pressures<S>(&self, state: &ContactState<S>) -> Vec<f64> {
-        state.forces.normal.iter().zip(&self.areas).map(|(force, area)| force / area).collect()
-    }
 }
 
-/// As a function of the pressures.
 impl OuterFunction for PressureCost {
     fn value(&self, pressures: &Vector) -> f64 {
         let nodes = || pressures.iter().zip(&self.areas);
@@ -210,7 +204,7 @@ impl OuterFunction for PressureCost {
             PressureMeasure::OpenArea { pressure } => {
                 nodes().map(|(found, area)| area * (1.0 - found / pressure).max(0.0)).sum()
             }
-            PressureMeasure::Peak => pressures.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            PressureMeasure::Peak => Maximum.value(pressures),
         }
     }
 
@@ -226,11 +220,7 @@ impl OuterFunction for PressureCost {
                 };
                 pressures.map(|pressure| factor * (pressure.max(0.0) / largest).powf(exponent - 1.0))
             }
-            PressureMeasure::Peak => {
-                let larger = |peak: usize, index: usize| if pressures[index] > pressures[peak] { index } else { peak };
-                let peak = (0..pressures.len()).fold(0, larger);
-                Vector::from_fn(pressures.len(), |index, _| f64::from(u8::from(index == peak)))
-            }
+            PressureMeasure::Peak => Maximum.subgradient(pressures),
             PressureMeasure::Deviation { wanted } => {
                 let whole = self.areas.iter().sum::<f64>();
                 let slope = |index: usize| 2.0 * self.areas[index] / whole * (pressures[index] - wanted[index]);
@@ -257,7 +247,7 @@ impl OuterFunction for PressureCost {
             }
             _ => return None,
         };
-        let size = if self.is_root { OuterFunction::value(self, pressures) } else { 1.0 };
+        let size = if self.is_root { self.value(pressures) } else { 1.0 };
         let relative = pressures.map(|pressure| pressure.max(0.0) / size);
         let factor = if self.is_root { (exponent - 1.0) / size } else { exponent * (exponent - 1.0) };
         let weights = relative.map(|p| factor * p.powf(exponent - 2.0));
@@ -269,21 +259,6 @@ impl OuterFunction for PressureCost {
         let gradient = jacobian.tr_mul(&relative.map(|p| p.powf(exponent - 1.0)));
         centred.ger(-1.0, &relative, &gradient, 1.0);
         Some(weighted_gram(&centred, &weights))
-    }
-}
-
-impl<S> Cost<ContactState<S>> for PressureCost {
-    fn value(&self, _control: &Vector, state: &ContactState<S>) -> f64 {
-        OuterFunction::value(self, &Vector::from_vec(self.pressures(state)))
-    }
-
-    fn gradient(&self, control: &Vector, state: &ContactState<S>) -> CostGradient {
-        let weights = self.subgradient(&Vector::from_vec(self.pressures(state)));
-        let mut dual = Vector::zeros(self.boundary.dual_dimension());
-        for (index, (weight, area)) in weights.iter().zip(&self.areas).enumerate() {
-            dual[index] = weight / area;
-        }
-        CostGradient { control: Vector::zeros(control.len()), state: dual }
     }
 }
 

@@ -6,6 +6,7 @@
 use crate::body::mesh::Grid;
 use crate::equilibrium::ContactStatus;
 use crate::scene::Scene;
+use nonsmooth::Vector;
 
 /// One contact node.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,6 +86,14 @@ impl ContactBoundary {
     pub fn closed_area(&self, status: &[ContactStatus]) -> f64 {
         let nodes = self.points.iter().zip(status).filter(|(_, status)| **status != ContactStatus::Open);
         nodes.map(|(point, _)| point.area).fold(0.0, |sum, area| sum + area)
+    }
+
+    /// σ = λ_N/A per contact node, MPa, of normal forces in N.
+    pub fn pressures(&self, normal: &[f64]) -> Vector {
+        Vector::from_iterator(
+            self.points.len(),
+            normal.iter().zip(&self.points).map(|(force, point)| force / point.area),
+        )
     }
 
     /// Length of the dual of a contact state: normal forces, then (with friction) two tangential forces per node.

@@ -4,7 +4,7 @@
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::scene::{Scene, hertz, signorini};
-use nonsmooth::{Accuracy, ReducedObjective, StateSolver, Vector};
+use nonsmooth::{Accuracy, CompositeObjective, StateSolver, Vector};
 use serde_json::Value;
 use testset::kit::numbers;
 
@@ -21,7 +21,7 @@ fn evaluate(mut scene: Scene, case: &Value, kind: SolverKind, subdomains: usize)
     scene.friction = case["friction"].as_f64().unwrap();
     let shape = ContactShape::new(scene, kind).unwrap();
     let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
-    let objective = ReducedObjective::new(shape, cost);
+    let objective = CompositeObjective::new(shape, cost);
     let controls = Vector::from_vec(numbers(&case["controls"]));
     let state = objective.solver().solve(&controls, None, Accuracy::TIGHTEST).unwrap();
     let evaluation = objective.differentiate(&controls, &state).unwrap();

@@ -3,10 +3,10 @@
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::scene::{Scene, hertz, signorini};
-use nonsmooth::{NonsmoothObjective, ReducedObjective, Request, Vector};
+use nonsmooth::{CompositeObjective, NonsmoothObjective, Request, Vector};
 use proptest::prelude::*;
 
-type Objective = ReducedObjective<ContactShape, PressureCost>;
+type Objective = CompositeObjective<ContactShape, PressureCost>;
 
 fn objective(mut scene: Scene, friction: f64, load: f64, measure: PressureMeasure) -> Objective {
     scene.mesh = [4; 3];
@@ -17,7 +17,7 @@ fn objective(mut scene: Scene, friction: f64, load: f64, measure: PressureMeasur
     }
     let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
     let cost = PressureCost::new(measure, &shape.problem().boundary).unwrap();
-    ReducedObjective::new(shape, cost)
+    CompositeObjective::new(shape, cost)
 }
 
 /// Largest relative difference of the subgradient's product and a difference quotient that counts as agreement.

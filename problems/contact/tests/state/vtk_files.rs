@@ -7,7 +7,8 @@ use contact::equilibrium::ContactStatus;
 use contact::fields::{FieldState, Fields, FieldsError, vtk_files};
 use contact::scene::{Scene, hertz, signorini};
 use contact::vtk::{Array, Cell, Entry, Note, NoteValue, UnstructuredGrid, Values, VtkError, collection, unstructured};
-use nonsmooth::{Accuracy, Cost, StateSolver};
+use nonsmooth::composite::OuterFunction;
+use nonsmooth::{Accuracy, OutputJacobian, StateSolver};
 use std::collections::HashMap;
 use vtkio::model::{Attribute, CellType, DataSet, Piece, VertexNumbers};
 
@@ -57,7 +58,8 @@ fn fields(mut scene: Scene) -> Fields {
     let control = shape.start();
     let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
     let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
-    let (heights, _) = shape.height_sensitivity(&state, &cost.gradient(&control, &state).state).unwrap();
+    let dual = shape.output_dual(&state, &cost.subgradient(&shape.outputs(&state)));
+    let (heights, _) = shape.height_sensitivity(&state, &dual).unwrap();
     let mut fields = shape.fields(&state).unwrap();
     fields.contact.sensitivity = Some(heights);
     fields

@@ -136,7 +136,9 @@ fn judge(record: &mut WordRecord, changed: &Changed<'_>, report: &Report) -> Res
         Termination::StationaryUnconfirmed { .. } => Word::Unconfirmed,
         Termination::NoiseLimit { .. } => Word::Noise,
         Termination::StepTooShort { .. } => Word::Short,
-        Termination::OracleFailing { .. } | Termination::SubproblemFailed { .. } => Word::Failed,
+        Termination::OracleFailing { .. }
+        | Termination::OracleContradiction { .. }
+        | Termination::SubproblemFailed { .. } => Word::Failed,
         _ => Word::Limit,
     };
     let above = record.gap > GAP + rounding;

@@ -75,7 +75,7 @@ fn the_least_deviation_is_attained_and_never_undercut() {
                 let factor = if total > 0.0 { force / total } else { 0.0 };
                 if total > 0.0 || force == 0.0 {
                     let pressures = Vector::from_iterator(4, carried.map(|pressure| factor * pressure));
-                    best = best.min(OuterFunction::value(&cost, &pressures));
+                    best = best.min(cost.value(&pressures));
                 }
             }
             assert!(best >= bound * (1.0 - 1e-12) - 1e-12, "{wanted:?} {force}: {best} {bound}");
@@ -85,14 +85,14 @@ fn the_least_deviation_is_attained_and_never_undercut() {
     // A pressure that can be had has the bound 0.
     let uniform = cost(PressureMeasure::Deviation { wanted: vec![5.0; 4] });
     assert_eq!(uniform.lower_bound(37.5), 0.0);
-    assert_eq!(OuterFunction::value(&uniform, &Vector::from_element(4, 5.0)), 0.0);
+    assert_eq!(uniform.value(&Vector::from_element(4, 5.0)), 0.0);
 }
 
 #[test]
 fn the_open_area_counts_whole_nodes_parts_and_none() {
     let cost = cost(PressureMeasure::OpenArea { pressure: 10.0 });
     let pressures = Vector::from_vec(vec![0.0, 5.0, 10.0, 30.0]);
-    assert_eq!(OuterFunction::value(&cost, &pressures), 2.0);
+    assert_eq!(cost.value(&pressures), 2.0);
     assert_eq!(cost.lower_bound(30.0), 4.5);
     assert_eq!(cost.lower_bound(100.0), 0.0);
     assert!(cost.curvature(&pressures, &Matrix::zeros(4, 2)).is_none());
@@ -136,7 +136,7 @@ proptest! {
         let (a, b) = (Vector::from_vec(a.to_vec()), Vector::from_vec(b.to_vec()));
         for measure in [PressureMeasure::Deviation { wanted: w.to_vec() }, PressureMeasure::OpenArea { pressure }] {
             let cost = cost(measure);
-            let (here, there) = (OuterFunction::value(&cost, &a), OuterFunction::value(&cost, &b));
+            let (here, there) = (cost.value(&a), cost.value(&b));
             let cut = here + cost.subgradient(&a).dot(&(&b - &a));
             prop_assert!(cut <= there + 1e-12 * (here + there), "{cut} {there}");
         }

@@ -6,7 +6,7 @@ use contact::contact_shape::{AnyState, ContactShape, ContactWarmStart, SolverKin
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
 use contact::scene::{Load, Scene, hertz, signorini};
-use nonsmooth::{Accuracy, Evaluation, ReducedObjective, StateSolver, Vector};
+use nonsmooth::{Accuracy, CompositeObjective, Evaluation, StateSolver, Vector};
 use testset::kit::relative_difference;
 
 struct Outcome {
@@ -19,7 +19,7 @@ struct Outcome {
 fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
     let shape = ContactShape::new(scene.clone(), kind).unwrap();
     let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
-    let objective = ReducedObjective::new(shape, cost);
+    let objective = CompositeObjective::new(shape, cost);
     let state = objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
     let evaluation = objective.differentiate(control, &state).unwrap();
     let displacement = match &state.solution {

@@ -6,7 +6,8 @@ use contact::body::mesh::Face;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{FieldCost, FieldMeasure, PressureCost, PressureMeasure, Region};
 use contact::scene::{CounterSurface, Scene};
-use nonsmooth::{Accuracy, Cost, StateSolver};
+use nonsmooth::composite::OuterFunction;
+use nonsmooth::{Accuracy, Cost, OutputJacobian, StateSolver};
 
 const PRESSURE: f64 = 12.0;
 const MODULUS: f64 = 3.0e4;
@@ -33,7 +34,7 @@ fn objectives_of_a_uniformly_pressed_block() {
         let state = shape.solve(&start, None, Accuracy::TIGHTEST).unwrap();
         let pressure = |measure| {
             let cost = PressureCost::new(measure, &problem.boundary).unwrap();
-            (Cost::value(&cost, &start, &state), cost)
+            (cost.value(&shape.outputs(&state)), cost)
         };
         let wanted =
             |factor: f64| PressureMeasure::Deviation { wanted: vec![factor * PRESSURE; problem.boundary.points.len()] };
