@@ -13,8 +13,8 @@ use crate::{InputError, Polyhedron, Vector};
 /// The point of the polyhedron nearest to x (`dimension()` entries); x itself if it is admissible.
 ///
 /// # Errors
-/// [`QpError::Infeasible`] for an empty set, with the least violation that a point can have; [`QpError::Input`] for an x of wrong size or with entries that are not finite,
-/// [`QpError::NotSolved`] if rounding keeps the quadratic program from being solved.
+/// [`QpError::Infeasible`] for an empty set, with the least violation that a point can have; [`QpError::Input`] for an x of wrong size or
+/// with entries that are not finite; [`QpError::NotSolved`] if rounding keeps the quadratic program from being solved.
 ///
 /// ```
 /// use nonsmooth::{Polyhedron, Vector, qp::project};
