@@ -3,7 +3,7 @@
 use crate::convert::{self, json};
 use crate::errors;
 use crate::failure::Failure;
-use crate::outer::Outer;
+use crate::outer::{Outer, OuterSetup};
 use nonsmooth::{Cut, Polyhedron};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
@@ -137,10 +137,10 @@ impl Certificate {
 
     /// Computes the cuts of a composite certificate again from outputs, Jacobian and outer function; the largest relative difference,
     /// or none if the certificate has no such proof.
-    fn recheck_composite(&self, outer: &Bound<'_, PyAny>, exponent: f64) -> PyResult<Option<f64>> {
+    fn recheck_composite(&self, py: Python<'_>, outer: OuterSetup) -> PyResult<Option<f64>> {
         let Some(proof) = &self.certificate.composite else { return Ok(None) };
         let failure = Failure::default();
-        let outer = Outer::new(outer, exponent, &failure)?;
+        let outer = Outer::new(py, &outer, &failure)?;
         let check = proof.recheck(&self.certificate, &outer).map_err(errors::input)?;
         failure.take().map_or_else(|| Ok(Some(check.largest())), Err)
     }

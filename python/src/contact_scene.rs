@@ -183,7 +183,6 @@ impl ContactScene {
             "max_seconds": optimizer.time_limit,
             "first_step": optimizer.first_step,
             "bundle_size": optimizer.bundle_size,
-            "composite_model": self.case.method == MethodName::Composite,
             "accuracy": accuracy,
         }))
     }
@@ -192,6 +191,7 @@ impl ContactScene {
     fn optimize<'py>(&self, py: Python<'py>, setup: Setup) -> PyResult<(Option<Outcome>, Option<Bound<'py, PyAny>>)> {
         let failure = Failure::default();
         let mut config = setup.config(py)?;
+        config.composite_model = self.case.method == MethodName::Composite;
         let wanted = if config.composite_model { Wanted::Jacobians } else { Wanted::States };
         let objective = py.detach(|| self.objective_for(wanted)).map_err(input)?;
         let problem = objective.solver().problem();

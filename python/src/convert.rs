@@ -24,12 +24,16 @@ pub fn array2<'py>(
     flat.to_pyarray(py).reshape([rows, columns])
 }
 
-/// A vector of `expected` entries from anything that numpy makes a one-dimensional array of real numbers of.
+/// A vector of `expected` entries from anything that numpy makes a one-dimensional array of real numbers of. Where one entry is expected,
+/// a number is one.
 pub fn vector(object: &Bound<'_, PyAny>, what: &str, expected: Option<usize>) -> PyResult<Vector> {
     let form = "a one-dimensional array of real numbers";
     let entries = match object.cast::<PyArray1<f64>>() {
         Ok(array) => array.try_readonly()?.as_array().to_vec(),
-        Err(_) => real::<PyArray1<f64>>(object, what, form)?.try_readonly()?.as_array().to_vec(),
+        Err(_) => {
+            let shape = (expected == Some(1)).then_some(&[-1][..]);
+            real::<PyArray1<f64>>(object, what, form, shape)?.try_readonly()?.as_array().to_vec()
+        }
     };
     match expected {
         Some(expected) if expected != entries.len() => {
@@ -41,8 +45,18 @@ pub fn vector(object: &Bound<'_, PyAny>, what: &str, expected: Option<usize>) ->
 
 /// A matrix from anything that numpy makes a two-dimensional array of real numbers of, or from a sparse matrix.
 pub fn matrix(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Matrix> {
+    shaped_matrix(object, what, None)
+}
+
+/// As [`matrix`]; where there is one column, its entries alone are enough.
+pub fn columns(object: &Bound<'_, PyAny>, what: &str, columns: usize) -> PyResult<Matrix> {
+    shaped_matrix(object, what, (columns == 1).then_some(&[-1, 1][..]))
+}
+
+fn shaped_matrix(object: &Bound<'_, PyAny>, what: &str, shape: Option<&[i32]>) -> PyResult<Matrix> {
     let dense = if object.hasattr("toarray")? { object.call_method0("toarray")? } else { object.clone() };
-    let array = real::<PyArray2<f64>>(&dense, what, "a two-dimensional array of real numbers")?.try_readonly()?;
+    let form = "a two-dimensional array of real numbers";
+    let array = real::<PyArray2<f64>>(&dense, what, form, shape)?.try_readonly()?;
     let view = array.as_array();
     Ok(Matrix::from_row_iterator(view.nrows(), view.ncols(), view.iter().copied()))
 }
@@ -55,8 +69,13 @@ pub fn number(object: &Bound<'_, PyAny>, what: &str) -> PyResult<f64> {
 }
 
 /// An array of doubles of an object. Complex numbers, whose imaginary parts numpy would drop with no more than a warning, texts and
-/// dates are refused.
-fn real<'py, A: PyTypeCheck>(object: &Bound<'py, PyAny>, what: &str, form: &str) -> PyResult<Bound<'py, A>> {
+/// dates are refused. An array of fewer dimensions is given the shape, if there is one.
+fn real<'py, A: PyTypeCheck>(
+    object: &Bound<'py, PyAny>,
+    what: &str,
+    form: &str,
+    shape: Option<&[i32]>,
+) -> PyResult<Bound<'py, A>> {
     let numpy = object.py().import(intern!(object.py(), "numpy"))?;
     let refuse = |error| refused(Some(error), object, what, form);
     let array = numpy.call_method1("asarray", (object,)).map_err(refuse)?;
@@ -65,7 +84,12 @@ fn real<'py, A: PyTypeCheck>(object: &Bound<'py, PyAny>, what: &str, form: &str)
     if !"biufO".contains(kind) {
         return Err(refused(None, object, what, form));
     }
-    let array = numpy.call_method1("asarray", (array, "float64")).map_err(refuse)?;
+    let mut array = numpy.call_method1("asarray", (array, "float64")).map_err(refuse)?;
+    if let Some(shape) = shape
+        && array.getattr("ndim")?.extract::<usize>()? < shape.len()
+    {
+        array = array.call_method1("reshape", (shape.to_vec(),))?;
+    }
     array.cast_into().map_err(|_| refused(None, object, what, form))
 }
 

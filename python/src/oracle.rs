@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! fun(x) → (value, subgradient)               fun(x, accuracy=τ) → the same, or (value, subgradient, error bound)
-//! fun(x) → (outputs, Jacobian)                with an outer function
+//! fun(x) → (outputs, Jacobian)                with an outer function; smooth(x) → (value, gradient) of what is added
 //! ```
 //! `OutsideDomain` and numbers that are not finite shorten the step. Every other exception ends the run and is kept as it is.
 
@@ -10,8 +10,8 @@ use crate::convert;
 use crate::errors::OutsideDomain;
 use crate::failure::Failure;
 use crate::outer::Outer;
-use nonsmooth::composite::{Linearization, Linearized, OuterFunction};
-use nonsmooth::{Answer, Evaluation, NonsmoothObjective, OracleError, Request, Vector};
+use nonsmooth::composite::{Linearization, Linearized, OuterFunction, SmoothPlus};
+use nonsmooth::{Answer, Evaluation, Matrix, NonsmoothObjective, OracleError, Request, Vector};
 use pyo3::exceptions::PyValueError;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -22,6 +22,10 @@ use pyo3::types::PyDict;
 pub struct PythonOracle {
     /// The function.
     pub function: Py<PyAny>,
+    /// Whether it is made of two functions of the user, `fun` and `jac`.
+    pub jac_apart: bool,
+    /// A smooth function that is added to that of the outputs.
+    pub smooth: Option<Py<PyAny>>,
     /// Number of variables.
     pub dimension: usize,
     /// Whether the function takes the keyword `accuracy`.
@@ -61,10 +65,12 @@ impl PythonOracle {
         let mut evaluation = match &self.outer {
             None => {
                 let value = convert::number(&first, "the value that fun returns")?;
-                let subgradient = convert::vector(&second, "the subgradient that fun returns", Some(self.dimension))?;
+                let source = if self.jac_apart { "jac" } else { "fun" };
+                let what = format!("the subgradient that {source} returns");
+                let subgradient = convert::vector(&second, &what, Some(self.dimension))?;
                 Evaluation::exact(value, subgradient, ())
             }
-            Some(outer) => match self.composite(outer, &first, &second, request)? {
+            Some(outer) => match self.composite(outer, (&first, &second), request)? {
                 Ok(evaluation) => evaluation,
                 failed => return Ok(failed),
             },
@@ -82,18 +88,21 @@ impl PythonOracle {
     fn composite(
         &self,
         outer: &Outer,
-        outputs: &Bound<'_, PyAny>,
-        jacobian: &Bound<'_, PyAny>,
+        (outputs, jacobian): (&Bound<'_, PyAny>, &Bound<'_, PyAny>),
         request: &Request<'_, ()>,
     ) -> PyResult<Evaluated> {
-        let outputs = convert::vector(outputs, "the vector of outputs that fun returns", None)?;
-        let jacobian = convert::matrix(jacobian, "the Jacobian that fun returns")?;
+        let mut outputs = convert::vector(outputs, "the vector of outputs that fun returns", None)?;
+        let mut jacobian = convert::columns(jacobian, "the Jacobian that fun returns", self.dimension)?;
         let (expected, found) = ((outputs.len(), self.dimension), jacobian.shape());
         if expected != found {
             return Err(PyValueError::new_err(format!(
                 "the Jacobian that fun returns has shape {found:?}, expected {expected:?} (outputs, variables)"
             )));
         }
+        if let Some(smooth) = &self.smooth {
+            (outputs, jacobian) = self.with_smooth(smooth, request, (&outputs, &jacobian))?;
+        }
+        outer.check(outputs.len())?;
         let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
         // Before the outer function sees outputs that are no numbers.
         if let Err(error) = linearization.check(self.dimension) {
@@ -104,6 +113,23 @@ impl PythonOracle {
         let subgradient: Vector = jacobian.tr_mul(&outer.subgradient(outputs));
         let linearization = Linearized::if_asked(request.linearization, linearization);
         Ok(Ok(Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) }))
+    }
+
+    /// Outputs and Jacobian with value and gradient of the smooth function on top.
+    fn with_smooth(
+        &self,
+        smooth: &Py<PyAny>,
+        request: &Request<'_, ()>,
+        others: (&Vector, &Matrix),
+    ) -> PyResult<(Vector, Matrix)> {
+        Python::attach(|py| {
+            let answer = smooth.bind(py).call1((convert::array(py, request.point),))?;
+            let parts = convert::parts(&answer, "smooth", "(value, gradient)", false)?;
+            let value = convert::number(&parts.get_item(0)?, "the value that smooth returns")?;
+            let gradient = parts.get_item(1)?;
+            let gradient = convert::vector(&gradient, "the gradient that smooth returns", Some(self.dimension))?;
+            Ok(SmoothPlus::stack((value, &gradient), others))
+        })
     }
 
     /// What the engine is told of an exception.

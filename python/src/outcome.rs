@@ -64,11 +64,21 @@ impl Outcome {
         self.report.termination.is_confirmed()
     }
 
-    /// Why the run ended, with numbers, and what to do.
+    /// Why the run ended, with numbers.
     #[getter]
     fn message(&self) -> String {
-        let termination = &self.report.termination;
-        format!("{termination}; {}", termination.advice())
+        match &self.report.termination {
+            Termination::OracleFailing { failures, last } => {
+                format!("fun failed {failures} times in a row near the best point; last: {last}")
+            }
+            termination => termination.to_string(),
+        }
+    }
+
+    /// What the engine advises; the package has words of its own for users of Python.
+    #[getter]
+    fn advice(&self) -> &'static str {
+        self.report.termination.advice()
     }
 
     /// Largest value minus minimum that the cuts of a convex function leave, if it was declared convex and confirmed.

@@ -2,11 +2,27 @@
 
 use crate::convert;
 use crate::failure::Failure;
-use nonsmooth::composite::{Epigraph, EuclideanNorm, Maximum, OuterFunction, SumOfPowers};
+use nonsmooth::composite::{
+    Epigraph, EuclideanNorm, GroupNorms, Maximum, OuterFunction, PositiveParts, SmoothPlus, SumOfPowers,
+};
 use nonsmooth::{Matrix, Vector};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
+
+/// An outer function as the package passes it.
+#[derive(Debug, FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct OuterSetup {
+    /// A name, or a Python function.
+    pub function: Py<PyAny>,
+    /// Exponent of `power`.
+    pub exponent: f64,
+    /// Numbers of outputs in the groups of `norm`; none: a single group.
+    pub groups: Option<Vec<usize>>,
+    /// Factor of the function where a smooth part is added, whose value is the first output.
+    pub weight: Option<f64>,
+}
 
 /// The convex function h of Θ = h∘c.
 #[derive(Debug)]
@@ -17,8 +33,14 @@ pub enum Outer {
     Powers(SumOfPowers),
     /// A function of the engine.
     Norm(EuclideanNorm),
+    /// A function of the engine.
+    Groups(GroupNorms),
+    /// A function of the engine.
+    Hinge(PositiveParts),
     /// A function of the user.
     Python(PythonOuter),
+    /// One of these, added to a smooth part.
+    Sum(Box<SmoothPlus<Self>>),
 }
 
 /// A Python function c ↦ (h(c), one subgradient).
@@ -31,20 +53,39 @@ pub struct PythonOuter {
 }
 
 impl Outer {
-    /// The function of a name, `l1`, `max`, `norm` or `power` with an exponent, or a Python function.
-    pub fn new(object: &Bound<'_, PyAny>, exponent: f64, failure: &Failure) -> PyResult<Self> {
-        let Ok(name) = object.extract::<String>() else {
-            let function = object.clone().unbind();
+    /// The function that the package asks for.
+    pub fn new(py: Python<'_>, setup: &OuterSetup, failure: &Failure) -> PyResult<Self> {
+        let outer = Self::alone(py, setup, failure)?;
+        Ok(match setup.weight {
+            Some(weight) => Self::Sum(Box::new(SmoothPlus { weight, outer })),
+            None => outer,
+        })
+    }
+
+    fn alone(py: Python<'_>, setup: &OuterSetup, failure: &Failure) -> PyResult<Self> {
+        let Ok(name) = setup.function.extract::<String>(py) else {
+            let function = setup.function.clone_ref(py);
             return Ok(Self::Python(PythonOuter { function, failure: failure.clone(), last: Mutex::new(None) }));
         };
-        match name.as_str() {
-            "max" => Ok(Self::Max(Maximum)),
-            "l1" => Ok(Self::Powers(SumOfPowers { exponent: 1.0 })),
-            "power" => Ok(Self::Powers(SumOfPowers { exponent })),
-            "norm" => Ok(Self::Norm(EuclideanNorm)),
-            _ => Err(PyValueError::new_err(format!(
-                "outer = '{name}' is unknown; allowed: 'max', 'l1', 'power', 'norm', or a function"
-            ))),
+        match (name.as_str(), &setup.groups) {
+            ("max", _) => Ok(Self::Max(Maximum)),
+            ("l1", _) => Ok(Self::Powers(SumOfPowers { exponent: 1.0 })),
+            ("power", _) => Ok(Self::Powers(SumOfPowers { exponent: setup.exponent })),
+            ("hinge", _) => Ok(Self::Hinge(PositiveParts)),
+            ("norm", None) => Ok(Self::Norm(EuclideanNorm)),
+            ("norm", Some(sizes)) => Ok(Self::Groups(GroupNorms { sizes: sizes.clone() })),
+            _ => Err(PyValueError::new_err(format!("outer = '{name}' is unknown"))),
+        }
+    }
+
+    /// Refuses numbers of outputs that the function does not take.
+    pub fn check(&self, outputs: usize) -> PyResult<()> {
+        match self {
+            Self::Sum(sum) => sum.outer.check(outputs - 1),
+            Self::Groups(GroupNorms { sizes }) if sizes.iter().sum::<usize>() != outputs => Err(PyValueError::new_err(
+                format!("fun returns {outputs} outputs, but the groups hold {}", sizes.iter().sum::<usize>()),
+            )),
+            _ => Ok(()),
         }
     }
 
@@ -53,7 +94,10 @@ impl Outer {
             Self::Max(function) => function,
             Self::Powers(function) => function,
             Self::Norm(function) => function,
+            Self::Groups(function) => function,
+            Self::Hinge(function) => function,
             Self::Python(function) => function,
+            Self::Sum(function) => &**function,
         }
     }
 }

@@ -51,9 +51,11 @@ pub fn minimize<'py>(py: Python<'py>, setup: Setup) -> PyResult<(Option<Outcome>
         disp: setup.disp,
         failure: failure.clone(),
     };
-    let outer = setup.outer.as_ref().map(|outer| Outer::new(outer.bind(py), setup.exponent, &failure));
+    let outer = setup.outer.as_ref().map(|outer| Outer::new(py, outer, &failure));
     let oracle = PythonOracle {
         function: setup.fun.clone_ref(py),
+        jac_apart: setup.jac_apart,
+        smooth: setup.smooth.as_ref().map(|smooth| smooth.clone_ref(py)),
         dimension: setup.x0.len(),
         takes_accuracy: setup.takes_accuracy,
         outer: outer.transpose()?,

@@ -2,6 +2,7 @@
 
 use crate::convert;
 use crate::errors;
+use crate::outer::OuterSetup;
 use nonsmooth::{BundleTrustConfig, Polyhedron, VariableScaling, Vector};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -12,12 +13,14 @@ use pyo3::prelude::*;
 pub struct Setup {
     /// The function; see [`crate::oracle`].
     pub fun: Py<PyAny>,
+    /// Whether the subgradient comes from a function of its own, `jac`.
+    pub jac_apart: bool,
     /// Whether it takes the keyword `accuracy`.
     pub takes_accuracy: bool,
-    /// The outer function: a name, a Python function, or none.
-    pub outer: Option<Py<PyAny>>,
-    /// Exponent of the outer function `power`.
-    pub exponent: f64,
+    /// The outer function, if `fun` returns outputs.
+    pub outer: Option<OuterSetup>,
+    /// The smooth function that is added, if there is one.
+    pub smooth: Option<Py<PyAny>>,
     /// The start.
     pub x0: Vec<f64>,
     /// The admissible set.

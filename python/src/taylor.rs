@@ -17,6 +17,7 @@ pub fn taylor_test(
     direction: Option<&Bound<'_, PyAny>>,
     seed: u64,
     takes_accuracy: bool,
+    jac_apart: bool,
 ) -> PyResult<(String, String)> {
     let x = convert::vector(x, "x", None)?;
     let direction = match direction {
@@ -26,6 +27,8 @@ pub fn taylor_test(
     let failure = Failure::default();
     let oracle = PythonOracle {
         function: fun,
+        jac_apart,
+        smooth: None,
         dimension: x.len(),
         takes_accuracy,
         outer: None,

@@ -97,7 +97,7 @@ def test_exceptions_of_outer_and_inner_come_back():
 @pytest.mark.parametrize(
     "call, error, words",
     [
-        (("min", curve), ValueError, "outer = 'min' is unknown"),
+        (("min", curve), ValueError, "outer = 'min' is unknown; allowed: 'max', 'l1', 'hinge', 'power', 'norm', or"),
         ((3, curve), TypeError, "outer is int"),
         (("max", lambda x: (np.ones(3), np.ones((2, 2)))), ValueError, r"has shape \(2, 2\), expected \(3, 2\)"),
         (("max", lambda x: 1.0), TypeError, "fun must return .outputs, Jacobian"),

@@ -85,6 +85,62 @@ def test_answers_that_are_no_real_numbers_are_refused(answer, words):
         nonsmooth.minimize(lambda x: answer(), START)
 
 
+def test_numbers_are_enough_for_one_variable():
+    b, c = np.array([0.65, 0.12, 0.95]), np.array([0.2, 0.4, 0.9])
+
+    def value(x):
+        return np.abs(x * b - c).sum()
+
+    def slope(x):
+        return (np.sign(x * b - c) * b).sum()
+
+    whole = nonsmooth.minimize(lambda x: (value(x), np.array([slope(x)])), [0.5])
+    for result in (
+        nonsmooth.minimize(value, 0.5, jac=slope),
+        nonsmooth.minimize(lambda x: (value(x), slope(x)), 0.5),
+        scipy.optimize.minimize(value, 0.5, jac=slope, method=nonsmooth.bundle_trust),
+    ):
+        assert same_bits(result.x, whole.x) and result.nfev == whole.nfev
+    assert nonsmooth.taylor_test(value, 0.4, jac=slope, disp=False).right
+    composite = nonsmooth.minimize_composite("l1", lambda x: (x * b - c, b), 0.5)
+    assert composite.success and abs(composite.fun - whole.fun) < 1e-9
+
+
+@pytest.mark.parametrize(
+    "fun, jac, words",
+    [
+        (lambda x: l1(x)[0], lambda x: 1.0, "the subgradient that jac returns is float"),
+        (lambda x: l1(x)[0], lambda x: [1.0], "the subgradient that jac returns has 1 entries, expected 2"),
+        (l1, lambda x: l1(x)[1], "the value that fun returns is tuple"),
+        (lambda x: (1.0, 1.0), True, "the subgradient that fun returns is float"),
+    ],
+)
+def test_the_function_that_is_wrong_is_named(fun, jac, words):
+    for call in (nonsmooth.minimize, nonsmooth.taylor_test):
+        with pytest.raises((TypeError, ValueError), match=words):
+            call(fun, START, jac=jac)
+
+
+def test_messages_name_what_python_has():
+    def refused(x):
+        if abs(x[0] - 5) > 1e-9:
+            raise nonsmooth.OutsideDomain("not here")
+        return l1(x)
+
+    ends = [
+        nonsmooth.minimize(l1, START, options={"convex": True}),
+        nonsmooth.minimize(l1, START, options={"max_evaluations": 3}),
+        nonsmooth.minimize(l1, START, options={"max_iterations": 3}),
+        nonsmooth.minimize(lambda x: (1.0, np.ones(2)), START, options={"max_evaluations": 200}),
+        nonsmooth.minimize(lambda x: (x[0], np.array([1.0])), [0.0]),
+        nonsmooth.minimize(refused, START),
+    ]
+    assert len({result.reason for result in ends}) == len(ends)
+    for result in ends:
+        assert not any(word in result.message for word in ("verify", "oracle", "Termination", "--"))
+    assert "fun failed" in ends[-1].message and "not here" in ends[-1].message
+
+
 def test_what_a_number_raises_while_it_is_converted_comes_back():
     """JAX computes where its arrays are converted: an interrupt or a failure there is no wrong form."""
 

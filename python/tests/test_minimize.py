@@ -1,6 +1,8 @@
 """Calls in the habits of scipy: bounds, constraints, options, results."""
 
 import pickle
+import re
+import time
 
 import numpy as np
 import pytest
@@ -88,8 +90,17 @@ def test_nonlinear_constraints_are_refused():
     [
         (dict(options={"max_evaluation": 5}), "did you mean 'max_evaluations'"),
         (dict(options={"tolerance": 2.0}), "tolerance = 2.0 is not allowed; allowed: 0 < x < 1"),
-        (dict(options={"tol": 1e-6, "tolerance": 1e-6}), "given twice"),
-        (dict(options={"curved_model": {"trus": 1.0}}), "unknown field `trus`"),
+        (dict(options={"tol": 1e-6, "tolerance": 1e-5}), "tolerance is given twice with different values"),
+        (dict(tol=1e-8, options={"tolerance": 1e-6}), "option 'tolerance' = 1e-06, tol = 1e-08"),
+        (dict(tol=2.0), "tolerance = 2.0 is not allowed; allowed: 0 < x < 1"),
+        (dict(options={"curved_model": False}), "unknown option 'curved_model'.*allowed: accuracy, bundle_size, convex"),
+        (dict(options={"serious_fraction": 0.1}), "unknown option 'serious_fraction'"),
+        (dict(options={"composite_model": True}), "unknown option 'composite_model'"),
+        (dict(x_scale=[1.0]), "x_scale has shape .1,., expected one number or 2"),
+        (dict(x_scale=[1.0, 0.0]), "x_scale = .1.0, 0.0. is not allowed; allowed: finite numbers > 0"),
+        (dict(x_scale=[1.0, np.inf]), "finite numbers > 0"),
+        (dict(x_scale=2.0, options={"scaling": np.eye(2)}), "x_scale and the option scaling are both given"),
+        (dict(x_scale=2.0, options={"x_scale": 3.0}), "x_scale is given twice"),
         (dict(options={"scaling": [1.0]}), "scaling has 1 entries, expected 2"),
         (dict(jac=None), "Finite differences are no subgradients"),
         (dict(bounds=[(0, 1)]), "2 pairs"),
@@ -207,6 +218,44 @@ def test_scaling_by_sizes_and_by_a_matrix():
     assert sizes.fun < 1e-5 and matrix.fun < 1e-5
     with pytest.raises(ValueError, match="scaling"):
         nonsmooth.minimize(l1, [5.0, -3.0], options={"scaling": np.zeros((2, 2))})
+
+
+def test_tol_and_x_scale_are_keywords_and_options():
+    named = dict(options={"tolerance": 1e-5, "scaling": [10.0, 0.1]})
+    wanted = nonsmooth.minimize(l1, [5.0, -3.0], **named)
+    assert not same_bits(wanted.x, nonsmooth.minimize(l1, [5.0, -3.0]).x)
+    for call in (
+        dict(tol=1e-5, x_scale=[10.0, 0.1]),
+        dict(tol=1e-5, options={"tolerance": 1e-5, "x_scale": [10.0, 0.1]}),
+        dict(x_scale=np.array([10.0, 0.1]), options={"tol": 1e-5, "x_scale": [10.0, 0.1]}),
+    ):
+        assert same_bits(nonsmooth.minimize(l1, [5.0, -3.0], **call).x, wanted.x)
+    through = scipy.optimize.minimize(
+        l1, [5.0, -3.0], jac=True, method=nonsmooth.bundle_trust, tol=1e-5, options={"x_scale": [10.0, 0.1]}
+    )
+    assert same_bits(through.x, wanted.x)
+    # One number stands for all variables.
+    same = nonsmooth.minimize(l1, [5.0, -3.0], x_scale=3.0)
+    assert same_bits(same.x, nonsmooth.minimize(l1, [5.0, -3.0], x_scale=[3.0, 3.0]).x)
+
+
+def test_the_time_limit_holds_between_evaluations():
+    def slow(x):
+        time.sleep(0.05)
+        return l1(x)
+
+    # Three evaluations take longer; the whole run has more.
+    result = nonsmooth.minimize(slow, [5.0, -3.0], options={"max_seconds": 0.12})
+    assert result.reason == "time_limit" and 1 <= result.nfev <= 3 and "max_seconds" in result.message
+
+
+def test_small_contradictions_are_told_as_they_are():
+    for gap in (1e-7, 1e-8, 1e-9):
+        rows = ([[1, 1]], 2 + gap, np.inf)
+        with pytest.raises(nonsmooth.InfeasibleError) as caught:
+            nonsmooth.minimize(l1, [0.0, 0.0], bounds=[(0, 1)] * 2, constraints=rows)
+        told = float(re.search(r"by (\S+) \(relative", str(caught.value))[1])
+        assert abs(told - gap / 2) < 0.01 * gap
 
 
 def test_the_taylor_test_says_right_and_wrong(capsys):

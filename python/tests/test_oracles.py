@@ -159,7 +159,7 @@ def test_keyboard_interrupt_within_half_a_second(interruptible):
 
 def test_keyboard_interrupt_in_a_function_without_bytecode(collection, interruptible):
     problem = collection["NesterovWorst_20"]
-    options = {"max_evaluations": 10**6, "tolerance": 1e-15, "max_restarts": 10**6}
+    options = {"max_evaluations": 10**6, "tolerance": 1e-15}
     x0 = problem.start
     runs = 0
     interrupt = Interrupt(0.2)

@@ -106,10 +106,9 @@ SMALL = [name for name in NAMES if len(CollectionProblem(name).start) <= 10]
             "tolerance": st.sampled_from([1e-3, 1e-5, 1e-9]),
             "first_step": st.floats(1e-3, 10.0),
             "bundle_size": st.integers(3, 30),
-            "serious_fraction": st.floats(0.01, 0.4),
-            "curved_model": st.booleans(),
-            "exploration": st.booleans(),
-            "max_restarts": st.integers(0, 5),
+            "objective_scale": st.floats(0.1, 10.0),
+            "x_scale": st.floats(0.1, 10.0),
+            "convex": st.booleans(),
         },
     ),
 )

@@ -50,6 +50,9 @@ options = {"convex": True, "max_evaluations": np.int64(30)}
 nonsmooth.minimize(fun, [5, -3], options=options)
 nonsmooth.minimize_composite("max", outputs, [1.0, 2.0])
 nonsmooth.minimize_composite(lambda c: (float(np.abs(c).sum()), np.sign(c)), outputs, [1.0, 2.0])
+nonsmooth.minimize_composite("hinge", outputs, [1.0, 2.0], smooth=fun, weight=0.1, tol=1e-8, x_scale=2.0)
+nonsmooth.minimize_composite("norm", outputs, [1.0, 2.0], groups=[1, 1])
+nonsmooth.minimize(fun, [5, -3], tol=1e-8, x_scale=[1.0, 1e3])
 scipy.optimize.minimize(fun, [5.0, -3.0], jac=True, method=nonsmooth.bundle_trust)
 least: float = result.fun
 point: Array = result.x

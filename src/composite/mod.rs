@@ -6,8 +6,8 @@
 //! ```
 //! A cut knows one direction of Θ; the composite model knows all of them at once, and the curvature of h. Where c is smooth, a dozen
 //! evaluations do what takes hundreds by cuts, and the run ends confirmed. On kinks of c the cuts take over.
-//! Implement [`OuterFunction`] (or take [`Maximum`], [`SumOfPowers`], [`EuclideanNorm`], [`FnOuter`]), and either give outputs and
-//! Jacobian as a closure ([`CompositeFunction`](crate::CompositeFunction)) or as outputs of a state
+//! Implement [`OuterFunction`] (or take [`Maximum`], [`SumOfPowers`], [`PositiveParts`], [`EuclideanNorm`], [`GroupNorms`],
+//! [`FnOuter`], and [`SmoothPlus`] for their sum with a smooth function), and either give outputs and Jacobian as a closure ([`CompositeFunction`](crate::CompositeFunction)) or as outputs of a state
 //! ([`OutputJacobian`](crate::OutputJacobian), [`CompositeObjective`](crate::CompositeObjective)).
 //! References: \[Fletcher1982\], \[LewisWright2016\] (proximal method for composite minimization), \[Sagastizabal2013\]
 //! (composite bundle method).
@@ -15,7 +15,11 @@
 mod epigraph;
 mod linearization;
 mod outer;
+mod sum;
 
 pub use epigraph::Epigraph;
 pub use linearization::{InactiveConstraints, Linearization, LinearizationRequest, Linearized};
-pub use outer::{EuclideanNorm, FnOuter, Maximum, OuterFunction, SumOfPowers, weighted_gram};
+pub use outer::{
+    EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, PositiveParts, SumOfPowers, weighted_gram,
+};
+pub use sum::SmoothPlus;

@@ -112,6 +112,66 @@ impl OuterFunction for EuclideanNorm {
     }
 }
 
+/// h(c) = Σ max(0, c_i): hinge losses, and exact penalties of constraints c_i ≤ 0.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PositiveParts;
+
+impl OuterFunction for PositiveParts {
+    fn value(&self, outputs: &Vector) -> f64 {
+        // `f64::max` would take NaN for 0.
+        outputs.iter().map(|&output| if output <= 0.0 { 0.0 } else { output }).sum()
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        outputs.map(|output| if output <= 0.0 { 0.0 } else { 1.0 })
+    }
+}
+
+/// h(c) = Σ |c_g|₂ over consecutive groups c_g of outputs: penalties that let whole groups vanish.
+#[derive(Debug, Clone, Default)]
+pub struct GroupNorms {
+    /// Numbers of outputs in the groups, with the number of all outputs as their sum; for any other number of outputs h is NaN.
+    pub sizes: Vec<usize>,
+}
+
+impl GroupNorms {
+    /// First output and size of every group.
+    fn groups(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.sizes.iter().scan(0, |end, &size| {
+            *end += size;
+            Some((*end - size, size))
+        })
+    }
+
+    fn fits(&self, outputs: &Vector) -> bool {
+        self.sizes.iter().sum::<usize>() == outputs.len()
+    }
+}
+
+impl OuterFunction for GroupNorms {
+    fn value(&self, outputs: &Vector) -> f64 {
+        if !self.fits(outputs) {
+            return f64::NAN;
+        }
+        self.groups().map(|(first, size)| outputs.rows(first, size).norm()).sum()
+    }
+
+    fn subgradient(&self, outputs: &Vector) -> Vector {
+        if !self.fits(outputs) {
+            return Vector::from_element(outputs.len(), f64::NAN);
+        }
+        let mut subgradient = Vector::zeros(outputs.len());
+        for (first, size) in self.groups() {
+            let group = outputs.rows(first, size);
+            let length = group.norm();
+            if length > 0.0 {
+                subgradient.rows_mut(first, size).copy_from(&(group / length));
+            }
+        }
+        subgradient
+    }
+}
+
 /// A closure `c ↦ (h(c), one subgradient)` as an outer function without a curvature: its subproblems are solved by cuts of h.
 ///
 /// ```
@@ -183,8 +243,9 @@ mod tests {
 
     #[test]
     fn subgradients_lie_below_the_function() {
-        let functions: [&dyn OuterFunction; 4] =
-            [&Maximum, &SumOfPowers { exponent: 1.0 }, &SumOfPowers { exponent: 3.0 }, &EuclideanNorm];
+        let groups = GroupNorms { sizes: vec![1, 3, 2] };
+        let (sum, cubes) = (SumOfPowers { exponent: 1.0 }, SumOfPowers { exponent: 3.0 });
+        let functions: [&dyn OuterFunction; 6] = [&Maximum, &sum, &cubes, &EuclideanNorm, &PositiveParts, &groups];
         for h in functions {
             for seed in 0..50 {
                 let (a, b) = (seeded_direction(6, seed), seeded_direction(6, seed + 1000));

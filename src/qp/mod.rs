@@ -23,6 +23,7 @@ mod gram_tests;
 #[cfg(feature = "interior-point")]
 pub(crate) mod interior_point;
 pub(crate) mod kernels;
+mod least_violation;
 mod pricing;
 mod problem;
 mod projection;

@@ -5,16 +5,16 @@
 //! ```
 //! In d = y − x this is the QP with the single cut 0 ≤ v and H = I.
 
-use crate::{InputError, Polyhedron, Vector};
-
+use super::least_violation::least_violation;
 use super::problem::{EpigraphQp, Metric, QpError};
 use super::solver::EpigraphQpSolver;
+use crate::{InputError, Polyhedron, Vector};
 
 /// The point of the polyhedron nearest to x (`dimension()` entries); x itself if it is admissible.
 ///
 /// # Errors
-/// [`QpError::Infeasible`] for an empty set, [`QpError::Input`] for an x of wrong size or with entries that are not finite,
-/// [`QpError::NotSolved`] if rounding keeps the quadratic program from being solved.
+/// [`QpError::Infeasible`] for an empty set, with the least violation that a point can have; [`QpError::Input`] for an x of wrong size or
+/// with entries that are not finite; [`QpError::NotSolved`] if rounding keeps the quadratic program from being solved.
 ///
 /// ```
 /// use nonsmooth::{Polyhedron, Vector, qp::project};
@@ -29,7 +29,8 @@ pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
     if clamped == *x && set.violation(x) == 0.0 {
         return Ok(clamped);
     }
-    let mut nearest = set.clamp_to_box(&(x + shortest_step(set, x)?));
+    let first = shortest_step(set, x).map_err(|error| measured(set, &clamped, error))?;
+    let mut nearest = set.clamp_to_box(&(x + first));
     // The rounding of a step is relative to its length: a second, tiny step lands closer.
     for _ in 0..REFINEMENTS {
         let violation = set.violation(&nearest);
@@ -46,6 +47,18 @@ pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
     Ok(nearest)
 }
 
+/// The solver reports the violation of one side where it gave up, or none at all; what is told is the least that a point of the box has.
+fn measured(set: &Polyhedron, x: &Vector, error: QpError) -> QpError {
+    match error {
+        QpError::Infeasible { .. } | QpError::NotSolved { .. } => {
+            let violation = least_violation(set, x);
+            // A point was found after all: the error of the solver stands.
+            if violation > ADMISSIBLE { QpError::Infeasible { violation } } else { error }
+        }
+        error => error,
+    }
+}
+
 /// Whether a point x of the polyhedron is its only one, as far as points within `distance` tell.
 ///
 /// The unit vectors and minus their sum span everything with positive factors. If the points at the given distance from x along them all
@@ -60,6 +73,8 @@ pub(crate) fn is_only_point(set: &Polyhedron, x: &Vector, distance: f64) -> bool
     (0..=n).all(|k| project(set, &(x + direction(k))).is_ok_and(|nearest| (nearest - x).amax() <= ALONE * distance))
 }
 
+/// Relative violation of a point that counts as one of the set.
+const ADMISSIBLE: f64 = 1e-14;
 /// Rounding of a nearest point, relative to the distance of the point that is projected.
 const ALONE: f64 = 1e-12;
 /// Largest number of steps taken after the first.

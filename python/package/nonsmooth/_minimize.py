@@ -15,9 +15,24 @@ from ._numbers import real
 _DEEPEST = 20
 _depth = threading.local()
 
+#: Names of outer functions.
+OUTER = ("max", "l1", "hinge", "power", "norm")
+
 
 def minimize(
-    fun, x0, jac=True, args=(), bounds=None, constraints=(), options=None, callback=None, *, journal=None, resume=None
+    fun,
+    x0,
+    jac=True,
+    args=(),
+    bounds=None,
+    constraints=(),
+    options=None,
+    callback=None,
+    *,
+    tol=None,
+    x_scale=None,
+    journal=None,
+    resume=None,
 ):
     """Minimise a nonsmooth function with bounds and linear constraints.
 
@@ -25,8 +40,8 @@ def minimize(
     ----------
     fun : callable
         ``fun(x, *args)`` returns ``(value, subgradient)``. One subgradient per point is enough, where the function has
-        a kink that of either side. With ``jac`` a callable, ``fun`` returns the value alone. ``fun`` is called only at
-        points that satisfy bounds and constraints. If it takes the keyword ``accuracy``, it is told which relative
+        a kink that of either side; for one variable it may be a number. With ``jac`` a callable, ``fun`` returns the
+        value alone. ``fun`` is called only at points that satisfy bounds and constraints. If it takes the keyword ``accuracy``, it is told which relative
         accuracy is enough, and may return ``(value, subgradient, error_bound)``; 0 means as accurate as it can.
         Raise ``nonsmooth.OutsideDomain``, or return NaN, where ``fun`` is not defined: the step is shortened.
         Every other exception ends the run and is raised again, the same object; its attribute ``best`` is the
@@ -47,6 +62,11 @@ def minimize(
     callback : callable, optional
         ``callback(xk)`` or ``callback(intermediate_result=...)`` after every evaluation, with the best point accepted so far;
         the latter has ``x``, ``fun``, ``nfev`` and ``record``. ``StopIteration`` ends the run.
+    tol : float, optional
+        The option ``tolerance`` under scipy's name.
+    x_scale : float or array_like, optional
+        Typical sizes of the variables, n numbers > 0 or one for all: the units in which lengths of steps are measured.
+        Give them where variables have different units.
     journal, resume : path, optional
         ``journal``: every evaluation is kept in this new folder. ``resume``: continues the run of such a folder, which
         ends as if it had never been interrupted; call it with the same arguments. Limits may be raised.
@@ -81,19 +101,16 @@ def minimize(
         Length of the first step.
     objective_scale : float, chosen from the values
         The size of the function that ``tolerance`` refers to.
+    x_scale : array, from the bounds
+        As the keyword.
     scaling : array, from the bounds
-        Typical sizes of the variables (n), or a regular matrix M (n, n): the run takes the course of x = M b in b.
+        A regular matrix M (n, n) in place of sizes: the run takes the course of x = M b in b. Sizes (n) are taken too.
     accuracy : 'tightest', 'on_demand' or (tightest, coarsest, factor)
         What ``fun`` is asked for. On demand if ``fun`` takes the keyword ``accuracy``, else tightest.
     bundle_size : int, n + 15, at most 500
         Largest number of cuts.
     disp : bool, False
         Print one line per evaluation.
-
-    The constants of the method are options too: ``serious_fraction`` (0.02), ``good_fraction`` (0.5),
-    ``weight_decrease`` (8), ``weight_increase`` (10), ``weight_range`` (1e10), ``curvature_quantile`` (0.8),
-    ``attenuation_steps`` (16), ``max_restarts`` (5), ``restart_radius`` (0.1), ``max_failures`` (10),
-    ``composite_model``, ``curved_model`` and ``exploration`` (True).
 
     Examples
     --------
@@ -104,8 +121,10 @@ def minimize(
     >>> result.success, round(result.fun, 6)
     (True, 1.0)
     """
-    joined = _joined(fun, jac, args)
-    return _run(joined, fun, x0, bounds, constraints, options, callback, journal, resume)
+    return _run(
+        _joined(fun, jac, args), fun, x0, bounds, constraints, options, callback, journal, resume,
+        tol=tol, x_scale=x_scale, jac=jac,
+    )
 
 
 def minimize_composite(
@@ -119,25 +138,40 @@ def minimize_composite(
     callback=None,
     *,
     exponent=2.0,
+    groups=None,
+    smooth=None,
+    weight=1.0,
+    tol=None,
+    x_scale=None,
     journal=None,
     resume=None,
 ):
-    """Minimise a convex function of outputs whose Jacobian is known.
+    """Minimise a convex function of outputs whose Jacobian is known, alone or added to a smooth function.
 
-    Minimax problems, sums of absolute values and norms need a fraction of the evaluations in this form.
+    Minimax problems, sums of absolute values and norms need a fraction of the evaluations in this form. With ``smooth``,
+    the function is ``smooth(x) + weight * outer(fun(x))``: a fit with a penalty for example (lasso, group lasso), or a
+    support vector machine.
 
     Parameters
     ----------
-    outer : {'max', 'l1', 'power', 'norm'} or callable
-        The convex function h: the largest output, the sum of absolute values, of their powers, the Euclidean norm, or
-        a function ``outer(c)`` that returns its value and one subgradient.
+    outer : {'max', 'l1', 'hinge', 'power', 'norm'} or callable
+        The convex function h: the largest output, the sum of absolute values, of positive parts max(0, c), of powers of
+        absolute values, the Euclidean norm, or a function ``outer(c)`` that returns its value and one subgradient.
     fun : callable
-        ``fun(x, *args)`` returns ``(outputs, jacobian)``: m outputs and the m × n matrix of their derivatives.
+        ``fun(x, *args)`` returns ``(outputs, jacobian)``: m outputs and the m × n matrix of their derivatives. For one
+        variable, the m derivatives alone are enough.
     x0, args, bounds, constraints, options, callback : optional
         As for `minimize`; `x0` is needed.
     exponent : float
         The exponent of ``'power'``, at least 1.
-    journal, resume : path, optional
+    groups : sequence of int, optional
+        With ``'norm'``: numbers of outputs in consecutive groups, whose norms are added. Subproblems then take seconds
+        for some dozen outputs, since norms are approximated by planes.
+    smooth : callable, optional
+        ``smooth(x, *args)`` returns ``(value, gradient)`` of a differentiable function that is added.
+    weight : float
+        With ``smooth``: factor of the outer function, > 0.
+    tol, x_scale, journal, resume : optional
         As for `minimize`.
 
     Returns
@@ -147,7 +181,8 @@ def minimize_composite(
 
     Notes
     -----
-    ``taylor_test(lambda x: (fun(x)[0] @ w, fun(x)[1].T @ w), x)`` tests a Jacobian along weights w of the outputs.
+    ``taylor_test(lambda x: (fun(x)[0] @ w, fun(x)[1].T @ w), x)`` tests a Jacobian along weights w of the outputs, and
+    ``taylor_test(smooth, x)`` tests the smooth part.
 
     Examples
     --------
@@ -157,19 +192,58 @@ def minimize_composite(
     >>> result = nonsmooth.minimize_composite("max", lines, [3.0, 4.0])
     >>> result.success, abs(result.fun) < 1e-9
     (True, True)
+
+    The lasso, here of two variables: squares of residuals and a weight on the sum of absolute values.
+
+    >>> A, b = np.array([[1.0, 0.2], [0.2, 1.0]]), np.array([2.0, 0.1])
+    >>> def squares(x):
+    ...     return 0.5 * (A @ x - b) @ (A @ x - b), A.T @ (A @ x - b)
+    >>> result = nonsmooth.minimize_composite("l1", lambda x: (x, np.eye(2)), [0.0, 0.0], smooth=squares, weight=0.5)
+    >>> result.success, bool(abs(result.x[1]) < 1e-12)
+    (True, True)
     """
+    outer = _outer(outer, exponent, groups, weight, smooth)
+    smooth = None if smooth is None else _with_args(smooth, args)
+    return _run(
+        _joined(fun, True, args), fun, x0, bounds, constraints, options, callback, journal, resume,
+        tol=tol, x_scale=x_scale, outer=outer, smooth=smooth,
+    )
+
+
+def _outer(outer, exponent, groups, weight, smooth):
+    """The outer function as the engine takes it; weight is none without a smooth part."""
     if isinstance(outer, str):
-        if outer not in ("max", "l1", "power", "norm"):
-            raise ValueError(f"outer = {outer!r} is unknown; allowed: 'max', 'l1', 'power', 'norm', or a function")
-        exponent = real(exponent, "exponent")
-        if outer == "power" and not (exponent.ndim == 0 and np.isfinite(exponent) and exponent >= 1):
-            raise ValueError(f"exponent = {exponent} is not allowed; allowed: a finite number ≥ 1")
+        if outer not in OUTER:
+            names = ", ".join(repr(name) for name in OUTER)
+            raise ValueError(f"outer = {outer!r} is unknown; allowed: {names}, or a function")
     elif not callable(outer):
         raise TypeError(f"outer is {type(outer).__name__}, expected a name or a function")
-    joined = _joined(fun, True, args)
-    return _run(
-        joined, fun, x0, bounds, constraints, options, callback, journal, resume, outer=(outer, float(exponent))
-    )
+    exponent, weight = real(exponent, "exponent"), real(weight, "weight")
+    if outer == "power" and not (exponent.ndim == 0 and np.isfinite(exponent) and exponent >= 1):
+        raise ValueError(f"exponent = {exponent} is not allowed; allowed: a finite number ≥ 1")
+    if not (weight.ndim == 0 and np.isfinite(weight) and weight > 0):
+        raise ValueError(f"weight = {weight} is not allowed; allowed: a finite number > 0")
+    if smooth is None and weight != 1:
+        raise ValueError("weight belongs to a sum: pass smooth as well")
+    if smooth is not None and not callable(smooth):
+        raise TypeError(f"smooth is {type(smooth).__name__}, expected a function")
+    return {
+        "function": outer,
+        "exponent": float(exponent),
+        "groups": _groups(outer, groups),
+        "weight": None if smooth is None else float(weight),
+    }
+
+
+def _groups(outer, groups):
+    if groups is None:
+        return None
+    if not isinstance(outer, str) or outer != "norm":
+        raise ValueError("groups belong to outer = 'norm'")
+    sizes = real(groups, "groups")
+    if sizes.ndim != 1 or sizes.size == 0 or not ((sizes >= 1) & (sizes == np.floor(sizes)) & np.isfinite(sizes)).all():
+        raise ValueError(f"groups = {groups!r} is not allowed; allowed: integers ≥ 1, the numbers of outputs in the groups")
+    return [int(size) for size in sizes]
 
 
 def bundle_trust(
@@ -224,6 +298,13 @@ def _joined(fun, jac, args):
             f"jac = {jac!r} is not allowed: pass jac=True and let fun return (value, subgradient), or pass a function. "
             "Finite differences are no subgradients of a nonsmooth function"
         )
+    return _with_args(fun, args)
+
+
+def _with_args(fun, args):
+    """A function of x alone."""
+    if not isinstance(args, tuple):
+        args = (args,)
     return (lambda x, **accuracy: fun(x, *args, **accuracy)) if args else fun
 
 
@@ -236,17 +317,20 @@ def takes_accuracy(fun):
         return False
 
 
-def _run(joined, fun, x0, bounds, constraints, options, callback, journal, resume, outer=None):
+def _run(
+    joined, fun, x0, bounds, constraints, options, callback, journal, resume, *, tol, x_scale, jac=True, outer=None, smooth=None
+):
     x0 = np.atleast_1d(real(x0, "x0"))
     if x0.ndim != 1 or x0.size == 0:
         raise ValueError(f"x0 has shape {x0.shape}, expected one dimension with at least one entry")
     accepts = takes_accuracy(fun)
-    config, scaling, disp = _options.read(options, accepts)
+    config, scaling, disp = _options.read(options, x0.size, accepts, tol, x_scale)
     setup = {
         "fun": joined,
+        "jac_apart": jac is not True,
         "takes_accuracy": accepts,
-        "outer": outer[0] if outer else None,
-        "exponent": outer[1] if outer else 1.0,
+        "outer": outer,
+        "smooth": smooth,
         "x0": x0,
         "constraints": _constraints.read(bounds, constraints, x0.size),
         "options": config,

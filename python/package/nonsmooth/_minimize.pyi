@@ -21,23 +21,11 @@ class _Options(TypedDict, total=False):
     convex: bool
     first_step: float | None
     objective_scale: float | None
+    x_scale: ArrayLike | None
     scaling: ArrayLike | None
     accuracy: Literal["tightest", "on_demand"] | tuple[float, float, float]
     bundle_size: int | None
     disp: bool
-    serious_fraction: float
-    good_fraction: float
-    weight_decrease: float
-    weight_increase: float
-    weight_range: float
-    curvature_quantile: float
-    attenuation_steps: int
-    max_restarts: int
-    restart_radius: float
-    max_failures: int
-    composite_model: bool
-    curved_model: bool | dict[str, Any]
-    exploration: bool | dict[str, Any]
 
 _Path = str | PathLike[str]
 _Constraints = LinearConstraint | Bounds | Sequence[Any]
@@ -53,11 +41,13 @@ def minimize(
     options: _Options | Mapping[str, Any] | None = None,
     callback: Callable[..., Any] | None = None,
     *,
+    tol: float | None = None,
+    x_scale: ArrayLike | None = None,
     journal: _Path | None = None,
     resume: _Path | None = None,
 ) -> Result: ...
 def minimize_composite(
-    outer: Literal["max", "l1", "power", "norm"] | Callable[[NDArray[float64]], tuple[float, ArrayLike]],
+    outer: Literal["max", "l1", "hinge", "power", "norm"] | Callable[[NDArray[float64]], tuple[float, ArrayLike]],
     fun: Callable[..., Any],
     x0: ArrayLike,
     args: Any = (),
@@ -67,6 +57,11 @@ def minimize_composite(
     callback: Callable[..., Any] | None = None,
     *,
     exponent: float = 2.0,
+    groups: Sequence[int] | None = None,
+    smooth: Callable[..., tuple[Any, ArrayLike]] | None = None,
+    weight: float = 1.0,
+    tol: float | None = None,
+    x_scale: ArrayLike | None = None,
     journal: _Path | None = None,
     resume: _Path | None = None,
 ) -> Result: ...
@@ -86,4 +81,6 @@ def bundle_trust(
 def takes_accuracy(fun: Callable[..., Any]) -> bool: ...
 def told(callback: Callable[..., Any] | None) -> Callable[..., bool] | None: ...
 def journal_of(journal: _Path | None, resume: _Path | None, identity: str) -> tuple[str, str] | None: ...
-def drive(run: Callable[..., Any], setup: dict[str, Any], outer: tuple[Any, float] | None = None) -> Result: ...
+def drive(run: Callable[..., Any], setup: dict[str, Any], outer: dict[str, Any] | None = None) -> Result: ...
+
+OUTER: tuple[str, ...]

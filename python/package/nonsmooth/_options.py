@@ -27,45 +27,41 @@ PLAIN = {
     "max_seconds": _REAL,
     "first_step": _REAL,
     "bundle_size": _COUNT,
-    "serious_fraction": _REAL,
-    "good_fraction": _REAL,
-    "weight_decrease": _REAL,
-    "weight_increase": _REAL,
-    "weight_range": _REAL,
-    "curvature_quantile": _REAL,
-    "attenuation_steps": _COUNT,
-    "max_restarts": _COUNT,
-    "restart_radius": _REAL,
-    "max_failures": _COUNT,
-    "composite_model": _FLAG,
 }
 
 #: Options with a form of their own.
-SPECIAL = ("convex", "scaling", "accuracy", "curved_model", "exploration", "disp")
+SPECIAL = ("convex", "scaling", "x_scale", "accuracy", "disp")
 
 NAMES = (*PLAIN, *SPECIAL)
 
 
-def read(options, accepts_accuracy):
-    """The options as the engine takes them: JSON, scaling, whether a table is printed."""
+def read(options, n, accepts_accuracy, tol=None, x_scale=None):
+    """The options and keywords of a run of n variables as the engine takes them: JSON, scaling, whether a table is printed."""
     if options is not None and not isinstance(options, Mapping):
         raise TypeError(f"options is {type(options).__name__}, expected a dict")
-    known = {}
-    for given, value in (options or {}).items():
-        name = SCIPY_NAMES.get(given, given)
-        if name not in NAMES:
-            raise ValueError(_unknown(given))
-        if name in known:
-            raise ValueError(f"option {name!r} is given twice, once as {given!r}")
-        known[name] = value
-    # None stands for the default.
-    known = {name: value for name, value in known.items() if value is not None}
+    given = [(f"option {name!r}", name, value) for name, value in (options or {}).items()]
+    given += [("tol", "tol", tol), ("x_scale", "x_scale", x_scale)]
+    known, places = {}, {}
+    for place, name, value in given:
+        canonical = SCIPY_NAMES.get(name, name)
+        if canonical not in NAMES:
+            raise ValueError(_unknown(name))
+        # None stands for the default.
+        if value is None:
+            continue
+        if canonical in known and not _same(known[canonical], value):
+            raise ValueError(
+                f"{canonical} is given twice with different values: {places[canonical]} = {known[canonical]!r}, {place} = {value!r}"
+            )
+        known[canonical], places[canonical] = value, place
     config = {name: _plain(name, known[name]) for name in PLAIN if name in known}
     config["convexity"] = "convex" if _flag("convex", known.get("convex", False)) else "unknown"
     config["accuracy"] = _accuracy(known.get("accuracy", "on_demand" if accepts_accuracy else "tightest"))
-    for name in ("curved_model", "exploration"):
-        config.update(_proposer(name, known.get(name, True)))
-    return json.dumps(config), _scaling(known.get("scaling")), _flag("disp", known.get("disp", False))
+    return json.dumps(config), _scaling(known, n), _flag("disp", known.get("disp", False))
+
+
+def _same(first, second):
+    return np.array_equal(np.asarray(first, dtype=object), np.asarray(second, dtype=object))
 
 
 def _unknown(name):
@@ -109,16 +105,25 @@ def _accuracy(value):
     raise _wrong("accuracy", value, "'tightest', 'on_demand' or (tightest, coarsest, factor)")
 
 
-def _proposer(name, value):
-    if isinstance(value, dict):
-        return {name: value}
-    return {} if _flag(name, value) else {name: None}
-
-
-def _scaling(value):
-    if value is None:
+def _scaling(known, n):
+    """Sizes of the variables, a matrix, or none."""
+    if "x_scale" in known:
+        if "scaling" in known:
+            raise ValueError("x_scale and the option scaling are both given: pass the sizes of the variables once")
+        return _sizes(known["x_scale"], n)
+    if "scaling" not in known:
         return None
-    sizes = real(value, "option scaling")
-    if sizes.ndim not in (1, 2):
-        raise _wrong("scaling", value, "one size per variable, or a regular matrix")
-    return sizes
+    scaling = real(known["scaling"], "option scaling")
+    if scaling.ndim not in (1, 2):
+        raise _wrong("scaling", known["scaling"], "one size per variable, or a regular matrix")
+    return scaling
+
+
+def _sizes(value, n):
+    """Typical sizes of n variables; a single number stands for all."""
+    sizes = real(value, "x_scale")
+    if sizes.shape not in ((), (n,)):
+        raise ValueError(f"x_scale has shape {sizes.shape}, expected one number or {n}")
+    if not (np.isfinite(sizes) & (sizes > 0)).all():
+        raise ValueError(f"x_scale = {value!r} is not allowed; allowed: finite numbers > 0")
+    return np.broadcast_to(sizes, (n,)).copy()

@@ -22,14 +22,20 @@ STATUS = {
     "other": 12,
 }
 
-#: What a Python user can do beside what the engine advises.
-_MORE = {
-    "stationary_unconfirmed": "if the function is convex, options={'convex': True} lets the run prove it",
-    "noise_limit": "if the function is convex, the minimum is lower by at most about this",
-    "step_too_short": "nonsmooth.taylor_test(fun, x) shows whether the subgradient is right",
-    "evaluation_limit": "the option is max_evaluations",
-    "iteration_limit": "the option is max_iterations",
-    "time_limit": "the option is max_seconds",
+#: What to do next; for another reason, the engine advises.
+_ADVICE = {
+    "stationary": "result.recheck() computes the certificate again",
+    "stationary_unconfirmed": "if the function is convex, options={'convex': True} lets the run prove that this is the minimum; otherwise "
+    "start again from here, or from elsewhere, and compare",
+    "noise_limit": "a more accurate fun is needed to get further; if the function is convex, the minimum is lower by at most about this",
+    "step_too_short": "check the subgradients: nonsmooth.taylor_test(fun, x) compares them with values next to a point x",
+    "evaluation_limit": "raise the option max_evaluations, and begin with x, or resume a journal",
+    "iteration_limit": "raise the option max_iterations, and begin with x, or resume a journal",
+    "time_limit": "raise the option max_seconds, and begin with x, or resume a journal",
+    "stopped": "begin with x, or resume a journal, to go on",
+    "unbounded_below": "pass bounds",
+    "function_failing": "make fun robust near x, or pass bounds or constraints that keep away from where it fails",
+    "subproblem_failed": "pass x_scale, the typical sizes of the variables, and check the sizes of the rows of the constraints",
 }
 
 
@@ -133,8 +139,7 @@ class Result(OptimizeResult):
         if certificate is None:
             raise ValueError("there is no certificate: the run ended before its first subproblem")
         numbers = json.loads(certificate.recheck())
-        outer, exponent = self._outer
-        difference = None if outer is None else certificate.recheck_composite(outer, exponent)
+        difference = None if self._outer is None else certificate.recheck_composite(self._outer)
         return Recheck(**numbers, composite_difference=difference, agrees=_agrees(certificate, numbers, difference))
 
     def __dir__(self):
@@ -160,9 +165,8 @@ def build(outcome, outer=None):
     counts = json.loads(outcome.counts)
     reason = outcome.reason
     history = History(json.loads(outcome.history))
-    more = _MORE.get(reason)
     result = Result(
-        message=f"{outcome.message}; {more}" if more else outcome.message,
+        message=f"{outcome.message}; {_ADVICE.get(reason, outcome.advice)}",
         success=outcome.confirmed,
         status=STATUS[reason],
         reason=reason,
@@ -182,5 +186,5 @@ def build(outcome, outer=None):
         warnings=outcome.warnings,
     )
     # No entry of the dict: it is not for users.
-    object.__setattr__(result, "_outer", outer or (None, 1.0))
+    object.__setattr__(result, "_outer", outer)
     return result

@@ -80,7 +80,7 @@ def taylor_test(fun, x, jac=True, args=(), direction=None, seed=1, disp=True):
         direction = real(direction, "direction")
         if not direction.any():
             raise ValueError("direction is zero, expected one along which the function is tested")
-    numbers, table = _engine.taylor_test(joined, x, direction, seed, takes_accuracy(fun))
+    numbers, table = _engine.taylor_test(joined, x, direction, seed, takes_accuracy(fun), jac is not True)
     numbers = json.loads(numbers)
     slope, error = numbers["fitted_slope"], numbers["best_derivative_error"]
     if error is None:

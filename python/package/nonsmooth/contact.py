@@ -215,14 +215,16 @@ class Scene:
         _check_process()
         start = self._flat(start, "start")
         given = self._scene.options()
-        config, scaling, disp = _options.read({**json.loads(given), **(options or {})}, False)
+        own = {_options.SCIPY_NAMES.get(name, name): value for name, value in (options or {}).items()}
+        config, scaling, disp = _options.read({**json.loads(given), **own}, start.size, False)
         nothing = np.zeros(0)
         unused = {"lower": nothing, "upper": nothing, "rows": np.zeros((0, 0)), "row_lower": nothing, "row_upper": nothing}
         setup = {
             "fun": None,
+            "jac_apart": False,
             "takes_accuracy": False,
             "outer": None,
-            "exponent": 1.0,
+            "smooth": None,
             "x0": start,
             "constraints": unused,
             "options": config,
