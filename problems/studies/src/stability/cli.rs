@@ -1,7 +1,8 @@
 //! The command line of the study.
 
+use crate::stability::optimizer_page::{self, Listed, Part};
 use crate::stability::record::{Outcome, Record, Report};
-use crate::stability::{matrix, optimizer_words, random, table};
+use crate::stability::{matrix, random, table};
 use clap::Parser;
 use problems::commands::{Failure, Folder, arguments, finish, json, notice};
 use std::path::PathBuf;
@@ -14,7 +15,7 @@ pub struct Arguments {
     /// The fast subset only.
     #[arg(long)]
     pub quick: bool,
-    /// Only cases whose group or name contains this text.
+    /// Only cases whose group or name contains this text; with `--optimizer units`, only runs whose name does.
     #[arg(long, value_name = "TEXT")]
     pub only: Option<String>,
     /// Random scenes instead of the cases: so many of them.
@@ -26,9 +27,12 @@ pub struct Arguments {
     /// Folder for the files of random scenes that fell short.
     #[arg(long, value_name = "DIR", requires = "random")]
     pub out: Option<PathBuf>,
-    /// What the optimizer says at the end of its runs, over the collection of test problems in all its variants; minutes.
-    #[arg(long, conflicts_with_all = ["quick", "only"])]
-    pub optimizer: bool,
+    /// What the optimizer says at the end of its runs, held against what is true; minutes.
+    #[arg(long, value_name = "PART", num_args = 0..=1, default_missing_value = "all", conflicts_with = "quick")]
+    pub optimizer: Option<Part>,
+    /// With `--optimizer units`: the runs one by one, each with its name, value, minimum and end.
+    #[arg(long, value_name = "RUNS", requires = "optimizer")]
+    pub list: Option<Listed>,
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
@@ -41,8 +45,8 @@ pub fn run() -> ExitCode {
 
 /// Runs the cases that the arguments select; the text belongs on stdout, also when cases are broken.
 fn execute(arguments: &Arguments) -> Result<String, Failure> {
-    if arguments.optimizer {
-        return optimizer_words::page(arguments.json);
+    if let Some(part) = arguments.optimizer {
+        return optimizer_page::page(part, arguments.only.as_deref(), arguments.list, arguments.json);
     }
     if let Some(count) = arguments.random {
         return at_random(arguments, count as usize);

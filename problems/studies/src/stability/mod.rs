@@ -4,7 +4,8 @@
 //! cli ─ matrix of cases ─┬─ judge ─ contact: scene → TotalFeti, DirectSolver, (successive approximations) → Record
 //!                        ├─ units, locking: scenes and fields compared with each other → Record
 //!                        └─ optimizer: bundle method on hostile oracles → Record
-//!     └ optimizer_words: the optimizer's last word on the collection in all its variants, held against what is true
+//!     └ optimizer_page ─┬─ optimizer_words: the optimizer's last word on the collection, held against what is true
+//!                       └─ mixed_units: the same on convex problems in mixed units, whose minima cone programs give
 //! Records ─ table (Markdown) or JSON
 //! ```
 //! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a named
@@ -23,7 +24,9 @@ mod loads;
 mod locking;
 mod materials;
 mod matrix;
+mod mixed_units;
 mod optimizer;
+mod optimizer_page;
 mod optimizer_stationarity;
 mod optimizer_variants;
 mod optimizer_words;
@@ -39,6 +42,7 @@ pub use case::Case;
 pub use cli::run;
 pub use locking::field_error;
 pub use matrix::all;
+pub use mixed_units::{UnitReport, mixed_units};
 pub use optimizer_words::{Word, words};
 pub use random::run as random_scenes;
 pub use record::{Counts, Outcome, Report};

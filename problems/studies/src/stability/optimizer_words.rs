@@ -10,7 +10,6 @@ use crate::stability::optimizer_variants::{Changed, Variant, variants};
 use nonsmooth::{
     BundleTrust, BundleTrustConfig, Convexity, InputError, NonsmoothObjective, Report, Request, Termination,
 };
-use problems::commands::{Failure, json};
 use rayon::prelude::*;
 use serde::Serialize;
 use testset::Problem;
@@ -190,21 +189,8 @@ fn summarize(records: Vec<WordRecord>) -> WordReport {
     }
 }
 
-/// The page of the study, or one JSON object; a false word is a failure that keeps the text.
-///
-/// # Errors
-/// [`Failure::Incomplete`] with the text.
-pub fn page(as_json: bool) -> Result<String, Failure> {
-    let report = words(|_| true).map_err(Failure::computation)?;
-    let text = if as_json { json(&report)? } else { markdown(&report) };
-    if report.offenders.is_empty() {
-        return Ok(text);
-    }
-    Err(Failure::Incomplete { text, reason: format!("{} false words", report.offenders.len()), status: 1 })
-}
-
 /// Totals, and how the runs of each kind of change ended.
-fn markdown(report: &WordReport) -> String {
+pub fn markdown(report: &WordReport) -> String {
     let text = format!(
         "{} runs, {} false confirmed, {} false failures. As they are: {} of {} convex problems confirmed, {} of {} of all; \
          evaluations of the convex ones {:.3} × those to 1e-6.\n\n",

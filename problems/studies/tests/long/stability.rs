@@ -1,6 +1,6 @@
 //! The whole matrix of stiff and extreme cases.
 
-use studies::stability::{Case, Counts, Outcome, Report, all, random_scenes, words};
+use studies::stability::{Case, Counts, Outcome, Report, all, mixed_units, random_scenes, words};
 
 #[test]
 fn every_case_is_solved_refused_or_a_known_limit_as_expected() {
@@ -41,4 +41,12 @@ fn the_optimizers_words_are_true() {
         report.all_confirmed,
         report.convex_cost
     );
+}
+
+/// Convex problems in units of 1 to 1e±8, whose minima cone programs give.
+#[test]
+fn the_optimizers_words_are_true_in_mixed_units() {
+    let report = mixed_units(|_| true).unwrap();
+    assert!(report.runs >= 3000, "{}", report.runs);
+    assert_eq!(report.false_words, 0, "{:#?}", report.offenders());
 }
