@@ -17,6 +17,8 @@ use crate::{Polyhedron, Vector};
 /// A coordinate of the aggregate subgradient is settled below this share of what cancels in it. Wrong ends have shares of 0.03 and more; at
 /// smooth minima, where nothing cancels, a share of 1e-3 of the slopes seen leaves 1e-6 of the decrease.
 const SETTLED_SHARE: f64 = 1e-3;
+/// What cancels to this share of its terms is zero as far as the multipliers of a subproblem tell.
+const CANCELLED_SHARE: f64 = 1e-8;
 /// Rounding of a sum, as a share of its terms.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
@@ -32,7 +34,7 @@ struct Coordinate {
     /// How far the variable may move: to the farther side of the box.
     room: f64,
     /// How far the variable lies from zero or from its start.
-    reach: f64,
+    moved: f64,
 }
 
 impl Coordinate {
@@ -45,8 +47,13 @@ impl Coordinate {
         self.largest_slope() <= SETTLED_SHARE * self.terms.max(self.steepest)
     }
 
-    fn is_rounding(&self) -> bool {
-        self.slope <= ROUNDING * self.terms
+    fn cancels(&self) -> bool {
+        self.slope <= CANCELLED_SHARE * self.terms
+    }
+
+    /// How far the variable may be from the minimum, in a run that has seen a decrease.
+    fn reach(&self, drop: f64) -> f64 {
+        self.moved.max(drop / self.steepest)
     }
 
     /// |z̃_i| times a distance that the box may shorten.
@@ -80,7 +87,7 @@ impl Evidence {
             terms: terms[i],
             steepest: state.seen.steepest[i],
             room: (set.upper()[i] - state.center[i]).max(state.center[i] - set.lower()[i]),
-            reach: state.reach(i),
+            moved: state.reach(i),
         };
         let of_center = proposal.composite_aggregate.is_some();
         let active = || active_cuts(state, proposal);
@@ -97,18 +104,18 @@ impl Evidence {
 
     /// Whether nothing but rounding is left: subgradients of the center itself and the normal cone cancel.
     pub(crate) fn is_exact(&self, rounding: f64) -> bool {
-        self.at_center && self.error <= rounding && self.coordinates.iter().all(Coordinate::is_rounding)
+        self.at_center && self.error <= rounding && self.coordinates.iter().all(Coordinate::cancels)
     }
 
-    /// ẽ + Σ |z̃_i| reach_i: what Θ, if it is convex, can still fall within reach and in the box.
-    pub(crate) fn remaining(&self) -> f64 {
-        self.error + self.coordinates.iter().map(|i| i.fall(i.reach)).sum::<f64>()
-    }
-
-    /// How far a convex Θ can lie above its minimum. A proof where the box is finite; elsewhere, a variable reaches as far as it has moved, or
+    /// ẽ + Σ |z̃_i| reach_i: what Θ, if it is convex, can still fall within reach and in the box. A variable reaches as far as it has moved, or
     /// as far as the slopes along it would need for the decrease of the run.
+    pub(crate) fn remaining(&self) -> f64 {
+        self.error + self.coordinates.iter().map(|i| i.fall(i.reach(self.drop))).sum::<f64>()
+    }
+
+    /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds, within reach in the others.
     pub(crate) fn gap(&self) -> f64 {
-        let longest = |i: &Coordinate| if i.room.is_finite() { i.room } else { i.reach.max(self.drop / i.steepest) };
+        let longest = |i: &Coordinate| if i.room.is_finite() { i.room } else { i.reach(self.drop) };
         self.error + self.coordinates.iter().map(|i| i.fall(longest(i))).sum::<f64>()
     }
 

@@ -17,7 +17,7 @@ use crate::report::Termination;
 
 /// What may be left within reach at a confirmed end, in small decreases: a decrease that is small at a step of a hundredth of the variables
 /// is at most 100 times as large within reach.
-const MAX_REMAINING_DECREASES: f64 = 100.0;
+const MAX_REMAINING_DECREASES: f64 = 10.0;
 /// The same where Θ is declared convex, so that what is left is a bound.
 const MAX_CONVEX_DECREASES: f64 = 10.0;
 

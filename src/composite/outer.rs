@@ -22,6 +22,12 @@ pub trait OuterFunction {
     fn epigraph(&self) -> Option<Epigraph> {
         None
     }
+
+    /// Whether h(t c) = t h(c) for all t > 0, as for maxima and norms; false by default. A subgradient at outputs far away then says as much
+    /// about h here as if it had been taken nearby, without the rounding of large numbers.
+    fn is_homogeneous(&self) -> bool {
+        false
+    }
 }
 
 impl<H: OuterFunction + ?Sized> OuterFunction for &H {
@@ -39,6 +45,10 @@ impl<H: OuterFunction + ?Sized> OuterFunction for &H {
 
     fn epigraph(&self) -> Option<Epigraph> {
         (**self).epigraph()
+    }
+
+    fn is_homogeneous(&self) -> bool {
+        (**self).is_homogeneous()
     }
 }
 
@@ -60,6 +70,10 @@ impl OuterFunction for Maximum {
         let largest = self.value(outputs);
         let first = outputs.iter().position(|output| *output == largest).unwrap_or(0);
         Vector::from_fn(outputs.len(), |i, _| f64::from(u8::from(i == first)))
+    }
+
+    fn is_homogeneous(&self) -> bool {
+        true
     }
 }
 
@@ -91,6 +105,10 @@ impl OuterFunction for SumOfPowers {
         let convex = self.exponent >= 1.0 && self.exponent.is_finite();
         convex.then_some(Epigraph::SumOfPowers { exponent: self.exponent })
     }
+
+    fn is_homogeneous(&self) -> bool {
+        self.exponent == 1.0
+    }
 }
 
 /// h(c) = |c|₂.
@@ -110,6 +128,10 @@ impl OuterFunction for EuclideanNorm {
     fn epigraph(&self) -> Option<Epigraph> {
         Some(Epigraph::EuclideanNorm)
     }
+
+    fn is_homogeneous(&self) -> bool {
+        true
+    }
 }
 
 /// h(c) = Σ max(0, c_i): hinge losses, and exact penalties of constraints c_i ≤ 0.
@@ -124,6 +146,10 @@ impl OuterFunction for PositiveParts {
 
     fn subgradient(&self, outputs: &Vector) -> Vector {
         outputs.map(|output| if output <= 0.0 { 0.0 } else { 1.0 })
+    }
+
+    fn is_homogeneous(&self) -> bool {
+        true
     }
 }
 
@@ -169,6 +195,10 @@ impl OuterFunction for GroupNorms {
             }
         }
         subgradient
+    }
+
+    fn is_homogeneous(&self) -> bool {
+        true
     }
 }
 

@@ -55,6 +55,10 @@ impl<H: OuterFunction> OuterFunction for SmoothPlus<H> {
     fn subgradient(&self, outputs: &Vector) -> Vector {
         (self.outer.subgradient(&others(outputs)) * self.weight).insert_row(0, 1.0)
     }
+
+    fn is_homogeneous(&self) -> bool {
+        self.outer.is_homogeneous()
+    }
 }
 
 /// The outputs without the first.

@@ -41,6 +41,23 @@ impl OuterCut {
         Ok(Self { value, subgradient, outputs, multiplier: 0.0 })
     }
 
+    /// The same cut of a positively homogeneous h, taken at outputs that are no larger than a size: the error of the cut at outputs of this
+    /// size then carries no rounding of larger numbers.
+    pub(super) fn shrunk(self, outer: &dyn OuterFunction, size: f64) -> Self {
+        let own = self.outputs.amax();
+        if !(outer.is_homogeneous() && own > size && size > 0.0) {
+            return self;
+        }
+        let share = size / own;
+        Self { outputs: self.outputs * share, value: self.value * share, ..self }
+    }
+
+    /// What rounding of its terms can hide of the error at outputs where h has the value given.
+    pub(super) fn rounding(&self, outputs: &Vector, value: f64) -> f64 {
+        let terms = self.subgradient.abs().dot(&(outputs.abs() + self.outputs.abs()));
+        f64::EPSILON * (value.abs() + self.value.abs() + terms)
+    }
+
     /// The linearization error h(c) − h(c_j) − ⟨w_j, c − c_j⟩ ≥ 0 at outputs c where h has the value given.
     pub fn error(&self, outputs: &Vector, value: f64) -> f64 {
         value - self.value - self.subgradient.dot(&(outputs - &self.outputs))

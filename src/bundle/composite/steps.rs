@@ -2,7 +2,7 @@
 
 use super::base::Base;
 use super::curvature::{Memory, Share};
-use super::model::{CompositeModel, CompositeStep};
+use super::model::{CompositeModel, CompositeStep, OuterCut};
 use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::proposers::proposer::Position;
@@ -111,7 +111,8 @@ impl Steps {
 fn proposal(at: &Position<'_>, base: &Base, step: &CompositeStep, weight: f64) -> Result<Proposal, SubproblemError> {
     let (state, set) = (&*at.state, at.set);
     let outputs = &base.linearization.outputs;
-    let errors = step.cuts.iter().map(|cut| cut.multiplier * cut.error(outputs, base.value).max(0.0));
+    let largest = |cut: &OuterCut| cut.error(outputs, base.value).max(0.0) + cut.rounding(outputs, base.value);
+    let errors = step.cuts.iter().map(|cut| cut.multiplier * largest(cut));
     let (error, length) = (errors.sum::<f64>(), state.norm.length(&step.step));
     let rows = step.row_multipliers.rows(0, set.rows().nrows()).into_owned();
     let slack = slack_error((&rows, &step.bound_multipliers), &base.point, set);

@@ -80,20 +80,23 @@ impl CompositeModel<'_> {
             return self.solve_by_cuts(solver, vec![]);
         };
         let step = &point - self.base;
-        let outputs = self.outputs(&step);
-        let value = weights.dot(&outputs) - epigraph.conjugate(&weights);
-        let cut = OuterCut { value, subgradient: weights, outputs, multiplier: 1.0 };
+        let (here, there) = (self.linearization.outputs.clone(), self.outputs(&step));
+        let conjugate = epigraph.conjugate(&weights);
+        // By the conjugate, w is a cut of h at any outputs; at those of the base, its error carries no rounding of larger numbers.
+        let value = weights.dot(&here) - conjugate;
+        let missed = self.outer.value(&there) - (weights.dot(&there) - conjugate);
+        let cut = OuterCut { value, subgradient: weights, outputs: here, multiplier: 1.0 };
         self.error(&cut)?;
         let slope = self.linearization.jacobian.tr_mul(&cut.subgradient) + self.pull(&step);
         let residual = self.norm.dual_length(&(slope + self.set.rows().tr_mul(&sides.0) + &sides.1));
         // The optimum d' lies lower by at most what the residual ρ allows: ⟨ρ, d' − d⟩ + u‖d' − d‖²/2 ≥ −‖ρ‖*²/2u.
         let farthest = self.norm.length(&step).max(0.5 * residual / self.weight);
         let slack = slack_error((&sides.0, &sides.1), &point, self.set);
-        let left = self.outer.value(&cut.outputs) - value + slack + residual * farthest;
+        let left = missed + slack + residual * farthest;
         if left <= MET_BY_CONES * self.merit(&step).abs() + LEFT_BY_CONES * self.value.abs() {
             return Ok(self.solved(step, vec![cut], sides));
         }
-        let there = OuterCut::at(self.outer, cut.outputs.clone())?;
+        let there = OuterCut::at(self.outer, there)?;
         self.solve_by_cuts(solver, vec![cut, there])
     }
 
@@ -177,7 +180,7 @@ impl CompositeModel<'_> {
                 cuts.retain(|cut| cut.multiplier > 0.0);
                 return Ok(self.solved(solution.step.clone(), cuts, multipliers(&solution)));
             }
-            cuts.push(next);
+            cuts.push(next.shrunk(self.outer, linearization.outputs.amax()));
         }
     }
 }
