@@ -82,6 +82,13 @@ impl Cut {
         }
     }
 
+    /// What rounding can hide of the linearization error at a point: that of the value and of the terms of ⟨g, x − y⟩.
+    pub(crate) fn rounding_at(&self, x: &Vector) -> f64 {
+        let slope = self.subgradient.iter().zip(self.point.iter().zip(x.iter()));
+        let terms: f64 = slope.map(|(g, (y, x))| g.abs() * (y.abs() + x.abs())).sum();
+        8.0 * f64::EPSILON * self.value.abs().max(terms)
+    }
+
     /// What Θ is at most at the point of an accurate cut.
     pub(super) fn highest_value(&self) -> f64 {
         self.value + self.error_bound

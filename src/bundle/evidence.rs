@@ -153,6 +153,11 @@ impl<'s> Distances<'s> {
         self.steepest.dot(&step.abs())
     }
 
+    /// The direction g_i/steepest_i² that a subgradient belongs to.
+    pub(crate) fn raise(&self, subgradient: &Vector) -> Vector {
+        subgradient.zip_map(&self.steepest, |slope, steepest| if steepest > 0.0 { slope / (steepest * steepest) } else { 0.0 })
+    }
+
     /// Σ_i steepest_i |y_i − x̂_i|, for merged cuts of the farthest point behind them.
     pub(crate) fn of(&self, cut: &Cut) -> f64 {
         let state = self.state;

@@ -8,6 +8,7 @@ use super::cut::Cut;
 use super::norm::ScaledNorm;
 use super::pairs::Pairs;
 use crate::Vector;
+use crate::qp::kernels::dot_terms;
 use std::cell::Cell;
 
 /// Linearization errors below this share of the values may be rounding.
@@ -28,11 +29,11 @@ pub(crate) fn allowance(one: &Cut, other: &Cut) -> f64 {
     one.error_bound + other.error_bound + VALUE_ROUNDING * (one.value.abs() + other.value.abs())
 }
 
-/// ‖g‖* and ‖y‖ of a cut, and how far its linearization varies, with the center for which this spread was formed.
+/// ‖g‖* and Σ |g_i y_i| of a cut, and how far its linearization varies, with the center for which this spread was formed.
 #[derive(Debug, Clone)]
 struct Sizes {
     dual_length: f64,
-    point_length: f64,
+    terms: f64,
     spread: Cell<Option<(u64, Spread)>>,
 }
 
@@ -76,9 +77,10 @@ impl Bundle {
 
     /// Takes in a cut and compares it with all others.
     pub(crate) fn push(&mut self, cut: Cut, norm: &ScaledNorm) {
-        let (dual_length, point_length) = (norm.dual_length(&cut.subgradient), norm.length(&cut.point));
+        let dual_length = norm.dual_length(&cut.subgradient);
+        let terms = dot_terms(cut.subgradient.as_slice(), cut.point.as_slice());
         self.revision += 1;
-        self.sizes.push(Sizes { dual_length, point_length, spread: Cell::new(None) });
+        self.sizes.push(Sizes { dual_length, terms, spread: Cell::new(None) });
         self.cuts.push(cut);
         self.pairs.push(&self.cuts, norm);
         self.note_concave_pairs();
@@ -89,9 +91,9 @@ impl Bundle {
         self.sizes.iter().map(|sizes| sizes.dual_length)
     }
 
-    /// ‖y‖ of the cuts in their order.
-    pub(crate) fn point_lengths(&self) -> impl Iterator<Item = f64> {
-        self.sizes.iter().map(|sizes| sizes.point_length)
+    /// Σ |g_i y_i| of the cuts in their order: the terms that cancel in a linearization.
+    pub(crate) fn terms(&self) -> impl Iterator<Item = f64> {
+        self.sizes.iter().map(|sizes| sizes.terms)
     }
 
     /// How far the linearization of the cut at a position varies at a center; formed once per center.

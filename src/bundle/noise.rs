@@ -25,7 +25,8 @@ pub(super) fn watch(state: &mut State, convexity: Convexity, proposal: &Proposal
     }
     if convexity == Convexity::Convex {
         let error = evaluation.subgradient.dot(&proposal.step) - change;
-        if error < -NOISE_MARGIN * promised {
+        let terms = evaluation.subgradient.abs().dot(&(proposal.trial.abs() + state.center.abs()));
+        if error < -NOISE_MARGIN * (promised + 8.0 * f64::EPSILON * terms) {
             state.noise = state.noise.max(-error);
         }
     }

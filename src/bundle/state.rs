@@ -94,9 +94,8 @@ impl State {
 
     /// Rounding level of the model: what differences of the values behind its active cuts cannot resolve.
     pub(crate) fn rounding(&self) -> f64 {
-        let lengths = self.bundle.dual_lengths().zip(self.bundle.point_lengths());
-        let cuts = self.bundle.cuts().iter().zip(lengths).filter(|(cut, _)| cut.is_active());
-        let sizes = cuts.map(|(cut, (slope, point))| cut.value.abs().max(slope * point));
+        let cuts = self.bundle.cuts().iter().zip(self.bundle.terms()).filter(|(cut, _)| cut.is_active());
+        let sizes = cuts.map(|(cut, terms)| cut.value.abs().max(terms));
         8.0 * f64::EPSILON * sizes.fold(self.center_value.abs(), f64::max)
     }
 

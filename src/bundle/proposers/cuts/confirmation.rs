@@ -51,7 +51,12 @@ impl Confirmation {
         let state = &*at.state;
         let (distances, near) = (Distances::new(state), near(&at.resolution()));
         let cuts = active_cuts(state, &of).map(|cut| (distances.of(cut), cut));
-        let toward = |(distance, cut): (f64, &Cut)| &state.center + (&cut.point - &state.center) * (0.5 * near / distance);
+        // A trial point often lies on a kink, where the last bit chooses the subgradient: a share of the way leads along the subgradient itself.
+        let toward = |(_, cut): (f64, &Cut)| {
+            let (line, aside) = (&cut.point - &state.center, distances.raise(&cut.subgradient));
+            let share = |step: &Vector, part: f64| part * near / distances.length(step);
+            &state.center + &line * share(&line, 0.5) + &aside * share(&aside, 0.05)
+        };
         let points = cuts.filter(|(distance, _)| *distance > near).map(toward).collect();
         let kept = state.bundle.cuts().iter().filter(|cut| cut.id == state.center_id || distances.of(cut) <= near);
         let left = state.center.len() + 1;

@@ -66,7 +66,7 @@ impl Model {
             // A value that may be too high by its promised error must not put the cut above Θ.
             let promised = if cut.id == state.center_id { 0.0 } else { cut.excess() + state.center_error_bound() };
             let excess = -(error + promised);
-            if convex && excess > NOISE_MARGIN * (promised + rounding) {
+            if convex && excess > NOISE_MARGIN * (promised + rounding.max(cut.rounding_at(&state.center))) {
                 state.noise = state.noise.max(excess);
             }
             model.slopes.push(if c > 0.0 {

@@ -99,8 +99,10 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     let cuts = Cuts { gram, ..model.cuts() };
     let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
     let proposal = interpret(solution, (state, at.set), model);
-    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution.
-    let least = 0.5 * proposal.aggregate_norm * proposal.step_length - state.rounding();
+    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution. Rounding of ⟨h, d⟩ aside.
+    let steepest = state.bundle.dual_lengths().fold(0.0, f64::max);
+    let rounding = state.rounding() + 8.0 * f64::EPSILON * steepest * proposal.step_length;
+    let least = 0.5 * proposal.aggregate_norm * proposal.step_length - rounding;
     if !(proposal.predicted_decrease >= least && proposal.step_length.is_finite()) {
         return Err(SubproblemError::Unusable);
     }
