@@ -12,12 +12,12 @@ use super::proposers::proposal::{Proposal, SubproblemError};
 use super::proposers::proposer::Position;
 use super::state::State;
 use crate::composite::OuterFunction;
-use crate::interruption::interrupted;
+use crate::interruption::{interrupted, until};
 use crate::qp::{EpigraphQpSolver, QpCounts};
 use crate::report::{IterationRecord, Origin, StepKind, Termination};
 use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
 use std::ops::ControlFlow::{self, Break, Continue};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A center that is evaluated again is asked for this share of the accuracy that would just do.
 const REFINEMENT_SHARE: f64 = 0.03;
@@ -86,14 +86,7 @@ impl Run<'_, '_> {
         }
         // A step depends on the state of the run alone, not on what the solver remembers of earlier subproblems.
         self.solver.forget();
-        let proposal = match self.composite_trial()? {
-            Some(proposal) => proposal,
-            None => {
-                let plain = self.next_trial()?;
-                let chosen = self.choose_trial(plain);
-                self.shortened(chosen)
-            }
-        };
+        let proposal = self.propose_in_time()?;
         if self.center_is_too_coarse(&proposal) {
             return self.refine_center(&proposal);
         }
@@ -114,6 +107,28 @@ impl Run<'_, '_> {
             Outcome::Answer(answer) => self.accept_or_reject(proposal, accuracy, answer),
         }
         self.after_evaluation()
+    }
+
+    /// The next trial point, unless the time of the run passes before it is found.
+    fn propose_in_time(&mut self) -> ControlFlow<Termination, Proposal> {
+        let seconds = self.method.config.max_seconds.and_then(|limit| Duration::try_from_secs_f64(limit).ok());
+        let deadline = seconds.and_then(|limit| self.clock.checked_add(limit));
+        match until(deadline, || self.propose()) {
+            // What a subproblem that ended early leaves says nothing about the objective.
+            (Continue(_) | Break(Termination::StoppedByObserver | Termination::SubproblemFailed { .. }), true) => {
+                Break(self.end_excursion().unwrap_or(Termination::TimeLimit))
+            }
+            (flow, _) => flow,
+        }
+    }
+
+    fn propose(&mut self) -> ControlFlow<Termination, Proposal> {
+        if let Some(proposal) = self.composite_trial()? {
+            return Continue(proposal);
+        }
+        let plain = self.next_trial()?;
+        let chosen = self.choose_trial(plain);
+        Continue(self.shortened(chosen))
     }
 
     fn check_limits(&mut self) -> ControlFlow<Termination> {
