@@ -4,7 +4,7 @@
 //! by [`watched`] how it is asked; long loops ask [`interrupted`] once per pass, and give up. Both belong to the thread that computes: nothing
 //! is shared, and where nobody watches, nothing is asked and no result depends on it.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
 
 /// Time between two questions: loops ask more often than an answer is worth.
@@ -20,6 +20,7 @@ struct Watch {
 
 thread_local! {
     static WATCH: RefCell<Option<Watch>> = const { RefCell::new(None) };
+    static DEADLINE: Cell<Option<Instant>> = const { Cell::new(None) };
 }
 
 /// Puts the watch of the caller back, also after a panic.
@@ -46,8 +47,30 @@ pub fn watched<T>(wants_end: impl FnMut() -> bool + 'static, work: impl FnOnce()
     work()
 }
 
+/// Puts the deadline of the caller back, also after a panic.
+struct FormerDeadline(Option<Instant>);
+
+impl Drop for FormerDeadline {
+    fn drop(&mut self) {
+        DEADLINE.set(self.0);
+    }
+}
+
+/// Does some work on this thread that shall end by a deadline, or earlier if the watch says so. Returns whether the deadline has passed, too.
+pub(crate) fn until<T>(deadline: Option<Instant>, work: impl FnOnce() -> T) -> (T, bool) {
+    let _before = FormerDeadline(DEADLINE.replace(deadline));
+    (work(), is_late())
+}
+
+fn is_late() -> bool {
+    DEADLINE.get().is_some_and(|deadline| deadline <= Instant::now())
+}
+
 /// Whether the work of this thread shall end before its result. Once true, it stays true until the watch ends.
 pub fn interrupted() -> bool {
+    if is_late() {
+        return true;
+    }
     let due = WATCH.with_borrow(|watch| match watch {
         None => false,
         Some(watch) => watch.interrupted || watch.due <= Instant::now(),
@@ -83,6 +106,15 @@ mod tests {
             },
         );
         until(false);
+    }
+
+    #[test]
+    fn a_deadline_ends_work_and_leaves_the_watch_its_place() {
+        let loops = || (0..u64::MAX).any(|_| interrupted());
+        assert_eq!(until(Some(Instant::now() + INTERVAL), loops), (true, true));
+        let later = Instant::now() + 1000 * INTERVAL;
+        assert_eq!(watched(|| true, || until(Some(later), loops)), (true, false));
+        assert!(!interrupted());
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! The limits of a run, and the ends that the caller or the values ask for.
 
 use super::builder::BundleTrust;
+use super::config::BundleTrustConfig;
 use super::state::State;
 use crate::report::Termination;
 use std::ops::ControlFlow::{self, Break, Continue};
+use std::time::{Duration, Instant};
 
 /// A decrease of Θ beyond this many times |Θ(x⁰)| + ‖g⁰‖·max(first step, 1) ends the run as unbounded below.
 const UNBOUNDED_DECREASE: f64 = 1e12;
@@ -20,6 +22,12 @@ pub(super) fn check(state: &State, method: &BundleTrust<'_>, seconds: f64) -> Co
     } else {
         Continue(())
     }
+}
+
+/// When the time of a run ends; none without a limit.
+pub(super) fn deadline(config: &BundleTrustConfig, start: Instant) -> Option<Instant> {
+    let seconds = config.max_seconds.and_then(|limit| Duration::try_from_secs_f64(limit).ok());
+    seconds.and_then(|limit| start.checked_add(limit))
 }
 
 /// Calls the observers, and tests the stopping rules and divergence.

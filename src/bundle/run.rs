@@ -11,6 +11,7 @@ use super::state::State;
 use super::trial::{Trial, descent_target};
 use super::{demand, limits, noise, verdict};
 use crate::composite::{Linearization, LinearizationRequest, Linearized, OuterFunction};
+use crate::interruption::until;
 use crate::qp::EpigraphQpSolver;
 use crate::report::{IterationRecord, Noted, Origin, StepKind, Termination};
 use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
@@ -71,11 +72,7 @@ impl Run<'_, '_> {
         if let Break(limit) = limits::check(&self.state, self.method, self.seconds()) {
             return Break(self.standing_proof(limit));
         }
-        let proposal = match self.ask(|proposers, at| proposers.propose(at)) {
-            Proposed::Trial(proposal) => *proposal,
-            Proposed::End(ending) => return Break(*ending),
-            Proposed::Silent => unreachable!("the plain cuts have an answer"),
-        };
+        let proposal = self.propose()?;
         let (state, config) = (&self.state, &self.method.config);
         if demand::center_is_too_coarse(state, config, proposal.predicted_decrease) {
             return self.refine_center(&proposal);
@@ -97,6 +94,21 @@ impl Run<'_, '_> {
             Outcome::Answer(answer) => self.accept_or_reject(&proposal, accuracy, answer),
         }
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
+    }
+
+    /// The next trial point, or the end: by a proof, or because the time of the run passes before either is found.
+    fn propose(&mut self) -> ControlFlow<Ending, Proposal> {
+        let deadline = limits::deadline(&self.method.config, self.clock);
+        match until(deadline, || self.ask(|proposers, at| proposers.propose(at))) {
+            // What a subproblem that ended early leaves says nothing about the objective.
+            (Proposed::Trial(_), true) => Break(self.standing_proof(Termination::TimeLimit)),
+            (Proposed::End(ending), true) if ending.proof.is_none() => {
+                Break(self.standing_proof(Termination::TimeLimit))
+            }
+            (Proposed::Trial(proposal), false) => Continue(*proposal),
+            (Proposed::End(ending), _) => Break(*ending),
+            (Proposed::Silent, _) => unreachable!("the plain cuts have an answer"),
+        }
     }
 
     /// Asks the proposers at the present center and counts the subproblems that they solve.

@@ -35,7 +35,7 @@ pub(super) fn solve(qp: &EpigraphQp<'_>) -> Result<InteriorAnswer, QpError> {
         if best.as_ref().is_none_or(|best| answer.solution.kkt_residual < best.solution.kkt_residual) {
             best = Some(answer);
         }
-        if !(reached > 0.0 && reached.is_finite()) || (1e-2..1e2).contains(&reached) {
+        if !(reached > 0.0 && reached.is_finite()) || (1e-2..1e2).contains(&reached) || interrupted() {
             break;
         }
         length *= reached;

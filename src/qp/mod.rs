@@ -16,6 +16,8 @@ mod active_set;
 mod answer;
 mod certificate;
 mod coordinates;
+#[cfg(feature = "interior-point")]
+mod dense;
 mod factor;
 mod gram;
 #[cfg(test)]
@@ -25,6 +27,8 @@ pub(crate) mod interior_point;
 pub(crate) mod kernels;
 mod least_violation;
 mod pricing;
+#[cfg(feature = "interior-point")]
+pub(crate) mod primal_dual;
 mod problem;
 mod projection;
 mod settle;

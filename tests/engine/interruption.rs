@@ -69,3 +69,25 @@ fn subproblems_of_every_kind_are_interrupted() {
     });
     assert_eq!((report.termination, report.counts.evaluations), (Termination::StoppedByObserver, 1));
 }
+
+/// The closure takes its time, so that the number of its calls tells when the run has ended.
+#[test]
+fn a_limit_of_time_holds_inside_a_subproblem() {
+    let (n, pause) = (30, Duration::from_millis(20));
+    let calls = Cell::new(0);
+    let norms = FnOuter::new(|c: &Vector| {
+        calls.set(calls.get() + 1);
+        std::thread::sleep(pause);
+        let lengths = Vector::from_fn(n, |i, _| c.rows(3 * i, 3).norm());
+        (lengths.sum(), Vector::from_fn(3 * n, |i, _| c[i] / lengths[i / 3].max(f64::MIN_POSITIVE)))
+    });
+    let rows = Matrix::from_fn(3 * n, n, |i, k| ((3 * i + 1) as f64 * (0.7 * k as f64 + 0.3)).sin());
+    let wanted = Vector::from_fn(3 * n, |i, _| (i as f64).cos());
+    let theta = CompositeFunction::new(n, &norms, |x: &Vector| (&rows * x - &wanted, rows.clone()));
+    let config = BundleTrustConfig { max_seconds: Some(0.4), ..BundleTrustConfig::default() };
+    let report = BundleTrust::new(config).unwrap().minimize(&theta, Vector::zeros(n)).unwrap();
+    assert_eq!((report.termination, report.counts.evaluations), (Termination::TimeLimit, 1));
+    assert_eq!(report.history.len(), 1);
+    // 20 pauses fill the time; some more come from an end in the middle and from the report.
+    assert!(calls.get() <= 30, "{}", calls.get());
+}

@@ -16,6 +16,7 @@ use crate::bundle::proposers::subproblem::Room;
 use crate::composite::Epigraph;
 use crate::interruption::interrupted;
 use crate::qp::interior_point::{ScaledSide, compressed, equalities_first, push_set, settings};
+use crate::qp::primal_dual::{self, Program};
 use crate::{Matrix, Vector};
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, PowerConeT, SecondOrderConeT, SupportedConeT, ZeroConeT,
@@ -64,6 +65,9 @@ pub(super) fn solve(model: &CompositeModel<'_>, epigraph: Epigraph) -> Option<Co
     let (m, n) = jacobian.shape();
     let metric = model.with_metric(Matrix::zeros(n, n));
     let units = Units::new(outputs, jacobian, (&metric, epigraph));
+    if epigraph == (Epigraph::SumOfPowers { exponent: 1.0 }) {
+        return solve_absolute_values(model, (&metric, &units), epigraph);
+    }
     let count = if epigraph == Epigraph::EuclideanNorm { 1 } else { m };
     let mut constraints = Constraints { columns: vec![vec![]; n + count], sides: vec![], cones: vec![] };
     let (room, rows) = (Room::around(model.set, model.base), model.set.rows());
@@ -101,6 +105,36 @@ pub(super) fn solve(model: &CompositeModel<'_>, epigraph: Epigraph) -> Option<Co
     let finite =
         step.iter().chain(weights.iter()).chain(sides.0.iter()).chain(sides.1.iter()).all(|entry| entry.is_finite());
     finite.then_some(ConeAnswer { step, weights, sides })
+}
+
+/// Solves the subproblem of a sum of absolute values, by the method for many dense residuals.
+fn solve_absolute_values(
+    model: &CompositeModel<'_>,
+    (metric, units): (&Matrix, &Units),
+    epigraph: Epigraph,
+) -> Option<ConeAnswer> {
+    let (outputs, jacobian) = (&model.linearization.outputs, &model.linearization.jacobian);
+    let (m, n) = jacobian.shape();
+    let (room, rows) = (Room::around(model.set, model.base), model.set.rows());
+    let mut sides = vec![];
+    let (of_rows, bounds) = ((&room.rows.0, &room.rows.1), (&room.bounds.0, &room.bounds.1));
+    push_set(&mut sides, rows, of_rows, bounds, |entry, k| entry * units.steps[k]);
+    let equalities = equalities_first(&mut sides);
+    let answer = primal_dual::solve(&Program {
+        outputs: &(outputs / units.outputs),
+        jacobian: &Matrix::from_fn(m, n, |i, k| jacobian[(i, k)] * units.steps[k] / units.outputs),
+        quadratic: &Matrix::from_fn(n, n, |i, j| metric[(i, j)] * units.steps[i] * units.steps[j] / units.value),
+        linear: &(model.pull_to_origin().component_mul(&units.steps) / units.value),
+        sides: &sides,
+        equalities,
+    })?;
+    let mut multipliers = (Vector::zeros(rows.nrows()), Vector::zeros(n));
+    for (side, &z) in sides.iter().zip(&answer.multipliers) {
+        side.add_multiplier(z, units.value, &mut multipliers);
+    }
+    let step = answer.x.component_mul(&units.steps);
+    let weights = epigraph.within_domain(answer.weights * (units.value / units.outputs));
+    Some(ConeAnswer { step, weights, sides: multipliers })
 }
 
 /// The program is scaled already; another scaling, by cones, ends the method early where there are many power cones.
