@@ -70,7 +70,7 @@ pub(crate) struct Evidence {
     /// ẽ.
     error: f64,
     /// The decrease seen in the run, in units of Θ.
-    drop: f64,
+    pub drop: f64,
     /// Largest distance of an active cut, in units of Θ: how far the linearizations of the bundle can vary in between.
     pub distance: f64,
     /// The same in the norm of the run, relative to the size of the variables; for reports.

@@ -80,7 +80,7 @@ impl Run<'_, '_> {
         if proposal.is_too_short(&state.center) {
             return Break(self.too_short(proposal));
         }
-        let accuracy = demand::for_trial(state, config, proposal.predicted_decrease);
+        let accuracy = demand::for_trial(state, config, proposal.least_decrease());
         if state.bundle.knows(&proposal.trial, demand::largest_error(config, proposal.predicted_decrease)) {
             return self.leave_known_point(proposal);
         }

@@ -13,7 +13,7 @@ use std::rc::Rc;
 pub(crate) const NOISE_MARGIN: f64 = 8.0;
 
 /// The floor of the weight never falls below this: a weight of zero gives no step.
-const LEAST_WEIGHT: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+pub(crate) const LEAST_WEIGHT: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
 /// Cuts in the bundle beyond the number of variables, unless `bundle_size` is set. With 8 or 50 of them, the collection takes 6 % more
 /// evaluations.

@@ -15,11 +15,13 @@ use super::proposers::proposer::Position;
 use super::resolution::Resolution;
 use crate::report::Termination;
 
-/// What may be left within reach at a confirmed end, in small decreases: a decrease that is small at a step of a hundredth of the variables
-/// is at most 100 times as large within reach.
-const MAX_REMAINING_DECREASES: f64 = 10.0;
-/// The same where Θ is declared convex, so that what is left is a bound.
-const MAX_CONVEX_DECREASES: f64 = 10.0;
+/// What may be left within reach at a confirmed end, in wanted decreases: a decrease that is small at a step of a hundredth of the variables
+/// is at most 100 times as large within reach. With 10, smooth minima end unconfirmed.
+const MAX_REMAINING_DECREASES: f64 = 100.0;
+
+/// Where only curvature bounds what is left next to a center, the slopes there may lead as far down, over the reach of the variables, as this
+/// share of Θ and of the decrease of the run. Valleys that are flat over large distances leave more.
+const MAX_SLOPE_SHARE: f64 = 1e-2;
 
 /// What the evidence at a center amounts to.
 pub(crate) enum Verdict {
@@ -56,7 +58,7 @@ pub(crate) fn verdict(at: &Position<'_>, evidence: &Evidence) -> Verdict {
         Verdict::Open
     } else if !convex && evidence.distance > near(&resolution) {
         Verdict::Far
-    } else if resolution.rounding > resolution.wanted {
+    } else if resolution.rounding > 10.0 * resolution.wanted {
         Verdict::End(Termination::NoiseLimit { estimate: resolution.rounding.max(remaining) })
     } else {
         Verdict::End(confirmed())
@@ -78,10 +80,12 @@ pub(crate) fn near_verdict(at: &Position<'_>, evidence: &Evidence, proposal: &Pr
     let resolution = at.resolution();
     if evidence.undecided(resolution.small()).is_some() {
         Near::Open
-    } else if proposal.predicted_decrease > near(&resolution) {
+    } else if proposal.predicted_decrease <= near(&resolution) {
+        Near::Confirmed
+    } else if evidence.remaining() <= MAX_SLOPE_SHARE * evidence.drop.min(at.state.center_value.abs()) {
         Near::Falls
     } else {
-        Near::Confirmed
+        Near::Open
     }
 }
 
@@ -92,12 +96,13 @@ pub(crate) fn confirmed(near: &Evidence) -> Termination {
 
 /// The distance, in units of Θ, up to which a cut lies next to the center: Θ varies by no more in between than what may be left.
 pub(crate) fn near(resolution: &Resolution) -> f64 {
-    MAX_REMAINING_DECREASES * resolution.small()
+    10.0 * resolution.small()
 }
 
-/// What may be left within reach.
+/// What may be left within reach, what rounding hides included. Where Θ is declared convex, it is a bound, and ten wanted decreases.
 pub(crate) fn allowed(resolution: &Resolution, convex: bool) -> f64 {
-    resolution.tolerance() * if convex { MAX_CONVEX_DECREASES } else { MAX_REMAINING_DECREASES }
+    let decreases = if convex { 10.0 } else { MAX_REMAINING_DECREASES };
+    decreases * resolution.wanted + resolution.hidden_by_rounding()
 }
 
 /// Why a run ends whose predicted decrease stays small although the evidence does not suffice.

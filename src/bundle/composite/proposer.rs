@@ -7,12 +7,11 @@ use super::proof::PointProof;
 use super::steps::{Changes, Steps};
 use super::trust::{FACTOR, Trust};
 use crate::Vector;
-use crate::bundle::config::Convexity;
 use crate::bundle::evidence::Evidence;
 use crate::bundle::proof::{Ending, Proof};
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::{Answer, Position, Proposer};
-use crate::bundle::state::OutputScales;
+use crate::bundle::state::{LEAST_WEIGHT, OutputScales};
 use crate::bundle::trial::Trial;
 use crate::bundle::verdict::{Verdict, allowed, verdict};
 use crate::composite::{Linearization, OuterFunction};
@@ -83,8 +82,7 @@ impl Composite {
     /// A step from the base that is worth an evaluation, or the proof that the base is stationary; silent where there is neither.
     fn step(&mut self, at: &mut Position<'_>, base: &Base) -> Result<Answer, Termination> {
         let small = at.resolution().small();
-        let (least, _) = at.state.weight_limits(at.config);
-        let mut weight = self.trust.weight.max(least);
+        let mut weight = self.trust.weight.max(LEAST_WEIGHT);
         let (mut raised, mut last) = (false, 0.0);
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
@@ -106,7 +104,7 @@ impl Composite {
                 return Ok(self.leave(at, (Ending { termination, proof }, base.clone()), proposal));
             }
             weight /= FACTOR;
-            let decided = evidence.undecided(allowed(&at.resolution(), is_convex(at))).is_none();
+            let decided = evidence.undecided(allowed(&at.resolution(), false)).is_none();
             if raised || decided && promised < LEAST_GAIN * last {
                 // No step that has not been rejected promises more. What is small already may be proved to be all that is left.
                 return Ok(match self.lighter_proof(at, base, weight)? {
@@ -162,7 +160,7 @@ impl Composite {
                 break;
             }
             let bound = evidence.remaining();
-            let decided = evidence.undecided(allowed(&at.resolution(), is_convex(at))).is_none();
+            let decided = evidence.undecided(allowed(&at.resolution(), false)).is_none();
             if decided && bound >= least {
                 break;
             }
@@ -220,10 +218,6 @@ impl Composite {
             self.trust.pause();
         }
     }
-}
-
-fn is_convex(at: &Position<'_>) -> bool {
-    at.config.convexity == Convexity::Convex
 }
 
 /// A base at a trial point, where its Jacobian is known.

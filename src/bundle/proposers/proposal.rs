@@ -1,6 +1,7 @@
 //! A trial point, and how it is made admissible.
 
 use crate::bundle::state::State;
+use crate::bundle::trial::SERIOUS_FRACTION;
 use crate::qp::{QpError, project};
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
@@ -112,6 +113,11 @@ impl Proposal {
         } else {
             Err(SubproblemError::Unusable)
         }
+    }
+
+    /// The decrease that an evaluation has to tell from none.
+    pub(crate) fn least_decrease(&self) -> f64 {
+        if self.origin == Origin::Confirmation { SERIOUS_FRACTION * self.predicted_decrease } else { self.predicted_decrease }
     }
 
     /// Whether the trial point cannot be told from the center in any variable.

@@ -12,6 +12,7 @@ use super::proposer::{Answer, Position, Proposer};
 use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::demand;
 use crate::bundle::trial::Trial;
+use crate::composite::Linearization;
 use crate::report::Origin;
 use planes::CuttingPlanes;
 use stationarity::{Next, StationarityTest};
@@ -38,7 +39,8 @@ impl PlainCuts {
         let small = at.resolution().small();
         let model = self.planes.model(at);
         match curved.propose(at, model, &plain, small) {
-            Ok(Some(better)) => Proposal { cut_change: model.cuts().change(&better.step), ..better },
+            // After a failure, the steps of the plain cuts tell whether the oracle fails next to the center.
+            Ok(Some(better)) if at.state.longest_step.is_none() => Proposal { cut_change: model.cuts().change(&better.step), ..better },
             _ => plain,
         }
     }
@@ -97,6 +99,10 @@ impl Proposer for PlainCuts {
             curved.shorten(at.state, at.config, proposal);
         }
         weight::shorten(at.state, at.config, proposal);
+    }
+
+    fn recenter(&mut self, _at: &mut Position<'_>, _linearization: Option<&Linearization>) {
+        self.test.recenter();
     }
 
     /// Lengthens the step where noise hides what it promises, and shortens it elsewhere.

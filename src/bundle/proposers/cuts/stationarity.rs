@@ -94,6 +94,11 @@ impl StationarityTest {
         }
     }
 
+    /// Takes note that the center has been evaluated anew.
+    pub(super) fn recenter(&mut self) {
+        self.confirmation = None;
+    }
+
     /// Takes note of the newest cut.
     pub(super) fn update(&mut self, at: &Position<'_>, trial: &Trial<'_>) {
         if let Some(confirmation) = self.confirmation.as_mut().filter(|_| trial.proposal.origin == Origin::Confirmation) {
@@ -143,7 +148,7 @@ fn look_closer(
 ) -> ControlFlow<Next, (Evidence, Proposal)> {
     let convex = at.config.convexity == Convexity::Convex;
     let small = at.resolution().small();
-    let mut worthwhile = None;
+    let (mut worthwhile, mut hidden) = (None, None);
     let mut decreases = 0;
     loop {
         if proposal.predicted_decrease > small {
@@ -158,12 +163,17 @@ fn look_closer(
         let long = !undecided && proposal.step_length >= LEAST_STEP_LENGTH * at.state.length_scale();
         let next = if long && !convex || decreases == MAX_DECREASES { None } else { planes.lower_weight(at) };
         match judged {
-            Verdict::End(termination) if convex || next.is_none() || evidence.is_exact(0.0) => {
+            Verdict::End(termination) if next.is_none() || convex && termination.is_confirmed() || evidence.is_exact(0.0) => {
                 return Break(Next::End(Ending::by_cuts(termination, proposal)));
             }
+            // A lower weight may have multipliers of cuts that rounding or noise hides less.
+            Verdict::End(termination) if convex => hidden = hidden.or(Some(Ending::by_cuts(termination, proposal.clone()))),
             _ => {}
         }
         let Some(next) = next else {
+            if let Some(ending) = hidden {
+                return Break(Next::End(ending));
+            }
             return if convex { Break(last_trial(at, planes, worthwhile)) } else { Continue((evidence, proposal)) };
         };
         (proposal, decreases) = (next, decreases + 1);
