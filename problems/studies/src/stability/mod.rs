@@ -4,8 +4,8 @@
 //! cli ─ matrix of cases ─┬─ judge ─ contact: scene → TotalFeti, DirectSolver, (successive approximations) → Record
 //!                        ├─ units, locking: scenes and fields compared with each other → Record
 //!                        └─ optimizer: bundle method on hostile oracles → Record
-//!     └ optimizer_page ─┬─ optimizer_words: the optimizer's last word on the collection, held against what is true
-//!                       └─ mixed_units: the same on convex problems in mixed units, whose minima cone programs give
+//!     └ optimizer_page ─┬─ optimizer_words: the last words on the collection, held against what is true
+//!                       └─ mixed_units: the same on convex problems in mixed units; cone programs give the minima
 //! Records ─ table (Markdown) or JSON
 //! ```
 //! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a named

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
 use std::sync::Arc;
-use studies::stability::{Counts, Outcome, Report, all, field_error, random_scenes, words};
+use studies::stability::{Counts, Outcome, Report, all, field_error, mixed_units, random_scenes, words};
 
 fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
     TotalFeti::new(Arc::clone(problem), TornOptions::default()).unwrap()
@@ -41,6 +41,14 @@ fn the_optimizers_words_are_true_on_a_sample() {
     let report = words(|number| number % 97 == 0).unwrap();
     assert!(report.runs > 30, "{}", report.runs);
     assert!(report.offenders.is_empty(), "{:#?}", report.offenders);
+}
+
+/// The problems of users and one kind of start of each family; all runs are in the test `long`.
+#[test]
+fn the_optimizers_words_are_true_in_mixed_units_on_a_sample() {
+    let report = mixed_units(|name| name.starts_with("problems of users") || name.ends_with("#4.0")).unwrap();
+    assert!(report.runs > 400, "{}", report.runs);
+    assert_eq!(report.false_words, 0, "{:#?}", report.offenders());
 }
 
 #[test]

@@ -79,7 +79,7 @@ impl UnitCase {
 /// Units 10^u with u uniform in [−spread, spread]; in every second problem, all but one are 1.
 fn units(random: &mut Random, n: usize, spread: usize, number: usize) -> Vector {
     let largest = spread as f64;
-    if number % 2 == 0 {
+    if number.is_multiple_of(2) {
         return Vector::from_fn(n, |_, _| 10_f64.powf(largest * random.signed()));
     }
     // A large unit hides a variable more often than a small one: its derivatives are small beside the others.

@@ -12,14 +12,18 @@ use crate::stability::mixed_units::cases::{Given, UnitCase};
 use crate::stability::mixed_units::function::Function;
 use crate::stability::mixed_units::problem::Start;
 use crate::stability::mixed_units::truth::Truth;
+use nonsmooth::interruption::watched;
 use nonsmooth::{
     BundleTrust, BundleTrustConfig, CompositeFunction, Convexity, FnObjective, InputError, OptimizeError, Polyhedron,
     Report, Termination, Vector,
 };
 use serde::Serialize;
+use std::time::{Duration, Instant};
 
 /// Evaluations of a run.
 const MAX_EVALUATIONS: usize = 1000;
+/// Time of a run, which usually takes a hundredth of a second: no run may hang, and steps without evaluations have no limit.
+const LONGEST_RUN: Duration = Duration::from_secs(30);
 /// Largest excess of a confirmed end, relative to the size of Θ.
 const GAP: f64 = 1e-5;
 /// Largest excess of a minimum that is reached.
@@ -132,7 +136,10 @@ pub fn judged(case: &UnitCase, truth: &Truth, given: Given, index: usize) -> Res
     let function = case.problem.function.in_units(&case.units);
     let set = case.problem.set(&case.units)?;
     let start = start_point(case, truth, index).component_mul(&case.units);
-    match minimise(&function.with_offset(case.offset), set.clone(), start, given) {
+    let shifted = function.with_offset(case.offset);
+    let begin = Instant::now();
+    let late = move || begin.elapsed() > LONGEST_RUN;
+    match watched(late, || minimise(&shifted, set.clone(), start, given)) {
         Ok(report) => judge(&mut record, truth, &function, &set, &report),
         Err(error) => record.termination = format!("refused: {error}"),
     }
