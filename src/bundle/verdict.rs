@@ -19,8 +19,8 @@ use crate::report::Termination;
 /// is at most 100 times as large within reach. With 10, smooth minima end unconfirmed.
 const MAX_REMAINING_DECREASES: f64 = 100.0;
 
-/// Where only curvature bounds what is left next to a center, the slopes there may lead as far down, over the reach of the variables, as this
-/// share of Θ and of the decrease of the run. Valleys that are flat over large distances leave more.
+/// The slopes next to a center may lead as far down, over the reach of the variables, as this share of Θ and of the decrease of the run: the
+/// curvature of Θ bounds what is left. Valleys that are flat over large distances leave more.
 const MAX_SLOPE_SHARE: f64 = 1e-2;
 
 /// What the evidence at a center amounts to.
@@ -80,12 +80,12 @@ pub(crate) fn near_verdict(at: &Position<'_>, evidence: &Evidence, proposal: &Pr
     let resolution = at.resolution();
     if evidence.undecided(resolution.small()).is_some() {
         Near::Open
-    } else if proposal.predicted_decrease <= near(&resolution) {
-        Near::Confirmed
-    } else if evidence.remaining() <= MAX_SLOPE_SHARE * evidence.drop.min(at.state.center_value.abs()) {
+    } else if evidence.remaining() > MAX_SLOPE_SHARE * evidence.drop.min(at.state.center_value.abs()) + near(&resolution) {
+        Near::Open
+    } else if proposal.predicted_decrease > near(&resolution) {
         Near::Falls
     } else {
-        Near::Open
+        Near::Confirmed
     }
 }
 
