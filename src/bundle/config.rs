@@ -116,8 +116,6 @@ pub struct BundleTrustConfig {
     /// times longer than the first step the variables have become, and lowered to what good serious steps ask for. These are the ceiling
     /// and the floor of the trust parameter t. Default 1e10; > 1.
     pub weight_range: f64,
-    /// Quantile of the curvatures that pairs of cuts prove, used to make the model convex. Default 0.8; in [0, 1].
-    pub curvature_quantile: f64,
     /// Largest number of times that the weight is lowered tenfold, without an evaluation, where the predicted decrease is small.
     /// Default 16, because a restart may raise it by a factor of 1e12; ≥ 0.
     pub attenuation_steps: usize,
@@ -154,7 +152,6 @@ impl Default for BundleTrustConfig {
             weight_decrease: 8.0,
             weight_increase: 10.0,
             weight_range: 1e10,
-            curvature_quantile: 0.8,
             attenuation_steps: 16,
             max_restarts: 5,
             restart_radius: 0.1,
@@ -194,8 +191,6 @@ impl BundleTrustConfig {
         ] {
             check_setting(setting, value, "> 1, finite", value > 1.0 && value.is_finite())?;
         }
-        let quantile = (0.0..=1.0).contains(&self.curvature_quantile);
-        check_setting("curvature_quantile", self.curvature_quantile, "0 ≤ x ≤ 1", quantile)?;
         let radius = self.restart_radius > 0.0 && self.restart_radius < 1.0;
         check_setting("restart_radius", self.restart_radius, "0 < x < 1", radius)?;
         check_setting("max_failures", self.max_failures, "≥ 1", self.max_failures >= 1)?;

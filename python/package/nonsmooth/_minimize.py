@@ -91,7 +91,7 @@ def minimize(
         Print one line per evaluation.
 
     The constants of the method are options too: ``serious_fraction`` (0.02), ``good_fraction`` (0.5),
-    ``weight_decrease`` (8), ``weight_increase`` (10), ``weight_range`` (1e10), ``curvature_quantile`` (0.8),
+    ``weight_decrease`` (8), ``weight_increase`` (10), ``weight_range`` (1e10),
     ``attenuation_steps`` (16), ``max_restarts`` (5), ``restart_radius`` (0.1), ``max_failures`` (10),
     ``composite_model``, ``curved_model`` and ``exploration`` (True).
 

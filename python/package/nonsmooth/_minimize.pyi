@@ -30,7 +30,6 @@ class _Options(TypedDict, total=False):
     weight_decrease: float
     weight_increase: float
     weight_range: float
-    curvature_quantile: float
     attenuation_steps: int
     max_restarts: int
     restart_radius: float

@@ -32,7 +32,6 @@ PLAIN = {
     "weight_decrease": _REAL,
     "weight_increase": _REAL,
     "weight_range": _REAL,
-    "curvature_quantile": _REAL,
     "attenuation_steps": _COUNT,
     "max_restarts": _COUNT,
     "restart_radius": _REAL,

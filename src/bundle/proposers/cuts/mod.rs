@@ -19,7 +19,7 @@ use crate::bundle::state::State;
 use crate::qp::QpSolution;
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
-use model::{Model, PRODUCTS_DIMENSION};
+use model::{MANY_VARIABLES, Model};
 
 /// The trial point of the cutting-plane model with the weight of the run.
 ///
@@ -28,7 +28,7 @@ use model::{Model, PRODUCTS_DIMENSION};
 pub(crate) fn propose(at: &mut Position<'_>) -> Result<Proposal, SubproblemError> {
     let (state, model) = (at.state, at.model);
     let quadratic = state.norm.weighted(state.weight);
-    let many = state.center.len() >= PRODUCTS_DIMENSION && matches!(quadratic, WeightedMetric::Diagonal(_));
+    let many = state.center.len() >= MANY_VARIABLES && matches!(quadratic, WeightedMetric::Diagonal(_));
     let gram = if many { model.products(state) } else { None };
     let cuts = Cuts { gram, ..model.cuts() };
     let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;

@@ -11,21 +11,12 @@
 //! v = −predicted decrease; steps count since the weight last changed, the one that changed it included.
 //! Reference: \[Kiwiel1990\] (proximity control); SS/NS tests: \[SchrammZowe1992\].
 
+use super::model::MANY_VARIABLES;
 use crate::BundleTrustConfig;
+use crate::bundle::kept_cuts::VALUE_ROUNDING;
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::proposers::proposer::{Comparison, Trial};
 use crate::bundle::state::{NOISE_MARGIN, State};
-
-/// A linearization error below minus this share of the size of Θ is no rounding: Θ bends down.
-const CONCAVITY: f64 = 1e-10;
-
-/// Aggregate errors beyond this many times u‖d‖² raise the weight.
-const MAX_ERROR_RATIO: f64 = 10.0;
-/// Factor by which such errors raise the weight.
-const ERROR_INCREASE: f64 = 2.0;
-/// Number of variables from which on such errors raise the weight: for few variables the cuts around the center are complete before
-/// such errors matter.
-const MANY_VARIABLES: usize = 100;
 
 /// Sets the weight after a serious step, before the center moves.
 pub(super) fn after_serious(state: &mut State, config: &BundleTrustConfig, comparison: &Comparison) {
@@ -60,13 +51,14 @@ pub(super) fn after_null(state: &mut State, config: &BundleTrustConfig, trial: &
         let changed = state.set_weight(interpolated.min(config.weight_increase * u).max(u), config);
         state.streak = if changed { -1 } else { (state.streak - 1).min(-1) };
     } else if may_rest_on_errors(state) && rests_on_errors(trial.proposal) {
-        let changed = state.set_weight(ERROR_INCREASE * u, config);
+        let changed = state.set_weight(2.0 * u, config);
         state.streak = if changed { -1 } else { state.streak - 1 };
     } else {
         state.streak = (state.streak - 1).min(-1);
     }
 }
 
+/// For few variables the cuts around the center are complete before their errors matter.
 fn may_rest_on_errors(state: &State) -> bool {
     !state.nonconvex && state.streak < -2 && state.center.len() >= MANY_VARIABLES
 }
@@ -74,7 +66,7 @@ fn may_rest_on_errors(state: &State) -> bool {
 /// Whether the predicted decrease −v = u‖d‖² + ẽ is nearly all error: the cuts were then taken too far away to describe Θ around the
 /// center, where a larger weight looks. Cuts that were made convex carry errors of another kind.
 fn rests_on_errors(proposal: &Proposal) -> bool {
-    proposal.aggregate_error > MAX_ERROR_RATIO * proposal.aggregate_norm * proposal.step_length
+    proposal.aggregate_error > 10.0 * proposal.aggregate_norm * proposal.step_length
 }
 
 /// The weight at which the parabola through both values with the predicted slope has its minimum at the trial point; the weight itself
@@ -92,6 +84,6 @@ fn error(comparison: &Comparison) -> f64 {
 /// Test NS(iii) failing: Θ bends down along the step, and the new cut, made convex, would not improve the model.
 fn is_concave_ray(state: &State, config: &BundleTrustConfig, comparison: &Comparison) -> bool {
     let error = error(comparison);
-    let bent = error < -CONCAVITY * state.value_scale(config) - state.noise;
+    let bent = error < -VALUE_ROUNDING * state.value_scale(config) - state.noise;
     bent && comparison.slope - error.abs() < 0.5 * comparison.model_change
 }
