@@ -99,7 +99,7 @@ fn config(args: &[String]) -> Result<BundleTrustConfig, String> {
     let mut config = BundleTrustConfig::default();
     for (index, _) in args.iter().enumerate().filter(|(_, arg)| *arg == "--without") {
         match args.get(index + 1).map(String::as_str) {
-            Some("curved-model") => config.curved_model = None,
+            Some("curved-model") => config.curved_model = false,
             Some("exploration") => config.exploration = None,
             other => return Err(format!("--without {}: expected curved-model or exploration", other.unwrap_or(""))),
         }

@@ -202,8 +202,7 @@ mod panics;
 
 pub use accuracy::Accuracy;
 pub use bundle::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, CurvedModelConfig, Cut, ExplorationConfig, Run,
-    ScaledNorm, VariableScaling,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, ExplorationConfig, Run, ScaledNorm, VariableScaling,
 };
 pub use composite_objective::{CompositeFunction, CompositeObjective, OutputJacobian};
 pub use constraints::Polyhedron;

@@ -1,7 +1,6 @@
 //! Settings of the bundle-trust method: meaning, default, admissible range, effect.
 
 use super::coordinates::Coordinates;
-use super::proposers::curved::config::CurvedModelConfig;
 use super::proposers::exploration::config::ExplorationConfig;
 use crate::checks::check_setting;
 use crate::{InputError, Matrix, Vector};
@@ -128,8 +127,8 @@ pub struct BundleTrustConfig {
     pub max_failures: usize,
     /// The composite model, for objectives that have an outer function and return Jacobians. Default on.
     pub composite_model: bool,
-    /// The curved model as a second proposer of trial points; none switches it off. Default on, with its own defaults.
-    pub curved_model: Option<CurvedModelConfig>,
+    /// The curved model as a second proposer of trial points, up to 200 variables. Default on.
+    pub curved_model: bool,
     /// Exploration as a third proposer of trial points; none switches it off. Default on, with its own defaults.
     pub exploration: Option<ExplorationConfig>,
 }
@@ -157,7 +156,7 @@ impl Default for BundleTrustConfig {
             restart_radius: 0.1,
             max_failures: 10,
             composite_model: true,
-            curved_model: Some(CurvedModelConfig::default()),
+            curved_model: true,
             exploration: Some(ExplorationConfig::default()),
         }
     }
@@ -210,7 +209,6 @@ impl BundleTrustConfig {
         if let VariableScaling::Linear(matrix) = &self.scaling {
             Coordinates::try_from(matrix.clone())?;
         }
-        self.curved_model.iter().try_for_each(CurvedModelConfig::validate)?;
         self.exploration.iter().try_for_each(ExplorationConfig::validate)
     }
 }

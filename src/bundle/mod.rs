@@ -37,6 +37,5 @@ pub use composite::OuterCut;
 pub use config::{AccuracyPolicy, BundleTrustConfig, Convexity, VariableScaling};
 pub use cut::Cut;
 pub use norm::ScaledNorm;
-pub use proposers::curved::config::CurvedModelConfig;
 pub use proposers::exploration::config::ExplorationConfig;
 pub use run::Run;

@@ -44,7 +44,7 @@ fn the_largest_of_three_chains_of_a_thousand_variables_is_solved() {
 #[test]
 fn the_largest_of_two_hundred_squares_is_solved() {
     // The dense matrices of the rivals cost more than this function.
-    let config = BundleTrustConfig { curved_model: None, exploration: None, ..BundleTrustConfig::default() };
+    let config = BundleTrustConfig { curved_model: false, exploration: None, ..BundleTrustConfig::default() };
     check(&Scalable::maxq(200), config, (1677, 2000));
 }
 

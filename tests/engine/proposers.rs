@@ -2,8 +2,8 @@
 
 use crate::common::{crescent, v};
 use nonsmooth::{
-    BundleTrust, BundleTrustConfig, CurvedModelConfig, ExplorationConfig, FnObjective, IterationRecord, Matrix, Origin,
-    Polyhedron, Report, StepKind, Termination, Vector,
+    BundleTrust, BundleTrustConfig, ExplorationConfig, FnObjective, IterationRecord, Matrix, Origin, Polyhedron,
+    Report, StepKind, Termination, Vector,
 };
 
 fn run(config: BundleTrustConfig) -> Report {
@@ -35,29 +35,20 @@ fn every_record_names_its_origin_and_the_counts_agree() {
 
 #[test]
 fn what_is_switched_off_proposes_nothing() {
-    let plain = run(BundleTrustConfig { curved_model: None, exploration: None, ..BundleTrustConfig::default() });
+    let plain = run(BundleTrustConfig { curved_model: false, exploration: None, ..BundleTrustConfig::default() });
     assert_eq!((plain.counts.trials.curved_model, plain.counts.trials.exploration), (0, 0));
     assert!(plain.counts.trials.cuts > 0);
-    // The largest number of variables is a setting: below the three of this problem it switches both off.
-    let curved_model = Some(CurvedModelConfig { max_dimension: 2, ..CurvedModelConfig::default() });
-    let exploration = Some(ExplorationConfig { max_dimension: 2, ..ExplorationConfig::default() });
-    let small = run(BundleTrustConfig { curved_model, exploration, ..BundleTrustConfig::default() });
-    let values = |report: &Report| report.history.iter().map(|record| record.value).collect::<Vec<_>>();
-    assert_eq!(values(&plain), values(&small));
 }
 
 #[test]
 fn settings_are_checked_and_survive_json() {
-    let wrong = CurvedModelConfig { newest_share: 0.0, ..CurvedModelConfig::default() };
-    let config = BundleTrustConfig { curved_model: Some(wrong), ..BundleTrustConfig::default() };
-    assert!(config.validate().unwrap_err().to_string().contains("curved_model.newest_share"));
     let wrong = ExplorationConfig { min_gain: f64::NAN, ..ExplorationConfig::default() };
     let config = BundleTrustConfig { exploration: Some(wrong), ..BundleTrustConfig::default() };
     assert!(config.validate().unwrap_err().to_string().contains("exploration.min_gain"));
-    let text = r#"{"exploration": null, "curved_model": {"trust": 2.0}}"#;
+    let text = r#"{"exploration": null, "curved_model": false}"#;
     let config: BundleTrustConfig = serde_json::from_str(text).unwrap();
     assert_eq!(config.exploration, None);
-    assert_eq!(config.curved_model, Some(CurvedModelConfig { trust: 2.0, ..CurvedModelConfig::default() }));
+    assert!(!config.curved_model);
 }
 
 #[test]

@@ -35,7 +35,7 @@ class _Options(TypedDict, total=False):
     restart_radius: float
     max_failures: int
     composite_model: bool
-    curved_model: bool | dict[str, Any]
+    curved_model: bool
     exploration: bool | dict[str, Any]
 
 _Path = str | PathLike[str]

@@ -37,10 +37,11 @@ PLAIN = {
     "restart_radius": _REAL,
     "max_failures": _COUNT,
     "composite_model": _FLAG,
+    "curved_model": _FLAG,
 }
 
 #: Options with a form of their own.
-SPECIAL = ("convex", "scaling", "accuracy", "curved_model", "exploration", "disp")
+SPECIAL = ("convex", "scaling", "accuracy", "exploration", "disp")
 
 NAMES = (*PLAIN, *SPECIAL)
 
@@ -62,8 +63,7 @@ def read(options, accepts_accuracy):
     config = {name: _plain(name, known[name]) for name in PLAIN if name in known}
     config["convexity"] = "convex" if _flag("convex", known.get("convex", False)) else "unknown"
     config["accuracy"] = _accuracy(known.get("accuracy", "on_demand" if accepts_accuracy else "tightest"))
-    for name in ("curved_model", "exploration"):
-        config.update(_proposer(name, known.get(name, True)))
+    config.update(_proposer("exploration", known.get("exploration", True)))
     return json.dumps(config), _scaling(known.get("scaling")), _flag("disp", known.get("disp", False))
 
 

@@ -1,6 +1,6 @@
 //! The proposers of a run: the plain cuts, which need no memory, and their rivals.
 
-use super::curved::Curved;
+use super::curved::{self, Curved};
 use super::cuts;
 use super::exploration::Exploration;
 use super::proposal::Proposal;
@@ -17,8 +17,8 @@ impl Proposers {
     /// The proposers that the settings ask for; `weight` is the first weight of the run.
     pub(crate) fn new(config: &BundleTrustConfig, dimension: usize, weight: f64) -> Self {
         let mut rivals: Vec<Box<dyn Proposer>> = vec![];
-        if let Some(settings) = config.curved_model.filter(|settings| dimension <= settings.max_dimension) {
-            rivals.push(Box::new(Curved::new(settings, weight)));
+        if config.curved_model && dimension <= curved::MAX_DIMENSION {
+            rivals.push(Box::new(Curved::new(weight)));
         }
         if let Some(settings) = config.exploration.filter(|settings| dimension <= settings.max_dimension) {
             rivals.push(Box::new(Exploration::new(settings, weight)));
