@@ -1,10 +1,9 @@
 //! Runs the collection of test problems with one setting and prints evaluations beside the best peers.
 //!
-//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--perturb K] [--without PROPOSER]`
+//! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--perturb K]`
 //!
 //! `--perturb K` replaces every count by the median over 2K + 1 runs from x0 (1 + 1e-13 N(0, 1)), the first of them from x0 itself: a
 //! single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size.
-//! `--without curved-model` switches off the curved model.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 use serde::Serialize;
@@ -71,13 +70,7 @@ fn main() {
     let scale: f64 = value("--scale").and_then(|text| text.parse().ok()).unwrap_or(1.0);
     let only = value("--only");
     let problems = testset::all().into_iter().filter(|problem| only.as_ref().is_none_or(|name| *name == problem.name));
-    let config = match config(&args) {
-        Ok(config) => config,
-        Err(message) => {
-            eprintln!("{message}");
-            std::process::exit(2);
-        }
-    };
+    let config = BundleTrustConfig::default();
     let jitter: u64 = value("--jitter").and_then(|text| text.parse().ok()).unwrap_or(0);
     let perturb: u64 = value("--perturb").and_then(|text| text.parse().ok()).unwrap_or(0);
     let rows: Vec<Row> = problems
@@ -92,18 +85,6 @@ fn main() {
         rows.iter().for_each(print_row);
         print_summary(&summary);
     }
-}
-
-/// The defaults, without the proposers that `--without` names.
-fn config(args: &[String]) -> Result<BundleTrustConfig, String> {
-    let mut config = BundleTrustConfig::default();
-    for (index, _) in args.iter().enumerate().filter(|(_, arg)| *arg == "--without") {
-        match args.get(index + 1).map(String::as_str) {
-            Some("curved-model") => config.curved_model = None,
-            other => return Err(format!("--without {}: expected curved-model", other.unwrap_or(""))),
-        }
-    }
-    Ok(config)
 }
 
 /// The row of the problem with the medians of its counts over 2·`perturb` + 1 runs from starts that differ by rounding.

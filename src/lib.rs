@@ -203,7 +203,7 @@ mod panics;
 
 pub use accuracy::Accuracy;
 pub use bundle::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, CurvedModelConfig, Cut, Run,
+    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run,
     ScaledNorm, VariableScaling,
 };
 pub use composite_objective::{CompositeFunction, CompositeObjective, OutputJacobian};

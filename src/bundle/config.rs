@@ -1,7 +1,6 @@
 //! Settings of the bundle-trust method: meaning, default, admissible range, effect.
 
 use super::coordinates::Coordinates;
-use super::proposers::curved::config::CurvedModelConfig;
 use crate::checks::check_setting;
 use crate::{InputError, Matrix, Vector};
 use serde::{Deserialize, Serialize};
@@ -101,24 +100,11 @@ pub struct BundleTrustConfig {
     /// Largest number of cuts. Default none: n + 15, at most 500. ≥ 3: the cut of the center, the newest one, and one for all others
     /// together. A large bundle remembers cuts that mislead a nonconvex run; a small one merges active cuts, and needs more evaluations.
     pub bundle_size: Option<usize>,
-    /// Largest factor by which the weight u = 1/t falls after one serious step. Default 8; > 1.
-    pub weight_decrease: f64,
-    /// Largest factor by which the weight rises after one null step; where Θ bends down along the step, the weight at least doubles.
-    /// Default 10; > 1.
-    pub weight_increase: f64,
-    /// Range of the weight relative to its first value: u stays within [first/range, first·range], the floor divided further by how many
-    /// times longer than the first step the variables have become, and lowered to what good serious steps ask for. These are the ceiling
-    /// and the floor of the trust parameter t. Default 1e10; > 1.
-    pub weight_range: f64,
-    /// Quantile of the curvatures that pairs of cuts prove, used to make the model convex. Default 0.8; in [0, 1].
-    pub curvature_quantile: f64,
     /// Whether an end whose active cuts lie away from the best point is confirmed by evaluations next to it, at most one more than there are
     /// variables. Default true; of no effect where Θ is declared convex. Where false, such a run ends as unconfirmed.
     pub confirm: bool,
     /// The composite model, for objectives that have an outer function and return Jacobians. Default on.
     pub composite_model: bool,
-    /// The curved model as a second proposer of trial points; none switches it off. Default on, with its own defaults.
-    pub curved_model: Option<CurvedModelConfig>,
 }
 
 impl Default for BundleTrustConfig {
@@ -134,13 +120,8 @@ impl Default for BundleTrustConfig {
             scaling: VariableScaling::FromBox,
             accuracy: AccuracyPolicy::Tightest,
             bundle_size: None,
-            weight_decrease: 8.0,
-            weight_increase: 10.0,
-            weight_range: 1e10,
-            curvature_quantile: 0.8,
             confirm: true,
             composite_model: true,
-            curved_model: Some(CurvedModelConfig::default()),
         }
     }
 }
@@ -162,15 +143,6 @@ impl BundleTrustConfig {
         positive("max_seconds", self.max_seconds)?;
         positive("first_step", self.first_step)?;
         self.bundle_size.map_or(Ok(()), |size| check_setting("bundle_size", size, BUNDLE_SIZES, size >= 3))?;
-        for (setting, value) in [
-            ("weight_decrease", self.weight_decrease),
-            ("weight_increase", self.weight_increase),
-            ("weight_range", self.weight_range),
-        ] {
-            check_setting(setting, value, "> 1, finite", value > 1.0 && value.is_finite())?;
-        }
-        let quantile = (0.0..=1.0).contains(&self.curvature_quantile);
-        check_setting("curvature_quantile", self.curvature_quantile, "0 ≤ x ≤ 1", quantile)?;
         self.validate_policies()
     }
 
@@ -187,6 +159,6 @@ impl BundleTrustConfig {
         if let VariableScaling::Linear(matrix) = &self.scaling {
             Coordinates::try_from(matrix.clone())?;
         }
-        self.curved_model.iter().try_for_each(CurvedModelConfig::validate)
+        Ok(())
     }
 }

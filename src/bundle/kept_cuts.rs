@@ -11,8 +11,8 @@ use crate::Vector;
 use crate::qp::kernels::dot_terms;
 use std::cell::Cell;
 
-/// Linearization errors below this share of the values may be rounding.
-const VALUE_ROUNDING: f64 = 1e-9;
+/// Linearization errors below this share of the values, or of the size of Θ, may be rounding.
+pub(crate) const VALUE_ROUNDING: f64 = 1e-9;
 
 /// A pair of cuts of which one lies above the other's point: Θ is not convex between them.
 #[derive(Debug, Clone, Copy)]
@@ -190,14 +190,14 @@ impl Bundle {
         self.cuts.iter().position(|cut| cut.id == id)
     }
 
-    /// Curvatures −E_ij/‖y_i − y_j‖², ascending, proven by pairs that are farther apart than `resolution` and whose error exceeds its
-    /// allowance by more than `value_resolution`.
-    pub(crate) fn proven_curvatures(&self, resolution: f64, value_resolution: f64) -> Vec<f64> {
+    /// Curvatures −E_ij/‖y_i − y_j‖², ascending, proven by pairs whose error exceeds its allowance by more than
+    /// `resolution`.
+    pub(crate) fn proven_curvatures(&self, resolution: f64) -> Vec<f64> {
         let mut curvatures: Vec<f64> = self
             .concave
             .iter()
-            .filter(|pair| -pair.error > pair.allowance + value_resolution)
-            .filter(|pair| pair.squared_distance > resolution * resolution)
+            .filter(|pair| -pair.error > pair.allowance + resolution)
+            .filter(|pair| pair.squared_distance > 0.0)
             .map(|pair| -pair.error / pair.squared_distance)
             .collect();
         curvatures.sort_by(f64::total_cmp);

@@ -43,5 +43,4 @@ pub use composite::OuterCut;
 pub use config::{AccuracyPolicy, BundleTrustConfig, Convexity, VariableScaling};
 pub use cut::Cut;
 pub use norm::ScaledNorm;
-pub use proposers::curved::config::CurvedModelConfig;
 pub use run::Run;

@@ -67,7 +67,7 @@ impl<'o> BundleTrust<'o> {
         let outer = outer.filter(|_| self.config.composite_model);
         let (state, linearization) = first_evaluation(oracle.as_mut(), outer.is_some(), &self.config, &set, start)?;
         oracle.keep_warm_start();
-        let proposers = Proposers::new(&self.config, outer.is_some(), dimension, state.first_weight);
+        let proposers = Proposers::new(outer.is_some(), dimension, state.first_weight);
         let mut run = Run {
             method: self,
             oracle,

@@ -12,6 +12,8 @@ use std::rc::Rc;
 /// Promised errors and rounding explain a change of Θ, or a cut above a convex Θ, up to this many times their sum; more is noise.
 pub(crate) const NOISE_MARGIN: f64 = 8.0;
 
+/// Range of the weight around its first value; good steps lower the floor further.
+const WEIGHT_RANGE: f64 = 1e10;
 /// The floor of the weight never falls below this: a weight of zero gives no step.
 pub(crate) const LEAST_WEIGHT: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
@@ -123,21 +125,21 @@ impl State {
 
     /// Least and largest weight. The least one falls as the run comes to lengths beyond that of its first step, which is arbitrary where
     /// it starts at zero.
-    pub(crate) fn weight_limits(&self, config: &BundleTrustConfig) -> (f64, f64) {
+    pub(crate) fn weight_limits(&self) -> (f64, f64) {
         let share = self.first_step / self.first_step.max(self.length_scale());
-        let floor = self.floor_share * share * self.first_weight / config.weight_range;
-        let ceiling = self.first_weight * config.weight_range;
+        let floor = self.floor_share * share * self.first_weight / WEIGHT_RANGE;
+        let ceiling = self.first_weight * WEIGHT_RANGE;
         (floor.max(LEAST_WEIGHT).min(ceiling), ceiling)
     }
 
     /// Lowers the floor towards a weight that a good step asks for, as far as one step may lower the weight.
-    pub(crate) fn lower_floor(&mut self, weight: f64, config: &BundleTrustConfig) {
-        self.floor_share *= (weight / self.weight_limits(config).0).clamp(1.0 / config.weight_decrease, 1.0);
+    pub(crate) fn lower_floor(&mut self, weight: f64) {
+        self.floor_share *= (weight / self.weight_limits().0).clamp(0.1, 1.0);
     }
 
     /// Sets the weight within its floor and ceiling; returns whether it changed.
-    pub(crate) fn set_weight(&mut self, weight: f64, config: &BundleTrustConfig) -> bool {
-        let (floor, ceiling) = self.weight_limits(config);
+    pub(crate) fn set_weight(&mut self, weight: f64) -> bool {
+        let (floor, ceiling) = self.weight_limits();
         let weight = weight.clamp(floor, ceiling);
         let changed = weight != self.weight;
         self.weight = weight;

@@ -1,6 +1,5 @@
 //! Judging a trial point: serious or null step.
 
-use super::config::BundleTrustConfig;
 use super::proposers::proposal::Proposal;
 use super::state::State;
 use crate::composite::Linearization;
@@ -9,9 +8,6 @@ use crate::{Evaluation, Vector};
 /// Share m_S of the predicted decrease that makes a step serious (\[SchrammZowe1992\], test SS). A share of 0.1 takes 2 % more evaluations in
 /// the mean over the moved starts.
 pub(crate) const SERIOUS_FRACTION: f64 = 0.02;
-/// Share m_R of the predicted decrease from which on a serious step lowers the weight.
-const GOOD_FRACTION: f64 = 0.5;
-
 /// A trial point and what came of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Trial<'a> {
@@ -70,8 +66,8 @@ impl Comparison {
         self.change < 0.0 && self.change <= SERIOUS_FRACTION * self.model_change
     }
 
-    /// Whether so much of the predicted decrease was found that the next step may be longer.
-    pub(crate) fn is_good(&self, _config: &BundleTrustConfig) -> bool {
-        self.change <= GOOD_FRACTION * self.model_change
+    /// Whether so much of the predicted decrease was found, m_R = ½ of it, that the next step may be longer.
+    pub(crate) fn is_good(&self) -> bool {
+        self.change <= 0.5 * self.model_change
     }
 }

@@ -105,9 +105,9 @@ fn wrong_sizes_and_numbers_are_named() {
     assert!(matches!(error, OptimizeError::Input(InputError::Dimension { expected: 2, found: 1, .. })));
     let error = method.minimize(&theta, v(&[1.0, f64::NAN])).unwrap_err();
     assert!(matches!(error, OptimizeError::Input(InputError::NotFinite { index: 1, .. })));
-    let config = BundleTrustConfig { weight_decrease: 1.0, ..Default::default() };
+    let config = BundleTrustConfig { tolerance: 1.0, ..Default::default() };
     let error = BundleTrust::new(config).unwrap_err();
-    assert!(matches!(error, InputError::OutOfRange { setting: "weight_decrease", .. }));
+    assert!(matches!(error, InputError::OutOfRange { setting: "tolerance", .. }));
 }
 
 #[test]

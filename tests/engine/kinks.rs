@@ -150,9 +150,9 @@ fn on_kinks_of_the_outputs_the_composite_model_costs_at_most_a_tenth() {
 #[test]
 fn three_kinked_problems_take_what_the_cuts_take() {
     let problems = [
-        ("sum of squares", folded(Box::new(SumOfPowers { exponent: 2.0 }), 6, 6, 0.0), [29, 28]),
-        ("Euclidean norm", folded(Box::new(EuclideanNorm), 8, 8, 0.0), [33, 35]),
-        ("obstacle", obstacle(5, 5), [56, 51]),
+        ("sum of squares", folded(Box::new(SumOfPowers { exponent: 2.0 }), 6, 6, 0.0), [27, 28]),
+        ("Euclidean norm", folded(Box::new(EuclideanNorm), 8, 8, 0.0), [32, 37]),
+        ("obstacle", obstacle(5, 5), [54, 53]),
     ];
     let mut differences = vec![];
     for (name, problem, measured) in problems {

@@ -1,8 +1,8 @@
-//! Who proposes trial points is named in every record, counted, and can be switched off.
+//! Who proposes trial points is named in every record and counted.
 
 use crate::common::{crescent, v};
 use nonsmooth::{
-    BundleTrust, BundleTrustConfig, CurvedModelConfig, FnObjective, IterationRecord, Matrix, Origin,
+    BundleTrust, BundleTrustConfig, FnObjective, IterationRecord, Matrix, Origin,
     Polyhedron, Report, StepKind, Termination, Vector,
 };
 
@@ -31,28 +31,6 @@ fn every_record_names_its_origin_and_the_counts_agree() {
     assert!(trials.curved_model > 0, "{report}");
     assert!(report.history.iter().all(|record| (record.kind == StepKind::Start) == (record.origin == Origin::Given)));
     assert_eq!(trials.cuts + trials.curved_model + trials.confirmation, report.counts.evaluations - 1);
-}
-
-#[test]
-fn what_is_switched_off_proposes_nothing() {
-    let plain = run(BundleTrustConfig { curved_model: None, ..BundleTrustConfig::default() });
-    assert_eq!(plain.counts.trials.curved_model, 0);
-    assert!(plain.counts.trials.cuts > 0);
-    // The largest number of variables is a setting: below the three of this problem it switches it off.
-    let curved_model = Some(CurvedModelConfig { max_dimension: 2, ..CurvedModelConfig::default() });
-    let small = run(BundleTrustConfig { curved_model, ..BundleTrustConfig::default() });
-    let values = |report: &Report| report.history.iter().map(|record| record.value).collect::<Vec<_>>();
-    assert_eq!(values(&plain), values(&small));
-}
-
-#[test]
-fn settings_are_checked_and_survive_json() {
-    let wrong = CurvedModelConfig { newest_share: 0.0, ..CurvedModelConfig::default() };
-    let config = BundleTrustConfig { curved_model: Some(wrong), ..BundleTrustConfig::default() };
-    assert!(config.validate().unwrap_err().to_string().contains("curved_model.newest_share"));
-    let text = r#"{"curved_model": {"trust": 2.0}}"#;
-    let config: BundleTrustConfig = serde_json::from_str(text).unwrap();
-    assert_eq!(config.curved_model, Some(CurvedModelConfig { trust: 2.0, ..CurvedModelConfig::default() }));
 }
 
 #[test]

@@ -215,21 +215,3 @@ fn a_negative_error_bound_is_a_typed_error() {
     let error = method(BundleTrustConfig::default()).minimize(&Overconfident, v(&[1.0])).unwrap_err();
     assert_eq!(error.to_string(), "the first evaluation failed: error bound = -1 is not allowed; allowed: ≥ 0");
 }
-
-/// On these functions Θ bends down along a null step, after which the weight at least doubles. Rosenbrock's run ends where rounding of values of
-/// 1e-26 hides the rest.
-#[test]
-fn the_weight_may_rise_slowly() {
-    for name in ["OET6", "Rosenbrock", "WF"] {
-        let problem = testset::find(name).unwrap();
-        let theta = FnObjective::new(problem.start.len(), |x: &Vector| {
-            let (value, subgradient) = problem.evaluate(x.as_slice());
-            (value, v(&subgradient))
-        });
-        let config = BundleTrustConfig { weight_increase: 1.5, ..Default::default() };
-        let report = method(config).minimize(&theta, v(&problem.start)).unwrap();
-        let rounding = name == "Rosenbrock" && matches!(report.termination, Termination::NoiseLimit { .. });
-        assert!(report.termination.is_stationary() || rounding, "{name}: {report}");
-        assert!(report.value - problem.optimal_value <= 1e-6, "{name}: {report}");
-    }
-}

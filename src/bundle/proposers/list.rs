@@ -4,7 +4,6 @@ use super::cuts::PlainCuts;
 use super::proposal::Proposal;
 use super::proposer::{Answer, Position, Proposer};
 use crate::bundle::composite::Composite;
-use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::proof::{Ending, Proof};
 use crate::bundle::trial::Trial;
 use crate::composite::Linearization;
@@ -17,12 +16,12 @@ pub(crate) struct Proposers {
 
 impl Proposers {
     /// The proposers of an objective with or without a known outer function; `weight` is the first weight of the run.
-    pub(crate) fn new(config: &BundleTrustConfig, composite: bool, dimension: usize, weight: f64) -> Self {
+    pub(crate) fn new(composite: bool, dimension: usize, weight: f64) -> Self {
         let mut first: Vec<Box<dyn Proposer>> = vec![];
         if composite {
             first.push(Box::new(Composite::new(weight)));
         }
-        Self { first, cuts: PlainCuts::new(config, dimension, weight) }
+        Self { first, cuts: PlainCuts::new(dimension, weight) }
     }
 
     fn all(&mut self) -> impl Iterator<Item = &mut dyn Proposer> {

@@ -2,14 +2,13 @@
 //!
 //! ```text
 //! q(d) = max_i { ⟨h_i + B_i p_i, d⟩ − (a_i − ½ p_iᵀB_i p_i)₊ + ½ dᵀB_i d },   p_i = x̂ − y_i
-//! over the cut of the center, the cuts that contradict its quadratic, and all certified cuts
+//! over the cut of the center, the cuts whose value the quadratic of the center explains to less than half, and all certified cuts
 //! ```
 //! Every piece has its own curvature B_i (pieces.rs); step.rs minimises the model with its penalty.
 //! Once Θ is known to be nonconvex, pieces may bend down: a piece of known curvature then keeps its subgradient, without the tilt of the
 //! plain cuts, and its offset is |e_i − ½ p_iᵀB_i p_i|. Reference: \[LuksanVlcek1998\] (cuts transported by their own curvature).
 
-use super::config::CurvedModelConfig;
-use super::pieces::Curvature;
+use super::pieces::{Curvature, SAME_PIECE};
 use crate::bundle::cut;
 use crate::bundle::proposers::cuts::model::Model;
 use crate::bundle::state::State;
@@ -26,11 +25,10 @@ pub(super) struct CurvedModel {
 
 impl CurvedModel {
     /// The model q at the center, from the bundle and its plain model.
-    pub(super) fn new(state: &State, plain: &Model, settings: &CurvedModelConfig) -> Self {
+    pub(super) fn new(state: &State, plain: &Model) -> Self {
         let mut model = Self::default();
         let Some(center) = state.bundle.position(state.center_id) else { return model };
-        let curvature = |position, same_piece| Curvature::around(position, state, settings, same_piece);
-        let around = curvature(center, settings.same_piece_at_center);
+        let around = Curvature::around(center, state, 0.5);
         for (i, (cut, (slope, &offset))) in
             state.bundle.cuts().iter().zip(plain.cuts().slopes.iter().zip(plain.cuts().offsets)).enumerate()
         {
@@ -38,11 +36,11 @@ impl CurvedModel {
             let half = 0.5 * around.along(&p);
             let error = state.bundle.pair_error(center, i);
             let is_center = i == center;
-            let contradicts = error - half > settings.contradiction * (half.abs() + error.abs());
+            let contradicts = half < 0.5 * error;
             if !is_center && !cut.certified && !contradicts {
                 continue;
             }
-            let piece = if is_center { around.clone() } else { curvature(i, settings.same_piece) };
+            let piece = if is_center { around.clone() } else { Curvature::around(i, state, SAME_PIECE) };
             let transported = 0.5 * piece.along(&p);
             if state.nonconvex && piece.is_known() && plain.is_whole(i) {
                 // The tilt of the plain cuts stands for curvature that is not known.
@@ -91,15 +89,9 @@ impl CurvedModel {
         pieces.map(|((h, a), b)| h.dot(d) - a + 0.5 * b.along(d))
     }
 
-    /// Multipliers of the plain subproblem. What the cuts outside this model carry there goes to the cut of the center.
-    pub(super) fn first_multipliers(&self, state: &State) -> Vec<f64> {
-        let of = |id: &u64| state.bundle.cut(*id).map_or(0.0, |cut| cut.multiplier);
-        let mut multipliers: Vec<f64> = self.ids.iter().map(of).collect();
-        let rest = 1.0 - multipliers.iter().sum::<f64>();
-        if let Some(center) = self.ids.iter().position(|id| *id == state.center_id) {
-            multipliers[center] += rest.max(0.0);
-        }
-        multipliers
+    /// The multipliers of one piece alone.
+    pub(super) fn multipliers_of(&self, id: u64) -> Vec<f64> {
+        self.ids.iter().map(|other| f64::from(u8::from(*other == id))).collect()
     }
 
     /// A model of given slopes, offsets and curvatures.

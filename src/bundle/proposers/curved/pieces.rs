@@ -11,11 +11,16 @@
 //! valley between two pieces bends one of them down, and a model without that bend sees the valley rise on both sides of every step along
 //! it.
 
-use super::config::CurvedModelConfig;
 use crate::bundle::cut::Cut;
 use crate::bundle::kept_cuts::allowance;
 use crate::bundle::state::{NOISE_MARGIN, State};
 use crate::{Matrix, Vector};
+
+/// Ratio of the smaller to the larger linearization error of a pair from which on both points count as lying on one smooth piece; for pairs
+/// with the center, whose curvature does not bend the model from afar, and for pairs whose errors are both negative, one half does.
+pub(super) const SAME_PIECE: f64 = 0.995;
+/// Least cosine between s and r for a rank-one update, and between s and B s where B is cut down.
+const LEAST_COSINE: f64 = 1e-3;
 
 /// A symmetric matrix Σ c v vᵀ.
 #[derive(Debug, Clone, Default)]
@@ -25,10 +30,10 @@ pub(super) struct Curvature {
 
 impl Curvature {
     /// The curvature around the cut at a position. Errors of a pair agree if the smaller is at least `same_piece` times the larger; where
-    /// both are negative, which a convex kink cannot cause, the share of the center's pairs does for every cut.
-    pub(super) fn around(base: usize, state: &State, settings: &CurvedModelConfig, same_piece: f64) -> Self {
+    /// both are negative, which a convex kink cannot cause, one half does.
+    pub(super) fn around(base: usize, state: &State, same_piece: f64) -> Self {
         let mut curvature = Self::default();
-        let (may_bend_down, least_cosine) = (state.nonconvex, settings.least_cosine);
+        let may_bend_down = state.nonconvex;
         let (bundle, own) = (&state.bundle, base);
         let base = &bundle.cuts()[own];
         // The value of a certified cut says nothing about curvature.
@@ -45,7 +50,7 @@ impl Curvature {
             // What the oracle leaves open must not pass for curvature.
             let open = base.error_bound + cut.error_bound;
             let proven = NOISE_MARGIN * state.noise + allowance(base, cut);
-            let bends_down = may_bend_down && -high > proven && high <= settings.same_piece_at_center * low;
+            let bends_down = may_bend_down && -high > proven && high <= 0.5 * low;
             let bends_up = low >= same_piece * high && high > 0.0 && open <= (1.0 - same_piece) * high;
             let one_piece = bends_down || bends_up;
             if !one_piece && curvature.terms.is_empty() {
@@ -56,13 +61,13 @@ impl Curvature {
             if !bends_down {
                 let limit = if one_piece { z.dot(&s) } else { 2.0 * (low + open).max(0.0) };
                 // Where B is indefinite, the terms of sᵀBs may nearly cancel, and a multiple of B s sᵀB would be huge.
-                let least = if may_bend_down { least_cosine * state.norm.length(&s) } else { 0.0 };
+                let least = LEAST_COSINE * state.norm.length(&s);
                 curvature.cut_down(&s, limit, |bent| least * state.norm.dual_length(bent));
             }
             let r = &z - curvature.apply(&s);
             let along = r.dot(&s);
             let size = if may_bend_down { along.abs() } else { along };
-            if one_piece && size > least_cosine * state.norm.dual_length(&r) * state.norm.length(&s) {
+            if one_piece && size > LEAST_COSINE * state.norm.dual_length(&r) * state.norm.length(&s) {
                 curvature.terms.push((1.0 / along, r));
             }
         }

@@ -10,7 +10,6 @@
 //! seen of a piece that bends down says nothing about points far beyond. The tangents are taken at the newest step: multipliers alone, with
 //! the pieces always transported to d = 0, leave a step that raises m wherever the active pieces bend differently.
 
-use super::config::CurvedModelConfig;
 use super::model::CurvedModel;
 use crate::bundle::norm::ScaledNorm;
 use crate::bundle::proposers::subproblem::{self, Cuts};
@@ -18,14 +17,10 @@ use crate::qp::{EpigraphQpSolver, Metric, QpError};
 use crate::{Matrix, Polyhedron, Vector};
 use nalgebra::{Cholesky, SymmetricEigen};
 
-/// Halvings of one step before the round counts as failed.
-const MAX_HALVINGS: i32 = 9;
-/// Least eigenvalue of a matrix that had to be made positive definite, relative to the weight.
-const LEAST_CURVATURE: f64 = 1e-3;
-/// Steps of the eigenvalue iteration at most, per variable.
-const MAX_ROTATIONS: usize = 100;
-/// Failed rounds in a row that end the search. One may fail because its multipliers are those of pieces that have left.
-const MAX_FAILURES: usize = 2;
+/// Quadratic programs for one trial point at most.
+const MAX_ROUNDS: usize = 30;
+/// The step is accurate enough once a round promises to lower the model by at most this share of its value.
+const ACCURACY: f64 = 1e-6;
 
 /// The function m around a center.
 pub(super) struct Penalised<'a> {
@@ -55,16 +50,11 @@ impl Penalised<'_> {
 
     /// The step that minimises m, and zero where no round finds a lower value. A round that cannot be solved ends the search; it is an
     /// error where nothing has been found before.
-    pub(super) fn minimum(
-        &self,
-        mut multipliers: Vec<f64>,
-        solver: &mut EpigraphQpSolver,
-        settings: &CurvedModelConfig,
-    ) -> Result<Vector, QpError> {
+    pub(super) fn minimum(&self, mut multipliers: Vec<f64>, solver: &mut EpigraphQpSolver) -> Result<Vector, QpError> {
         let mut step = Vector::zeros(self.center.len());
         let mut value = self.value(&step);
-        let (mut moved, mut failures) = (false, 0);
-        for _ in 0..settings.max_rounds {
+        let (mut moved, mut failed) = (false, false);
+        for _ in 0..MAX_ROUNDS {
             let Round { correction, promise, multipliers: next } = match self.round(&step, &multipliers, solver) {
                 Ok(round) => round,
                 Err(_) if moved => break,
@@ -72,11 +62,12 @@ impl Penalised<'_> {
             };
             multipliers = next;
             if let Some((lower, lower_value)) = self.lower(&step, value, &correction) {
-                (step, value, moved, failures) = (lower, lower_value, true, 0);
-            } else {
-                failures += 1;
+                (step, value, moved, failed) = (lower, lower_value, true, false);
+            } else if std::mem::replace(&mut failed, true) {
+                // One round may fail because its multipliers are those of pieces that have left; not two in a row.
+                break;
             }
-            if promise <= settings.accuracy * value.abs() || failures == MAX_FAILURES {
+            if promise <= ACCURACY * value.abs() {
                 break;
             }
         }
@@ -106,17 +97,17 @@ impl Penalised<'_> {
             return Ok(metric);
         }
         let form = self.norm.form_in_coordinates(metric);
-        let rotations = MAX_ROTATIONS * form.nrows();
         let finite = form.iter().all(|entry| entry.is_finite());
+        let rotations = 10 * form.nrows();
         let eigen = finite.then(|| SymmetricEigen::try_new(form, f64::EPSILON, rotations)).flatten();
         let mut eigen = eigen.ok_or(QpError::NotSolved { kkt_residual: f64::INFINITY })?;
-        eigen.eigenvalues.apply(|value| *value = value.abs().max(LEAST_CURVATURE * self.weight));
+        eigen.eigenvalues.apply(|value| *value = value.abs().max(self.weight));
         Ok(self.norm.form_of_coordinates(eigen.recompose()))
     }
 
     /// The first of the halved steps within the radius that lowers m, and its value.
     fn lower(&self, step: &Vector, value: f64, correction: &Vector) -> Option<(Vector, f64)> {
-        (0..=MAX_HALVINGS).find_map(|halvings| {
+        (0..=10).find_map(|halvings| {
             let trial = step + correction * 0.5_f64.powi(halvings);
             let lower = self.value(&trial);
             (lower < value && self.norm.length(&trial) <= self.radius).then_some((trial, lower))

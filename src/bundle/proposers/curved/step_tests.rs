@@ -1,6 +1,5 @@
 //! The step of the curved model has the value of closed forms, and no tangent leaves room for a lower one.
 
-use super::config::CurvedModelConfig;
 use super::model::CurvedModel;
 use super::pieces::Curvature;
 use super::step::Penalised;
@@ -27,7 +26,7 @@ fn minimum_within(radius: f64, model: &CurvedModel, weight: f64, set: &Polyhedro
     let penalised = Penalised { model, weight, radius, norm: &norm, set, center: &center };
     let mut multipliers = vec![0.0; model.ids().len()];
     multipliers[0] = 1.0;
-    penalised.minimum(multipliers, &mut EpigraphQpSolver::new(), &CurvedModelConfig::default()).expect("feasible")
+    penalised.minimum(multipliers, &mut EpigraphQpSolver::new()).expect("feasible")
 }
 
 #[test]

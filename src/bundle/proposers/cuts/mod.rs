@@ -6,10 +6,9 @@ pub(crate) mod planes;
 mod stationarity;
 mod weight;
 
-use super::curved::Curved;
+use super::curved::{self, Curved};
 use super::proposal::Proposal;
 use super::proposer::{Answer, Position, Proposer};
-use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::demand;
 use crate::bundle::trial::Trial;
 use crate::composite::Linearization;
@@ -27,9 +26,8 @@ pub(crate) struct PlainCuts {
 
 impl PlainCuts {
     /// The proposer of a run with the first weight given.
-    pub(crate) fn new(config: &BundleTrustConfig, dimension: usize, weight: f64) -> Self {
-        let settings = config.curved_model.filter(|settings| dimension <= settings.max_dimension);
-        let curved = settings.map(|settings| Curved::new(settings, weight));
+    pub(crate) fn new(dimension: usize, weight: f64) -> Self {
+        let curved = (dimension <= curved::MAX_DIMENSION).then(|| Curved::new(weight));
         Self { planes: CuttingPlanes::default(), curved, test: StationarityTest::default() }
     }
 
@@ -84,10 +82,10 @@ impl Proposer for PlainCuts {
 
     fn learn(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
         if let Some(curved) = &mut self.curved {
-            curved.learn(at.state, at.config, trial);
+            curved.learn(at.state, trial);
         }
         self.test.learn(at, trial);
-        weight::learn(at.state, at.config, trial);
+        weight::learn(at.state, trial);
     }
 
     fn update(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
@@ -96,9 +94,9 @@ impl Proposer for PlainCuts {
 
     fn shorten(&mut self, at: &mut Position<'_>, proposal: &Proposal) {
         if let Some(curved) = &mut self.curved {
-            curved.shorten(at.state, at.config, proposal);
+            curved.shorten(at.state, proposal);
         }
-        weight::shorten(at.state, at.config, proposal);
+        weight::shorten(at.state, proposal);
     }
 
     fn recenter(&mut self, _at: &mut Position<'_>, _linearization: Option<&Linearization>) {
@@ -109,7 +107,7 @@ impl Proposer for PlainCuts {
     fn leave_known_point(&mut self, at: &mut Position<'_>, proposal: &Proposal) {
         let hidden = at.resolution().hidden_by_noise();
         if proposal.origin == Origin::Cuts && proposal.predicted_decrease <= hidden {
-            at.state.set_weight(at.state.weight / 10.0, at.config);
+            at.state.set_weight(at.state.weight / 10.0);
         } else {
             self.shorten(at, proposal);
         }

@@ -6,7 +6,7 @@
 //! ẽ = −v − u‖d‖² = Σ λ_i a_i + slack of the active constraints ≥ 0      aggregate error
 //! ```
 
-use super::model::{Model, PRODUCTS_DIMENSION};
+use super::model::{MANY_VARIABLES, Model};
 use crate::bundle::norm::WeightedMetric;
 use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
@@ -63,7 +63,7 @@ impl CuttingPlanes {
                 Ok(proposal) => return Ok(proposal),
                 Err(error) => last = error,
             }
-            at.state.set_weight(10.0 * at.state.weight, at.config);
+            at.state.set_weight(10.0 * at.state.weight);
         }
         Err(Termination::SubproblemFailed { reason: last.to_string() })
     }
@@ -94,7 +94,7 @@ impl CuttingPlanes {
 fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemError> {
     let state = &*at.state;
     let quadratic = state.norm.weighted(state.weight);
-    let many = state.center.len() >= PRODUCTS_DIMENSION && matches!(quadratic, WeightedMetric::Diagonal(_));
+    let many = state.center.len() >= MANY_VARIABLES && matches!(quadratic, WeightedMetric::Diagonal(_));
     let gram = if many { model.products(state) } else { None };
     let cuts = Cuts { gram, ..model.cuts() };
     let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;

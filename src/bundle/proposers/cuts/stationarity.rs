@@ -132,7 +132,7 @@ impl StationarityTest {
         }
         let slope = state.bundle.cut(center_id).map_or(0.0, |cut| norm.dual_length(&cut.subgradient));
         let weight = state.weight.max(slope / (RESTART_SHARE * radius));
-        state.set_weight(weight, at.config);
+        state.set_weight(weight);
         state.streak = 0;
         state.variation = None;
         true

@@ -2,92 +2,77 @@
 //!
 //! ```text
 //! u_int = 2u(1 − (Θ(y) − Θ(x̂))/v)                 minimiser of the parabola through both values and the slope v
-//! serious:  u ← max(u_int, u/8)   if the step before was serious too and Θ(y) − Θ(x̂) ≤ m_R v;   u/2 after three before this one
+//! serious:  u ← max(u_int, u/10)   if the step before was serious too and Θ(y) − Θ(x̂) ≤ m_R v;   u/2 after three before this one
 //!           where u is to fall below its floor after such a step, the floor falls to u
 //! null:     u ← min(u_int, 10u)   if the new error exceeds max(ε_v, 2|v|), after four before this one
 //!           u ← 2u                if ẽ > 10 u‖d‖², after three before this one, for many variables, and if Θ looks convex
-//!           u ← u_int in [2u, 10u]   at once, if Θ bends down along the step
 //! ```
 //! v = −predicted decrease; steps count since the weight last changed, the one that changed it included.
 //! Reference: \[Kiwiel1990\] (proximity control); SS/NS tests: \[SchrammZowe1992\].
 
-use crate::BundleTrustConfig;
+use super::model::MANY_VARIABLES;
 use crate::bundle::proposers::proposal::Proposal;
 use crate::bundle::trial::{Comparison, Trial};
 use crate::report::Origin;
 use crate::bundle::state::{NOISE_MARGIN, State};
 
-/// A linearization error below minus this share of the size of Θ is no rounding: Θ bends down.
-const CONCAVITY: f64 = 1e-10;
-
-/// Aggregate errors beyond this many times u‖d‖² raise the weight.
-const MAX_ERROR_RATIO: f64 = 10.0;
-/// Factor by which such errors raise the weight.
-const ERROR_INCREASE: f64 = 2.0;
-/// Number of variables from which on such errors raise the weight: for few variables the cuts around the center are complete before
-/// such errors matter.
-const MANY_VARIABLES: usize = 100;
-
 /// Takes note that the oracle failed at a trial point of any proposer.
-pub(super) fn shorten(state: &mut State, config: &BundleTrustConfig, proposal: &Proposal) {
+pub(super) fn shorten(state: &mut State, proposal: &Proposal) {
     if proposal.origin == Origin::Cuts {
         state.streak = -1;
-        state.set_weight(proposal.weight * config.weight_increase, config);
+        state.set_weight(10.0 * proposal.weight);
     }
 }
 
 /// Sets the next weight, after trial points of the plain cuts only; the center has not moved yet.
-pub(super) fn learn(state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+pub(super) fn learn(state: &mut State, trial: &Trial<'_>) {
     if trial.proposal.origin != Origin::Cuts {
         return;
     }
     if trial.serious {
-        after_serious(state, config, &trial.comparison);
+        after_serious(state, &trial.comparison);
     } else {
-        after_null(state, config, trial);
+        after_null(state, trial);
     }
 }
 
 /// Sets the weight after a serious step, before the center moves.
-fn after_serious(state: &mut State, config: &BundleTrustConfig, comparison: &Comparison) {
+fn after_serious(state: &mut State, comparison: &Comparison) {
     let u = state.weight;
     let mut changed = false;
-    if state.streak > 0 && comparison.is_good(config) {
-        let next = interpolated_weight(comparison, u).max(u / config.weight_decrease).min(u);
+    if state.streak > 0 && comparison.is_good() {
+        let next = interpolated_weight(comparison, u).max(u / 10.0).min(u);
         if -comparison.change > NOISE_MARGIN * state.noise + state.rounding() {
-            state.lower_floor(next, config);
+            state.lower_floor(next);
         }
-        changed = state.set_weight(next, config);
+        changed = state.set_weight(next);
     } else if state.streak > 2 {
-        changed = state.set_weight(u / 2.0, config);
+        changed = state.set_weight(u / 2.0);
     }
     state.streak = if changed { 1 } else { (state.streak + 1).max(1) };
     state.variation = state.variation.map(|variation| variation.max(-2.0 * comparison.model_change));
 }
 
 /// Sets the weight after a null step.
-fn after_null(state: &mut State, config: &BundleTrustConfig, trial: &Trial<'_>) {
+fn after_null(state: &mut State, trial: &Trial<'_>) {
     let comparison = &trial.comparison;
     let u = state.weight;
     let seen = trial.proposal.aggregate_norm + trial.proposal.cut_error;
     let variation = state.variation.map_or(seen, |variation| variation.min(seen));
     state.variation = Some(variation);
     let interpolated = interpolated_weight(comparison, u);
-    if is_concave_ray(state, config, comparison) {
-        let factor = (interpolated / u).clamp(2.0, config.weight_increase.max(2.0));
-        state.set_weight(u * factor, config);
-        state.streak = -1;
-    } else if error(comparison) > variation.max(-2.0 * comparison.model_change) && state.streak < -3 {
-        let changed = state.set_weight(interpolated.min(config.weight_increase * u).max(u), config);
+    if error(comparison) > variation.max(-2.0 * comparison.model_change) && state.streak < -3 {
+        let changed = state.set_weight(interpolated.min(10.0 * u).max(u));
         state.streak = if changed { -1 } else { (state.streak - 1).min(-1) };
     } else if may_rest_on_errors(state) && rests_on_errors(trial.proposal) {
-        let changed = state.set_weight(ERROR_INCREASE * u, config);
+        let changed = state.set_weight(2.0 * u);
         state.streak = if changed { -1 } else { state.streak - 1 };
     } else {
         state.streak = (state.streak - 1).min(-1);
     }
 }
 
+/// For few variables the cuts around the center are complete before their errors matter.
 fn may_rest_on_errors(state: &State) -> bool {
     !state.nonconvex && state.streak < -2 && state.center.len() >= MANY_VARIABLES
 }
@@ -95,7 +80,7 @@ fn may_rest_on_errors(state: &State) -> bool {
 /// Whether the predicted decrease −v = u‖d‖² + ẽ is nearly all error: the cuts were then taken too far away to describe Θ around the
 /// center, where a larger weight looks. Cuts that were made convex carry errors of another kind.
 fn rests_on_errors(proposal: &Proposal) -> bool {
-    proposal.aggregate_error > MAX_ERROR_RATIO * proposal.aggregate_norm * proposal.step_length
+    proposal.aggregate_error > 10.0 * proposal.aggregate_norm * proposal.step_length
 }
 
 /// The weight at which the parabola through both values with the predicted slope has its minimum at the trial point; the weight itself
@@ -108,11 +93,4 @@ fn interpolated_weight(comparison: &Comparison, weight: f64) -> f64 {
 /// The linearization error of the new cut at the center before the step.
 fn error(comparison: &Comparison) -> f64 {
     comparison.slope - comparison.change
-}
-
-/// Test NS(iii) failing: Θ bends down along the step, and the new cut, made convex, would not improve the model.
-fn is_concave_ray(state: &State, config: &BundleTrustConfig, comparison: &Comparison) -> bool {
-    let error = error(comparison);
-    let bent = error < -CONCAVITY * state.value_scale(config) - state.noise;
-    bent && comparison.slope - error.abs() < 0.5 * comparison.model_change
 }
