@@ -10,10 +10,8 @@
 use crate::bundle::norm::ScaledNorm;
 use crate::{Matrix, Vector};
 
-/// Number of Jacobians kept, for a number of variables: enough to determine B where there are few.
-const fn most(dimension: usize) -> usize {
-    if dimension < 20 { dimension + 5 } else { 25 }
-}
+/// Number of Jacobians kept: enough to determine B where there are few variables.
+const MAX_JACOBIANS: usize = 25;
 /// Directions in which the eigenvalue of Σ s_j s_jᵀ/|s_j|⁴ is below this share of the largest one count as not seen.
 const UNSEEN: f64 = 1e-8;
 
@@ -86,7 +84,7 @@ pub(super) struct Memory(Vec<(Vector, Matrix)>);
 impl Memory {
     /// Remembers the Jacobian at a point.
     pub(super) fn remember(&mut self, point: &Vector, jacobian: &Matrix) {
-        if self.0.len() >= most(point.len()) {
+        if self.0.len() >= MAX_JACOBIANS {
             self.0.remove(0);
         }
         self.0.push((point.clone(), jacobian.clone()));

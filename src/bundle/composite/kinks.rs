@@ -15,12 +15,8 @@ use crate::panics::without_panic;
 
 /// Beyond this share, a departure counts as that of kinks.
 const LEAST_SHARE: f64 = 0.2;
-/// A step pays if it brings this share of the largest decrease promised since a step last paid.
-const PAYING: f64 = 0.5;
 /// After so many steps in a row that have paid, one that does not is forgiven.
 const FORGIVING: usize = 3;
-/// Relative error of a predicted change up to which the outputs follow their linearization.
-const PREDICTED: f64 = 0.1;
 
 /// What the steps of the model have told about kinks.
 #[derive(Debug, Default)]
@@ -64,20 +60,21 @@ impl Seen<'_> {
         if linear > 0.0 { trapezoidal / linear } else { 0.0 }
     }
 
-    /// Whether the model predicts the change of Θ well.
+    /// Whether the model predicts the change of Θ to a tenth: the outputs follow their linearization.
     fn is_predicted(&self) -> bool {
         let Base { point, value, linearization } = self.base;
         let outputs = &linearization.outputs + &linearization.jacobian * (self.point - point);
         let model = without_panic(|| self.outer.value(&outputs)).unwrap_or(f64::NAN) - value;
-        (self.change - model).abs() <= PREDICTED * self.change.abs()
+        10.0 * (self.change - model).abs() <= self.change.abs()
     }
 }
 
 impl Kinks {
-    /// Learns from a step of the model itself that promised a decrease. Returns whether the model should fall silent because of kinks.
+    /// Learns from a step of the model itself that promised a decrease; it pays if it brings half of the largest decrease promised since a
+    /// step last paid. Returns whether the model should fall silent because of kinks.
     pub(super) fn met(&mut self, seen: &Seen<'_>, promised: f64, serious: bool) -> bool {
         let promised = promised.max(self.promised);
-        if serious && -seen.change >= PAYING * promised {
+        if serious && -seen.change >= 0.5 * promised {
             *self = Self { paid: self.paid + 1, ..Self::default() };
             return false;
         }
