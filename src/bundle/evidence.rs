@@ -51,11 +51,6 @@ impl Coordinate {
         self.slope <= CANCELLED_SHARE * self.terms
     }
 
-    /// How far the variable may be from the minimum, in a run that has seen a decrease.
-    fn reach(&self, drop: f64) -> f64 {
-        self.moved.max(drop / self.steepest)
-    }
-
     /// |z̃_i| times a distance that the box may shorten.
     fn fall(&self, distance: f64) -> f64 {
         let slope = self.largest_slope();
@@ -107,15 +102,17 @@ impl Evidence {
         self.at_center && self.error <= rounding && self.coordinates.iter().all(Coordinate::cancels)
     }
 
-    /// ẽ + Σ |z̃_i| reach_i: what Θ, if it is convex, can still fall within reach and in the box. A variable reaches as far as it has moved, or
-    /// as far as the slopes along it would need for the decrease of the run.
+    /// ẽ + Σ |z̃_i| reach_i over the coordinates that do not cancel: what Θ, if it is convex, can still fall within reach and in the box. A variable
+    /// reaches as far as it has moved, or as far as the slopes along it would need for the decrease of the run.
     pub(crate) fn remaining(&self) -> f64 {
-        self.error + self.coordinates.iter().map(|i| i.fall(i.reach(self.drop))).sum::<f64>()
+        let falls = |i: &Coordinate| if i.cancels() { 0.0 } else { i.fall(i.moved.max(self.drop / i.steepest)) };
+        self.error + self.coordinates.iter().map(falls).sum::<f64>()
     }
 
     /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds, within reach in the others.
     pub(crate) fn gap(&self) -> f64 {
-        let longest = |i: &Coordinate| if i.room.is_finite() { i.room } else { i.reach(self.drop) };
+        let reach = |i: &Coordinate| i.moved.max(self.drop / i.steepest);
+        let longest = |i: &Coordinate| if i.room.is_finite() { i.room } else { reach(i) };
         self.error + self.coordinates.iter().map(|i| i.fall(longest(i))).sum::<f64>()
     }
 

@@ -44,11 +44,6 @@ impl Resolution {
         self.noise().unwrap_or_else(|| self.tolerance())
     }
 
-    /// The decrease up to which rounding explains what a model promises.
-    pub(crate) fn hidden_by_rounding(&self) -> f64 {
-        2.0 * self.rounding
-    }
-
     /// The decrease up to which noise explains what a model promises; 0 without noise.
     pub(crate) fn hidden_by_noise(&self) -> f64 {
         self.noise().map_or(0.0, |noise| MAX_NOISY_DECREASES * noise)

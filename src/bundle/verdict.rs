@@ -102,7 +102,7 @@ pub(crate) fn near(resolution: &Resolution) -> f64 {
 /// What may be left within reach, what rounding hides included. Where Θ is declared convex, it is a bound, and ten wanted decreases.
 pub(crate) fn allowed(resolution: &Resolution, convex: bool) -> f64 {
     let decreases = if convex { 10.0 } else { MAX_REMAINING_DECREASES };
-    decreases * resolution.wanted + resolution.hidden_by_rounding()
+    decreases * resolution.wanted + resolution.rounding
 }
 
 /// Why a run ends whose predicted decrease stays small although the evidence does not suffice.

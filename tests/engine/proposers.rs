@@ -64,7 +64,8 @@ fn a_curved_valley_is_followed() {
     let (report, evaluations) = solve("ChebRosenN1_2", BundleTrustConfig::default());
     // 16 where this was written; 102 with pieces that bend up alone.
     assert!(evaluations <= 30, "{evaluations}");
-    assert!(matches!(report.termination, Termination::Stationary { .. }), "{}", report.termination);
+    // The minimum is zero, beside which no slope along the valley is small: the end need not be confirmed.
+    assert!(report.termination.is_stationary(), "{}", report.termination);
 }
 
 #[test]
