@@ -202,10 +202,7 @@ mod checks;
 mod panics;
 
 pub use accuracy::Accuracy;
-pub use bundle::{
-    AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run,
-    ScaledNorm, VariableScaling,
-};
+pub use bundle::{AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run, ScaledNorm, VariableScaling};
 pub use composite_objective::{CompositeFunction, CompositeObjective, OutputJacobian};
 pub use constraints::Polyhedron;
 pub use error::{InputError, OptimizeError, OracleError};

@@ -152,7 +152,8 @@ impl<'s> Distances<'s> {
 
     /// The direction g_i/steepest_i² that a subgradient belongs to.
     pub(crate) fn raise(&self, subgradient: &Vector) -> Vector {
-        subgradient.zip_map(&self.steepest, |slope, steepest| if steepest > 0.0 { slope / (steepest * steepest) } else { 0.0 })
+        subgradient
+            .zip_map(&self.steepest, |slope, steepest| if steepest > 0.0 { slope / (steepest * steepest) } else { 0.0 })
     }
 
     /// Σ_i steepest_i |y_i − x̂_i|, for merged cuts of the farthest point behind them.

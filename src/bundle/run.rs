@@ -206,7 +206,8 @@ impl Run<'_, '_> {
         let center = self.state.center.clone();
         self.state.center_accuracy = accuracy.tolerance();
         let mut contradiction = Continue(());
-        let mut event = Event { kind: StepKind::Refinement, value: None, failure: None, noted: Noted::Nothing, work: 0 };
+        let mut event =
+            Event { kind: StepKind::Refinement, value: None, failure: None, noted: Noted::Nothing, work: 0 };
         match self.evaluate(&center, accuracy, None, f64::INFINITY) {
             Outcome::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;

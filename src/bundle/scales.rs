@@ -15,9 +15,9 @@
 use super::config::{BundleTrustConfig, Convexity};
 use super::kept_cuts::Spread;
 use super::state::{Lengths, OutputScales, State};
+use crate::Vector;
 use crate::linalg::upper_median;
 use crate::qp::kernels::{dot_terms, two_dot_terms};
-use crate::Vector;
 use std::rc::Rc;
 
 /// Sizes of a variable below this share of its reach are not told from zero.

@@ -80,7 +80,9 @@ pub(crate) fn near_verdict(at: &Position<'_>, evidence: &Evidence, proposal: &Pr
     let resolution = at.resolution();
     if evidence.undecided(resolution.small()).is_some() {
         Near::Open
-    } else if evidence.remaining() > MAX_SLOPE_SHARE * evidence.drop.min(at.state.center_value.abs()) + near(&resolution) {
+    } else if evidence.remaining()
+        > MAX_SLOPE_SHARE * evidence.drop.min(at.state.center_value.abs()) + near(&resolution)
+    {
         Near::Open
     } else if proposal.predicted_decrease > near(&resolution) {
         Near::Falls

@@ -90,9 +90,7 @@ impl Termination {
     pub fn advice(&self) -> &'static str {
         match self {
             Self::Stationary { .. } => "the certificate can be re-checked offline",
-            Self::StationaryUnconfirmed { undecided: Some(_), .. } => {
-                "give typical sizes of the variables, or bounds"
-            }
+            Self::StationaryUnconfirmed { undecided: Some(_), .. } => "give typical sizes of the variables, or bounds",
             Self::StationaryUnconfirmed { .. } => {
                 "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
             }

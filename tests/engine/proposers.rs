@@ -2,8 +2,8 @@
 
 use crate::common::{crescent, v};
 use nonsmooth::{
-    BundleTrust, BundleTrustConfig, FnObjective, IterationRecord, Matrix, Origin,
-    Polyhedron, Report, StepKind, Termination, Vector,
+    BundleTrust, BundleTrustConfig, FnObjective, IterationRecord, Matrix, Origin, Polyhedron, Report, StepKind,
+    Termination, Vector,
 };
 
 fn run(config: BundleTrustConfig) -> Report {

@@ -117,7 +117,11 @@ impl Proposal {
 
     /// The decrease that an evaluation has to tell from none.
     pub(crate) fn least_decrease(&self) -> f64 {
-        if self.origin == Origin::Confirmation { SERIOUS_FRACTION * self.predicted_decrease } else { self.predicted_decrease }
+        if self.origin == Origin::Confirmation {
+            SERIOUS_FRACTION * self.predicted_decrease
+        } else {
+            self.predicted_decrease
+        }
     }
 
     /// Whether the trial point cannot be told from the center in any variable.

@@ -8,13 +8,13 @@
 //! ```
 
 use super::proposal::Proposal;
+use crate::Polyhedron;
 use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::proof::Ending;
 use crate::bundle::resolution::Resolution;
 use crate::bundle::state::State;
 use crate::bundle::trial::Trial;
 use crate::composite::{Linearization, OuterFunction};
-use crate::Polyhedron;
 use crate::qp::EpigraphQpSolver;
 
 /// The answer of a proposer.

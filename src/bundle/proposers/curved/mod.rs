@@ -7,8 +7,8 @@ mod step;
 #[cfg(test)]
 mod step_tests;
 
-use super::proposal::{Proposal, SubproblemError};
 use super::cuts::model::Model;
+use super::proposal::{Proposal, SubproblemError};
 use super::proposer::Position;
 use crate::Vector;
 use crate::bundle::state::State;

@@ -38,7 +38,9 @@ impl PlainCuts {
         let model = self.planes.model(at);
         match curved.propose(at, model, &plain, small) {
             // After a failure, the steps of the plain cuts tell whether the oracle fails next to the center.
-            Ok(Some(better)) if at.state.longest_step.is_none() => Proposal { cut_change: model.cuts().change(&better.step), ..better },
+            Ok(Some(better)) if at.state.longest_step.is_none() => {
+                Proposal { cut_change: model.cuts().change(&better.step), ..better }
+            }
             _ => plain,
         }
     }

@@ -62,7 +62,8 @@ impl StationarityTest {
             };
             let convex = at.config.convexity == Convexity::Convex;
             let resolution = at.resolution();
-            let limit = if convex { allowed(&resolution, true).max(resolution.hidden_by_noise()) } else { resolution.small() };
+            let limit =
+                if convex { allowed(&resolution, true).max(resolution.hidden_by_noise()) } else { resolution.small() };
             let promised = proposal.predicted_decrease;
             if promised > limit || demand::center_is_too_coarse(at.state, at.config, promised) {
                 return Next::Trial(proposal);
@@ -101,7 +102,8 @@ impl StationarityTest {
 
     /// Takes note of the newest cut.
     pub(super) fn update(&mut self, at: &Position<'_>, trial: &Trial<'_>) {
-        if let Some(confirmation) = self.confirmation.as_mut().filter(|_| trial.proposal.origin == Origin::Confirmation) {
+        if let Some(confirmation) = self.confirmation.as_mut().filter(|_| trial.proposal.origin == Origin::Confirmation)
+        {
             confirmation.learn(at.state.bundle.cuts().last());
         }
     }
@@ -163,11 +165,15 @@ fn look_closer(
         let long = !undecided && proposal.step_length >= LEAST_STEP_LENGTH * at.state.length_scale();
         let next = if long && !convex || decreases == MAX_DECREASES { None } else { planes.lower_weight(at) };
         match judged {
-            Verdict::End(termination) if next.is_none() || convex && termination.is_confirmed() || evidence.is_exact(0.0) => {
+            Verdict::End(termination)
+                if next.is_none() || convex && termination.is_confirmed() || evidence.is_exact(0.0) =>
+            {
                 return Break(Next::End(Ending::by_cuts(termination, proposal)));
             }
             // A lower weight may have multipliers of cuts that rounding or noise hides less.
-            Verdict::End(termination) if convex => hidden = hidden.or(Some(Ending::by_cuts(termination, proposal.clone()))),
+            Verdict::End(termination) if convex => {
+                hidden = hidden.or(Some(Ending::by_cuts(termination, proposal.clone())))
+            }
             _ => {}
         }
         let Some(next) = next else {

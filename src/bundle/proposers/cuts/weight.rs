@@ -12,9 +12,9 @@
 
 use super::model::MANY_VARIABLES;
 use crate::bundle::proposers::proposal::Proposal;
+use crate::bundle::state::{NOISE_MARGIN, State};
 use crate::bundle::trial::{Comparison, Trial};
 use crate::report::Origin;
-use crate::bundle::state::{NOISE_MARGIN, State};
 
 /// Takes note that the oracle failed at a trial point of any proposer.
 pub(super) fn shorten(state: &mut State, proposal: &Proposal) {
