@@ -4,5 +4,6 @@
 
 mod architecture;
 mod circles;
+mod methods;
 mod published;
 mod references;
