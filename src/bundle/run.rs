@@ -20,8 +20,6 @@ use std::time::Instant;
 
 /// Failures end the run only where the oracle fails next to the center: within this share of the length scale.
 const CLOSE: f64 = 1e-6;
-/// Failed evaluations in a row after which the run ends once its steps are short: each halves the step.
-const MAX_FAILURES: usize = 10;
 /// Known trial points in a row after which no weight leads away from them.
 const MAX_KNOWN_TRIALS: usize = 100;
 
@@ -246,7 +244,8 @@ impl Run<'_, '_> {
         let event = Event { kind: StepKind::Failed, value: None, failure, noted: Noted::Nothing, work: 0 };
         record(&mut self.state, proposal, accuracy, event, self.clock);
         refuse_contradiction(error)?;
-        if failures >= MAX_FAILURES && proposal.origin == Origin::Cuts && close {
+        // Each failure halves the step.
+        if failures >= 10 && proposal.origin == Origin::Cuts && close {
             return Break(Termination::OracleFailing { failures, last: error.to_string() }.into());
         }
         Continue(())

@@ -15,68 +15,6 @@ const MAX_JACOBIANS: usize = 25;
 /// Directions in which the eigenvalue of Σ s_j s_jᵀ/|s_j|⁴ is below this share of the largest one count as not seen.
 const UNSEEN: f64 = 1e-8;
 
-/// A step of the model with the curvature of the outputs that brings this many times the predicted decrease has met less curvature than
-/// predicted: without any curvature along the step it would bring twice the predicted decrease.
-const OVERESTIMATED_RATIO: f64 = 1.5;
-/// So many such steps in a row lower the share of the curvature that counts: single ones come from constraints that become active.
-const OVERESTIMATED_STEPS: usize = 3;
-/// The least share of the curvature that counts; three rejected steps lead from here back to the whole.
-const LEAST_SHARE: f64 = 1.0 / 64.0;
-/// Factor by which the share falls, and rises after a rejected step.
-const SHARE_FACTOR: f64 = 4.0;
-
-/// The share of the curvature of the outputs that steps have confirmed.
-#[derive(Debug)]
-pub(super) struct Share {
-    /// Whether curvature counts at all: once a step and its correction have failed without it.
-    needed: bool,
-    value: f64,
-    /// Whether the last subproblem took curvature into account.
-    pub used: bool,
-    /// Serious steps in a row that have met less curvature than predicted.
-    overestimated: usize,
-}
-
-impl Default for Share {
-    fn default() -> Self {
-        Self { needed: false, value: 1.0, used: false, overestimated: 0 }
-    }
-}
-
-impl Share {
-    pub(super) fn counts(&self) -> bool {
-        self.needed
-    }
-
-    pub(super) fn value(&self) -> f64 {
-        self.value
-    }
-
-    /// Curvature counts from now on.
-    pub(super) fn need(&mut self) {
-        self.needed = true;
-    }
-
-    /// Curvature counts, or not, from now on; returns whether it did.
-    pub(super) fn replace(&mut self, needed: bool) -> bool {
-        std::mem::replace(&mut self.needed, needed)
-    }
-
-    /// A step has been accepted that brought `ratio` times the predicted decrease.
-    pub(super) fn accept(&mut self, ratio: f64) {
-        self.overestimated = if self.used && ratio >= OVERESTIMATED_RATIO { self.overestimated + 1 } else { 0 };
-        if self.overestimated >= OVERESTIMATED_STEPS {
-            self.value = (self.value / SHARE_FACTOR).max(LEAST_SHARE);
-        }
-    }
-
-    /// A step has been rejected, or the oracle has failed at its end.
-    pub(super) fn reject(&mut self) {
-        self.overestimated = 0;
-        self.value = (self.value * SHARE_FACTOR).min(1.0);
-    }
-}
-
 /// Jacobians of the outputs at earlier points, the latest last.
 #[derive(Debug, Default)]
 pub(super) struct Memory(Vec<(Vector, Matrix)>);

@@ -5,7 +5,7 @@ use super::escape::Escape;
 use super::kinks::{Kinks, Seen};
 use super::proof::PointProof;
 use super::steps::{Changes, Steps};
-use super::trust::{FACTOR, Trust};
+use super::trust::Trust;
 use crate::Vector;
 use crate::bundle::evidence::Evidence;
 use crate::bundle::proof::{Ending, Proof};
@@ -20,11 +20,6 @@ use crate::report::{Origin, Termination};
 
 /// Weights tried, upwards and downwards, for one trial point.
 const MAX_WEIGHTS: usize = 20;
-/// A small predicted decrease that grows by less than this factor as the weight falls does not depend on the weight any more.
-const LEAST_GAIN: f64 = 1.1;
-/// Longest correction from a rejected trial point, in lengths of the rejected step.
-const CONTRACTION: f64 = 0.5;
-
 /// The composite model of a run.
 #[derive(Debug)]
 pub(crate) struct Composite {
@@ -38,8 +33,6 @@ pub(crate) struct Composite {
     /// Whether the pending trial point is a correction.
     correcting: bool,
     escape: Option<Escape>,
-    /// Whether the center is the end of a last step that has brought a small decrease only.
-    ends_last_step: bool,
 }
 
 impl Composite {
@@ -52,7 +45,6 @@ impl Composite {
             rejected: None,
             correcting: false,
             escape: None,
-            ends_last_step: false,
         }
     }
 
@@ -68,12 +60,12 @@ impl Composite {
     ) -> Result<Option<Proposal>, Termination> {
         let origin = &base.point - &rejected.point;
         let changes = Changes { set: None, origin: Some(&origin) };
-        let Some((proposal, _)) = self.steps.step(at, rejected, self.trust.weight / FACTOR, changes)? else {
+        let Some((proposal, _)) = self.steps.step(at, rejected, self.trust.weight / 10.0, changes)? else {
             return Ok(None);
         };
         let length = at.state.norm.length(&(&proposal.trial - &rejected.point));
         let predicted_decrease = base.value - rejected.value + proposal.predicted_decrease;
-        if length > CONTRACTION * at.state.norm.length(&origin) || predicted_decrease <= at.resolution().small() {
+        if length > 0.5 * at.state.norm.length(&origin) || predicted_decrease <= at.resolution().small() {
             return Ok(None);
         }
         Ok(Some(Proposal { predicted_decrease, ..proposal }))
@@ -86,7 +78,7 @@ impl Composite {
         let (mut raised, mut last) = (false, 0.0);
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
-                (weight, raised) = (weight * FACTOR, true);
+                (weight, raised) = (weight * 10.0, true);
                 continue;
             };
             let promised = proposal.predicted_decrease;
@@ -94,21 +86,21 @@ impl Composite {
                 if proposal.step_length <= self.trust.longest {
                     return Ok(Answer::trial(proposal));
                 }
-                (weight, raised) = (weight * FACTOR, true);
+                (weight, raised) = (weight * 10.0, true);
                 continue;
             }
             let evidence = Evidence::new(at.state, at.set, &proposal);
             if let Verdict::End(termination) = verdict(at, &evidence) {
                 let composite = Some(PointProof { base: base.clone(), step });
                 let proof = Some(Proof { proposal: proposal.clone(), composite });
-                return Ok(self.leave(at, (Ending { termination, proof }, base.clone()), proposal));
+                return Ok(self.leave(at, Ending { termination, proof }, base));
             }
-            weight /= FACTOR;
+            weight /= 10.0;
             let decided = evidence.undecided(allowed(&at.resolution(), false)).is_none();
-            if raised || decided && promised < LEAST_GAIN * last {
+            if raised || decided && promised <= last {
                 // No step that has not been rejected promises more. What is small already may be proved to be all that is left.
                 return Ok(match self.lighter_proof(at, base, weight)? {
-                    Some(ending) => self.leave(at, (ending, base.clone()), proposal),
+                    Some(ending) => self.leave(at, ending, base),
                     None if raised => Answer::Silent,
                     None => self.small_step(at, proposal),
                 });
@@ -141,7 +133,7 @@ impl Composite {
         base: &Base,
         mut weight: f64,
     ) -> Result<Option<Ending>, Termination> {
-        let needed = self.steps.share.replace(false);
+        let needed = std::mem::take(&mut self.steps.needs_curvature);
         let mut least = f64::INFINITY;
         let mut found = Ok(None);
         for _ in 0..MAX_WEIGHTS {
@@ -164,16 +156,15 @@ impl Composite {
             if decided && bound >= least {
                 break;
             }
-            (least, weight) = (bound, weight / FACTOR);
+            (least, weight) = (bound, weight / 10.0);
         }
-        self.steps.share.replace(needed);
+        self.steps.needs_curvature = needed;
         found
     }
 
     /// The end of the run with a proof, or a step that looks for something lower first.
-    fn leave(&mut self, at: &mut Position<'_>, found: (Ending, Base), last: Proposal) -> Answer {
-        let last = Some(last).filter(|_| !self.ends_last_step);
-        let (escape, answer) = Escape::begin(at, &mut self.steps, found, last);
+    fn leave(&mut self, at: &mut Position<'_>, ending: Ending, base: &Base) -> Answer {
+        let (escape, answer) = Escape::begin(at, &mut self.steps, ending, base);
         self.escape = escape;
         answer
     }
@@ -190,7 +181,7 @@ impl Composite {
                 self.correcting = true;
                 return Ok(Answer::trial(proposal));
             }
-            self.steps.share.need();
+            self.steps.needs_curvature = true;
         }
         self.step(at, &base)
     }
@@ -248,29 +239,22 @@ impl Proposer for Composite {
         let ratio = trial.comparison.change / trial.comparison.model_change;
         if trial.serious {
             self.trust.accept(trial.proposal, ratio);
-            self.steps.share.accept(ratio);
         } else if correcting {
-            self.steps.share.need();
+            self.steps.needs_curvature = true;
         } else {
             self.trust.reject(trial.proposal);
-            self.steps.share.reject();
             self.rejected = base_at(trial);
         }
     }
 
     fn update(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
-        let small = at.resolution().small();
-        match (self.escape.take(), trial.serious) {
-            (Some(escape), true) => {
+        if let Some(mut escape) = self.escape.take() {
+            if trial.serious {
                 self.trust.weight = escape.weight;
-                self.ends_last_step = escape.last_step && -trial.comparison.change <= small;
-            }
-            (Some(mut escape), false) => {
+            } else {
                 escape.learn(trial.value, base_at(trial));
                 self.escape = Some(escape);
             }
-            (None, true) => self.ends_last_step = false,
-            (None, false) => {}
         }
         if trial.serious {
             self.rebase(at, trial.linearization);
@@ -283,7 +267,6 @@ impl Proposer for Composite {
         } else if proposal.origin == Origin::CompositeModel {
             self.correcting = false;
             self.trust.reject(proposal);
-            self.steps.share.reject();
         }
     }
 

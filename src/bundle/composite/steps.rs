@@ -1,7 +1,7 @@
 //! Steps of the composite model from a base, with or without the curvature of the outputs.
 
 use super::base::Base;
-use super::curvature::{Memory, Share};
+use super::curvature::Memory;
 use super::model::{CompositeModel, CompositeStep, OuterCut};
 use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
@@ -10,9 +10,6 @@ use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
-
-/// Subproblems solved in turn so that the weights of the outputs and the curvature formed with them fit together.
-const PASSES: usize = 2;
 
 /// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h overflows along the step.
 pub(super) type Found = Option<(Proposal, CompositeStep)>;
@@ -29,8 +26,8 @@ pub(super) struct Changes<'a> {
 /// The subproblems of a run, with what they learn about the curvature of the outputs.
 #[derive(Debug, Default)]
 pub(super) struct Steps {
-    /// The share of the curvature of the outputs that counts; none as long as steps do without it.
-    pub share: Share,
+    /// Whether the curvature of the outputs counts: once a step and its correction have failed without it.
+    pub needs_curvature: bool,
     memory: Memory,
     /// Weights of the outputs at the last subproblem's solution.
     weights: Option<Vector>,
@@ -87,19 +84,17 @@ impl Steps {
             curvature: None,
             origin: changes.origin,
         };
-        self.share.used = false;
-        if !self.share.counts() || outer.curvature(outputs, jacobian).is_some() {
+        if !self.needs_curvature || outer.curvature(outputs, jacobian).is_some() {
             return model.solve(at.solver);
         }
         if self.weights.is_none() {
             self.weights = Some(model.solve(at.solver)?.weights());
         }
+        // Twice in turn, so that the weights of the outputs and the curvature formed with them fit together.
         let mut step = None;
-        for _ in 0..PASSES {
+        for _ in 0..2 {
             let Some(weights) = &self.weights else { break };
             let curvature = self.memory.curvature((&base.point, jacobian), weights, model.norm);
-            let curvature = curvature.map(|curvature| curvature * self.share.value());
-            self.share.used = curvature.is_some();
             let found = CompositeModel { curvature: curvature.as_ref(), ..model }.solve(at.solver)?;
             self.weights = Some(found.weights());
             step = Some(found);

@@ -5,17 +5,8 @@ use crate::bundle::proposers::proposal::Proposal;
 
 /// The first weight, relative to the first weight of the cuts: h is exact, so that first steps ten times as long as those of the cuts pay.
 const FIRST_WEIGHT: f64 = 1e-2;
-/// A step that brings this share of the predicted decrease lets the weight fall.
-const GOOD_RATIO: f64 = 0.5;
 /// Largest length of the step after a rejected one, in lengths of the rejected step.
 const SHORTER: f64 = 0.3;
-/// Longest pause after failures, evaluations.
-const MAX_PAUSE: usize = 64;
-/// Rejected or failed steps in a row before a pause.
-const PATIENCE: usize = 3;
-/// Factor by which the weight falls or rises.
-pub(super) const FACTOR: f64 = 10.0;
-
 /// Weight and limits of the next step.
 #[derive(Debug)]
 pub(super) struct Trust {
@@ -39,7 +30,7 @@ impl Trust {
 
     /// Begins a pause.
     pub(super) fn pause(&mut self) {
-        self.pause.fail(MAX_PAUSE);
+        self.pause.fail();
     }
 
     /// Lengthens the pause by one evaluation.
@@ -47,9 +38,9 @@ impl Trust {
         self.pause.prolong();
     }
 
-    /// A step has been accepted that brought `ratio` times the predicted decrease.
+    /// A step has been accepted that brought `ratio` times the predicted decrease: half of it lets the weight fall.
     pub(super) fn accept(&mut self, proposal: &Proposal, ratio: f64) {
-        self.weight = if ratio >= GOOD_RATIO { proposal.weight / FACTOR } else { proposal.weight };
+        self.weight = if ratio >= 0.5 { proposal.weight / 10.0 } else { proposal.weight };
         self.longest = f64::INFINITY;
         self.failures = 0;
         self.pause.succeed();
@@ -57,10 +48,10 @@ impl Trust {
 
     /// A step has been rejected, or the oracle has failed at its end.
     pub(super) fn reject(&mut self, proposal: &Proposal) {
-        self.weight = FACTOR * proposal.weight;
+        self.weight = 10.0 * proposal.weight;
         self.longest = SHORTER * proposal.step_length;
         self.failures += 1;
-        if self.failures >= PATIENCE {
+        if self.failures > 2 {
             self.pause();
         }
     }

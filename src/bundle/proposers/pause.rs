@@ -24,9 +24,9 @@ impl Pause {
         self.failures = 0;
     }
 
-    /// Begins a pause, twice as long as the last one since a success, but of at most `longest` evaluations.
-    pub(crate) fn fail(&mut self, longest: usize) {
-        self.left = (1 << self.failures.min(16)).min(longest);
+    /// Begins a pause, twice as long as the last one since a success, up to a thousand evaluations.
+    pub(crate) fn fail(&mut self) {
+        self.left = 1 << self.failures.min(10);
         self.failures += 1;
     }
 }

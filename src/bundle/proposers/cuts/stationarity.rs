@@ -28,9 +28,6 @@ const MAX_DECREASES: usize = 16;
 const LEAST_STEP_LENGTH: f64 = 1e-2;
 /// Restarts without progress between them once Θ is known to be nonconvex; one before.
 const MAX_RESTARTS: usize = 5;
-/// Share of the radius of the active cuts within which a restart keeps cuts.
-const RESTART_SHARE: f64 = 0.1;
-
 /// What the test makes of a subproblem.
 pub(super) enum Next {
     /// A trial point of the cuts.
@@ -119,13 +116,13 @@ impl StationarityTest {
         self.restarts < if at.state.nonconvex { MAX_RESTARTS } else { 1 }
     }
 
-    /// Forgets the cuts far from the center and raises the weight for a short next step; false if there was nothing to forget.
+    /// Forgets the cuts beyond a tenth of the radius of the active ones and raises the weight for a short next step; false if there was nothing to forget.
     fn restart(&mut self, at: &mut Position<'_>, proposal: &Proposal) -> bool {
         self.restarts += 1;
         at.state.counts.restarts += 1;
         let state = &mut *at.state;
         let farthest = active_cuts(state, proposal).map(|cut| cut.farthest_from(&state.center, &state.norm));
-        let radius = RESTART_SHARE * farthest.fold(0.0, f64::max);
+        let radius = farthest.fold(0.0, f64::max) / 10.0;
         let before = state.bundle.cuts().len();
         let (center, center_id, norm) = (&state.center, state.center_id, &state.norm);
         state.bundle.retain(|cut| cut.id == center_id || cut.farthest_from(center, norm) <= radius);
@@ -133,7 +130,7 @@ impl StationarityTest {
             return false;
         }
         let slope = state.bundle.cut(center_id).map_or(0.0, |cut| norm.dual_length(&cut.subgradient));
-        let weight = state.weight.max(slope / (RESTART_SHARE * radius));
+        let weight = state.weight.max(10.0 * slope / radius);
         state.set_weight(weight);
         state.streak = 0;
         state.variation = None;
