@@ -93,7 +93,7 @@ def test_nonlinear_constraints_are_refused():
         (dict(options={"tol": 1e-6, "tolerance": 1e-5}), "tolerance is given twice with different values"),
         (dict(tol=1e-8, options={"tolerance": 1e-6}), "option 'tolerance' = 1e-06, tol = 1e-08"),
         (dict(tol=2.0), "tolerance = 2.0 is not allowed; allowed: 0 < x < 1"),
-        (dict(options={"curved_model": False}), "unknown option 'curved_model'.*allowed: accuracy, bundle_size, convex"),
+        (dict(options={"curved_model": False}), "unknown option 'curved_model'.*allowed: accuracy, bundle_size, confirm, convex"),
         (dict(options={"serious_fraction": 0.1}), "unknown option 'serious_fraction'"),
         (dict(options={"composite_model": True}), "unknown option 'composite_model'"),
         (dict(x_scale=[1.0]), "x_scale has shape .1,., expected one number or 2"),

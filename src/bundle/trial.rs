@@ -1,13 +1,10 @@
 //! Judging a trial point: serious or null step.
 
-use super::proposers::proposal::Proposal;
+use super::proposers::proposal::{Proposal, SERIOUS_FRACTION};
 use super::state::State;
 use crate::composite::Linearization;
 use crate::{Evaluation, Vector};
 
-/// Share m_S of the predicted decrease that makes a step serious (\[SchrammZowe1992\], test SS). A share of 0.1 takes 2 % more evaluations in
-/// the mean over the moved starts.
-pub(crate) const SERIOUS_FRACTION: f64 = 0.02;
 /// A trial point and what came of it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Trial<'a> {

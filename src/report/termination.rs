@@ -94,7 +94,9 @@ impl Termination {
             Self::StationaryUnconfirmed { .. } => {
                 "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
             }
-            Self::NoiseLimit { .. } => "a more accurate oracle is needed to get further",
+            Self::NoiseLimit { .. } => {
+                "a more accurate oracle is needed to get further; where convexity is declared, check that the objective is convex"
+            }
             Self::StepTooShort { .. } => "check the subgradients with `verify` at the best point",
             Self::EvaluationLimit | Self::IterationLimit | Self::TimeLimit => "raise the limit and continue",
             Self::StoppedByObserver | Self::Unfinished | Self::StopRule { .. } => {

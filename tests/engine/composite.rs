@@ -134,8 +134,8 @@ fn others() -> Vec<Case> {
             start: [-1.0, 3.0],
             solution: [1.0, 1.0],
             optimum: 1.0,
-            evaluations: 7,
-            jacobians: 7,
+            evaluations: 6,
+            jacobians: 6,
         },
         Case {
             name: "minimax in a corner of the admissible set",

@@ -48,7 +48,7 @@ const MEASURED: [(&str, usize); 42] = [
     ("ChainedLQ", 111),
     ("ChainedCB3II", 34),
     ("ActiveFaces", 2),
-    ("ChainedCrescentI", 44),
+    ("ChainedCrescentI", 58),
     ("ChainedCrescentII", 268),
     ("ChebRosenN1_2", 15),
     ("NesterovWorst_20", 123),

@@ -109,6 +109,8 @@ def minimize(
         What ``fun`` is asked for. On demand if ``fun`` takes the keyword ``accuracy``, else tightest.
     bundle_size : int, n + 15, at most 500
         Largest number of cuts.
+    confirm : bool, True
+        Whether up to n + 1 evaluations next to the best point are spent to confirm an end.
     disp : bool, False
         Print one line per evaluation.
 

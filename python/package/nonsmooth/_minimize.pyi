@@ -25,6 +25,7 @@ class _Options(TypedDict, total=False):
     scaling: ArrayLike | None
     accuracy: Literal["tightest", "on_demand"] | tuple[float, float, float]
     bundle_size: int | None
+    confirm: bool
     disp: bool
 
 _Path = str | PathLike[str]

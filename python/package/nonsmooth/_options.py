@@ -27,6 +27,7 @@ PLAIN = {
     "max_seconds": _REAL,
     "first_step": _REAL,
     "bundle_size": _COUNT,
+    "confirm": _FLAG,
 }
 
 #: Options with a form of their own.

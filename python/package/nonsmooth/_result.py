@@ -27,7 +27,7 @@ _ADVICE = {
     "stationary": "result.recheck() computes the certificate again",
     "stationary_unconfirmed": "if the function is convex, options={'convex': True} lets the run prove that this is the minimum; otherwise "
     "start again from here, or from elsewhere, and compare",
-    "noise_limit": "a more accurate fun is needed to get further; if the function is convex, the minimum is lower by at most about this",
+    "noise_limit": "a more accurate fun is needed to get further, or the function was declared convex and is not",
     "step_too_short": "check the subgradients: nonsmooth.taylor_test(fun, x) compares them with values next to a point x",
     "evaluation_limit": "raise the option max_evaluations, and begin with x, or resume a journal",
     "iteration_limit": "raise the option max_iterations, and begin with x, or resume a journal",

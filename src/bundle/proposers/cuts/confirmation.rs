@@ -14,9 +14,8 @@ use crate::bundle::cut::Cut;
 use crate::bundle::evidence::{Distances, Evidence, active_cuts};
 use crate::bundle::kept_cuts::Bundle;
 use crate::bundle::proof::Ending;
-use crate::bundle::proposers::proposal::Proposal;
+use crate::bundle::proposers::proposal::{Proposal, SERIOUS_FRACTION};
 use crate::bundle::proposers::proposer::Position;
-use crate::bundle::trial::SERIOUS_FRACTION;
 use crate::bundle::verdict::{Near, confirmed, near, near_verdict};
 use crate::report::{Origin, Termination};
 
