@@ -78,13 +78,15 @@ pub(crate) enum Near {
 /// Judges the cuts next to a center by their subproblem at the weight of the run.
 pub(crate) fn near_verdict(at: &Position<'_>, evidence: &Evidence, proposal: &Proposal) -> Near {
     let resolution = at.resolution();
-    if evidence.undecided(resolution.small()).is_some() {
-        Near::Open
-    } else if evidence.remaining()
-        > MAX_SLOPE_SHARE * evidence.drop.min(at.state.center_value.abs()) + near(&resolution)
+    let remaining = evidence.remaining();
+    let hidden = resolution.noise().is_some() || resolution.rounding > 10.0 * resolution.wanted;
+    let least = evidence.drop.min(at.state.center_value.abs());
+    if hidden
+        || evidence.undecided(resolution.small()).is_some()
+        || remaining > MAX_SLOPE_SHARE * least + near(&resolution)
     {
         Near::Open
-    } else if proposal.predicted_decrease > near(&resolution) {
+    } else if proposal.predicted_decrease > near(&resolution) || remaining > allowed(&resolution, false) {
         Near::Falls
     } else {
         Near::Confirmed

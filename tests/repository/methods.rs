@@ -97,7 +97,11 @@ fn types_of_the_engine_are_parts() {
         assert!(files.len() <= MAX_FILES, "{name} has methods in {:?}", files.keys());
         let arrows = arrows(files);
         for file in files.keys() {
-            assert!(!reaches(&arrows, file, file), "methods of {name} call each other in a circle through {}", file.display());
+            assert!(
+                !reaches(&arrows, file, file),
+                "methods of {name} call each other in a circle through {}",
+                file.display()
+            );
         }
     }
 }

@@ -48,5 +48,5 @@ mod own_objective;
 fn an_objective_of_ones_own_falls_as_the_tutorial_says() {
     let report = own_objective::minimize().unwrap();
     let reduction = report.start_value / report.value;
-    assert!(report.counts.evaluations <= 30 && reduction > 3.0, "{report}");
+    assert!(report.counts.evaluations <= 30 && reduction > 2.4, "{report}");
 }

@@ -30,7 +30,12 @@ pub(super) struct Escape {
 
 impl Escape {
     /// The first step beyond the constraints next to the point, or the end of the run with the proof where there are none.
-    pub(super) fn begin(at: &mut Position<'_>, steps: &mut Steps, ending: Ending, center: &Base) -> (Option<Self>, Answer) {
+    pub(super) fn begin(
+        at: &mut Position<'_>,
+        steps: &mut Steps,
+        ending: Ending,
+        center: &Base,
+    ) -> (Option<Self>, Answer) {
         let inactive = center.linearization.inactive.as_ref();
         let Some(set) = inactive.and_then(|inactive| closing_set(at, center, inactive)) else {
             return (None, Answer::end(ending));

@@ -1,4 +1,4 @@
-//! Histories of optimizations on 12³ bricks, pinned; those on smaller meshes are compared by the tests of `problems`.
+//! Best values of optimizations on 12³ bricks, pinned; those on smaller meshes are compared by the tests of `problems`.
 
 use serde_json::Value;
 use studies::headline::run;
@@ -8,7 +8,7 @@ use testset::kit::check_pins;
 const PINS: &str = include_str!("../../../tests/data/pins.json");
 
 #[test]
-fn histories_are_the_pinned_ones() {
+fn optimizations_come_as_low_as_pinned() {
     let wanted = |pin: &Value| pin["command"] == "optimize" && pin["mesh"] == "12";
     check_pins(PINS, wanted, |name, arguments| {
         let scene = if name == "hertz3d" { SceneName::Hertz } else { SceneName::Signorini };

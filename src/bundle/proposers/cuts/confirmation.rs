@@ -79,7 +79,7 @@ impl Confirmation {
             Near::Falls => {
                 self.probed = true;
                 let promise = 10.0 * at.resolution().small();
-                let point = &at.state.center + &proposal.step * (promise / proposal.predicted_decrease).min(1.0);
+                let point = &at.state.center + &proposal.step * (promise / proposal.predicted_decrease);
                 at.state.bundle = all;
                 self.evaluation(at, point)
             }
