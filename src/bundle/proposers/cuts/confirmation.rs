@@ -40,8 +40,8 @@ pub(super) struct Confirmation {
 
 /// What comes next.
 pub(super) enum Confirmed {
-    Trial(Proposal),
-    End(Ending),
+    Trial(Box<Proposal>),
+    End(Box<Ending>),
 }
 
 impl Confirmation {
@@ -66,16 +66,16 @@ impl Confirmation {
     pub(super) fn next(&mut self, at: &mut Position<'_>) -> Confirmed {
         while let Some(point) = self.points.pop().filter(|_| self.left > 0) {
             if let Some(proposal) = self.trial(at, point) {
-                return Confirmed::Trial(proposal);
+                return Confirmed::Trial(Box::new(proposal));
             }
         }
         let all = self.look_near(at);
         let Some(proposal) = CuttingPlanes::default().try_solve(at).ok() else { return self.give_up(at, all) };
         let evidence = Evidence::new(at.state, at.set, &proposal);
         match near_verdict(at, &evidence, &proposal) {
-            Near::Confirmed => return Confirmed::End(Ending::by_cuts(confirmed(&evidence), proposal)),
-            Near::Falls if self.probed => return Confirmed::End(Ending::by_cuts(confirmed(&evidence), proposal)),
-            _ if self.left == 0 => return self.give_up(at, all),
+            Near::Confirmed => ended(Ending::by_cuts(confirmed(&evidence), proposal)),
+            Near::Falls if self.probed => ended(Ending::by_cuts(confirmed(&evidence), proposal)),
+            _ if self.left == 0 => self.give_up(at, all),
             Near::Falls => {
                 self.probed = true;
                 let promise = 10.0 * at.resolution().small();
@@ -103,14 +103,14 @@ impl Confirmation {
 
     fn evaluation(&mut self, at: &Position<'_>, point: Vector) -> Confirmed {
         match self.trial(at, point) {
-            Some(proposal) => Confirmed::Trial(proposal),
-            None => Confirmed::End(self.unconfirmed.clone().into()),
+            Some(proposal) => Confirmed::Trial(Box::new(proposal)),
+            None => ended(self.unconfirmed.clone().into()),
         }
     }
 
     fn give_up(&self, at: &mut Position<'_>, all: Bundle) -> Confirmed {
         at.state.bundle = all;
-        Confirmed::End(self.unconfirmed.clone().into())
+        ended(self.unconfirmed.clone().into())
     }
 
     /// Takes in the newest cut.
@@ -126,4 +126,8 @@ impl Confirmation {
         self.left -= usize::from(new);
         new.then_some(Proposal { origin: Origin::Confirmation, predicted_decrease, ..proposal })
     }
+}
+
+fn ended(ending: Ending) -> Confirmed {
+    Confirmed::End(Box::new(ending))
 }

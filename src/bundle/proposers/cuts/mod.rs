@@ -72,7 +72,7 @@ impl PlainCuts {
 impl Proposer for PlainCuts {
     fn propose(&mut self, at: &mut Position<'_>) -> Answer {
         match self.test.next(at, &mut self.planes) {
-            Next::End(ending) => Answer::end(ending),
+            Next::End(ending) => Answer::End(ending),
             Next::Given(proposal) => Answer::trial(proposal),
             Next::Trial(proposal) => {
                 let refines = demand::center_is_too_coarse(at.state, at.config, proposal.predicted_decrease);

@@ -34,7 +34,7 @@ pub(super) enum Next {
     Trial(Proposal),
     /// A trial point next to the center.
     Given(Proposal),
-    End(Ending),
+    End(Box<Ending>),
 }
 
 /// The test for the end of a run.
@@ -55,7 +55,7 @@ impl StationarityTest {
         loop {
             let proposal = match planes.solve(at) {
                 Ok(proposal) => proposal,
-                Err(termination) => return Next::End(termination.into()),
+                Err(termination) => return Next::End(Box::new(termination.into())),
             };
             let convex = at.config.convexity == Convexity::Convex;
             let resolution = at.resolution();
@@ -76,7 +76,7 @@ impl StationarityTest {
             }
             let termination = unconfirmed(at, &evidence);
             if !at.config.confirm || evidence.undecided(allowed(&resolution, false)).is_some() {
-                return Next::End(Ending::by_cuts(termination, proposal));
+                return Next::End(Box::new(Ending::by_cuts(termination, proposal)));
             }
             self.confirmation = Some(Confirmation::new(at, proposal, termination));
             return self.confirm(at);
@@ -86,7 +86,7 @@ impl StationarityTest {
     /// Goes on with the confirmation.
     fn confirm(&mut self, at: &mut Position<'_>) -> Next {
         match self.confirmation.as_mut().map(|confirmation| confirmation.next(at)) {
-            Some(Confirmed::Trial(proposal)) => Next::Given(proposal),
+            Some(Confirmed::Trial(proposal)) => Next::Given(*proposal),
             Some(Confirmed::End(ending)) => Next::End(ending),
             None => unreachable!("a confirmation is under way"),
         }
@@ -165,7 +165,7 @@ fn look_closer(
             Verdict::End(termination)
                 if next.is_none() || convex && termination.is_confirmed() || evidence.is_exact(0.0) =>
             {
-                return Break(Next::End(Ending::by_cuts(termination, proposal)));
+                return Break(Next::End(Box::new(Ending::by_cuts(termination, proposal))));
             }
             // A lower weight may have multipliers of cuts that rounding or noise hides less.
             Verdict::End(termination) if convex => {
@@ -175,7 +175,7 @@ fn look_closer(
         }
         let Some(next) = next else {
             if let Some(ending) = hidden {
-                return Break(Next::End(ending));
+                return Break(Next::End(Box::new(ending)));
             }
             return if convex { Break(last_trial(at, planes, worthwhile)) } else { Continue((evidence, proposal)) };
         };
@@ -186,5 +186,5 @@ fn look_closer(
 /// The trial point of the largest weight at which the predicted decrease is not small, or of the last one tried.
 fn last_trial(at: &mut Position<'_>, planes: &mut CuttingPlanes, worthwhile: Option<f64>) -> Next {
     at.state.weight = worthwhile.unwrap_or(at.state.weight);
-    planes.solve(at).map_or_else(|termination| Next::End(termination.into()), Next::Trial)
+    planes.solve(at).map_or_else(|termination| Next::End(Box::new(termination.into())), Next::Trial)
 }
