@@ -54,7 +54,7 @@ const MEASURED: [(&str, usize); 42] = [
     ("NesterovWorst_20", 123),
 ];
 /// Sum over the unconstrained problems that all nine peers solve.
-const COMMON_SUM: f64 = 411.0;
+const COMMON_SUM: f64 = 432.0;
 /// Geometric mean of the ratio to MPBNGC over the problems both solve.
 const MEAN: f64 = 0.679;
 
