@@ -93,12 +93,13 @@ impl Evidence {
             drop: state.seen.highest - state.center_value,
             distance: if of_center { 0.0 } else { active().map(|cut| distances.of(cut)).fold(0.0, f64::max) },
             radius: if of_center { 0.0 } else { radius(state, proposal) },
-            at_center: proposal.cut_error == 0.0 && (of_center || active().all(|cut| cut.id == state.center_id)),
+            at_center: of_center || proposal.cut_error == 0.0 && active().all(|cut| cut.id == state.center_id),
         }
     }
 
     /// Whether nothing but rounding is left: subgradients of the center itself and the normal cone cancel.
     pub(crate) fn is_exact(&self, rounding: f64) -> bool {
+        let rounding = rounding.max(10.0 * f64::EPSILON * self.drop);
         self.at_center && self.error <= rounding && self.coordinates.iter().all(Coordinate::cancels)
     }
 
