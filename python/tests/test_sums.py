@@ -47,7 +47,8 @@ def test_the_lasso(m):
         lambda x: (smooth(x)[0] + weight * np.abs(x).sum(), smooth(x)[1] + weight * np.sign(x)), np.zeros(20)
     ).nfev
     check = result.recheck()
-    assert check.agrees and check.composite_difference < 1e-9
+    # The cuts may confirm the end before the composite model does.
+    assert check.agrees and (check.composite_difference or 0.0) < 1e-9
     assert pickle.loads(pickle.dumps(result)).recheck() == check
 
 
