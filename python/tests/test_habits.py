@@ -199,7 +199,7 @@ def test_a_function_that_minimises_itself_without_end_is_refused():
 
 
 def test_results_hold_what_is_for_users_and_are_copied():
-    result = nonsmooth.minimize_composite("max", lambda x: (np.array([1 + x[0], 1 - x[0]]), np.array([[1.0], [-1.0]])), [3.0])
+    result = nonsmooth.minimize_composite("max", lambda x: (np.array([x[0] - 1, 5 - 2 * x[0]]), np.array([[1.0], [-2.0]])), [3.0])
     assert not any(name.startswith("_") for name in result.keys())
     assert "_" not in repr(result).replace("largest_violation", "").replace("start_value", "").split("message")[0]
     for again in (copy.copy(result), copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
