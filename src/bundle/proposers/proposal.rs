@@ -5,8 +5,8 @@ use crate::qp::{QpError, project};
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
 
-/// Share m_S of the predicted decrease that makes a step serious (\[SchrammZowe1992\], test SS). A share of 0.1 takes 2 % more evaluations in
-/// the mean over the moved starts.
+/// Share m_S of the predicted decrease that makes a step serious (\[SchrammZowe1992\], test SS). A share of 0.1 takes 6 % more evaluations in
+/// the mean over moved starts.
 pub(crate) const SERIOUS_FRACTION: f64 = 0.02;
 /// A trial point and what the model says about it.
 #[derive(Debug, Clone)]

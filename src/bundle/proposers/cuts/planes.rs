@@ -18,8 +18,7 @@ use crate::qp::QpSolution;
 use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
 
-/// Weights tried, each ten times the one before, until a subproblem counts as unsolvable. With one less, a subproblem near a pole may end a
-/// run; more have not been needed.
+/// Weights tried, each ten times the one before, until a subproblem counts as unsolvable.
 const MAX_TRIALS: usize = 4;
 
 /// The subproblem with the model of center and bundle.
