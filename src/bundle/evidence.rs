@@ -19,6 +19,9 @@ use crate::{Polyhedron, Vector};
 const SETTLED_SHARE: f64 = 1e-3;
 /// What cancels to this share of its terms is zero as far as the multipliers of a subproblem tell.
 const CANCELLED_SHARE: f64 = 1e-8;
+/// Subgradients of the center itself that cancel to this share of their terms prove it stationary: away from kinks and vertices nothing
+/// cancels, and at a wrong one shares are 0.03 and more.
+const EXACT_SHARE: f64 = 1e-5;
 /// Rounding of a sum, as a share of its terms.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
@@ -35,6 +38,8 @@ struct Coordinate {
     room: f64,
     /// How far the variable lies from zero or from its start.
     moved: f64,
+    /// How far from the center the variable has gone in the run.
+    farthest: f64,
 }
 
 impl Coordinate {
@@ -63,7 +68,7 @@ impl Coordinate {
 pub(crate) struct Evidence {
     coordinates: Vec<Coordinate>,
     /// ẽ.
-    error: f64,
+    pub error: f64,
     /// The decrease seen in the run, in units of Θ.
     pub drop: f64,
     /// Largest distance of an active cut, in units of Θ: how far the linearizations of the bundle can vary in between.
@@ -72,6 +77,8 @@ pub(crate) struct Evidence {
     pub radius: f64,
     /// Whether all active cuts are those of the center itself, so that no difference of values enters.
     at_center: bool,
+    /// Whether the outputs behind Θ and their Jacobian give it, without any difference of values.
+    pub of_outputs: bool,
 }
 
 impl Evidence {
@@ -83,24 +90,30 @@ impl Evidence {
             steepest: state.seen.steepest[i],
             room: (set.upper()[i] - state.center[i]).max(state.center[i] - set.lower()[i]),
             moved: state.reach(i),
+            farthest: state.seen.farthest(i, state.center[i]),
         };
-        let of_center = proposal.composite_aggregate.is_some();
+        let of_outputs = proposal.composite_aggregate.is_some();
         let active = || active_cuts(state, proposal);
         let distances = Distances::new(state);
         Self {
             coordinates: (0..sum.len()).map(coordinate).collect(),
             error: proposal.cut_error + proposal.slack_error,
             drop: state.seen.highest - state.center_value,
-            distance: if of_center { 0.0 } else { active().map(|cut| distances.of(cut)).fold(0.0, f64::max) },
-            radius: if of_center { 0.0 } else { radius(state, proposal) },
-            at_center: of_center || proposal.cut_error == 0.0 && active().all(|cut| cut.id == state.center_id),
+            distance: if of_outputs { 0.0 } else { active().map(|cut| distances.of(cut)).fold(0.0, f64::max) },
+            radius: if of_outputs { 0.0 } else { radius(state, proposal) },
+            of_outputs,
+            at_center: of_outputs || proposal.cut_error == 0.0 && active().all(|cut| cut.id == state.center_id),
         }
     }
 
     /// Whether nothing but rounding is left: subgradients of the center itself and the normal cone cancel.
-    pub(crate) fn is_exact(&self, rounding: f64) -> bool {
-        let rounding = rounding.max(10.0 * f64::EPSILON * self.drop);
-        self.at_center && self.error <= rounding && self.coordinates.iter().all(Coordinate::cancels)
+    pub(crate) fn is_exact(&self, small: f64) -> bool {
+        self.at_center && self.error <= small && self.cancels()
+    }
+
+    /// Whether the subgradients cancel along every variable.
+    pub(crate) fn cancels(&self) -> bool {
+        self.coordinates.iter().all(|i| i.slope <= EXACT_SHARE * i.terms)
     }
 
     /// ẽ + Σ |z̃_i| reach_i over the coordinates that do not cancel: what Θ, if it is convex, can still fall within reach and in the box. A variable
@@ -110,11 +123,16 @@ impl Evidence {
         self.error + self.coordinates.iter().map(falls).sum::<f64>()
     }
 
-    /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds, within reach in the others.
+    /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds. The others reach as far as the run has gone,
+    /// and coordinates of the aggregate subgradient that cancel count as zero along them.
     pub(crate) fn gap(&self) -> f64 {
-        let reach = |i: &Coordinate| i.moved.max(self.drop / i.steepest);
-        let longest = |i: &Coordinate| if i.room.is_finite() { i.room } else { reach(i) };
-        self.error + self.coordinates.iter().map(|i| i.fall(longest(i))).sum::<f64>()
+        let reach = |i: &Coordinate| i.moved.max(i.farthest).max(self.drop / i.steepest);
+        let falls = |i: &Coordinate| match i.room.is_finite() {
+            true => i.fall(i.room),
+            false if i.cancels() => 0.0,
+            false => i.fall(reach(i)),
+        };
+        self.error + self.coordinates.iter().map(falls).sum::<f64>()
     }
 
     /// The first variable along which the aggregate subgradient has not cancelled; a fall of at most `allowed` that the box proves counts as

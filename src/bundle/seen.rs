@@ -9,16 +9,24 @@ pub(crate) struct Seen {
     pub highest: f64,
     /// The largest |g_i| of every variable.
     pub steepest: Vector,
+    /// The least and the largest value of every variable.
+    pub range: (Vector, Vector),
 }
 
 impl Seen {
-    pub(crate) fn new(value: f64, subgradient: &Vector) -> Self {
-        Self { highest: value, steepest: subgradient.abs() }
+    pub(crate) fn new(point: &Vector, value: f64, subgradient: &Vector) -> Self {
+        Self { highest: value, steepest: subgradient.abs(), range: (point.clone(), point.clone()) }
     }
 
     /// Takes in an evaluation.
-    pub(crate) fn add(&mut self, value: f64, subgradient: &Vector) {
+    pub(crate) fn add(&mut self, point: &Vector, value: f64, subgradient: &Vector) {
         self.highest = self.highest.max(value);
+        self.range = (self.range.0.inf(point), self.range.1.sup(point));
         self.steepest.zip_apply(subgradient, |steepest, slope| *steepest = steepest.max(slope.abs()));
+    }
+
+    /// How far a variable has gone from a value.
+    pub(crate) fn farthest(&self, i: usize, from: f64) -> f64 {
+        (from - self.range.0[i]).max(self.range.1[i] - from)
     }
 }

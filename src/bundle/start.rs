@@ -141,7 +141,7 @@ fn first_evaluation(
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
     let point = start.clone();
-    let seen = Seen::new(value, &subgradient);
+    let seen = Seen::new(&start, value, &subgradient);
     let cut =
         Cut { id: 1, point, radius: 0.0, value, subgradient, error_bound, certified: false, multiplier: 0.0, idle: 0 };
     let mut state = State {

@@ -161,7 +161,7 @@ impl State {
         certified: bool,
     ) {
         let size = config.bundle_size.unwrap_or_else(|| (point.len() + EXTRA_CUTS).min(MAX_CUTS));
-        self.seen.add(evaluation.value, &evaluation.subgradient);
+        self.seen.add(point, evaluation.value, &evaluation.subgradient);
         self.bundle.make_room(size, self.center_id, &mut self.next_id, &self.norm);
         let cut = Cut {
             id: self.next_id,

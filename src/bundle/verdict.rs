@@ -21,7 +21,7 @@ const MAX_REMAINING_DECREASES: f64 = 100.0;
 
 /// The slopes next to a center may lead as far down, over the reach of the variables, as this share of Θ and of the decrease of the run: the
 /// curvature of Θ bounds what is left. Valleys that are flat over large distances leave more.
-const MAX_SLOPE_SHARE: f64 = 1e-2;
+const MAX_SLOPE_SHARE: f64 = 1e-3;
 
 /// What the evidence at a center amounts to.
 pub(crate) enum Verdict {
@@ -38,14 +38,17 @@ pub(crate) fn verdict(at: &Position<'_>, evidence: &Evidence) -> Verdict {
     let resolution = at.resolution();
     let convex = at.config.convexity == Convexity::Convex;
     let confirmed = || Termination::Stationary { radius: evidence.radius, gap: convex.then(|| evidence.gap()) };
-    if evidence.is_exact(resolution.rounding) {
-        return Verdict::End(confirmed());
+    if evidence.is_exact(resolution.tolerance()) {
+        return Verdict::End(match resolution.noise() {
+            Some(noise) if !evidence.of_outputs => Termination::NoiseLimit { estimate: noise },
+            _ => confirmed(),
+        });
     }
     let allowed = allowed(&resolution, convex);
     if evidence.undecided(allowed).is_some() {
         return Verdict::Open;
     }
-    let remaining = evidence.remaining();
+    let remaining = if convex { evidence.gap() } else { evidence.remaining() };
     if let Some(noise) = resolution.noise() {
         let hidden = !convex || remaining <= resolution.hidden_by_noise();
         return if hidden && remaining.is_finite() {
@@ -76,17 +79,23 @@ pub(crate) enum Near {
 }
 
 /// Judges the cuts next to a center by their subproblem at the weight of the run.
-pub(crate) fn near_verdict(at: &Position<'_>, evidence: &Evidence, proposal: &Proposal) -> Near {
-    let resolution = at.resolution();
+pub(crate) fn near_verdict(
+    at: &Position<'_>,
+    resolution: &Resolution,
+    evidence: &Evidence,
+    proposal: &Proposal,
+) -> Near {
     let remaining = evidence.remaining();
     let hidden = resolution.noise().is_some() || resolution.rounding > 10.0 * resolution.wanted;
     let least = evidence.drop.min(at.state.center_value.abs());
-    if hidden
+    if !hidden && evidence.cancels() && evidence.distance + evidence.error <= near(resolution) {
+        Near::Confirmed
+    } else if hidden
         || evidence.undecided(resolution.small()).is_some()
-        || remaining > MAX_SLOPE_SHARE * least + near(&resolution)
+        || remaining > MAX_SLOPE_SHARE * least + near(resolution)
     {
         Near::Open
-    } else if proposal.predicted_decrease > near(&resolution) || remaining > allowed(&resolution, false) {
+    } else if proposal.predicted_decrease > near(resolution) || remaining > allowed(resolution, false) {
         Near::Falls
     } else {
         Near::Confirmed
@@ -103,9 +112,9 @@ pub(crate) fn near(resolution: &Resolution) -> f64 {
     10.0 * resolution.small()
 }
 
-/// What may be left within reach, what rounding hides included. Where Θ is declared convex, it is a bound, and ten wanted decreases.
+/// What may be left within reach, what rounding hides included. Where Θ is declared convex, it is a bound, and five wanted decreases.
 pub(crate) fn allowed(resolution: &Resolution, convex: bool) -> f64 {
-    let decreases = if convex { 10.0 } else { MAX_REMAINING_DECREASES };
+    let decreases = if convex { 5.0 } else { MAX_REMAINING_DECREASES };
     decreases * resolution.wanted + resolution.rounding
 }
 

@@ -1,6 +1,7 @@
 //! What the optimizer says at the end of a run, held against what is true: the collection in all its variants.
 //!
-//! A word is false if it is *confirmed* above the gap and the function is convex or the point is not shown to be Clarke stationary,
+//! A word is false if it is *confirmed* above the gap and the function is convex (and the bound of a finite box that the word states does not
+//! hold) or the point is not shown to be Clarke stationary,
 //! *confirmed* where the oracle is noisy and says so, or a *noise limit* of a convex function above ten times the noise. A failure
 //! is false if a run ends by a failure of the oracle or of the subproblem above the gap although the oracle answers at the best point.
 
@@ -141,8 +142,18 @@ fn judge(record: &mut WordRecord, changed: &Changed<'_>, report: &Report) -> Res
         _ => Word::Limit,
     };
     let above = record.gap > GAP + rounding;
+    // In a finite box the bound is a proof; it is relative to the values as they are, shift included.
+    let excess = variant.factor * size * record.gap;
+    let proved = match report.termination {
+        Termination::Stationary { gap: Some(gap), .. } => {
+            excess <= gap && gap <= GAP * report.value.abs() && variant.wide
+        }
+        _ => false,
+    };
     record.false_confirmed = match record.word {
-        Word::Confirmed if !noisy => above && (record.convex || !is_clarke_stationary(changed, &report.solution)?),
+        Word::Confirmed if !noisy => {
+            above && !proved && (record.convex || !is_clarke_stationary(changed, &report.solution)?)
+        }
         Word::Confirmed => noisy,
         Word::Noise => noisy && record.convex && record.gap > NOISE_GAP * variant.noise,
         _ => false,

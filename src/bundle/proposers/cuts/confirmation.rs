@@ -16,6 +16,7 @@ use crate::bundle::kept_cuts::Bundle;
 use crate::bundle::proof::Ending;
 use crate::bundle::proposers::proposal::{Proposal, SERIOUS_FRACTION};
 use crate::bundle::proposers::proposer::Position;
+use crate::bundle::resolution::Resolution;
 use crate::bundle::verdict::{Near, confirmed, near, near_verdict};
 use crate::report::{Origin, Termination};
 
@@ -26,6 +27,8 @@ pub(super) struct Confirmation {
     points: Vec<Vector>,
     /// The cuts next to the center.
     near: Vec<Cut>,
+    /// What is small at the center, seen with all cuts.
+    resolution: Resolution,
     /// What all cuts say about the center.
     of: Proposal,
     /// The end of the run if the cuts next to the center do not suffice.
@@ -48,7 +51,8 @@ impl Confirmation {
     /// The confirmation of a center whose active cuts lie away from it.
     pub(super) fn new(at: &Position<'_>, of: Proposal, unconfirmed: Termination) -> Self {
         let state = &*at.state;
-        let (distances, near) = (Distances::new(state), near(&at.resolution()));
+        let resolution = at.resolution();
+        let (distances, near) = (Distances::new(state), near(&resolution));
         let cuts = active_cuts(state, &of).map(|cut| (distances.of(cut), cut));
         // A trial point often lies on a kink, where the last bit chooses the subgradient: a share of the way leads along the subgradient itself.
         let toward = |(_, cut): (f64, &Cut)| {
@@ -59,7 +63,16 @@ impl Confirmation {
         let points = cuts.filter(|(distance, _)| *distance > near).map(toward).collect();
         let kept = state.bundle.cuts().iter().filter(|cut| cut.id == state.center_id || distances.of(cut) <= near);
         let left = state.center.len() + 1;
-        Self { points, near: kept.cloned().collect(), of, unconfirmed, weight: state.weight, left, probed: false }
+        Self {
+            points,
+            near: kept.cloned().collect(),
+            resolution,
+            of,
+            unconfirmed,
+            weight: state.weight,
+            left,
+            probed: false,
+        }
     }
 
     /// The next point to evaluate, or the end of the run.
@@ -72,20 +85,20 @@ impl Confirmation {
         let all = self.look_near(at);
         let Some(proposal) = CuttingPlanes::default().try_solve(at).ok() else { return self.give_up(at, all) };
         let evidence = Evidence::new(at.state, at.set, &proposal);
-        match near_verdict(at, &evidence, &proposal) {
+        match near_verdict(at, &self.resolution, &evidence, &proposal) {
             Near::Confirmed => ended(Ending::by_cuts(confirmed(&evidence), proposal)),
             Near::Falls if self.probed => ended(Ending::by_cuts(confirmed(&evidence), proposal)),
             _ if self.left == 0 => self.give_up(at, all),
             Near::Falls => {
                 self.probed = true;
-                let promise = 10.0 * at.resolution().small();
+                let promise = 10.0 * self.resolution.small();
                 let point = &at.state.center + &proposal.step * (promise / proposal.predicted_decrease);
                 at.state.bundle = all;
                 self.evaluation(at, point)
             }
             Near::Open => {
                 let length = Distances::new(at.state).length(&proposal.step);
-                let share = (0.5 * near(&at.resolution()) / length).min(1.0);
+                let share = (0.5 * near(&self.resolution) / length).min(1.0);
                 let point = &at.state.center + &proposal.step * share;
                 at.state.bundle = all;
                 self.evaluation(at, point)
@@ -120,7 +133,7 @@ impl Confirmation {
 
     /// The evaluation of a point, which counts as clearly lower if it brings a small decrease.
     fn trial(&mut self, at: &Position<'_>, point: Vector) -> Option<Proposal> {
-        let predicted_decrease = at.resolution().small() / SERIOUS_FRACTION;
+        let predicted_decrease = self.resolution.small() / SERIOUS_FRACTION;
         let proposal = self.of.moved_to(point, at.set, at.state).ok()?;
         let new = !proposal.is_too_short(&at.state.center) && !at.state.bundle.knows(&proposal.trial, f64::INFINITY);
         self.left -= usize::from(new);
