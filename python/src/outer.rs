@@ -118,6 +118,10 @@ impl OuterFunction for Outer {
     fn epigraph(&self) -> Option<Epigraph> {
         self.inner().epigraph()
     }
+
+    fn is_homogeneous(&self) -> bool {
+        self.inner().is_homogeneous()
+    }
 }
 
 impl PythonOuter {

@@ -2,15 +2,16 @@
 //!
 //! ```text
 //! reach_i = max(|x̂_i|, |x̂_i − x⁰_i|)        size_i = max(|x̂_i|, 1e-8 reach_i)
-//! variation = min( highest − Θ(x̂),  max( median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂,
-//!                                        Σ_k size_k Σ_i |w_i| |G_ik| of a composite Θ ) )
+//! variation = max( min( highest − Θ(x̂),  median of Σ_i |g_i| size_i over the cuts within ‖size‖ of x̂ ),
+//!                  Σ_k size_k Σ_i |w_i| |G_ik| of a composite Θ )
 //!             then times 10 variation/|Θ(x̂)|, clamped to [0.02, 1]
 //! scale     = |Θ(x̂)| clamped to [1e-6 least, variation], or to [1e-7 least, variation] for a Θ declared convex
 //! least     = min( highest − Θ(x̂),  max( Σ_j λ_j Σ_i |g_ji| reach_i,  h(c ± |G| reach) − h(c) of a composite Θ ) )
 //! ```
 //! Here `highest` is the highest value at the start and in the bundle. Decreases and sums do not change if Θ is shifted, and the sums
 //! do not depend on the units of the variables. Cuts farther away than the variables are large tell nothing about the
-//! values near x̂. A run that has not gone anywhere has seen no variation: nothing is small yet.
+//! values near x̂. A run that has not gone anywhere has seen no variation, unless
+//! outputs tell it: nothing is small yet.
 
 use super::config::{BundleTrustConfig, Convexity};
 use super::kept_cuts::Spread;
@@ -65,7 +66,7 @@ impl State {
             let highest = self.bundle.cuts().iter().map(|cut| cut.value).fold(self.start_value, f64::max);
             let drop = (highest - self.center_value).max(0.0);
             let outputs = self.output_variation();
-            let mut variation = drop.min(self.linear_variation().max(outputs.size));
+            let mut variation = drop.min(self.linear_variation()).max(outputs.size);
             let size = self.center_value.abs();
             if size > 0.0 {
                 variation *= (MAX_VALUE_SHARE * variation / size).clamp(SHIFTED_SHARE, 1.0);
