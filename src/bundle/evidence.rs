@@ -116,6 +116,11 @@ impl Evidence {
         self.coordinates.iter().all(|i| i.slope <= EXACT_SHARE * i.terms)
     }
 
+    /// What cancels in the aggregate subgradient, times how far the variables have moved.
+    pub(crate) fn cancelling(&self) -> f64 {
+        self.coordinates.iter().map(|i| i.terms * i.moved).sum()
+    }
+
     /// ẽ + Σ |z̃_i| reach_i over the coordinates that do not cancel: what Θ, if it is convex, can still fall within reach and in the box. A variable
     /// reaches as far as it has moved, or as far as the slopes along it would need for the decrease of the run.
     pub(crate) fn remaining(&self) -> f64 {

@@ -4,8 +4,8 @@ use super::config::{AccuracyPolicy, BundleTrustConfig};
 use super::cut::Cut;
 use super::state::State;
 
-/// Noise below this share of the wanted decrease does not matter. A larger share calls small noise by its name and ends runs earlier.
-const NEGLIGIBLE_NOISE: f64 = 1e-3;
+/// Noise, or an error, below this share of the wanted decrease does not matter. A larger share calls small noise by its name and ends runs earlier.
+const NEGLIGIBLE_SHARE: f64 = 1e-3;
 /// Noise explains decreases up to this many times the noise of two values.
 const MAX_NOISY_DECREASES: f64 = 4.0;
 
@@ -34,9 +34,14 @@ impl Resolution {
         self.wanted + self.rounding
     }
 
+    /// What is nothing beside the wanted decrease, or hidden by rounding.
+    pub(crate) fn negligible(&self) -> f64 {
+        NEGLIGIBLE_SHARE * self.wanted + self.rounding
+    }
+
     /// Noise of the oracle; none where it is negligible beside the wanted decrease.
     pub(crate) fn noise(&self) -> Option<f64> {
-        (self.noise_level > NEGLIGIBLE_NOISE * self.wanted).then_some(self.noise_level)
+        (self.noise_level > NEGLIGIBLE_SHARE * self.wanted).then_some(self.noise_level)
     }
 
     /// Predicted decrease that counts as small: the noise where it is not negligible, otherwise the tolerance.

@@ -23,6 +23,10 @@ const MAX_REMAINING_DECREASES: f64 = 100.0;
 /// curvature of Θ bounds what is left. Valleys that are flat over large distances leave more.
 const MAX_SLOPE_SHARE: f64 = 1e-3;
 
+/// Where subgradients cancel next to a center, rounding may be this share of what cancels within reach: curved valleys whose curvature rounding
+/// hides look like kinks from 1e-9 on.
+const MAX_ROUNDING_SHARE: f64 = 1e-11;
+
 /// What the evidence at a center amounts to.
 pub(crate) enum Verdict {
     /// The run may end.
@@ -88,7 +92,12 @@ pub(crate) fn near_verdict(
     let remaining = evidence.remaining();
     let hidden = resolution.noise().is_some() || resolution.rounding > 10.0 * resolution.wanted;
     let least = evidence.drop.min(at.state.center_value.abs());
-    if !hidden && evidence.cancels() && evidence.distance + evidence.error <= near(resolution) {
+    let resolved = resolution.noise().is_none() && resolution.rounding <= MAX_ROUNDING_SHARE * evidence.cancelling();
+    if resolved
+        && evidence.cancels()
+        && evidence.error <= resolution.negligible()
+        && evidence.distance <= near(resolution)
+    {
         Near::Confirmed
     } else if hidden
         || evidence.undecided(resolution.small()).is_some()

@@ -9,6 +9,7 @@
 //! confirmation.
 
 use super::planes::CuttingPlanes;
+use super::stationarity::MAX_DECREASES;
 use crate::Vector;
 use crate::bundle::cut::Cut;
 use crate::bundle::evidence::{Distances, Evidence, active_cuts};
@@ -83,9 +84,9 @@ impl Confirmation {
             }
         }
         let all = self.look_near(at);
-        let Some(proposal) = CuttingPlanes::default().try_solve(at).ok() else { return self.give_up(at, all) };
-        let evidence = Evidence::new(at.state, at.set, &proposal);
-        match near_verdict(at, &self.resolution, &evidence, &proposal) {
+        let Some((found, evidence, proposal)) = self.ask_near(at) else { return self.give_up(at, all) };
+        at.state.weight = self.weight;
+        match found {
             Near::Confirmed => ended(Ending::by_cuts(confirmed(&evidence), proposal)),
             Near::Falls if self.probed => ended(Ending::by_cuts(confirmed(&evidence), proposal)),
             _ if self.left == 0 => self.give_up(at, all),
@@ -102,6 +103,26 @@ impl Confirmation {
                 let point = &at.state.center + &proposal.step * share;
                 at.state.bundle = all;
                 self.evaluation(at, point)
+            }
+        }
+    }
+
+    /// What the cuts next to the center say at the largest weight that confirms, or at which their promise is not small. A large weight asks for
+    /// small errors, a small one for subgradients that cancel.
+    fn ask_near(&self, at: &mut Position<'_>) -> Option<(Near, Evidence, Proposal)> {
+        let mut planes = CuttingPlanes::default();
+        let mut proposal = planes.try_solve(at).ok()?;
+        let mut decreases = 0;
+        loop {
+            let evidence = Evidence::new(at.state, at.set, &proposal);
+            let found = near_verdict(at, &self.resolution, &evidence, &proposal);
+            let done = matches!(found, Near::Confirmed)
+                || proposal.predicted_decrease > near(&self.resolution)
+                || decreases == MAX_DECREASES;
+            decreases += 1;
+            match planes.lower_weight(at).filter(|_| !done) {
+                Some(lower) => proposal = lower,
+                None => return Some((found, evidence, proposal)),
             }
         }
     }
