@@ -8,8 +8,7 @@
 //! evaluation more than there are variables is spent on pieces next to it. A point that is clearly lower becomes the center and ends the
 //! confirmation.
 
-use super::planes::CuttingPlanes;
-use super::stationarity::MAX_DECREASES;
+use super::planes::{CuttingPlanes, MAX_DECREASES};
 use crate::Vector;
 use crate::bundle::cut::Cut;
 use crate::bundle::evidence::{Distances, Evidence, active_cuts};

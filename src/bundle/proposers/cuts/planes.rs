@@ -18,6 +18,9 @@ use crate::qp::QpSolution;
 use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
 
+/// Tenfold decreases of the weight, without evaluations, where the predicted decrease is small: a restart may raise the weight by 1e12, and
+/// units of variables may differ by as much.
+pub(super) const MAX_DECREASES: usize = 16;
 /// Weights tried, each ten times the one before, until a subproblem counts as unsolvable.
 const MAX_TRIALS: usize = 4;
 

@@ -9,7 +9,7 @@
 //! cuts bound Θ(x̂) − Θ(y) within reach, wherever they lie.
 
 use super::confirmation::{Confirmation, Confirmed};
-use super::planes::CuttingPlanes;
+use super::planes::{CuttingPlanes, MAX_DECREASES};
 use crate::bundle::config::Convexity;
 use crate::bundle::demand;
 use crate::bundle::evidence::{Evidence, active_cuts};
@@ -21,9 +21,6 @@ use crate::bundle::verdict::{Verdict, allowed, unconfirmed, verdict};
 use crate::report::Origin;
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// Tenfold decreases of the weight, without evaluations, where the predicted decrease is small: a restart may raise the weight by 1e12, and
-/// units of variables may differ by as much.
-pub(super) const MAX_DECREASES: usize = 16;
 /// The weight is lowered until the step has this relative length. Ten times as short steps leave ten times as much within reach.
 const LEAST_STEP_LENGTH: f64 = 1e-2;
 /// Restarts without progress between them once Θ is known to be nonconvex; one before.
