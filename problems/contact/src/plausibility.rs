@@ -26,6 +26,8 @@ const MIN_CLOSED_NODES: usize = 6;
 const SAMPLES: usize = 8;
 /// Slopes below this share of the steepest one are rounding of a flat place.
 const FLAT: f64 = 1e-9;
+/// Pressures that differ by less than this share are equal: the residual of a state moves them.
+const UNIFORM: f64 = 1e-6;
 /// Estimated contraction of the slip bounds from which a state may not be unique.
 const MAX_CONTRACTION: f64 = 1.0;
 
@@ -181,24 +183,31 @@ fn zone(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Warnin
     let grid = &problem.grid;
     let closed = forces.status.iter().filter(|status| **status != ContactStatus::Open).count();
     if closed == 0 {
-        return;
+        let text = "no node is closed: the bodies do not touch, and every pressure is zero".to_owned();
+        return found.push(Warning { code: "no-contact", text });
     }
     warn(found, closed < MIN_CLOSED_NODES, "few-closed-nodes", || {
         format!("{closed} nodes are closed: the contact zone is not resolved (at least {MIN_CLOSED_NODES} needed)")
     });
     let pressure = |(i, j): (usize, usize)| forces.normal[grid.column(i, j)] / grid.tributary_area(i, j);
+    let [n1, n2] = [grid.cells[0], grid.cells[1]];
+    let on_edge = |(i, j): (usize, usize)| {
+        // Where supports hold the nodes of a face against leaving it, the face is a plane of symmetry and no edge.
+        let free = |axis: usize| !problem.scene.lower.held(grid, [i, j, grid.cells[2]])[axis];
+        ((i == 0 || i == n1) && free(0)) || ((j == 0 || j == n2) && free(1))
+    };
+    let beside_open = |(i, j): (usize, usize)| {
+        let neighbours = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
+        let mut inside = neighbours.into_iter().filter(|&(i, j)| i <= n1 && j <= n2);
+        inside.any(|(i, j)| forces.status[grid.column(i, j)] == ContactStatus::Open)
+    };
     let peak = grid.columns().max_by(|a, b| pressure(*a).total_cmp(&pressure(*b)));
     let Some((i, j)) = peak else { return };
-    let [n1, n2] = [grid.cells[0], grid.cells[1]];
-    // Where supports hold the nodes of a face against leaving it, the face is a plane of symmetry and no edge.
-    let free = |axis: usize| !problem.scene.lower.held(grid, [i, j, grid.cells[2]])[axis];
-    let on_edge = ((i == 0 || i == n1) && free(0)) || ((j == 0 || j == n2) && free(1));
-    let neighbours = [(i.wrapping_sub(1), j), (i + 1, j), (i, j.wrapping_sub(1)), (i, j + 1)];
-    let inside = neighbours.into_iter().filter(|&(i, j)| i <= n1 && j <= n2);
-    let beside_open = inside.into_iter().any(|(i, j)| forces.status[grid.column(i, j)] == ContactStatus::Open);
-    warn(found, on_edge || beside_open, "peak-at-edge", || {
+    let inner = grid.columns().filter(|node| !on_edge(*node) && !beside_open(*node)).map(pressure).fold(0.0, f64::max);
+    let at_edge = pressure((i, j)) > (1.0 + UNIFORM) * inner;
+    warn(found, at_edge, "peak-at-edge", || {
         let [x1, x2] = grid.position(i, j);
-        let where_it_is = if on_edge { "edge of the body" } else { "edge of the contact zone" };
+        let where_it_is = if on_edge((i, j)) { "edge of the body" } else { "edge of the contact zone" };
         format!(
             "the pressure peaks at the {where_it_is}, at ({x1:.2}, {x2:.2}) mm: it may grow with every refinement of the mesh"
         )

@@ -100,3 +100,49 @@ fn a_used_folder_is_renamed_and_never_answers_for_another_scene() {
     assert!(scratch.path().join("run.2/with_friction").exists() && !folder.join("with_friction").exists());
     json(&["--resume", path, "--max-evaluations", "3", "--json"]);
 }
+
+#[test]
+fn a_state_without_contact_says_so() {
+    let scratch = kit::scratch();
+    let file = scratch.path().join("nocontact.toml");
+    std::fs::write(&file, NEVER_TOUCHES).unwrap();
+    let state = kit::json(env!("CARGO_BIN_EXE_contact3d"), &[kit::text(&file), "evaluate", "--json"]);
+    assert!(state["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "no-contact"), "{state}");
+}
+
+#[test]
+fn objectives_that_reach_zero_are_compared_in_words() {
+    let scratch = kit::scratch();
+    let file = scratch.path().join("nocontact.toml");
+    std::fs::write(&file, NEVER_TOUCHES).unwrap();
+    let contact = env!("CARGO_BIN_EXE_contact3d");
+    let compared = kit::json(contact, &[kit::text(&file), "compare", "--max-evaluations", "5", "--json"]);
+    assert!(compared["loss_without_friction_in_the_model"].is_null());
+    let first = compared["conclusion"][0].as_str().unwrap();
+    assert!(first.contains("zero up to rounding") && !first.contains("times"), "{first}");
+}
+
+/// A body that does not reach its counterpart: both objectives are zero from the start on.
+const NEVER_TOUCHES: &str = r#"
+size = [20.0, 20.0]
+friction = 0.3
+[mesh]
+bricks = [4, 4, 4]
+[lower]
+material = { young_modulus = 2.1e5, poisson_ratio = 0.3 }
+[[lower.supports]]
+face = "bottom"
+held = ["u1", "u2", "u3"]
+[[lower.loads]]
+face = "x1-max"
+traction = [0.0, 0.0, -1.0]
+[counter_surface]
+form = "plane"
+height = 21.0
+[surface]
+start = { form = "plane", height = 20.0 }
+[admissible]
+minimum_height = 15.0
+slope = 1.0
+volume = [1000.0, 9000.0]
+"#;

@@ -11,6 +11,8 @@ use std::fmt;
 const MAX_NEGLIGIBLE_LOSS: f64 = 0.02;
 /// Relative difference of the objective up to which two shapes count as equally good.
 const MAX_EQUAL_DIFFERENCE: f64 = 1e-4;
+/// Objectives below this share of the start's are zero up to rounding.
+const ZERO: f64 = 1e-12;
 
 /// Two optimizations, and their shapes solved in both models. The pairs hold the case with friction first, then that without.
 pub struct Comparison<'a> {
@@ -42,7 +44,7 @@ pub struct Row {
 struct ComparisonJson<'a> {
     friction: f64,
     shapes: [Row; 3],
-    loss_without_friction_in_the_model: f64,
+    loss_without_friction_in_the_model: Option<f64>,
     surface_difference: SurfaceDifference,
     evaluations: [usize; 2],
     terminations: [Ending<'a>; 2],
@@ -86,9 +88,16 @@ impl Comparison<'_> {
         ]
     }
 
-    /// Θ of the shape found without friction over that of the shape found with friction, both with friction.
-    pub fn loss(&self) -> f64 {
-        self.crossed[0].value / self.own[0][1].value
+    /// Θ of the shape found without friction over that of the shape found with friction, both with friction; none where the latter is zero up
+    /// to rounding.
+    pub fn loss(&self) -> Option<f64> {
+        let [with, without] = self.with_friction();
+        (with > ZERO * self.own[0][0].value).then_some(without / with)
+    }
+
+    /// Θ with friction of the shape found with friction, and of the shape found without.
+    fn with_friction(&self) -> [f64; 2] {
+        [self.own[0][1].value, self.crossed[0].value]
     }
 
     /// The distance of the two optimized surfaces over the nodes of the contact boundary.
@@ -102,31 +111,8 @@ impl Comparison<'_> {
 
     /// The conclusion: sentences that the numbers decide.
     pub fn conclusion(&self) -> Vec<String> {
-        let (loss, difference) = (self.loss(), self.surface_difference());
-        let peaks = [self.own[0][1].peak_pressure, self.crossed[0].peak_pressure];
-        let mut sentences = vec![format!(
-            "With friction {}, the shape optimized without friction has {loss:.4} times the objective of the shape optimized \
-             with friction (peak pressure {:.1} against {:.1} MPa).",
-            self.friction(),
-            peaks[1],
-            peaks[0]
-        )];
-        sentences.push(if !loss.is_finite() || loss <= 0.0 {
-            "The objectives have no ratio to compare.".into()
-        } else if (loss - 1.0).abs() <= MAX_EQUAL_DIFFERENCE {
-            "In these runs, both shapes are as good as each other with friction.".into()
-        } else if loss > 1.0 + MAX_NEGLIGIBLE_LOSS {
-            format!("In these runs, leaving friction out of the optimization costs {:.1} %: it is no approximation of the optimum with \
-                 friction.", 100.0 * (loss - 1.0))
-        } else if loss >= 1.0 {
-            format!("In these runs, leaving friction out of the optimization costs only {:.2} %.", 100.0 * (loss - 1.0))
-        } else {
-            format!(
-                "The run with friction stopped {:.2} % above the other shape: a better shape than its own exists, and it may be \
-                 continued from there (--start-controls).",
-                100.0 * (1.0 / loss - 1.0)
-            )
-        });
+        let difference = self.surface_difference();
+        let mut sentences = self.loss().map_or_else(|| vec![self.vanished()], |loss| self.compared(loss));
         sentences.push(format!(
             "The two surfaces differ by {:.3} mm (root mean square over the contact nodes, without {:.3} mm in the mean height); \
              the surface optimized with friction departs from flat by {:.3} mm.",
@@ -144,6 +130,50 @@ impl Comparison<'_> {
             }
         }
         sentences
+    }
+
+    /// The sentence where the objective of the shape found with friction is zero up to rounding.
+    fn vanished(&self) -> String {
+        let least = ZERO * self.own[0][0].value;
+        let (friction, without) = (self.friction(), self.with_friction()[1]);
+        let rest = if without > least {
+            format!("the shape optimized without friction has {without:.4e}")
+        } else {
+            "so is that of the shape optimized without friction".into()
+        };
+        format!(
+            "With friction {friction}, the objective of the shape optimized with friction is zero up to rounding; {rest}."
+        )
+    }
+
+    /// The sentences on the ratio of the objectives of both shapes.
+    fn compared(&self, loss: f64) -> Vec<String> {
+        let peaks = [self.own[0][1].peak_pressure, self.crossed[0].peak_pressure];
+        let ratio = format!(
+            "With friction {}, the shape optimized without friction has {loss:.4} times the objective of the shape optimized \
+             with friction (peak pressure {:.1} against {:.1} MPa).",
+            self.friction(),
+            peaks[1],
+            peaks[0]
+        );
+        let meaning = if (loss - 1.0).abs() <= MAX_EQUAL_DIFFERENCE {
+            "In these runs, both shapes are as good as each other with friction.".into()
+        } else if loss > 1.0 + MAX_NEGLIGIBLE_LOSS {
+            format!(
+                "In these runs, leaving friction out of the optimization costs {:.1} %: it is no approximation of the optimum with \
+                 friction.",
+                100.0 * (loss - 1.0)
+            )
+        } else if loss >= 1.0 {
+            format!("In these runs, leaving friction out of the optimization costs only {:.2} %.", 100.0 * (loss - 1.0))
+        } else {
+            format!(
+                "The run with friction stopped {:.2} % above the other shape: a better shape than its own exists, and it may be \
+                 continued from there (--start-controls).",
+                100.0 * (1.0 / loss - 1.0)
+            )
+        };
+        vec![ratio, meaning]
     }
 
     /// The JSON, with what several processes have used.
