@@ -57,7 +57,8 @@ def test_a_function_of_the_user_as_outer():
 
     own = nonsmooth.minimize_composite(largest, curve, [2.0, 2.0])
     named = nonsmooth.minimize_composite("max", curve, [2.0, 2.0])
-    assert same_bits(own.x, named.x) and own.nfev == named.nfev and calls
+    # Cuts of the named function pass through zero, since it is homogeneous; of the user's nothing of this kind is known: rounding differs.
+    assert np.abs(own.x - named.x).max() < 1e-9 and own.nfev == named.nfev and calls
     assert own.recheck().agrees
 
 
