@@ -52,7 +52,8 @@ impl Coordinate {
         self.largest_slope() <= SETTLED_SHARE * self.terms.max(self.steepest)
     }
 
-    fn cancels(&self) -> bool {
+    /// Whether the slope is zero as far as the multipliers tell.
+    fn is_zero(&self) -> bool {
         self.slope <= CANCELLED_SHARE * self.terms
     }
 
@@ -124,18 +125,22 @@ impl Evidence {
     /// ẽ + Σ |z̃_i| reach_i over the coordinates that do not cancel: what Θ, if it is convex, can still fall within reach and in the box. A variable
     /// reaches as far as it has moved, or as far as the slopes along it would need for the decrease of the run.
     pub(crate) fn remaining(&self) -> f64 {
-        let falls = |i: &Coordinate| if i.cancels() { 0.0 } else { i.fall(i.moved.max(self.drop / i.steepest)) };
+        let falls = |i: &Coordinate| if i.is_zero() { 0.0 } else { i.fall(i.moved.max(self.drop / i.steepest)) };
         self.error + self.coordinates.iter().map(falls).sum::<f64>()
     }
 
     /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds. The others reach as far as the run has gone,
-    /// and coordinates of the aggregate subgradient that cancel count as zero along them.
+    /// and what cancels to 1e-8 along them counts as zero.
     pub(crate) fn gap(&self) -> f64 {
         let reach = |i: &Coordinate| i.moved.max(i.farthest).max(self.drop / i.steepest);
-        let falls = |i: &Coordinate| match i.room.is_finite() {
-            true => i.fall(i.room),
-            false if i.cancels() => 0.0,
-            false => i.fall(reach(i)),
+        let falls = |i: &Coordinate| {
+            if i.room.is_finite() {
+                i.fall(i.room)
+            } else if i.is_zero() {
+                0.0
+            } else {
+                i.fall(reach(i))
+            }
         };
         self.error + self.coordinates.iter().map(falls).sum::<f64>()
     }

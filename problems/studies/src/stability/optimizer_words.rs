@@ -1,9 +1,9 @@
 //! What the optimizer says at the end of a run, held against what is true: the collection in all its variants.
 //!
-//! A word is false if it is *confirmed* above the gap and the function is convex (and the bound of a finite box that the word states does not
-//! hold) or the point is not shown to be Clarke stationary,
-//! *confirmed* where the oracle is noisy and says so, or a *noise limit* of a convex function above ten times the noise. A failure
-//! is false if a run ends by a failure of the oracle or of the subproblem above the gap although the oracle answers at the best point.
+//! A termination is false if it is *confirmed* above the gap, unless the function is not convex and true gradients prove Clarke
+//! stationarity, or it is convex and the bound stated for a finite box holds; if it is *confirmed* where the oracle is noisy and says
+//! so; or if it is a *noise limit* of a convex function above ten times the noise. A failure is false if a run ends by a failure of
+//! the oracle or of the subproblem above the gap although the oracle answers at the best point.
 
 use crate::markdown::table;
 use crate::stability::optimizer_stationarity::is_clarke_stationary;
