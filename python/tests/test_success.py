@@ -8,7 +8,7 @@ import pytest
 import nonsmooth
 
 
-@pytest.mark.parametrize("tells, least", [(False, 13), (True, 30)])
+@pytest.mark.parametrize("tells, least", [(False, 22), (True, 34)])
 def test_success_is_never_claimed_wrongly(collection, tells, least):
     reasons, solved = collections.Counter(), 0
     for name, problem in collection.items():
@@ -26,5 +26,5 @@ def test_success_is_never_claimed_wrongly(collection, tells, least):
         assert reached or not result.success, name
         # An optimum that is not proved is called stationary, but no success.
         assert result.success == (result.reason == "stationary")
-    # One of 44 is not solved. The last bits, and with them the processor, decide a problem or two.
+    # Two of 44 are not solved. The last bits, and with them the processor, decide a problem or two.
     assert solved >= 42 and reasons["stationary"] >= least - 2, (solved, reasons)
