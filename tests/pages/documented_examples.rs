@@ -11,7 +11,7 @@ const AROUND_THE_BUILD: [&str; 7] = [
     "cargo fetch --locked",
     "cargo build --release --locked",
     "cargo build --release --locked --offline",
-    "cargo package -p nonsmooth -p contact -p exchange -p figures -p scene_file -p problems --locked",
+    "cargo package -p nonsmooth -p nonsmooth-contact -p nonsmooth-exchange -p nonsmooth-figures -p nonsmooth-scene-file -p problems --locked",
     "bash problems/mpi/build.sh",
     "cargo doc --no-deps --locked --open",
 ];
@@ -102,7 +102,7 @@ fn is_a_test_that_exists(root: &Path, command: &pages::Command) -> bool {
         Some("problems") => root.join("problems"),
         None | Some("nonsmooth") => root.to_path_buf(),
         Some("studies") => root.join("problems/studies"),
-        Some("contact") => root.join("problems/contact"),
+        Some("nonsmooth-contact") => root.join("problems/contact"),
         Some(_) => return false,
     };
     let tests = folder.join("tests");
