@@ -17,6 +17,8 @@ pub struct Polyhedron {
     rows: Matrix,
     row_lower: Vector,
     row_upper: Vector,
+    /// Number of the last rows that are linearizations at a center: a violation of them is not taken for rounding of the center.
+    tangents: usize,
 }
 
 /// A polyhedron in a file: open sides are `null`, because text formats have no infinity.
@@ -71,6 +73,7 @@ impl Polyhedron {
             rows: Matrix::zeros(0, dimension),
             row_lower: Vector::zeros(0),
             row_upper: Vector::zeros(0),
+            tangents: 0,
         }
     }
 
@@ -100,6 +103,22 @@ impl Polyhedron {
         self.row_lower = stack(&self.row_lower, row_lower);
         self.row_upper = stack(&self.row_upper, row_upper);
         Ok(self)
+    }
+
+    /// Adds rows that are linearizations at a center.
+    pub(crate) fn with_tangents(mut self, rows: &Matrix, lower: &Vector, upper: &Vector) -> Self {
+        let old = self.rows.nrows();
+        self.rows = self.rows.resize_vertically(old + rows.nrows(), 0.0);
+        self.rows.rows_mut(old, rows.nrows()).copy_from(rows);
+        self.row_lower = stack(&self.row_lower, lower);
+        self.row_upper = stack(&self.row_upper, upper);
+        self.tangents = rows.nrows();
+        self
+    }
+
+    /// Number of the last rows that are linearizations at a center.
+    pub(crate) fn tangents(&self) -> usize {
+        self.tangents
     }
 
     /// Number of variables.

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::composite::{LinearizationRequest, Linearized, OuterFunction};
-use crate::{Accuracy, OracleError, Vector};
+use crate::{Accuracy, ConstraintEvaluation, ConstraintKind, OracleError, Vector};
 
 /// One question to a [`NonsmoothObjective`].
 #[derive(Debug)]
@@ -44,6 +44,8 @@ pub struct Evaluation<W> {
     pub warm_start: W,
     /// Outputs and Jacobian of a composite objective, or why there are none.
     pub linearization: Linearized,
+    /// Values and subgradients of the nonlinear constraints; none for an objective without any.
+    pub constraints: Option<ConstraintEvaluation>,
     /// Work that the evaluation took, in a unit of the oracle's own; 0 where none is counted. It goes into the records of a run.
     pub work: usize,
 }
@@ -51,7 +53,7 @@ pub struct Evaluation<W> {
 impl<W> Evaluation<W> {
     /// A value and a subgradient that are exact up to rounding.
     pub fn exact(value: f64, subgradient: Vector, warm_start: W) -> Self {
-        Self { value, subgradient, error_bound: 0.0, warm_start, linearization: Linearized::NotAsked, work: 0 }
+        Self { value, subgradient, error_bound: 0.0, warm_start, linearization: Linearized::NotAsked, constraints: None, work: 0 }
     }
 }
 
@@ -94,7 +96,12 @@ pub trait NonsmoothObjective {
         None
     }
 
-    /// Θ and one subgradient at `request.point`.
+    /// The kinds of the nonlinear constraints, one per constraint; none (the default) for an objective without any.
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        &[]
+    }
+
+    /// Θ and one subgradient at `request.point`, with the values and subgradients of the constraints.
     ///
     /// # Errors
     /// An [`OracleError`] when there is no answer; the engine then shortens its step.
@@ -110,6 +117,10 @@ impl<O: NonsmoothObjective + ?Sized> NonsmoothObjective for &O {
 
     fn outer(&self) -> Option<&dyn OuterFunction> {
         (**self).outer()
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        (**self).constraint_kinds()
     }
 
     fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {

@@ -96,14 +96,25 @@ impl Evidence {
         let of_outputs = proposal.composite_aggregate.is_some();
         let active = || active_cuts(state, proposal);
         let distances = Distances::new(state);
+        let far = |point: &Vector| *point != state.center;
+        let tangents = || proposal.active_tangents().map(|(tangent, _)| &*tangent.point).filter(|point| far(point));
+        let of_tangents = tangents().map(|point| distances.length(&(point - &state.center))).fold(0.0, f64::max);
         Self {
             coordinates: (0..sum.len()).map(coordinate).collect(),
             error: proposal.cut_error + proposal.slack_error,
-            drop: state.seen.highest - state.center_value,
-            distance: if of_outputs { 0.0 } else { active().map(|cut| distances.of(cut)).fold(0.0, f64::max) },
-            radius: if of_outputs { 0.0 } else { radius(state, proposal) },
+            drop: match &state.constraints {
+                Some(constraints) => constraints.merit_drop(),
+                None => state.seen.highest - state.center_value,
+            },
+            distance: if of_outputs {
+                of_tangents
+            } else {
+                active().map(|cut| distances.of(cut)).fold(of_tangents, f64::max)
+            },
+            radius: radius(state, proposal, of_outputs),
             of_outputs,
-            at_center: of_outputs || proposal.cut_error == 0.0 && active().all(|cut| cut.id == state.center_id),
+            at_center: tangents().next().is_none()
+                && (of_outputs || proposal.cut_error == 0.0 && active().all(|cut| cut.id == state.center_id)),
         }
     }
 
@@ -194,9 +205,11 @@ impl<'s> Distances<'s> {
 }
 
 /// The radius of the active cuts, relative to the size of the variables in the run.
-fn radius(state: &State, proposal: &Proposal) -> f64 {
-    let farthest = active_cuts(state, proposal).map(|cut| cut.farthest_from(&state.center, &state.norm));
-    let farthest = farthest.fold(0.0, f64::max);
+fn radius(state: &State, proposal: &Proposal, of_outputs: bool) -> f64 {
+    let tangents = proposal.active_tangents().map(|(tangent, _)| state.norm.length(&(&*tangent.point - &state.center)));
+    let of_tangents = tangents.fold(0.0, f64::max);
+    let cuts = active_cuts(state, proposal).filter(|_| !of_outputs);
+    let farthest = cuts.map(|cut| cut.farthest_from(&state.center, &state.norm)).fold(of_tangents, f64::max);
     if farthest > 0.0 { farthest / state.length_scale().max(f64::MIN_POSITIVE) } else { 0.0 }
 }
 

@@ -15,6 +15,7 @@
 mod builder;
 mod composite;
 mod config;
+mod constrained;
 mod coordinates;
 pub(crate) mod cut;
 mod demand;

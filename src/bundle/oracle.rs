@@ -49,9 +49,9 @@ impl<O: NonsmoothObjective> Oracle for WarmStarted<'_, O> {
         let warm_start = self.kept.as_ref();
         let request = Request { point, warm_start, accuracy, descent_target, linearization };
         let mut without = |evaluation: Evaluation<O::WarmStart>| {
-            let Evaluation { value, subgradient, error_bound, warm_start, linearization, work } = evaluation;
+            let Evaluation { value, subgradient, error_bound, warm_start, linearization, constraints, work } = evaluation;
             self.last = Some(warm_start);
-            Evaluation { value, subgradient, error_bound, warm_start: (), linearization, work }
+            Evaluation { value, subgradient, error_bound, warm_start: (), linearization, constraints, work }
         };
         let answer = match evaluate_without_panic(self.objective, &request)? {
             Answer::Accurate(evaluation) => Answer::Accurate(without(evaluation)),
@@ -75,10 +75,11 @@ impl<O: NonsmoothObjective> Oracle for WarmStarted<'_, O> {
 pub(super) fn evaluate(
     oracle: &mut dyn Oracle,
     request: &Request<'_, ()>,
+    constraints: usize,
     longest: Option<(f64, &ScaledNorm)>,
 ) -> Outcome {
     match oracle.answer(request) {
-        Ok(answer) => match (check(answer, request.point.len()), longest) {
+        Ok(answer) => match (check(answer, request.point.len(), constraints), longest) {
             (Outcome::Answer(answer), Some((allowed, norm))) => {
                 let size = norm.dual_length(&answer.evaluation().subgradient);
                 if size <= allowed {
@@ -97,7 +98,7 @@ fn negative(error_bound: f64) -> InputError {
     InputError::OutOfRange { setting: "error bound", value: error_bound.to_string(), allowed: "≥ 0" }
 }
 
-fn check(answer: Answer<()>, expected: usize) -> Outcome {
+fn check(answer: Answer<()>, expected: usize, constraints: usize) -> Outcome {
     let evaluation = answer.evaluation();
     let found = evaluation.subgradient.len();
     if expected != found {
@@ -109,6 +110,21 @@ fn check(answer: Answer<()>, expected: usize) -> Outcome {
     if let Some(linearization) = evaluation.linearization.known()
         && let Err(error) = linearization.check(expected)
     {
+        return Outcome::Failure(error.into());
+    }
+    if let Some(found) = &evaluation.constraints
+        && let Err(error) = check_size("the vector of constraints", constraints, found.values.len())
+    {
+        return Outcome::Failure(OracleError::Contradiction(error));
+    }
+    let failure = match &evaluation.constraints {
+        Some(found) => found.check(expected).err(),
+        None if constraints > 0 && matches!(answer, Answer::Accurate(_)) => {
+            Some(InputError::Dimension { what: "the vector of constraints", expected: constraints, found: 0 })
+        }
+        None => None,
+    };
+    if let Some(error) = failure {
         return Outcome::Failure(error.into());
     }
     let finite = |what, finite: bool| if finite { None } else { Some(OracleError::NotFinite { what }) };

@@ -1,6 +1,7 @@
 //! A run, driven step by step with at most one evaluation per step.
 
 use super::builder::BundleTrust;
+use super::constrained::WorkingSet;
 use super::oracle::{Oracle, Outcome, evaluate};
 use super::proof::{Ending, Proof};
 use super::proposers::list::Proposers;
@@ -15,6 +16,7 @@ use crate::interruption::until;
 use crate::qp::EpigraphQpSolver;
 use crate::report::{IterationRecord, Noted, Origin, StepKind, Termination};
 use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
+use std::rc::Rc;
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::Instant;
 
@@ -42,6 +44,8 @@ pub struct Run<'r, 'o> {
     /// The convex function of a composite objective, if its model is wanted.
     pub(super) outer: Option<&'r dyn OuterFunction>,
     pub(super) set: Polyhedron,
+    /// The set of the subproblems where there are nonlinear constraints, with the center and the linearizations that it belongs to.
+    pub(super) working: Option<((u64, u64), Rc<WorkingSet>)>,
     pub(super) state: State,
     pub(super) solver: EpigraphQpSolver,
     pub(super) proposers: Proposers,
@@ -70,6 +74,9 @@ impl Run<'_, '_> {
         if let Break(limit) = limits::check(&self.state, self.method, self.seconds()) {
             return Break(self.standing_proof(limit));
         }
+        if self.working_set().is_some_and(|working| working.stationary) {
+            return Break(Termination::Infeasible { violation: self.state.violation() }.into());
+        }
         let proposal = self.propose()?;
         let (state, config) = (&self.state, &self.method.config);
         if demand::center_is_too_coarse(state, config, proposal.predicted_decrease) {
@@ -84,7 +91,8 @@ impl Run<'_, '_> {
         }
         let target = descent_target(state, &proposal);
         // The correction of a rejected step of the composite model needs the Jacobian at the rejected point.
-        let below = if proposal.origin == Origin::CompositeModel { f64::INFINITY } else { target };
+        let everywhere = proposal.origin == Origin::CompositeModel || self.state.constraints.is_some();
+        let below = if everywhere { f64::INFINITY } else { target };
         match self.evaluate(&proposal.trial, accuracy, Some(target), below) {
             Outcome::MinusInfinity => return Break(Termination::UnboundedBelow.into()),
             Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
@@ -103,7 +111,7 @@ impl Run<'_, '_> {
             (Proposed::End(ending), true) if ending.proof.is_none() => {
                 Break(self.standing_proof(Termination::TimeLimit))
             }
-            (Proposed::Trial(proposal), false) => Continue(*proposal),
+            (Proposed::Trial(proposal), false) => Continue(self.steered(*proposal)),
             (Proposed::End(ending), _) => Break(*ending),
             (Proposed::Silent, _) => unreachable!("the plain cuts have an answer"),
         }
@@ -114,13 +122,51 @@ impl Run<'_, '_> {
         // An answer depends on the state of the run alone, not on what the solver remembers of earlier subproblems.
         self.solver.forget();
         let before = self.solver.counts();
-        let (set, config, outer) = (&self.set, &self.method.config, self.outer);
-        let mut at = Position { state: &mut self.state, set, config, solver: &mut self.solver, outer };
+        let working = self.working_set();
+        let set = working.as_ref().map_or(&self.set, |working| &working.set);
+        let (config, outer, working) = (&self.method.config, self.outer, working.as_deref());
+        let mut at = Position { state: &mut self.state, set, working, config, solver: &mut self.solver, outer };
         let answer = question(&mut self.proposers, &mut at);
         let (after, counts) = (self.solver.counts(), &mut self.state.counts);
         counts.qp_solves += after.solves - before.solves;
         counts.qp_fallbacks += after.fallbacks - before.fallbacks;
         answer
+    }
+
+    /// The set of the subproblems at the present center, where there are nonlinear constraints.
+    fn working_set(&mut self) -> Option<Rc<WorkingSet>> {
+        let constraints = self.state.constraints.as_deref()?;
+        let wanted = (self.state.center_id, constraints.revision());
+        match &self.working {
+            Some((known, working)) if *known == wanted => Some(Rc::clone(working)),
+            _ => {
+                let (center, norm) = (&self.state.center, &self.state.norm);
+                let working = Rc::new(WorkingSet::new(&self.set, constraints, center, norm, &mut self.solver));
+                self.working = Some((wanted, Rc::clone(&working)));
+                Some(working)
+            }
+        }
+    }
+
+    /// A trial point with the decrease of the merit that its model predicts. The penalty exceeds the multipliers of its subproblem, and
+    /// away from feasible points it lets the merit fall by at least half of what the violation promises.
+    fn steered(&mut self, mut proposal: Proposal) -> Proposal {
+        let Some(working) = self.working_set() else { return proposal };
+        let Some(constraints) = &mut self.state.constraints else { return proposal };
+        let sum: f64 = proposal.row_multipliers.iter().skip(working.own_rows).map(|m| m.abs()).sum();
+        // Where the violation forces a long step, its length drives the multipliers, in proportion to the weight.
+        let slope = constraints.objective_slope;
+        constraints.raise_penalty(sum * slope / (slope + proposal.aggregate_norm));
+        if working.restoring() {
+            let objective = proposal.predicted_decrease;
+            if objective + 0.5 * constraints.penalty * working.reduction < 0.0 {
+                constraints.penalty = (-4.0 * objective / working.reduction).min(10.0 * constraints.penalty);
+            }
+            proposal.predicted_decrease = objective + constraints.penalty * working.reduction;
+            proposal.restores =
+                objective <= constraints.penalty * working.reduction && working.forces(proposal.step_length);
+        }
+        proposal
     }
 
     /// The end by a limit, unless the center has been proved stationary before.
@@ -155,7 +201,8 @@ impl Run<'_, '_> {
         let linearization = self.outer.map(|_| LinearizationRequest::below(below));
         let request = Request { point, warm_start: None, accuracy, descent_target: target, linearization };
         let longest = self.state.longest_slope().map(|longest| (longest, &self.state.norm));
-        evaluate(self.oracle.as_mut(), &request, longest)
+        let constraints = self.state.constraints.as_ref().map_or(0, |constraints| constraints.kinds().len());
+        evaluate(self.oracle.as_mut(), &request, constraints, longest)
     }
 
     /// Decides between serious and null step, and updates proposers, bundle and center.
@@ -177,6 +224,7 @@ impl Run<'_, '_> {
             StepKind::Serious
         } else if accurate {
             self.state.remember_lowest();
+            self.state.reject_constraints(working_forces(self.working.as_ref(), proposal));
             StepKind::Null
         } else {
             StepKind::NoDescent
@@ -276,6 +324,11 @@ impl Run<'_, '_> {
     pub fn history(&self) -> &[IterationRecord] {
         &self.state.history
     }
+}
+
+/// Whether the violation of the constraints, rather than the objective, determines the length of a step.
+fn working_forces(working: Option<&((u64, u64), Rc<WorkingSet>)>, proposal: &Proposal) -> bool {
+    working.is_some_and(|(_, working)| working.forces(proposal.step_length))
 }
 
 /// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another function.

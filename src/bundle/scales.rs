@@ -63,8 +63,7 @@ impl State {
     /// The scale of Θ near the center that relative tolerances refer to.
     pub(crate) fn natural_scale(&self, config: &BundleTrustConfig) -> f64 {
         config.objective_scale.unwrap_or_else(|| {
-            let highest = self.bundle.cuts().iter().map(|cut| cut.value).fold(self.start_value, f64::max);
-            let drop = (highest - self.center_value).max(0.0);
+            let drop = self.drop();
             let outputs = self.output_variation();
             let mut variation = drop.min(self.linear_variation()).max(outputs.size);
             let size = self.center_value.abs();

@@ -2,6 +2,7 @@
 
 use super::builder::BundleTrust;
 use super::config::{AccuracyPolicy, BundleTrustConfig};
+use super::constrained::Constraints;
 use super::cut::Cut;
 use super::kept_cuts::Bundle;
 use super::limits;
@@ -18,7 +19,7 @@ use crate::composite::{LinearizationRequest, Linearized, OuterFunction};
 use crate::qp::{EpigraphQpSolver, QpError, is_only_point, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{
-    Accuracy, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector,
+    Accuracy, ConstraintKind, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector,
 };
 use std::cell::RefCell;
 use std::ops::ControlFlow::Break;
@@ -51,13 +52,14 @@ impl<'o> BundleTrust<'o> {
         x0: Vector,
     ) -> Result<Run<'r, 'o>, OptimizeError> {
         let clock = Instant::now();
-        self.begin(Box::new(WarmStarted::new(objective)), objective.outer(), objective.dimension(), x0, clock)
+        let kinds = objective.constraint_kinds();
+        self.begin(Box::new(WarmStarted::new(objective)), (objective.outer(), kinds), objective.dimension(), x0, clock)
     }
 
     fn begin<'r>(
         &'r mut self,
         mut oracle: Box<dyn Oracle + 'r>,
-        outer: Option<&'r dyn OuterFunction>,
+        (outer, kinds): (Option<&'r dyn OuterFunction>, &[ConstraintKind]),
         dimension: usize,
         x0: Vector,
         clock: Instant,
@@ -65,7 +67,7 @@ impl<'o> BundleTrust<'o> {
         let set = self.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
         let start = admissible_start(&set, dimension, x0)?;
         let outer = outer.filter(|_| self.config.composite_model);
-        let (state, linearization) = first_evaluation(oracle.as_mut(), outer.is_some(), &self.config, &set, start)?;
+        let (state, linearization) = first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, &set, start)?;
         oracle.keep_warm_start();
         let proposers = Proposers::new(outer.is_some(), dimension, state.first_weight);
         let mut run = Run {
@@ -73,6 +75,7 @@ impl<'o> BundleTrust<'o> {
             oracle,
             outer,
             set,
+            working: None,
             state,
             solver: EpigraphQpSolver::default(),
             proposers,
@@ -119,7 +122,7 @@ type FirstEvaluation = (State, Linearized);
 /// Evaluates the start and sets up the state.
 fn first_evaluation(
     oracle: &mut dyn Oracle,
-    structured: bool,
+    (structured, kinds): (bool, &[ConstraintKind]),
     config: &BundleTrustConfig,
     set: &Polyhedron,
     start: Vector,
@@ -131,15 +134,17 @@ fn first_evaluation(
     };
     let wanted = structured.then(|| LinearizationRequest::below(f64::INFINITY));
     let request = Request { linearization: wanted, accuracy, ..Request::tight(&start) };
-    let evaluation = match evaluate(oracle, &request, None) {
+    let evaluation = match evaluate(oracle, &request, kinds.len(), None) {
         Outcome::Answer(answer) => answer.into_evaluation(),
         Outcome::MinusInfinity => return Err(OptimizeError::Oracle(OracleError::NotFinite { what: "value" })),
         Outcome::Failure(error) => return Err(OptimizeError::Oracle(error)),
     };
-    let Evaluation { value, subgradient, error_bound, linearization, work, .. } = evaluation;
+    let Evaluation { value, subgradient, error_bound, linearization, constraints, work, .. } = evaluation;
     let slope = norm.dual_length(&subgradient);
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
+    let constraints =
+        constraints.map(|found| Box::new(Constraints::new(kinds, (&start, value), &found, (&norm, slope))));
     let point = start.clone();
     let seen = Seen::new(&start, value, &subgradient);
     let cut =
@@ -170,6 +175,7 @@ fn first_evaluation(
         counts: Counts { evaluations: 1, ..Counts::default() },
         history: vec![],
         output_scales: None,
+        constraints,
         lengths: RefCell::default(),
     };
     state.bundle.push(cut, &state.norm);

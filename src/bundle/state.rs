@@ -1,5 +1,6 @@
 //! Everything a run carries from step to step.
 
+use super::constrained::Constraints;
 use super::cut::{Cut, MAX_RELATIVE_SLOPE};
 use super::kept_cuts::Bundle;
 use super::norm::ScaledNorm;
@@ -82,6 +83,8 @@ pub(crate) struct State {
     pub history: Vec<IterationRecord>,
     /// What the outputs behind Θ tell about its scale, if they are known at the center.
     pub output_scales: Option<OutputScales>,
+    /// What has been seen of the nonlinear constraints; none where there are none.
+    pub constraints: Option<Box<Constraints>>,
     /// The lengths that belong to a center, with its identity.
     pub lengths: RefCell<Option<(u64, Rc<Lengths>)>>,
 }
@@ -162,6 +165,9 @@ impl State {
     ) {
         let size = config.bundle_size.unwrap_or_else(|| (point.len() + EXTRA_CUTS).min(MAX_CUTS));
         self.seen.add(point, evaluation.value, &evaluation.subgradient);
+        if let (Some(constraints), Some(found)) = (&mut self.constraints, &evaluation.constraints) {
+            constraints.add(point, evaluation.value, found, &self.norm);
+        }
         self.bundle.make_room(size, self.center_id, &mut self.next_id, &self.norm);
         let cut = Cut {
             id: self.next_id,
@@ -183,14 +189,49 @@ impl State {
         if let Some(newest) = self.bundle.cuts().last() {
             (self.center, self.center_value, self.center_id) = (newest.point.clone(), newest.value, newest.id);
             self.center_accuracy = accuracy.tolerance();
+            if let Some(constraints) = &mut self.constraints {
+                constraints.move_center(&self.norm);
+            }
         }
     }
 
     /// Remembers the newest cut if it is the lowest so far and lies below the center.
     pub(crate) fn remember_lowest(&mut self) {
+        if self.constraints.is_some() {
+            return;
+        }
         let lowest = self.lowest.as_ref().map_or(self.center_value, Cut::highest_value).min(self.center_value);
         let newest = self.bundle.cuts().last().filter(|cut| cut.highest_value() < lowest);
         self.lowest = newest.cloned().or(self.lowest.take());
+    }
+
+    /// v at the center.
+    pub(crate) fn violation(&self) -> f64 {
+        self.constraints.as_ref().map_or(0.0, |constraints| constraints.center_violation())
+    }
+
+    /// P at the center.
+    pub(crate) fn merit(&self) -> f64 {
+        self.center_value
+            + self.constraints.as_ref().map_or(0.0, |constraints| constraints.penalty * constraints.center_violation())
+    }
+
+    /// Keeps the linearizations of the constraints at a point that has not become the center.
+    pub(crate) fn reject_constraints(&mut self, forced: bool) {
+        if let Some(constraints) = &mut self.constraints {
+            constraints.reject(forced, &self.norm);
+        }
+    }
+
+    /// The decrease of the run: from the highest value at the start or in the bundle, of the merit where there are constraints.
+    pub(crate) fn drop(&self) -> f64 {
+        match &self.constraints {
+            Some(constraints) => constraints.merit_drop(),
+            None => {
+                let highest = self.bundle.cuts().iter().map(|cut| cut.value).fold(self.start_value, f64::max);
+                (highest - self.center_value).max(0.0)
+            }
+        }
     }
 
     /// Moves the center to the lowest point evaluated, if this is another one.

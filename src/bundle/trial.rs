@@ -3,7 +3,7 @@
 use super::proposers::proposal::{Proposal, SERIOUS_FRACTION};
 use super::state::State;
 use crate::composite::Linearization;
-use crate::{Evaluation, Vector};
+use crate::{ConstraintEvaluation, Evaluation, Vector};
 
 /// A trial point and what came of it.
 #[derive(Debug, Clone, Copy)]
@@ -17,31 +17,39 @@ pub(crate) struct Trial<'a> {
     pub serious: bool,
     /// Outputs and Jacobian at the point, where the oracle returned them.
     pub linearization: Option<&'a Linearization>,
+    /// The constraints at the point.
+    pub constraints: Option<&'a ConstraintEvaluation>,
 }
 
 impl<'a> Trial<'a> {
     pub(super) fn new(
         state: &State,
         proposal: &'a Proposal,
-        (evaluation, accurate): (&Evaluation<()>, bool),
+        (evaluation, accurate): (&'a Evaluation<()>, bool),
         linearization: Option<&'a Linearization>,
     ) -> Self {
-        let comparison = Comparison::new(state, proposal, evaluation.value, &evaluation.subgradient);
+        let mut comparison = Comparison::new(state, proposal, evaluation.value, &evaluation.subgradient);
+        if let (Some(constraints), Some(found)) = (&state.constraints, &evaluation.constraints) {
+            let change = constraints.violation(&found.values) - constraints.center_violation();
+            comparison.change += constraints.penalty * change;
+        }
         let serious = accurate && comparison.is_serious();
-        Self { proposal, comparison, value: evaluation.value, accurate, serious, linearization }
+        Self { proposal, comparison, value: evaluation.value, accurate, serious, linearization, constraints: evaluation.constraints.as_ref() }
     }
 }
 
 /// The value below which a trial point is a serious step.
 pub(super) fn descent_target(state: &State, proposal: &Proposal) -> f64 {
-    state.center_value - SERIOUS_FRACTION * proposal.predicted_decrease
+    state.merit() - SERIOUS_FRACTION * proposal.predicted_decrease
 }
 
 /// Comparison of a trial point with what the model said.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Comparison {
-    /// Θ(y) − Θ(x̂).
+    /// Θ(y) − Θ(x̂), of the merit where there are constraints.
     pub change: f64,
+    /// Θ(y) − Θ(x̂).
+    pub objective_change: f64,
     /// ⟨g, d⟩ with the subgradient at the trial point.
     pub slope: f64,
     /// v = −predicted decrease.
@@ -52,6 +60,7 @@ impl Comparison {
     pub(crate) fn new(state: &State, proposal: &Proposal, value: f64, subgradient: &Vector) -> Self {
         Self {
             change: value - state.center_value,
+            objective_change: value - state.center_value,
             slope: subgradient.dot(&proposal.step),
             model_change: -proposal.predicted_decrease,
         }

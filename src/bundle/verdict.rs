@@ -39,6 +39,9 @@ pub(crate) enum Verdict {
 
 /// Judges the evidence that a subproblem gives.
 pub(crate) fn verdict(at: &Position<'_>, evidence: &Evidence) -> Verdict {
+    if at.restoring() {
+        return Verdict::Open;
+    }
     let resolution = at.resolution();
     let convex = at.config.convexity == Convexity::Convex;
     let confirmed = || Termination::Stationary { radius: evidence.radius, gap: convex.then(|| evidence.gap()) };

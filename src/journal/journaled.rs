@@ -183,7 +183,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
 
     /// An answer of the oracle as it is written down, with the text of its restart data.
     fn record(&self, evaluation: usize, answer: &Answer<O::WarmStart>) -> (RecordedAnswer, Option<String>) {
-        let Evaluation { value, subgradient, error_bound, warm_start, linearization, work } = answer.evaluation();
+        let Evaluation { value, subgradient, error_bound, warm_start, linearization, work, .. } = answer.evaluation();
         let (restart_data, text) = self.text(evaluation, warm_start);
         let recorded = RecordedAnswer::Evaluated {
             value: *value,
@@ -299,6 +299,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
             error_bound: inner.error_bound,
             warm_start: RestartData { evaluation, data: Some(inner.warm_start) },
             linearization: inner.linearization,
+            constraints: inner.constraints,
             work: inner.work,
         };
         Ok(match result? {

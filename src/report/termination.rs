@@ -28,6 +28,11 @@ pub enum Termination {
         #[serde(default)]
         undecided: Option<usize>,
     },
+    /// No direction reduces the violation of the nonlinear constraints: to first order there is no feasible point nearby.
+    Infeasible {
+        /// The violation: the largest c_j⁺ over ‖∇c_j‖*, a length.
+        violation: f64,
+    },
     /// What the model promises is below the noise of the oracle.
     NoiseLimit {
         /// What noise and model leave open, in units of Θ: a bound of Θ(x̂) − min Θ within reach if Θ is convex.
@@ -94,6 +99,7 @@ impl Termination {
             Self::StationaryUnconfirmed { .. } => {
                 "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
             }
+            Self::Infeasible { .. } => "start elsewhere, or relax the constraints",
             Self::NoiseLimit { .. } => {
                 "a more accurate oracle is needed to get further; where convexity is declared, check that the objective is convex"
             }
@@ -133,6 +139,9 @@ impl fmt::Display for Termination {
             }
             Self::StationaryUnconfirmed { radius, .. } => {
                 write!(f, "stationary, unconfirmed: active cuts reach out to relative distance {radius:.1e}")
+            }
+            Self::Infeasible { violation } => {
+                write!(f, "infeasible: the violation of the constraints is stationary, at a distance of about {violation:.1e}")
             }
             Self::NoiseLimit { estimate } => write!(f, "noise limit: values are uncertain by about {estimate:.1e}"),
             Self::StepTooShort { predicted_decrease } => {

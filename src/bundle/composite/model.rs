@@ -87,6 +87,8 @@ pub(crate) struct CompositeStep {
     pub step: Vector,
     /// h(c) − h(c + G d) − dᵀBd/2.
     pub decrease: f64,
+    /// h(c) − h(c + G d).
+    pub outer_decrease: f64,
     /// Cuts of h with a positive multiplier.
     pub cuts: Vec<OuterCut>,
     pub row_multipliers: Vector,
@@ -162,7 +164,8 @@ impl CompositeModel<'_> {
 
     /// The solution at a step; `sides` are the multipliers of the rows and of the bounds.
     pub(super) fn solved(&self, step: Vector, cuts: Vec<OuterCut>, sides: (Vector, Vector)) -> CompositeStep {
-        let decrease = self.value - self.outer.value(&self.outputs(&step)) - 0.5 * self.bend(&step);
-        CompositeStep { decrease, step, cuts, row_multipliers: sides.0, bound_multipliers: sides.1 }
+        let outer_decrease = self.value - self.outer.value(&self.outputs(&step));
+        let decrease = outer_decrease - 0.5 * self.bend(&step);
+        CompositeStep { decrease, outer_decrease, step, cuts, row_multipliers: sides.0, bound_multipliers: sides.1 }
     }
 }

@@ -65,7 +65,8 @@ impl Composite {
         };
         let length = at.state.norm.length(&(&proposal.trial - &rejected.point));
         let predicted_decrease = base.value - rejected.value + proposal.predicted_decrease;
-        if length > 0.5 * at.state.norm.length(&origin) || predicted_decrease <= at.resolution().small() {
+        let worthwhile = at.restoring() || predicted_decrease > at.resolution().small();
+        if length > 0.5 * at.state.norm.length(&origin) || !worthwhile {
             return Ok(None);
         }
         Ok(Some(Proposal { predicted_decrease, ..proposal }))
@@ -78,10 +79,16 @@ impl Composite {
         let (mut raised, mut last) = (false, 0.0);
         for _ in 0..MAX_WEIGHTS {
             let Some((proposal, step)) = self.steps.step(at, base, weight, Changes::default())? else {
+                if at.restoring() {
+                    return Ok(Answer::Silent);
+                }
                 (weight, raised) = (weight * 10.0, true);
                 continue;
             };
             let promised = proposal.predicted_decrease;
+            if at.restoring() {
+                return Ok(Answer::trial(proposal));
+            }
             if promised > small {
                 if proposal.step_length <= self.trust.longest {
                     return Ok(Answer::trial(proposal));
@@ -200,7 +207,7 @@ impl Composite {
     fn watch_kinks(&mut self, outer: &dyn OuterFunction, trial: &Trial<'_>) {
         let Some(base) = &self.base else { return };
         let Trial { proposal, comparison, linearization, .. } = trial;
-        let seen = Seen { outer, base, point: &proposal.trial, change: comparison.change, end: *linearization };
+        let seen = Seen { outer, base, point: &proposal.trial, change: comparison.objective_change, end: *linearization };
         if proposal.origin != Origin::CompositeModel {
             if self.kinks.remain(&seen) {
                 self.trust.prolong();
@@ -225,7 +232,7 @@ impl Proposer for Composite {
     fn learn(&mut self, at: &mut Position<'_>, trial: &Trial<'_>) {
         let Some(outer) = at.outer else { return };
         if let Some(known) = trial.linearization {
-            self.steps.remember(outer, &trial.proposal.trial, known);
+            self.steps.remember(outer, &trial.proposal.trial, (known, trial.constraints));
         }
         if self.escape.is_some() {
             return;
@@ -242,7 +249,9 @@ impl Proposer for Composite {
         } else if correcting {
             self.steps.needs_curvature = true;
         } else {
-            self.trust.reject(trial.proposal);
+            if !at.working.is_some_and(|working| working.forces(trial.proposal.step_length)) {
+                self.trust.reject(trial.proposal);
+            }
             self.rejected = base_at(trial);
         }
     }
@@ -274,7 +283,8 @@ impl Proposer for Composite {
         // The center evaluated anew has outdated the proof.
         self.escape = None;
         if let (Some(outer), Some(known)) = (at.outer, linearization) {
-            self.steps.remember(outer, &at.state.center, known);
+            let constraints = at.state.constraints.as_ref().map(|constraints| constraints.center_evaluation());
+            self.steps.remember(outer, &at.state.center, (known, constraints));
         }
         self.rebase(at, linearization);
     }

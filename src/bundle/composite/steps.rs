@@ -3,13 +3,15 @@
 use super::base::Base;
 use super::curvature::Memory;
 use super::model::{CompositeModel, CompositeStep, OuterCut};
+use crate::bundle::constrained::WorkingSet;
 use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::proposers::proposer::Position;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
-use crate::{Polyhedron, Vector};
+use std::rc::Rc;
+use crate::{ConstraintEvaluation, Matrix, Polyhedron, Vector};
 
 /// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h overflows along the step.
 pub(super) type Found = Option<(Proposal, CompositeStep)>;
@@ -56,10 +58,10 @@ impl Steps {
     }
 
     /// Remembers a Jacobian, unless h has a curvature of its own: the model then uses no curvature of the outputs.
-    pub(super) fn remember(&mut self, outer: &dyn OuterFunction, point: &Vector, known: &Linearization) {
+    pub(super) fn remember(&mut self, outer: &dyn OuterFunction, point: &Vector, (known, constraints): (&Linearization, Option<&ConstraintEvaluation>)) {
         let Linearization { outputs, jacobian, .. } = known;
         if without_panic(|| outer.curvature(outputs, jacobian).is_none()).unwrap_or_default() {
-            self.memory.remember(point, jacobian);
+            self.memory.remember(point, &stacked(jacobian, constraints.map(|found| &found.jacobian)));
         }
     }
 
@@ -87,20 +89,47 @@ impl Steps {
         if !self.needs_curvature || outer.curvature(outputs, jacobian).is_some() {
             return model.solve(at.solver);
         }
+        let constraints = at.state.constraints.as_ref();
+        let all = stacked(jacobian, constraints.and_then(|found| found.jacobian_at(&base.point)));
+        if all.nrows() < jacobian.nrows() + constraints.map_or(0, |found| found.kinds().len()) {
+            return model.solve(at.solver);
+        }
+        let working = at.working;
+        let weights_of = |step: &CompositeStep| all_weights(step, working, all.nrows());
         if self.weights.is_none() {
-            self.weights = Some(model.solve(at.solver)?.weights());
+            self.weights = Some(weights_of(&model.solve(at.solver)?));
         }
         // Twice in turn, so that the weights of the outputs and the curvature formed with them fit together.
         let mut step = None;
         for _ in 0..2 {
             let Some(weights) = &self.weights else { break };
-            let curvature = self.memory.curvature((&base.point, jacobian), weights, model.norm);
+            let curvature = self.memory.curvature((&base.point, &all), weights, model.norm);
             let found = CompositeModel { curvature: curvature.as_ref(), ..model }.solve(at.solver)?;
-            self.weights = Some(found.weights());
+            self.weights = Some(weights_of(&found));
             step = Some(found);
         }
         step.ok_or(SubproblemError::Unusable)
     }
+}
+
+/// The Jacobian of the outputs above that of the constraints.
+fn stacked(outputs: &Matrix, constraints: Option<&Matrix>) -> Matrix {
+    let Some(constraints) = constraints else { return outputs.clone() };
+    let mut all = outputs.clone().resize_vertically(outputs.nrows() + constraints.nrows(), 0.0);
+    all.rows_mut(outputs.nrows(), constraints.nrows()).copy_from(constraints);
+    all
+}
+
+/// The weights of the outputs above the multipliers of the constraints, in the units of the constraints.
+fn all_weights(step: &CompositeStep, working: Option<&WorkingSet>, count: usize) -> Vector {
+    let weights = step.weights();
+    let Some(working) = working else { return weights };
+    let first = weights.len();
+    let mut all = weights.resize_vertically(count, 0.0);
+    for (tangent, multiplier) in working.tangents.iter().zip(step.row_multipliers.iter().skip(working.own_rows)) {
+        all[first + tangent.constraint] += multiplier / working.units[tangent.constraint];
+    }
+    all
 }
 
 fn proposal(at: &Position<'_>, base: &Base, step: &CompositeStep, weight: f64) -> Result<Proposal, SubproblemError> {
@@ -118,7 +147,7 @@ fn proposal(at: &Position<'_>, base: &Base, step: &CompositeStep, weight: f64) -
         step: &trial - &state.center,
         trial,
         step_length: length,
-        predicted_decrease: step.decrease,
+        predicted_decrease: if at.restoring() { step.outer_decrease } else { step.decrease },
         cut_change: 0.0,
         composite_aggregate: Some(aggregate),
         slack_error: slack,
@@ -128,10 +157,12 @@ fn proposal(at: &Position<'_>, base: &Base, step: &CompositeStep, weight: f64) -
         cut_multipliers: vec![0.0; state.bundle.cuts().len()],
         bound_multipliers: step.bound_multipliers.clone(),
         row_multipliers: rows,
+        tangents: at.working.map(|working| Rc::clone(&working.tangents)),
         convexification: 0.0,
         weight,
         violation: 0.0,
         origin: Origin::CompositeModel,
+        restores: false,
     };
     proposal.admissible(set, state)
 }

@@ -40,7 +40,7 @@ impl Trust {
 
     /// A step has been accepted that brought `ratio` times the predicted decrease: half of it lets the weight fall.
     pub(super) fn accept(&mut self, proposal: &Proposal, ratio: f64) {
-        self.weight = if ratio >= 0.5 { proposal.weight / 10.0 } else { proposal.weight };
+        self.weight = if ratio >= 0.5 && !proposal.restores { proposal.weight / 10.0 } else { proposal.weight };
         self.longest = f64::INFINITY;
         self.failures = 0;
         self.pause.succeed();

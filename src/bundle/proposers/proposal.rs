@@ -1,9 +1,12 @@
 //! A trial point, and how it is made admissible.
 
+use crate::bundle::constrained::Tangent;
+use crate::bundle::cut::LEAST_ACTIVE_MULTIPLIER;
 use crate::bundle::state::State;
 use crate::qp::{QpError, project};
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
+use std::rc::Rc;
 
 /// Share m_S of the predicted decrease that makes a step serious (\[SchrammZowe1992\], test SS). A share of 0.1 takes 6 % more evaluations in
 /// the mean over moved starts.
@@ -31,7 +34,10 @@ pub(crate) struct Proposal {
     /// The part Σ λ_i a_i of ẽ.
     pub cut_error: f64,
     pub cut_multipliers: Vec<f64>,
+    /// Multipliers of the rows of U, then of the linearized constraints in σ.
     pub row_multipliers: Vector,
+    /// The linearized constraints, where there are nonlinear constraints.
+    pub tangents: Option<Rc<Vec<Tangent>>>,
     pub bound_multipliers: Vector,
     /// The curvature c added to make the model convex.
     pub convexification: f64,
@@ -41,6 +47,8 @@ pub(crate) struct Proposal {
     pub violation: f64,
     /// Who proposes it.
     pub origin: Origin,
+    /// Whether most of the predicted decrease is that of the violation: it says nothing about the weight.
+    pub restores: bool,
 }
 
 /// Trial points violate the set by at most this much, relative to each side, or by as much as the center does.
@@ -115,6 +123,15 @@ impl Proposal {
         } else {
             Err(SubproblemError::Unusable)
         }
+    }
+
+    /// The linearized constraints with a multiplier that is no rounding, and their multipliers in σ.
+    pub(crate) fn active_tangents(&self) -> impl Iterator<Item = (&Tangent, f64)> {
+        let tangents = self.tangents.as_deref().map_or(&[][..], Vec::as_slice);
+        let first = self.row_multipliers.len() - tangents.len();
+        let largest = self.row_multipliers.iter().skip(first).fold(0.0_f64, |most, m| most.max(m.abs()));
+        let active = tangents.iter().zip(self.row_multipliers.iter().skip(first).copied());
+        active.filter(move |(_, multiplier)| multiplier.abs() > LEAST_ACTIVE_MULTIPLIER * largest)
     }
 
     /// The decrease that an evaluation has to tell from none.

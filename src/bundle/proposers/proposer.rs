@@ -10,6 +10,7 @@
 use super::proposal::Proposal;
 use crate::Polyhedron;
 use crate::bundle::config::BundleTrustConfig;
+use crate::bundle::constrained::WorkingSet;
 use crate::bundle::proof::Ending;
 use crate::bundle::resolution::Resolution;
 use crate::bundle::state::State;
@@ -41,6 +42,8 @@ impl Answer {
 pub(crate) struct Position<'a> {
     pub state: &'a mut State,
     pub set: &'a Polyhedron,
+    /// The set with its linearized constraints, where there are nonlinear constraints.
+    pub working: Option<&'a WorkingSet>,
     pub config: &'a BundleTrustConfig,
     pub solver: &'a mut EpigraphQpSolver,
     /// The convex function of a composite objective.
@@ -51,6 +54,11 @@ impl Position<'_> {
     /// What counts as small at the present center.
     pub(crate) fn resolution(&self) -> Resolution {
         Resolution::new(self.state, self.config)
+    }
+
+    /// Whether the center violates nonlinear constraints.
+    pub(crate) fn restoring(&self) -> bool {
+        self.working.is_some_and(WorkingSet::restoring)
     }
 }
 

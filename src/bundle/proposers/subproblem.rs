@@ -64,19 +64,22 @@ impl Room {
     pub(crate) fn around(set: &Polyhedron, center: &Vector) -> Self {
         let at_center = set.rows() * center;
         let terms = set.rows().abs() * center.abs();
-        let lower = slack(set.row_lower(), &at_center, &terms, f64::min);
-        let upper = slack(set.row_upper(), &at_center, &terms, f64::max);
+        let own = set.rows().nrows() - set.tangents();
+        let lower = slack(set.row_lower(), (&at_center, &terms), own, f64::min);
+        let upper = slack(set.row_upper(), (&at_center, &terms), own, f64::max);
         Self { rows: (lower, upper), bounds: (set.lower() - center, set.upper() - center) }
     }
 }
 
 /// Sides of the rows as seen from the center. A violation that is rounding of the center counts as zero, so that d = 0 is admissible;
 /// a row that the center violates by more is one that the step is to reach.
-fn slack(side: &Vector, at_center: &Vector, terms: &Vector, outward: fn(f64, f64) -> f64) -> Vector {
+fn slack(side: &Vector, (at_center, terms): (&Vector, &Vector), own: usize, outward: fn(f64, f64) -> f64) -> Vector {
     Vector::from_fn(side.len(), |i, _| {
         let slack = side[i] - at_center[i];
         let size = terms[i].max(side[i].abs());
-        if slack.is_finite() && slack.abs() <= FEASIBILITY * size {
+        if i >= own {
+            slack
+        } else if slack.is_finite() && slack.abs() <= FEASIBILITY * size {
             0.0
         } else if slack.abs() <= LARGEST_VIOLATION * size {
             outward(slack, 0.0)

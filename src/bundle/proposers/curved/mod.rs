@@ -123,7 +123,7 @@ impl Curved {
     pub(crate) fn learn(&mut self, state: &mut State, trial: &Trial<'_>) {
         if trial.accurate {
             let curved = self.model.change(&trial.proposal.step);
-            self.compare(trial.comparison.change, trial.proposal.cut_change, curved);
+            self.compare(trial.comparison.objective_change, trial.proposal.cut_change, curved);
         }
         match (trial.proposal.origin, trial.serious) {
             (Origin::CurvedModel, true) => self.after_serious(state, trial),

@@ -33,6 +33,9 @@ impl PlainCuts {
 
     /// The proposal worth an evaluation: that of the cuts, unless the curved model has a better one.
     fn choose(&mut self, at: &mut Position<'_>, plain: Proposal) -> Proposal {
+        if at.restoring() {
+            return plain;
+        }
         let Some(curved) = &mut self.curved else { return plain };
         let small = at.resolution().small();
         let model = self.planes.model(at);

@@ -17,6 +17,7 @@ use crate::interruption::interrupted;
 use crate::qp::QpSolution;
 use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
+use std::rc::Rc;
 
 /// Tenfold decreases of the weight, without evaluations, where the predicted decrease is small: a restart may raise the weight by 1e12, and
 /// units of variables may differ by as much.
@@ -100,9 +101,18 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     let gram = if many { model.products(state) } else { None };
     let cuts = Cuts { gram, ..model.cuts() };
     let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
-    let proposal = interpret(solution, (state, at.set), model);
+    let mut proposal = interpret(solution, (state, at.set), model);
+    proposal.tangents = at.working.map(|working| Rc::clone(&working.tangents));
     // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution. Rounding of ⟨h, d⟩ aside.
     let steepest = state.bundle.dual_lengths().fold(0.0, f64::max);
+    if at.restoring() && proposal.step_length.is_finite() {
+        return proposal.admissible(at.set, state);
+    }
+    proposal.predicted_decrease = proposal.predicted_decrease.max(0.0);
+    proposal.cut_change = -proposal.predicted_decrease;
+    if at.working.is_some_and(|working| working.reduction > 0.0) && proposal.step_length.is_finite() {
+        return proposal.admissible(at.set, state);
+    }
     let rounding = state.rounding() + 8.0 * f64::EPSILON * steepest * proposal.step_length;
     let least = 0.5 * proposal.aggregate_norm * proposal.step_length - rounding;
     if !(proposal.predicted_decrease >= least && proposal.step_length.is_finite()) {
@@ -114,7 +124,7 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
 fn interpret(mut solution: QpSolution, (state, set): (&State, &Polyhedron), model: &Model) -> Proposal {
     let step = std::mem::take(&mut solution.step);
     let squared = state.norm.squared(&step);
-    let predicted_decrease = (-solution.epigraph).max(0.0);
+    let predicted_decrease = -solution.epigraph;
     let offsets = model.cuts().offsets;
     let cut_error: f64 = solution.cut_multipliers.iter().zip(offsets).map(|(l, a)| l * a).sum();
     model.distribute(&mut solution.cut_multipliers);
@@ -133,10 +143,12 @@ fn interpret(mut solution: QpSolution, (state, set): (&State, &Polyhedron), mode
         cut_error,
         cut_multipliers: solution.cut_multipliers,
         row_multipliers: multipliers.0,
+        tangents: None,
         bound_multipliers: multipliers.1,
         convexification: model.convexification,
         weight: state.weight,
         violation: 0.0,
         origin: Origin::Cuts,
+        restores: false,
     }
 }

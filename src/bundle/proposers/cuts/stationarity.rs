@@ -54,6 +54,9 @@ impl StationarityTest {
                 Ok(proposal) => proposal,
                 Err(termination) => return Next::End(Box::new(termination.into())),
             };
+            if at.restoring() {
+                return Next::Trial(proposal);
+            }
             let convex = at.config.convexity == Convexity::Convex;
             let resolution = at.resolution();
             let limit =

@@ -26,7 +26,7 @@ pub(super) fn shorten(state: &mut State, proposal: &Proposal) {
 
 /// Sets the next weight, after trial points of the plain cuts only; the center has not moved yet.
 pub(super) fn learn(state: &mut State, trial: &Trial<'_>) {
-    if trial.proposal.origin != Origin::Cuts {
+    if trial.proposal.origin != Origin::Cuts || trial.proposal.restores {
         return;
     }
     if trial.serious {
@@ -92,5 +92,5 @@ fn interpolated_weight(comparison: &Comparison, weight: f64) -> f64 {
 
 /// The linearization error of the new cut at the center before the step.
 fn error(comparison: &Comparison) -> f64 {
-    comparison.slope - comparison.change
+    comparison.slope - comparison.objective_change
 }

@@ -1,0 +1,307 @@
+//! What a run has seen of its nonlinear constraints.
+
+use super::tangent::Tangent;
+use crate::bundle::norm::ScaledNorm;
+use crate::{ConstraintEvaluation, ConstraintKind, Matrix, Vector};
+use std::rc::Rc;
+
+/// A constraint is satisfied if its violation is at most this share of the largest |c_j| at the centers of the run.
+const TOLERANCE: f64 = 1e-10;
+/// What rounding hides of a value c_j, as a share of Σ |h_i x_i|.
+const ROUNDING: f64 = 1e-13;
+/// Linearizations above a constraint by more than this share of the terms prove it nonconvex.
+const CONVEX_SHARE: f64 = 1e-9;
+/// Tangents kept beside those of the center, for every variable and in all.
+const EXTRA_TANGENTS: usize = 50;
+
+/// A point with all that its evaluation gave.
+#[derive(Debug, Clone)]
+struct Known {
+    point: Rc<Vector>,
+    objective: f64,
+    evaluation: ConstraintEvaluation,
+    /// The linearizations at the point.
+    tangents: Vec<Tangent>,
+}
+
+/// A feasible point, or the least infeasible one.
+#[derive(Debug, Clone)]
+pub(crate) struct Best {
+    pub point: Vector,
+    pub objective: f64,
+    pub evaluation: ConstraintEvaluation,
+}
+
+/// The nonlinear constraints of a run.
+#[derive(Debug, Clone)]
+pub(crate) struct Constraints {
+    kinds: Vec<ConstraintKind>,
+    /// σ_j; 0 as long as no gradient other than 0 has been seen.
+    units: Vec<f64>,
+    /// The largest |c_j|.
+    largest: Vec<f64>,
+    /// Whether linearizations prove c_j nonconvex.
+    nonconvex: Vec<bool>,
+    /// ρ.
+    pub penalty: f64,
+    /// How much more the length of a step counts in the relaxation, after steps that did not reduce the violation.
+    pub caution: f64,
+    /// ‖g‖* of the objective at the start.
+    pub objective_slope: f64,
+    center: Known,
+    newest: Option<Known>,
+    /// Linearizations at other points, the oldest first.
+    others: Vec<Tangent>,
+    /// Length of the last step to a new center.
+    last_step: f64,
+    /// Objective and constraints at all points.
+    visited: Vec<(f64, Vector)>,
+    best: Best,
+    /// Changes whenever a linearization comes or goes.
+    revision: u64,
+}
+
+fn known(point: &Vector, objective: f64, evaluation: &ConstraintEvaluation) -> Known {
+    let shared = Rc::new(point.clone());
+    let row = |j: usize| Tangent {
+        constraint: j,
+        point: Rc::clone(&shared),
+        value: evaluation.values[j],
+        slope: Rc::new(evaluation.jacobian.row(j).transpose()),
+    };
+    let mut tangents: Vec<Tangent> = (0..evaluation.values.len()).map(row).collect();
+    for piece in &evaluation.pieces {
+        let own = &tangents[piece.constraint];
+        if own.value != piece.value || *own.slope != piece.gradient {
+            tangents.push(Tangent {
+                constraint: piece.constraint,
+                point: Rc::clone(&shared),
+                value: piece.value,
+                slope: Rc::new(piece.gradient.clone()),
+            });
+        }
+    }
+    Known { point: shared, objective, evaluation: evaluation.clone(), tangents }
+}
+
+impl Constraints {
+    /// The constraints at the start; `slope` is ‖g‖* of the objective there.
+    pub(crate) fn new(
+        kinds: &[ConstraintKind],
+        (point, objective): (&Vector, f64),
+        evaluation: &ConstraintEvaluation,
+        (norm, slope): (&ScaledNorm, f64),
+    ) -> Self {
+        let center = known(point, objective, evaluation);
+        let best = Best { point: point.clone(), objective, evaluation: evaluation.clone() };
+        let count = kinds.len();
+        let mut constraints = Self {
+            kinds: kinds.to_vec(),
+            units: vec![0.0; count],
+            largest: vec![0.0; count],
+            nonconvex: vec![false; count],
+            penalty: slope,
+            caution: 1.0,
+            objective_slope: slope,
+            center,
+            newest: None,
+            others: vec![],
+            last_step: 0.0,
+            visited: vec![],
+            best,
+            revision: 0,
+        };
+        constraints.look(objective, evaluation, norm);
+        constraints.measure();
+        constraints
+    }
+
+    /// Takes in the sizes of the constraints at the center. A trial point far away says nothing about them.
+    fn measure(&mut self) {
+        for (largest, value) in self.largest.iter_mut().zip(&self.center.evaluation.values) {
+            *largest = largest.max(value.abs());
+        }
+    }
+
+    fn look(&mut self, objective: f64, evaluation: &ConstraintEvaluation, norm: &ScaledNorm) {
+        for j in 0..self.kinds.len() {
+            if self.units[j] == 0.0 {
+                self.units[j] = norm.dual_length(&evaluation.jacobian.row(j).transpose());
+            }
+        }
+        self.visited.push((objective, evaluation.values.clone()));
+    }
+
+    /// Takes in an evaluation at a trial point.
+    pub(crate) fn add(&mut self, point: &Vector, objective: f64, evaluation: &ConstraintEvaluation, norm: &ScaledNorm) {
+        self.look(objective, evaluation, norm);
+        let newest = known(point, objective, evaluation);
+        let better = match (self.excess(&self.best.evaluation, &self.best.point), self.excess(evaluation, point)) {
+            (old, new) if old <= 1.0 => new <= 1.0 && objective < self.best.objective,
+            (old, new) => new < old,
+        };
+        if better {
+            self.best = Best { point: point.clone(), objective, evaluation: evaluation.clone() };
+        }
+        self.newest = Some(newest);
+    }
+
+    /// The newest point becomes the center.
+    pub(crate) fn move_center(&mut self, norm: &ScaledNorm) {
+        let Some(newest) = self.newest.take() else { return };
+        self.last_step = norm.length(&(&*newest.point - &*self.center.point));
+        let old = std::mem::replace(&mut self.center, newest);
+        self.measure();
+        self.caution = (0.1 * self.caution).max(1.0);
+        if self.last_step > 0.0 {
+            self.keep(old, norm);
+        }
+        self.prune(norm);
+        self.revision += 1;
+    }
+
+    /// The newest point is no center: its linearizations are kept.
+    pub(crate) fn reject(&mut self, forced: bool, norm: &ScaledNorm) {
+        if forced {
+            self.caution *= 10.0;
+        }
+        let Some(newest) = self.newest.take() else { return };
+        self.keep(newest, norm);
+        self.prune(norm);
+        self.revision += 1;
+    }
+
+    /// Keeps the linearizations of inequalities at a point other than the center.
+    fn keep(&mut self, other: Known, _norm: &ScaledNorm) {
+        let kept = other.tangents.into_iter().filter(|t| match self.kinds[t.constraint] {
+            ConstraintKind::Nonsmooth => true,
+            ConstraintKind::Smooth => t.value > 0.0,
+            ConstraintKind::SmoothEquality => false,
+        });
+        self.others.extend(kept);
+    }
+
+    fn prune(&mut self, norm: &ScaledNorm) {
+        let center = &self.center.point;
+        for t in &self.others {
+            let error = self.center.evaluation.values[t.constraint] - t.at(center);
+            let terms = t.slope.abs().dot(&(center.abs() + t.point.abs())) + t.value.abs();
+            if error < -CONVEX_SHARE * terms {
+                self.nonconvex[t.constraint] = true;
+            }
+        }
+        let near = 2.0 * self.last_step;
+        let (nonconvex, center) = (&self.nonconvex, Rc::clone(center));
+        self.others.retain(|t| !nonconvex[t.constraint] || norm.length(&(&*t.point - &*center)) <= near);
+        let most = EXTRA_TANGENTS + 3 * center.len();
+        if self.others.len() > most {
+            self.others.drain(..self.others.len() - most);
+        }
+    }
+
+    /// Forgets the linearizations at other points than the center, as a restart does; false if there are none.
+    pub(crate) fn forget_far(&mut self, radius: f64, norm: &ScaledNorm) -> bool {
+        let before = self.others.len();
+        let center = Rc::clone(&self.center.point);
+        self.others.retain(|t| norm.length(&(&*t.point - &*center)) <= radius);
+        self.revision += 1;
+        self.others.len() < before
+    }
+
+    pub(crate) fn nonconvex(&self) -> &[bool] {
+        &self.nonconvex
+    }
+
+    pub(crate) fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    pub(crate) fn kinds(&self) -> &[ConstraintKind] {
+        &self.kinds
+    }
+
+    /// σ_j; while only zero gradients have been seen, the largest |c_j|.
+    pub(crate) fn unit(&self, j: usize) -> f64 {
+        if self.units[j] > 0.0 { self.units[j] } else { self.largest[j] }
+    }
+
+    /// The linearizations at the center, and at other points.
+    pub(crate) fn tangents(&self) -> (&[Tangent], &[Tangent]) {
+        (&self.center.tangents, &self.others)
+    }
+
+    /// c_j at the center.
+    pub(crate) fn at_center(&self) -> &Vector {
+        &self.center.evaluation.values
+    }
+
+    pub(crate) fn center_evaluation(&self) -> &ConstraintEvaluation {
+        &self.center.evaluation
+    }
+
+    pub(crate) fn best(&self) -> &Best {
+        &self.best
+    }
+
+    /// By how much a value violates constraint j.
+    pub(crate) fn violated_by(&self, j: usize, value: f64) -> f64 {
+        match self.kinds[j] {
+            ConstraintKind::SmoothEquality => value.abs(),
+            _ => value.max(0.0),
+        }
+    }
+
+    /// v for values of the constraints.
+    pub(crate) fn violation(&self, values: &Vector) -> f64 {
+        let relative = |j: usize| {
+            let violation = self.violated_by(j, values[j]);
+            if violation > 0.0 { violation / self.unit(j) } else { 0.0 }
+        };
+        (0..values.len()).map(relative).fold(0.0, f64::max)
+    }
+
+    /// The violation that counts as none.
+    fn tolerance(&self, j: usize, evaluation: &ConstraintEvaluation, point: &Vector) -> f64 {
+        let terms: f64 = evaluation.jacobian.row(j).iter().zip(point.iter()).map(|(h, x)| (h * x).abs()).sum();
+        TOLERANCE * self.largest[j] + ROUNDING * terms
+    }
+
+    /// The largest violation in tolerances: the point is feasible up to 1.
+    pub(crate) fn excess(&self, evaluation: &ConstraintEvaluation, point: &Vector) -> f64 {
+        let relative = |j: usize| {
+            let violation = self.violated_by(j, evaluation.values[j]);
+            if violation > 0.0 { violation / self.tolerance(j, evaluation, point) } else { 0.0 }
+        };
+        (0..self.kinds.len()).map(relative).fold(0.0, f64::max)
+    }
+
+    /// v at the center.
+    pub(crate) fn center_violation(&self) -> f64 {
+        self.violation(&self.center.evaluation.values)
+    }
+
+    /// The largest violation at the center in tolerances.
+    pub(crate) fn center_excess(&self) -> f64 {
+        self.excess(&self.center.evaluation, &self.center.point)
+    }
+
+    /// The highest merit P of the run less that of the center.
+    pub(crate) fn merit_drop(&self) -> f64 {
+        let merit = |(objective, values): &(f64, Vector)| objective + self.penalty * self.violation(values);
+        let center = self.center.objective + self.penalty * self.center_violation();
+        self.visited.iter().map(merit).fold(center, f64::max) - center
+    }
+
+    /// The Jacobian of the constraints at a point, if it is the center or the newest point.
+    pub(crate) fn jacobian_at(&self, point: &Vector) -> Option<&Matrix> {
+        let at = |known: &&Known| *known.point == *point;
+        Some(&std::iter::once(&self.center).chain(&self.newest).find(at)?.evaluation.jacobian)
+    }
+
+    /// Raises ρ above the sum of multipliers Σ σ_j |μ_j| of a subproblem.
+    pub(crate) fn raise_penalty(&mut self, sum: f64) {
+        if self.penalty < 1.1 * sum {
+            self.penalty = 2.0 * sum;
+        }
+    }
+}

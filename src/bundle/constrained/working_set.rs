@@ -1,0 +1,178 @@
+//! The admissible set with the linearized constraints, relaxed so far that it is not empty.
+
+use super::memory::Constraints;
+use super::tangent::Tangent;
+use crate::bundle::norm::ScaledNorm;
+use crate::bundle::proposers::subproblem::{self, Cuts};
+use crate::qp::EpigraphQpSolver;
+use crate::{ConstraintKind, Matrix, Polyhedron, Vector};
+use std::rc::Rc;
+
+/// Weight κ of the relaxation, times the violation: the linearized violation falls as long as it does so by a hundredth of the length.
+const WEIGHT: f64 = 1e-2;
+/// Tenfold decreases of κ before the violation counts as stationary.
+const MAX_DECREASES: usize = 8;
+/// Linearizations this many times steeper than those of the center drown them in rounding, and are left out.
+const MAX_RELATIVE_SLOPE: f64 = 1e5;
+/// The violation is stationary where its aggregate subgradient is at most this share of its terms.
+const STATIONARY: f64 = 1e-7;
+
+/// The set of the subproblems at a center.
+#[derive(Debug)]
+pub(crate) struct WorkingSet {
+    /// U with the rows of the linearizations, which are measured in σ.
+    pub set: Polyhedron,
+    /// Number of rows of U.
+    pub own_rows: usize,
+    /// The linearizations behind the other rows.
+    pub tangents: Rc<Vec<Tangent>>,
+    /// σ_j of every constraint.
+    pub units: Vec<f64>,
+    /// v(x̂).
+    pub violation: f64,
+    /// v(x̂) − s ≥ 0.
+    pub reduction: f64,
+    /// Length of the step that the relaxation takes.
+    pub forced_length: f64,
+    /// Whether the center satisfies the constraints to their tolerance.
+    pub feasible: bool,
+    /// Whether no direction reduces the violation.
+    pub stationary: bool,
+}
+
+/// A linearization as seen from the center, in σ.
+struct Seen<'a> {
+    tangent: &'a Tangent,
+    slope: Vector,
+    level: f64,
+    two_sided: bool,
+}
+
+impl WorkingSet {
+    /// Whether the violation, rather than the objective, determines a step of this length.
+    pub(crate) fn forces(&self, step_length: f64) -> bool {
+        step_length <= 2.0 * self.forced_length
+    }
+
+    /// Whether the next step has to reduce the violation.
+    pub(crate) fn restoring(&self) -> bool {
+        !self.feasible
+    }
+
+    pub(crate) fn new(
+        set: &Polyhedron,
+        constraints: &Constraints,
+        center: &Vector,
+        norm: &ScaledNorm,
+        solver: &mut EpigraphQpSolver,
+    ) -> Self {
+        let seen = seen_from(constraints, center);
+        let (violation, excess) = (constraints.center_violation(), constraints.center_excess());
+        let (mut relaxation, mut stationary, mut forced_length) = (violation, false, 0.0);
+        if excess > 1e-3 {
+            (relaxation, stationary, forced_length) = relax(set, (&seen, violation, constraints.caution), center, norm, solver);
+        }
+        let seen: Vec<Seen<'_>> = seen.into_iter().filter(|seen| seen.slope.amax() > 0.0).collect();
+        let rows = Matrix::from_fn(seen.len(), center.len(), |i, k| seen[i].slope[k]);
+        let at_center = &rows * center;
+        let upper = Vector::from_fn(seen.len(), |i, _| at_center[i] - seen[i].level + relaxation);
+        let lower = Vector::from_fn(seen.len(), |i, _| {
+            if seen[i].two_sided { at_center[i] - seen[i].level - relaxation } else { f64::NEG_INFINITY }
+        });
+        let own_rows = set.rows().nrows();
+        if std::env::var("DBG").is_ok() {
+            eprintln!("v {violation:.3e} s {relaxation:.3e} excess {excess:.1e} caution {} rows {} penalty {:.2e} forced {forced_length:.2e} nonconvex {:?}", constraints.caution, rows.nrows(), constraints.penalty, constraints.nonconvex());
+        }
+        let extended = set.clone().with_tangents(&rows, &lower, &upper);
+        Self {
+            set: extended,
+            own_rows,
+            tangents: Rc::new(seen.iter().map(|seen| seen.tangent.clone()).collect()),
+            units: (0..constraints.kinds().len()).map(|j| constraints.unit(j)).collect(),
+            violation,
+            forced_length,
+            reduction: (violation - relaxation).max(0.0),
+            feasible: excess <= 1.0,
+            stationary: stationary && excess > 1.0,
+        }
+    }
+}
+
+/// The linearizations that can matter, in σ. One at another point never lies above the constraint at the center.
+fn seen_from<'a>(constraints: &'a Constraints, center: &Vector) -> Vec<Seen<'a>> {
+    let (own, others) = constraints.tangents();
+    let values = constraints.at_center();
+    let view = |tangent: &'a Tangent, level: f64| {
+        let unit = constraints.unit(tangent.constraint);
+        let two_sided = constraints.kinds()[tangent.constraint] == ConstraintKind::SmoothEquality;
+        (unit > 0.0).then(|| Seen {
+            tangent,
+            slope: &*tangent.slope / unit,
+            level: level / unit,
+            two_sided,
+        })
+    };
+    let of_center = own.iter().filter_map(|t| view(t, t.value));
+    let of_others = others.iter().filter_map(|t| {
+        let value = values[t.constraint];
+        view(t, value - (value - t.at(center)).abs())
+    });
+    let mut seen: Vec<Seen<'_>> = of_center.collect();
+    let steepest = seen.iter().map(|seen| seen.slope.amax()).fold(1.0, f64::max);
+    seen.extend(of_others.filter(|seen| seen.slope.amax() <= MAX_RELATIVE_SLOPE * steepest));
+    seen
+}
+
+/// The violation s that a step may leave, and whether the violation is stationary.
+fn relax(
+    set: &Polyhedron,
+    (seen, violation, caution): (&[Seen<'_>], f64, f64),
+    center: &Vector,
+    norm: &ScaledNorm,
+    solver: &mut EpigraphQpSolver,
+) -> (f64, bool, f64) {
+    let mut slopes = vec![Vector::zeros(center.len())];
+    let mut offsets = vec![violation];
+    for seen in seen {
+        slopes.push(seen.slope.clone());
+        offsets.push(violation - seen.level);
+        if seen.two_sided {
+            slopes.push(-&seen.slope);
+            offsets.push(violation + seen.level);
+        }
+    }
+    let ids: Vec<u64> = (0..slopes.len() as u64).collect();
+    let cuts = Cuts { slopes: &slopes, offsets: &offsets, ids: &ids, gram: None };
+    let steepest = slopes.iter().zip(&offsets).filter(|(_, offset)| **offset <= 0.5 * violation);
+    let slope = steepest.map(|(slope, _)| norm.dual_length(slope)).fold(0.0, f64::max);
+    let mut weight = WEIGHT * caution * if slope > 0.0 { slope * slope } else { 1.0 } / violation;
+    let mut first = true;
+    let mut best = (violation, false, 0.0);
+    for _ in 0..=MAX_DECREASES {
+        let metric = norm.weighted(weight);
+        let Ok(solution) = subproblem::solve(solver, set, center, metric.metric(), cuts) else {
+            return (violation, false, 0.0);
+        };
+        let level = |seen: &Seen<'_>| {
+            let level = seen.level + seen.slope.dot(&solution.step);
+            if seen.two_sided { level.abs() } else { level }
+        };
+        let left = seen.iter().map(level).fold(0.0, f64::max).min(violation);
+        let gained = best.0 - left;
+        if gained > 0.0 {
+            best = (left, false, norm.length(&solution.step));
+        }
+        // The relaxation is small enough, or no longer step reduces it much.
+        if best.0 <= 0.1 * violation || caution > 1.0 || !first && best.0 < 0.99 * violation && gained <= 0.1 * best.0 {
+            return best;
+        }
+        first = false;
+        let sloped: f64 = slopes.iter().zip(&solution.cut_multipliers).map(|(h, m)| m * norm.dual_length(h)).sum();
+        if weight * norm.length(&solution.step) <= STATIONARY * sloped {
+            let error: f64 = offsets.iter().zip(&solution.cut_multipliers).map(|(a, m)| m * a).sum();
+            return if best.0 < 0.99 * violation { best } else { (violation, error <= STATIONARY * violation, 0.0) };
+        }
+        weight /= 10.0;
+    }
+    best
+}

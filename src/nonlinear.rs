@@ -1,0 +1,135 @@
+//! Nonlinear constraints c_j(x) ≤ 0 beside the admissible set, and closures that return them with the objective.
+//!
+//! ```text
+//! minimise Θ(x)  over  x ∈ U  with  c_j(x) ≤ 0 (inequality)  or  c_j(x) = 0 (equality),   j = 1 … m
+//! ```
+//! Values and subgradients of the constraints come from the evaluation that gives Θ. A constraint may be nonsmooth: one subgradient of
+//! c_j at the point is enough, and further linearizations of c_j at the point ([`ConstraintPiece`]) make the model sharper. Points that
+//! are evaluated may violate nonlinear constraints; they never violate U.
+
+use crate::checks::{check_finite, check_size};
+use crate::composite::{Linearization, Linearized, OuterFunction};
+use crate::{Answer, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError, Request, Vector};
+use serde::{Deserialize, Serialize};
+
+/// What a nonlinear constraint asks for, and how it may be modelled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ConstraintKind {
+    /// c(x) ≤ 0 with a locally Lipschitz c: the evaluation returns one subgradient.
+    Nonsmooth,
+    /// c(x) ≤ 0 with a continuously differentiable c: the evaluation returns its gradient.
+    Smooth,
+    /// c(x) = 0 with a continuously differentiable c. A nonsmooth equality has no linearization that could be satisfied near a kink.
+    SmoothEquality,
+}
+
+/// A further linearization of a constraint at the point of an evaluation: c_j(y) ≥ value + ⟨gradient, y − x⟩ up to second order for one of
+/// the pieces of which c_j is the maximum.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConstraintPiece {
+    /// The constraint j, counted from 0.
+    pub constraint: usize,
+    /// The value of the piece at the point, at most c_j there.
+    pub value: f64,
+    /// The gradient of the piece, n entries.
+    pub gradient: Vector,
+}
+
+/// Values of the constraints at a point, with one subgradient of each.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConstraintEvaluation {
+    /// c, m entries, each in the unit of its constraint.
+    pub values: Vector,
+    /// One subgradient of c_j in row j, m × n.
+    pub jacobian: Matrix,
+    /// Further linearizations at the point.
+    pub pieces: Vec<ConstraintPiece>,
+}
+
+impl ConstraintEvaluation {
+    /// Values with one subgradient of each constraint.
+    pub fn new(values: Vector, jacobian: Matrix) -> Self {
+        Self { values, jacobian, pieces: vec![] }
+    }
+
+    /// Refuses wrong sizes, and entries that are not finite.
+    ///
+    /// # Errors
+    /// [`InputError`], with the number of the constraint as the entry.
+    pub(crate) fn check(&self, dimension: usize) -> Result<(), InputError> {
+        check_finite("constraint values", self.values.as_slice())?;
+        check_size("rows of the Jacobian of the constraints", self.values.len(), self.jacobian.nrows())?;
+        check_size("columns of the Jacobian of the constraints", dimension, self.jacobian.ncols())?;
+        for (index, row) in self.jacobian.row_iter().enumerate() {
+            if let Some(&value) = row.iter().find(|entry| !entry.is_finite()) {
+                return Err(InputError::NotFinite { what: "Jacobian of the constraints (row)", index, value });
+            }
+        }
+        for piece in &self.pieces {
+            check_size("gradient of a piece of a constraint", dimension, piece.gradient.len())?;
+            check_finite("value of a piece of a constraint", &[piece.value])?;
+            check_finite("gradient of a piece of a constraint", piece.gradient.as_slice())?;
+        }
+        Ok(())
+    }
+}
+
+/// The identity of a single output: an objective that is an output itself.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Identity;
+
+impl OuterFunction for Identity {
+    fn value(&self, outputs: &Vector) -> f64 {
+        outputs[0]
+    }
+
+    fn subgradient(&self, _outputs: &Vector) -> Vector {
+        Vector::from_element(1, 1.0)
+    }
+
+    fn is_homogeneous(&self) -> bool {
+        true
+    }
+}
+
+/// A closure `x ↦ (Θ(x), one subgradient, constraints)` as an objective with nonlinear constraints.
+#[derive(Debug, Clone)]
+pub struct ConstrainedFunction<F> {
+    dimension: usize,
+    kinds: Vec<ConstraintKind>,
+    function: F,
+}
+
+impl<F: Fn(&Vector) -> (f64, Vector, ConstraintEvaluation)> ConstrainedFunction<F> {
+    /// An objective of `dimension` variables with one constraint per kind.
+    pub fn new(dimension: usize, kinds: Vec<ConstraintKind>, function: F) -> Self {
+        Self { dimension, kinds, function }
+    }
+}
+
+impl<F: Fn(&Vector) -> (f64, Vector, ConstraintEvaluation)> NonsmoothObjective for ConstrainedFunction<F> {
+    type WarmStart = ();
+
+    fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        Some(&Identity)
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        &self.kinds
+    }
+
+    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
+        let (value, subgradient, constraints) = (self.function)(request.point);
+        let jacobian = Matrix::from_row_slice(1, subgradient.len(), subgradient.as_slice());
+        let outputs = Vector::from_element(1, value);
+        let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
+        let linearization = Linearized::if_asked(request.linearization, linearization);
+        let exact = Evaluation::exact(value, subgradient, ());
+        Ok(Answer::Accurate(Evaluation { linearization, constraints: Some(constraints), ..exact }))
+    }
+}
