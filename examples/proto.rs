@@ -83,7 +83,69 @@ fn run(p: &P, x0: &[f64], joined: bool, verbose: bool, seps: bool) {
     if verbose { for r in &report.history { let (_, _, _) = ((), (), ()); println!("  {:3} {:8} {:12} {:?} c {:.9e} pred {:.2e} agg {:.1e} err {:.1e} u {:.1e} len {:.1e}", r.evaluation, r.kind, r.origin, r.value, r.center_value, r.predicted_decrease, r.aggregate_norm, r.aggregate_error, r.weight, r.step_length); } }
     println!("{:12} {:6} {:7} ev {:4} f-f* {:+.2e} viol {:+.1e}  {}", p.name, if joined {"joined"} else {""}, if seps {"cuts"} else {"penalty"}, report.counts.evaluations, (f - p.fstar) / p.fstar.abs().max(1.0), viol, &t[..t.len().min(60)]);
 }
+fn rnd(s: &mut u64) -> f64 { *s = s.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407); ((*s >> 33) as f64) / (1u64 << 31) as f64 * 2.0 - 1.0 }
+fn trust() {
+    let mut bad = 0; let mut counts = std::collections::BTreeMap::new(); let mut solved = 0; let mut total = 0; let mut evs = 0.0;
+    for p in problems() { for joined in [false, true] { for k in 0..20 {
+        let mut s = 777 + 31 * k as u64; for _ in 0..5 { rnd(&mut s); }
+        let n = p.x0.len();
+        let fs = 10f64.powf((6.0 * rnd(&mut s)).round());
+        let cs: Vec<f64> = p.kinds.iter().map(|_| 10f64.powf((6.0 * rnd(&mut s)).round())).collect();
+        let big = if k % 3 == 0 { 0.0 } else if k % 3 == 1 { 0.1 } else { 1.0 };
+        let x0: Vec<f64> = p.x0.iter().map(|x| x + big * (x.abs() + 1.0) * rnd(&mut s)).collect();
+        let kinds = if joined { vec![Nonsmooth] } else { p.kinds.clone() };
+        let theta = ConstrainedFunction::new(n, kinds, |x: &Vector| {
+            let (f, g, c) = (p.f)(x);
+            let mut c: Vec<(f64, Vec<f64>)> = c;
+            if joined { c = vec![c.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap()]; }
+            let values = Vector::from_iterator(c.len(), c.iter().enumerate().map(|(j, c)| cs[j] * c.0));
+            let jacobian = Matrix::from_fn(c.len(), n, |i, k| cs[i] * c[i].1[k]);
+            (fs * f, g * fs, ConstraintEvaluation::new(values, jacobian))
+        });
+        let report = BundleTrust::new(BundleTrustConfig { max_evaluations: 500, ..Default::default() }).unwrap().minimize(&theta, v(&x0)).unwrap();
+        let (f, _, c) = (p.f)(&report.solution);
+        let viol = c.iter().fold(0.0f64, |a, c| a.max(c.0));
+        let err = (f - p.fstar) / p.fstar.abs().max(1.0);
+        let conf = report.termination.is_confirmed();
+        let ok = err.abs() < 1e-6 && viol < 1e-7;
+        total += 1; if ok { solved += 1; evs += (report.counts.evaluations as f64).ln(); }
+        let t = report.termination.to_string();
+        *counts.entry((ok, t.split(':').next().unwrap().chars().take(40).collect::<String>())).or_insert(0) += 1;
+        if conf && !ok { bad += 1; println!("FALSE {} joined {joined} k {k} fs {fs:e} cs {cs:?} err {err:e} viol {viol:e} ev {}", p.name, report.counts.evaluations); }
+        else if !ok { println!("miss {} joined {joined} k {k} fs {fs:e} cs {cs:?} err {err:e} viol {viol:e} ev {} {}", p.name, report.counts.evaluations, &t[..t.len().min(50)]); }
+    } } }
+    println!("{solved} of {total}, false {bad}, geo {:.1}", (evs / solved as f64).exp());
+    for (k, v) in counts { println!("{k:?} {v}"); }
+}
+fn odd() {
+    // Infeasible: x^2 + 1 <= 0 style, two discs apart, |x| + 1 <= 0; degenerate: x^2 <= 0, (x^3 - y <= 0, y <= 0).
+    let cfg = || BundleTrustConfig { max_evaluations: 300, ..Default::default() };
+    let mut go = |name: &str, n: usize, kinds: Vec<ConstraintKind>, f: &dyn Fn(&Vector) -> (f64, Vector, ConstraintEvaluation)| {
+        for k in 0..4 {
+            let mut s = 5 + k as u64; for _ in 0..5 { rnd(&mut s); }
+            let x0 = Vector::from_fn(n, |_, _| 3.0 * rnd(&mut s));
+            let theta = ConstrainedFunction::new(n, kinds.clone(), |x: &Vector| f(x));
+            let r = BundleTrust::new(cfg()).unwrap().minimize(&theta, x0).unwrap();
+            let c = f(&r.solution).2.values;
+            println!("{name:14} ev {:4} f {:+.4e} c {:?} {}", r.counts.evaluations, r.value, c.as_slice().iter().map(|c| (c * 1e9).round() / 1e9).collect::<Vec<_>>(), r.termination);
+        }
+    };
+    let ce = |vals: &[f64], rows: &[f64], n: usize| ConstraintEvaluation::new(v(vals), Matrix::from_row_slice(vals.len(), n, rows));
+    go("parabola", 1, vec![Smooth], &|x| (x[0], v(&[1.0]), ce(&[x[0] * x[0] + 1.0], &[2.0 * x[0]], 1)));
+    go("discs", 2, vec![Smooth; 2], &|x| (x[0] + x[1], v(&[1.0, 1.0]), ce(&[x[0] * x[0] + x[1] * x[1] - 1.0, (x[0] - 3.0).powi(2) + x[1] * x[1] - 1.0], &[2.0 * x[0], 2.0 * x[1], 2.0 * (x[0] - 3.0), 2.0 * x[1]], 2)));
+    go("l1", 2, vec![Nonsmooth], &|x| (x[0] * x[0], v(&[2.0 * x[0], 0.0]), ce(&[x[0].abs() + x[1].abs() + 1.0], &[x[0].signum(), x[1].signum()], 2)));
+    go("eq infeasible", 2, vec![SmoothEquality], &|x| (x[0], v(&[1.0, 0.0]), ce(&[x[0] * x[0] + x[1] * x[1] + 2.0], &[2.0 * x[0], 2.0 * x[1]], 2)));
+    go("x^2<=0", 1, vec![Smooth], &|x| (x[0], v(&[1.0]), ce(&[x[0] * x[0]], &[2.0 * x[0]], 1)));
+    go("cusp", 2, vec![Smooth; 2], &|x| (-x[0], v(&[-1.0, 0.0]), ce(&[x[1] - (1.0 - x[0]).powi(3), -x[1]], &[3.0 * (1.0 - x[0]).powi(2), 1.0, 0.0, -1.0], 2)));
+    go("tangent discs", 2, vec![Smooth; 2], &|x| (x[1], v(&[0.0, 1.0]), ce(&[x[0] * x[0] + x[1] * x[1] - 1.0, (x[0] - 2.0).powi(2) + x[1] * x[1] - 1.0], &[2.0 * x[0], 2.0 * x[1], 2.0 * (x[0] - 2.0), 2.0 * x[1]], 2)));
+    go("circle eq", 2, vec![SmoothEquality], &|x| (x[0] + 2.0 * x[1], v(&[1.0, 2.0]), ce(&[x[0] * x[0] + x[1] * x[1] - 5.0], &[2.0 * x[0], 2.0 * x[1]], 2)));
+    go("circle 2eq", 3, vec![SmoothEquality; 2], &|x| (x[0].abs() + x[2], v(&[x[0].signum(), 0.0, 1.0]), ce(&[x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - 5.0, x[0] - x[1]], &[2.0 * x[0], 2.0 * x[1], 2.0 * x[2], 1.0, -1.0, 0.0], 3)));
+    go("outside disc", 2, vec![Smooth], &|x| (x[0] * x[0] + 2.0 * x[1] * x[1], v(&[2.0 * x[0], 4.0 * x[1]]), ce(&[1.0 - x[0] * x[0] - x[1] * x[1]], &[-2.0 * x[0], -2.0 * x[1]], 2)));
+    go("redundant", 2, vec![Smooth; 3], &|x| (x[0] + x[1], v(&[1.0, 1.0]), ce(&[x[0] * x[0] + x[1] * x[1] - 2.0, 2.0 * (x[0] * x[0] + x[1] * x[1]) - 4.0, x[0].exp() * (x[0] * x[0] + x[1] * x[1] - 2.0)], &{ let e = x[0].exp(); let q = x[0] * x[0] + x[1] * x[1] - 2.0; [2.0 * x[0], 2.0 * x[1], 4.0 * x[0], 4.0 * x[1], e * (q + 2.0 * x[0]), e * 2.0 * x[1]] }, 2)));
+}
 fn main() {
+    if std::env::args().nth(1).as_deref() == Some("trust") { return trust(); }
+    if std::env::args().nth(1).as_deref() == Some("odd") { return odd(); }
     let args: Vec<String> = std::env::args().collect();
     for p in problems() {
         if args.len() > 1 && !p.name.starts_with(&args[1]) { continue }

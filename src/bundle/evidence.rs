@@ -78,6 +78,8 @@ pub(crate) struct Evidence {
     pub radius: f64,
     /// Whether all active cuts are those of the center itself, so that no difference of values enters.
     at_center: bool,
+    /// Whether the active nonlinear constraints are degenerate.
+    pub degenerate: bool,
     /// Whether the outputs behind Θ and their Jacobian give it, without any difference of values.
     pub of_outputs: bool,
 }
@@ -113,6 +115,7 @@ impl Evidence {
             },
             radius: radius(state, proposal, of_outputs),
             of_outputs,
+            degenerate: degenerate(state, proposal, &terms),
             at_center: tangents().next().is_none()
                 && (of_outputs || proposal.cut_error == 0.0 && active().all(|cut| cut.id == state.center_id)),
         }
@@ -211,6 +214,24 @@ fn radius(state: &State, proposal: &Proposal, of_outputs: bool) -> f64 {
     let cuts = active_cuts(state, proposal).filter(|_| !of_outputs);
     let farthest = cuts.map(|cut| cut.farthest_from(&state.center, &state.norm)).fold(of_tangents, f64::max);
     if farthest > 0.0 { farthest / state.length_scale().max(f64::MIN_POSITIVE) } else { 0.0 }
+}
+
+/// Whether the multipliers of the nonlinear constraints are those of degenerate constraints.
+fn degenerate(state: &State, proposal: &Proposal, terms: &Vector) -> bool {
+    let Some(constraints) = &state.constraints else { return false };
+    let mut multipliers = vec![0.0; constraints.kinds().len()];
+    for (tangent, multiplier) in proposal.active_tangents() {
+        multipliers[tangent.constraint] += multiplier / constraints.unit(tangent.constraint);
+    }
+    let slope = match &proposal.composite_aggregate {
+        Some(slope) => state.norm.dual_length(slope),
+        None => {
+            let cuts = state.bundle.cuts().iter().zip(&proposal.cut_multipliers);
+            cuts.map(|(cut, multiplier)| multiplier * state.norm.dual_length(&cut.subgradient)).sum()
+        }
+    };
+    let _ = terms;
+    constraints.is_degenerate(&multipliers, (slope, &state.norm), state.length_scale())
 }
 
 /// z̃ and the sum of the absolute values of its terms, from the multipliers and the subgradients as they are.

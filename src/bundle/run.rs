@@ -8,6 +8,7 @@ use super::proposers::list::Proposers;
 use super::proposers::proposal::Proposal;
 use super::proposers::proposer::{Answer as Proposed, Position};
 use super::record::{Event, record};
+use super::resolution::Resolution;
 use super::state::State;
 use super::trial::{Trial, descent_target};
 use super::{demand, limits, noise, verdict};
@@ -135,13 +136,17 @@ impl Run<'_, '_> {
 
     /// The set of the subproblems at the present center, where there are nonlinear constraints.
     fn working_set(&mut self) -> Option<Rc<WorkingSet>> {
+        self.state.constraints.as_ref()?;
+        let negligible = Resolution::new(&self.state, &self.method.config).tolerance();
+        let reach = self.state.length_scale().max(self.state.first_step);
         let constraints = self.state.constraints.as_deref()?;
         let wanted = (self.state.center_id, constraints.revision());
         match &self.working {
             Some((known, working)) if *known == wanted => Some(Rc::clone(working)),
             _ => {
                 let (center, norm) = (&self.state.center, &self.state.norm);
-                let working = Rc::new(WorkingSet::new(&self.set, constraints, center, norm, &mut self.solver));
+                let working = WorkingSet::new(&self.set, constraints, center, (norm, negligible, reach), &mut self.solver);
+                let working = Rc::new(working);
                 self.working = Some((wanted, Rc::clone(&working)));
                 Some(working)
             }

@@ -39,6 +39,16 @@ pub(crate) enum Verdict {
 
 /// Judges the evidence that a subproblem gives.
 pub(crate) fn verdict(at: &Position<'_>, evidence: &Evidence) -> Verdict {
+    match judged(at, evidence) {
+        Verdict::End(termination) if termination.is_confirmed() && evidence.degenerate => {
+            Verdict::End(Termination::DegenerateConstraints { radius: evidence.radius })
+        }
+        verdict => verdict,
+    }
+}
+
+/// The verdict as if the constraints were not degenerate.
+fn judged(at: &Position<'_>, evidence: &Evidence) -> Verdict {
     if at.restoring() {
         return Verdict::Open;
     }

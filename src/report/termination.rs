@@ -33,6 +33,12 @@ pub enum Termination {
         /// The violation: the largest c_j⁺ over ‖∇c_j‖*, a length.
         violation: f64,
     },
+    /// The point is feasible and no model finds anything lower, but the gradients of the active constraints cancel or vanish: multipliers
+    /// need not exist, and nothing is proved.
+    DegenerateConstraints {
+        /// Radius of the active cuts relative to the size of the variables.
+        radius: f64,
+    },
     /// What the model promises is below the noise of the oracle.
     NoiseLimit {
         /// What noise and model leave open, in units of Θ: a bound of Θ(x̂) − min Θ within reach if Θ is convex.
@@ -100,6 +106,7 @@ impl Termination {
                 "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
             }
             Self::Infeasible { .. } => "start elsewhere, or relax the constraints",
+            Self::DegenerateConstraints { .. } => "write the constraints so that their gradients do not vanish or oppose each other",
             Self::NoiseLimit { .. } => {
                 "a more accurate oracle is needed to get further; where convexity is declared, check that the objective is convex"
             }
@@ -142,6 +149,9 @@ impl fmt::Display for Termination {
             }
             Self::Infeasible { violation } => {
                 write!(f, "infeasible: the violation of the constraints is stationary, at a distance of about {violation:.1e}")
+            }
+            Self::DegenerateConstraints { .. } => {
+                write!(f, "degenerate constraints: nothing lower was found, but no multipliers prove it")
             }
             Self::NoiseLimit { estimate } => write!(f, "noise limit: values are uncertain by about {estimate:.1e}"),
             Self::StepTooShort { predicted_decrease } => {

@@ -11,6 +11,8 @@ const TOLERANCE: f64 = 1e-10;
 const ROUNDING: f64 = 1e-13;
 /// Linearizations above a constraint by more than this share of the terms prove it nonconvex.
 const CONVEX_SHARE: f64 = 1e-9;
+/// Gradients of active constraints that cancel, or vanish, to this share are degenerate.
+const DEGENERATE: f64 = 1e-6;
 /// Tangents kept beside those of the center, for every variable and in all.
 const EXTRA_TANGENTS: usize = 50;
 
@@ -42,6 +44,8 @@ pub(crate) struct Constraints {
     largest: Vec<f64>,
     /// Whether linearizations prove c_j nonconvex.
     nonconvex: Vec<bool>,
+    /// Σ σ_j |μ_j| of the last subproblem: how much the objective costs per unit of violation.
+    pub sensitivity: f64,
     /// ρ.
     pub penalty: f64,
     /// How much more the length of a step counts in the relaxation, after steps that did not reduce the violation.
@@ -50,6 +54,8 @@ pub(crate) struct Constraints {
     pub objective_slope: f64,
     center: Known,
     newest: Option<Known>,
+    /// The center before.
+    former: Option<Known>,
     /// Linearizations at other points, the oldest first.
     others: Vec<Tangent>,
     /// Length of the last step to a new center.
@@ -101,10 +107,12 @@ impl Constraints {
             largest: vec![0.0; count],
             nonconvex: vec![false; count],
             penalty: slope,
+            sensitivity: 0.0,
             caution: 1.0,
             objective_slope: slope,
             center,
             newest: None,
+            former: None,
             others: vec![],
             last_step: 0.0,
             visited: vec![],
@@ -154,6 +162,7 @@ impl Constraints {
         self.measure();
         self.caution = (0.1 * self.caution).max(1.0);
         if self.last_step > 0.0 {
+            self.former = Some(old.clone());
             self.keep(old, norm);
         }
         self.prune(norm);
@@ -298,8 +307,26 @@ impl Constraints {
         Some(&std::iter::once(&self.center).chain(&self.newest).find(at)?.evaluation.jacobian)
     }
 
+    /// Whether constraints with multipliers μ_j are degenerate: their gradients all but cancel each other, or vanish at the center with all
+    /// that they have changed on the last step.
+    pub(crate) fn is_degenerate(&self, multipliers: &[f64], (slope, norm): (f64, &ScaledNorm), reach: f64) -> bool {
+        let length = |known: &Known, j: usize| norm.dual_length(&known.evaluation.jacobian.row(j).transpose());
+        let sum: f64 = (0..multipliers.len()).map(|j| multipliers[j].abs() * length(&self.center, j)).sum();
+        let vanishes = |j: usize| {
+            let Some(former) = self.former.as_ref().filter(|_| self.kinds[j] != ConstraintKind::Nonsmooth) else {
+                return false;
+            };
+            let rows = [&self.center, former].map(|known| known.evaluation.jacobian.row(j));
+            let change = norm.dual_length(&(rows[0] - rows[1]).transpose());
+            let distance = norm.length(&(&*self.center.point - &*former.point));
+            length(&self.center, j) * distance <= DEGENERATE * change * reach
+        };
+        sum > slope / DEGENERATE || (0..multipliers.len()).any(|j| multipliers[j] != 0.0 && vanishes(j))
+    }
+
     /// Raises ρ above the sum of multipliers Σ σ_j |μ_j| of a subproblem.
     pub(crate) fn raise_penalty(&mut self, sum: f64) {
+        self.sensitivity = sum;
         if self.penalty < 1.1 * sum {
             self.penalty = 2.0 * sum;
         }

@@ -15,7 +15,7 @@ const MAX_DECREASES: usize = 8;
 /// Linearizations this many times steeper than those of the center drown them in rounding, and are left out.
 const MAX_RELATIVE_SLOPE: f64 = 1e5;
 /// The violation is stationary where its aggregate subgradient is at most this share of its terms.
-const STATIONARY: f64 = 1e-7;
+const STATIONARY: f64 = 1e-6;
 
 /// The set of the subproblems at a center.
 #[derive(Debug)]
@@ -46,6 +46,8 @@ struct Seen<'a> {
     slope: Vector,
     level: f64,
     two_sided: bool,
+    /// Whether it tells about the constraint next to the center: it was taken there, or the constraint looks convex and nonsmooth.
+    holds: bool,
 }
 
 impl WorkingSet {
@@ -63,14 +65,21 @@ impl WorkingSet {
         set: &Polyhedron,
         constraints: &Constraints,
         center: &Vector,
-        norm: &ScaledNorm,
+        (norm, negligible, reach): (&ScaledNorm, f64, f64),
         solver: &mut EpigraphQpSolver,
     ) -> Self {
-        let seen = seen_from(constraints, center);
+        let mut seen = seen_from(constraints, center);
         let (violation, excess) = (constraints.center_violation(), constraints.center_excess());
         let (mut relaxation, mut stationary, mut forced_length) = (violation, false, 0.0);
-        if excess > 1e-3 {
-            (relaxation, stationary, forced_length) = relax(set, (&seen, violation, constraints.caution), center, norm, solver);
+        let costly = constraints.sensitivity * violation > negligible;
+        if excess > 1e-3 || costly {
+            let size = (violation, constraints.caution, reach);
+            (relaxation, stationary, forced_length) = relax(set, (&seen, size), center, norm, solver);
+            if stationary && seen.iter().any(|seen| !seen.holds) {
+                // Linearizations at other points prove nothing where a constraint is not convex.
+                seen.retain(|seen| seen.holds);
+                (relaxation, stationary, forced_length) = relax(set, (&seen, size), center, norm, solver);
+            }
         }
         let seen: Vec<Seen<'_>> = seen.into_iter().filter(|seen| seen.slope.amax() > 0.0).collect();
         let rows = Matrix::from_fn(seen.len(), center.len(), |i, k| seen[i].slope[k]);
@@ -92,7 +101,7 @@ impl WorkingSet {
             violation,
             forced_length,
             reduction: (violation - relaxation).max(0.0),
-            feasible: excess <= 1.0,
+            feasible: excess <= 1.0 && !costly,
             stationary: stationary && excess > 1.0,
         }
     }
@@ -110,6 +119,9 @@ fn seen_from<'a>(constraints: &'a Constraints, center: &Vector) -> Vec<Seen<'a>>
             slope: &*tangent.slope / unit,
             level: level / unit,
             two_sided,
+            holds: *tangent.point == *center
+                || constraints.kinds()[tangent.constraint] == ConstraintKind::Nonsmooth
+                    && !constraints.nonconvex()[tangent.constraint],
         })
     };
     let of_center = own.iter().filter_map(|t| view(t, t.value));
@@ -126,7 +138,7 @@ fn seen_from<'a>(constraints: &'a Constraints, center: &Vector) -> Vec<Seen<'a>>
 /// The violation s that a step may leave, and whether the violation is stationary.
 fn relax(
     set: &Polyhedron,
-    (seen, violation, caution): (&[Seen<'_>], f64, f64),
+    (seen, (violation, caution, reach)): (&[Seen<'_>], (f64, f64, f64)),
     center: &Vector,
     norm: &ScaledNorm,
     solver: &mut EpigraphQpSolver,
@@ -153,6 +165,12 @@ fn relax(
         let Ok(solution) = subproblem::solve(solver, set, center, metric.metric(), cuts) else {
             return (violation, false, 0.0);
         };
+        // The linearized violation falls by no more than this within reach.
+        let aggregate = weight * norm.length(&solution.step);
+        let error: f64 = offsets.iter().zip(&solution.cut_multipliers).map(|(a, m)| m * a).sum();
+        if error + aggregate * reach <= STATIONARY * violation {
+            return (best.0, true, best.2);
+        }
         let level = |seen: &Seen<'_>| {
             let level = seen.level + seen.slope.dot(&solution.step);
             if seen.two_sided { level.abs() } else { level }
@@ -167,11 +185,6 @@ fn relax(
             return best;
         }
         first = false;
-        let sloped: f64 = slopes.iter().zip(&solution.cut_multipliers).map(|(h, m)| m * norm.dual_length(h)).sum();
-        if weight * norm.length(&solution.step) <= STATIONARY * sloped {
-            let error: f64 = offsets.iter().zip(&solution.cut_multipliers).map(|(a, m)| m * a).sum();
-            return if best.0 < 0.99 * violation { best } else { (violation, error <= STATIONARY * violation, 0.0) };
-        }
         weight /= 10.0;
     }
     best
