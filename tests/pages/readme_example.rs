@@ -54,7 +54,8 @@ fn own_problem_of_the_page_is_the_example() {
     let [block] = rust_blocks(page)[..] else { panic!("one program") };
     assert!(include_str!("../../examples/own_problem.rs").contains(block), "differs from the example:\n{block}");
     // The signatures on the page are those of the traits.
-    let (source, signature) = (include_str!("../../src/problem.rs"), |line: &&str| line.trim_start().starts_with("fn "));
+    let (source, signature) =
+        (include_str!("../../src/problem.rs"), |line: &&str| line.trim_start().starts_with("fn "));
     let plain = |text: &str| text.replace(",\n    )", ")").split_whitespace().collect::<String>();
     let traits = page.split("```text\n").nth(1).and_then(|rest| rest.split("\n```").next()).expect("the traits");
     assert_eq!(traits.lines().filter(signature).count(), 6);
