@@ -1,4 +1,4 @@
-//! The README's example of the framework, as it stands there.
+//! The code on the pages: that of README.md stands in this file and runs, that of docs/plug_in_your_problem.md in an example.
 
 use nonsmooth::composite::Maximum;
 use nonsmooth::{
@@ -30,4 +30,36 @@ fn both_pieces_at_once() -> Result<(), Box<dyn std::error::Error>> {
     assert!((report.value - 2.0).abs() < 1e-6, "{report}");
     assert!(report.termination.is_confirmed() && report.counts.evaluations < 10, "{report}");
     Ok(())
+}
+
+/// The blocks of Rust on a page.
+fn rust_blocks(page: &str) -> Vec<&str> {
+    page.split("```rust\n").skip(1).filter_map(|rest| rest.split("\n```").next()).collect()
+}
+
+#[test]
+fn code_of_the_readme_is_the_code_tested_here() {
+    let tested = include_str!("readme_example.rs").replace(' ', "");
+    let blocks = rust_blocks(include_str!("../../README.md"));
+    assert_eq!(blocks.len(), 2);
+    for line in blocks.iter().flat_map(|block| block.lines()) {
+        let printed_or_imported = line.starts_with("println!") || line.starts_with("use ") || line.starts_with("//");
+        assert!(printed_or_imported || tested.contains(&line.replace(' ', "")), "README.md: {line}");
+    }
+}
+
+#[test]
+fn own_problem_of_the_page_is_the_example() {
+    let page = include_str!("../../docs/plug_in_your_problem.md");
+    let [block] = rust_blocks(page)[..] else { panic!("one program") };
+    assert!(include_str!("../../examples/own_problem.rs").contains(block), "differs from the example:\n{block}");
+    // The signatures on the page are those of the traits.
+    let (source, signature) =
+        (include_str!("../../src/problem.rs"), |line: &&str| line.trim_start().starts_with("fn "));
+    let plain = |text: &str| text.replace(",\n    )", ")").split_whitespace().collect::<String>();
+    let traits = page.split("```text\n").nth(1).and_then(|rest| rest.split("\n```").next()).expect("the traits");
+    assert_eq!(traits.lines().filter(signature).count(), 6);
+    for line in traits.lines().filter(signature) {
+        assert!(plain(source).contains(&plain(line)), "not in src/problem.rs: {line}");
+    }
 }
