@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 /// The report of a run, with the set that its certificate refers to.
 #[pyclass(frozen, module = "nonsmooth._engine")]
 #[derive(Debug)]
-pub struct Outcome {
+pub struct RunOutcome {
     /// The engine's report.
     pub report: Report,
     /// The admissible set.
@@ -19,7 +19,7 @@ pub struct Outcome {
 }
 
 #[pymethods]
-impl Outcome {
+impl RunOutcome {
     /// The best admissible point.
     #[getter]
     fn x<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
@@ -75,7 +75,7 @@ impl Outcome {
         }
     }
 
-    /// What the engine advises; the package has words of its own for users of Python.
+    /// What the engine advises; the package has its own advice for users of Python.
     #[getter]
     fn advice(&self) -> &'static str {
         self.report.termination.advice()

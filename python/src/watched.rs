@@ -1,6 +1,6 @@
 //! An objective that remembers the subgradient of its lowest value: a report holds the best point, but not what belongs to it.
 
-use crate::outcome::Outcome;
+use crate::outcome::RunOutcome;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{Answer, NonsmoothObjective, OracleError, Polyhedron, Report, Request, Vector};
 use std::cell::RefCell;
@@ -20,11 +20,11 @@ impl<O> Watched<O> {
     }
 
     /// The report with the subgradient at its solution.
-    pub fn outcome(&self, report: Report, set: Polyhedron) -> Outcome {
+    pub fn outcome(&self, report: Report, set: Polyhedron) -> RunOutcome {
         let best = self.best.borrow();
         let there = best.as_ref().filter(|(at, ..)| *at == report.solution);
         let subgradient = there.map(|(_, _, subgradient)| subgradient.clone());
-        Outcome { report, set, subgradient }
+        RunOutcome { report, set, subgradient }
     }
 }
 

@@ -1,13 +1,13 @@
 //! A run, driven step by step with at most one evaluation per step.
 
 use super::builder::BundleTrust;
-use super::oracle::{Oracle, Outcome, evaluate};
+use super::oracle::{Oracle, OracleResult, evaluate};
 use super::proof::{Ending, Proof};
 use super::proposers::list::Proposers;
 use super::proposers::proposal::Proposal;
 use super::proposers::proposer::{Answer as Proposed, Position};
 use super::record::{Event, record};
-use super::state::State;
+use super::state::BundleState;
 use super::trial::{Trial, descent_target};
 use super::{demand, limits, noise, verdict};
 use crate::composite::{Linearization, LinearizationRequest, Linearized, OuterFunction};
@@ -42,7 +42,7 @@ pub struct Run<'r, 'o> {
     /// The convex function of a composite objective, if its model is wanted.
     pub(super) outer: Option<&'r dyn OuterFunction>,
     pub(super) set: Polyhedron,
-    pub(super) state: State,
+    pub(super) state: BundleState,
     pub(super) solver: EpigraphQpSolver,
     pub(super) proposers: Proposers,
     pub(super) termination: Option<Termination>,
@@ -86,10 +86,10 @@ impl Run<'_, '_> {
         // The correction of a rejected step of the composite model needs the Jacobian at the rejected point.
         let below = if proposal.origin == Origin::CompositeModel { f64::INFINITY } else { target };
         match self.evaluate(&proposal.trial, accuracy, Some(target), below) {
-            Outcome::MinusInfinity => return Break(Termination::UnboundedBelow.into()),
-            Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
-            Outcome::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
-            Outcome::Answer(answer) => self.accept_or_reject(&proposal, accuracy, answer),
+            OracleResult::MinusInfinity => return Break(Termination::UnboundedBelow.into()),
+            OracleResult::Failure(OracleError::Interrupted) => return self.interrupted(),
+            OracleResult::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
+            OracleResult::Answer(answer) => self.accept_or_reject(&proposal, accuracy, answer),
         }
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
     }
@@ -149,7 +149,7 @@ impl Run<'_, '_> {
     }
 
     /// Evaluates Θ, with a descent target if there is one; `below` is the value of Θ up to which a Jacobian is wanted.
-    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> Outcome {
+    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> OracleResult {
         self.state.counts.evaluations += 1;
         self.state.known_trials = 0;
         let linearization = self.outer.map(|_| LinearizationRequest::below(below));
@@ -207,7 +207,7 @@ impl Run<'_, '_> {
         let mut event =
             Event { kind: StepKind::Refinement, value: None, failure: None, noted: Noted::Nothing, work: 0 };
         match self.evaluate(&center, accuracy, None, f64::INFINITY) {
-            Outcome::Answer(Answer::Accurate(mut evaluation)) => {
+            OracleResult::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;
                 (event.value, event.work) = (Some(evaluation.value), evaluation.work);
                 let (known, noted) = self.take_linearization(std::mem::take(&mut evaluation.linearization));
@@ -218,8 +218,8 @@ impl Run<'_, '_> {
                 self.state.bundle.retain(|cut| cut.id != old);
                 self.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
             }
-            Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
-            Outcome::Failure(error) => {
+            OracleResult::Failure(OracleError::Interrupted) => return self.interrupted(),
+            OracleResult::Failure(error) => {
                 event.failure = Some(error.to_string());
                 contradiction = refuse_contradiction(&error);
             }

@@ -15,7 +15,7 @@
 
 use super::config::{BundleTrustConfig, Convexity};
 use super::kept_cuts::Spread;
-use super::state::{Lengths, OutputScales, State};
+use super::state::{BundleState, Lengths, OutputScales};
 use crate::Vector;
 use crate::linalg::upper_median;
 use crate::qp::kernels::{dot_terms, two_dot_terms};
@@ -34,7 +34,7 @@ const MAX_VALUE_SHARE: f64 = 10.0;
 /// near a minimum are that much smaller than the terms of their linearizations.
 const SHIFTED_SHARE: f64 = 0.02;
 
-impl State {
+impl BundleState {
     /// How far a variable lies from zero or from its start, whichever is more.
     pub(crate) fn reach(&self, i: usize) -> f64 {
         self.center[i].abs().max((self.center[i] - self.start[i]).abs())

@@ -41,9 +41,9 @@ pub(crate) struct OutputScales {
     pub within_reach: f64,
 }
 
-/// State of a run between two steps. The weight is u = 1/t of the trust parameter t.
+/// BundleState of a run between two steps. The weight is u = 1/t of the trust parameter t.
 #[derive(Debug, Clone)]
-pub(crate) struct State {
+pub(crate) struct BundleState {
     pub norm: ScaledNorm,
     pub start: Vector,
     pub start_value: f64,
@@ -86,7 +86,7 @@ pub(crate) struct State {
     pub lengths: RefCell<Option<(u64, Rc<Lengths>)>>,
 }
 
-impl State {
+impl BundleState {
     /// The size of Θ beside which linearization errors count as rounding: |Θ(x̂)|, but at least 1e-5 of the decrease so far. The stopping
     /// tests refer to `natural_scale` instead.
     pub(crate) fn value_scale(&self, config: &BundleTrustConfig) -> f64 {

@@ -37,7 +37,7 @@ pub(crate) enum Verdict {
     Open,
 }
 
-/// Judges the evidence that a subproblem gives.
+/// Classifies the evidence that a subproblem gives.
 pub(crate) fn verdict(at: &Position<'_>, evidence: &Evidence) -> Verdict {
     let resolution = at.resolution();
     let convex = at.config.convexity == Convexity::Convex;
@@ -82,7 +82,7 @@ pub(crate) enum Near {
     Open,
 }
 
-/// Judges the cuts next to a center by their subproblem at the weight of the run.
+/// Classifies the cuts next to a center by their subproblem at the weight of the run.
 pub(crate) fn near_verdict(
     at: &Position<'_>,
     resolution: &Resolution,

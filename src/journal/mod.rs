@@ -12,10 +12,10 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let folder = std::env::temp_dir().join(format!("nonsmooth-journal-example-{}", std::process::id()));
 //! let run = |max_evaluations: usize| -> Result<Report, Box<dyn std::error::Error>> {
-//!     let dear = FnObjective::new(2, |x: &Vector| {
+//!     let expensive = FnObjective::new(2, |x: &Vector| {
 //!         (x[0].abs() + 2.0 * x[1] * x[1], Vector::from_vec(vec![x[0].signum(), 4.0 * x[1]]))
 //!     });
-//!     let theta = Journaled::open(dear, &folder, "|x| + 2y²")?;
+//!     let theta = Journaled::open(expensive, &folder, "|x| + 2y²")?;
 //!     println!("{} evaluations are in the journal", theta.held());
 //!     let config = BundleTrustConfig { max_evaluations, ..BundleTrustConfig::default() };
 //!     let mut report = BundleTrust::new(config)?.minimize(&theta, Vector::from_vec(vec![3.0, 2.0]))?;

@@ -1,7 +1,7 @@
 //! Dual active-set method on the multipliers.
 //!
 //! ```text
-//! repeat:  settle (equality solution of the working set, wrong signs leave)
+//! repeat:  solve (equality solution of the working set, wrong signs leave)
 //!          price  (violated side of largest distance; none: solved)
 //!          enter  (take it in; if its normal depends on those held, exchange it against one of them)
 //! ```
@@ -15,7 +15,7 @@ use crate::interruption::interrupted;
 
 /// How a run of the active-set method ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Outcome {
+pub(super) enum ActiveSetEnd {
     /// Every side is satisfied.
     Solved,
     /// A side cannot be satisfied together with those held.
@@ -97,19 +97,19 @@ impl WorkingSet<'_> {
     }
 
     /// Runs to the end.
-    pub(super) fn run(&mut self) -> Outcome {
+    pub(super) fn run(&mut self) -> ActiveSetEnd {
         let limit = 100 + 5 * (self.qp.slopes.len() + self.qp.rows.nrows() + self.qp.dimension());
         let mut skipped = Vec::new();
-        self.settle();
+        self.solve_equalities();
         loop {
             if !self.epigraph.is_finite() || self.pivots > limit || interrupted() {
-                return Outcome::Stalled;
+                return ActiveSetEnd::Stalled;
             }
-            let Some(violation) = self.most_violated(&skipped) else { return Outcome::Solved };
+            let Some(violation) = self.most_violated(&skipped) else { return ActiveSetEnd::Solved };
             match self.enter(&violation) {
-                Entry::Held => self.settle(),
+                Entry::Held => self.solve_equalities(),
                 Entry::Refused if violation.relative > CONTRADICTION && !matches!(violation.member, Member::Cut(_)) => {
-                    return Outcome::Infeasible { violation: violation.relative };
+                    return ActiveSetEnd::Infeasible { violation: violation.relative };
                 }
                 Entry::Refused => {}
             }

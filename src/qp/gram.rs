@@ -320,7 +320,7 @@ impl<'a> Dual<'a> {
     fn pivot(&mut self) -> Option<()> {
         let limit = self.pivots + 100 + 5 * self.qp.slopes.len();
         loop {
-            let level = self.settle();
+            let level = self.solve_equalities();
             if self.pivots > limit || !level.is_finite() {
                 return None;
             }
@@ -333,7 +333,7 @@ impl<'a> Dual<'a> {
     }
 
     /// Moves to the equality solution of the cuts held; multipliers that would change sign leave. Returns −v.
-    fn settle(&mut self) -> f64 {
+    fn solve_equalities(&mut self) -> f64 {
         loop {
             let mut ones = vec![1.0; self.held.len()];
             let mut change = self.held_gradient();

@@ -251,7 +251,7 @@ mod tests {
         with_example(|qp| {
             let own = EpigraphQpSolver::new().solve(qp).expect("feasible");
             let interior = solve(qp).expect("feasible").solution;
-            // Without a polish: tolerance 1e-13 of the objective, about its root in the step.
+            // Without refinement by the active-set method: tolerance 1e-13 of the objective, about its root in the step.
             assert!(interior.kkt_residual <= 1e-7, "{:e}", interior.kkt_residual);
             assert!((&own.step - &interior.step).norm() <= 1e-6 * own.step.norm());
         });

@@ -74,7 +74,7 @@ pub struct EpigraphQp<'a> {
 pub enum QpMethod {
     /// The dual active-set method.
     ActiveSet,
-    /// The interior-point method; the polish by the active-set method brought no better answer.
+    /// The interior-point method; refinement by the active-set method brought no better answer.
     InteriorPoint,
 }
 

@@ -89,9 +89,9 @@ impl BitAnd for StopRule {
 
 impl fmt::Display for StopRule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let join = |f: &mut fmt::Formatter<'_>, rules: &[Self], word: &str| {
+        let join = |f: &mut fmt::Formatter<'_>, rules: &[Self], separator: &str| {
             let texts: Vec<String> = rules.iter().map(|rule| format!("({rule})")).collect();
-            write!(f, "{}", texts.join(word))
+            write!(f, "{}", texts.join(separator))
         };
         match self {
             Self::ValueBelow(target) => write!(f, "value ≤ {target}"),

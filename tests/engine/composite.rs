@@ -294,7 +294,7 @@ proptest! {
         let report = run(&theta, &set, start.clone(), config());
         let plain = run(&cuts, &set, start, config());
         // At a smooth optimum the slopes of the last cuts vanish so fast that the scale of Θ which is taken from them may fall
-        // below rounding: the word is then that of noise, with a bound of what is left.
+        // below rounding: the termination is then the noise limit, with a bound of what is left.
         let bounded = matches!(report.termination, Termination::NoiseLimit { estimate } if estimate <= 1e-6);
         prop_assert!(report.termination.is_confirmed() || bounded, "{report}");
         prop_assert!((report.value - plain.value).abs() <= 1e-6 * plain.value.abs().max(1.0), "{report}{plain}");
@@ -307,7 +307,7 @@ proptest! {
     }
 }
 
-/// A stiff output far from its optimum at the start sets the weights; y then falls along a straight line that is all but flat. Steps along
+/// A stiff output far from its optimum at the start sets the weights; y then falls slowly along a line. Steps along
 /// it are short beside its length, each promises less than a small decrease, and all of them together little more.
 #[test]
 fn a_decrease_that_is_small_at_every_step_does_not_hold_up_the_end() {

@@ -22,7 +22,7 @@ fn random(rows: usize, columns: usize, seed: u64) -> Matrix {
 }
 
 /// h of c_i = b_i + |a_i (x − x*) + ½β (a_i (x − x*))²|, b_i > 0, h growing in each output: x* on all kinks is the optimum.
-fn folded(outer: Box<dyn OuterFunction>, n: usize, seed: u64, bend: f64) -> Kinked {
+fn folded(outer: Box<dyn OuterFunction>, n: usize, seed: u64, curvature: f64) -> Kinked {
     let rows = random(n + 2, n, seed + 3);
     let floor = seeded_direction(n + 2, seed + 4).map(|entry| 0.5 + 0.4 * entry);
     let solution = seeded_direction(n, seed + 1);
@@ -30,8 +30,8 @@ fn folded(outer: Box<dyn OuterFunction>, n: usize, seed: u64, bend: f64) -> Kink
     let optimum = Some(outer.value(&floor));
     let linearize = move |x: &Vector| {
         let lengths = &rows * (x - &solution);
-        let signed = lengths.map(|length| length + 0.5 * bend * length * length);
-        let slope = |i: usize, j: usize| signed[i].signum() * (1.0 + bend * lengths[i]) * rows[(i, j)];
+        let signed = lengths.map(|length| length + 0.5 * curvature * length * length);
+        let slope = |i: usize, j: usize| signed[i].signum() * (1.0 + curvature * lengths[i]) * rows[(i, j)];
         (&floor + signed.abs(), Matrix::from_fn(n + 2, n, slope))
     };
     Kinked { dimension: n, outer, linearize: Box::new(linearize), start, optimum }

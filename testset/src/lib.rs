@@ -52,7 +52,7 @@ pub struct Problem {
     pub convex: bool,
     /// Lower corner of the orthant on which a convex problem is convex, −∞ nearly always.
     pub convex_lower: Vec<f64>,
-    /// The function in words, indices from one.
+    /// Description of the function, with indices from one.
     pub formula: String,
     /// Publication.
     pub source: String,

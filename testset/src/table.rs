@@ -20,7 +20,7 @@ pub struct Record {
     pub dimension: usize,
     /// Convex where it matters, see [`crate::Problem::convex_lower`].
     pub convex: bool,
-    /// The function in words.
+    /// Description of the function.
     pub formula: String,
     /// Start point.
     pub x0: Vec<f64>,

@@ -164,13 +164,13 @@ impl Convergence {
             let x = across(f64::from(number));
             canvas.arrow([[x, frame.top + 14.0], [x, frame.top + 1.0]], Stroke::solid(INK, 0.9));
             self.mark(canvas, (number, step), [x, frame.top + 15.0]);
-            let words = number_text(step.value.unwrap_or(f64::NAN));
-            let room = text_width(&words, SMALL);
+            let label = number_text(step.value.unwrap_or(f64::NAN));
+            let room = text_width(&label, SMALL);
             // Beside the frame's right side, the value stands at the left of its mark.
             let left = if x + 7.0 + room > frame.left + frame.width { x - 7.0 - room } else { x + 7.0 };
             if let Some(row) = (0..MAX_ROWS).find(|row| ends[*row] < left) {
                 ends[row] = left + room + 6.0;
-                canvas.text([left, frame.top + 19.0 + 13.0 * row as f64], SMALL, &words);
+                canvas.text([left, frame.top + 19.0 + 13.0 * row as f64], SMALL, &label);
             }
         }
     }

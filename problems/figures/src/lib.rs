@@ -26,8 +26,8 @@ mod marks;
 mod nodes;
 mod oblique;
 pub mod page;
+mod panel_layout;
 mod panels;
-mod plan;
 #[cfg(feature = "png")]
 mod png;
 mod scale;

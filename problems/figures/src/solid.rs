@@ -4,7 +4,7 @@ use super::error::{FigureError, cells, count, finite, some};
 use super::figure::Figure;
 use super::levels::ColourScale;
 use super::oblique::Sheet;
-use super::panels::{Panel, Row};
+use super::panels::{Panel, PanelRow};
 use super::scale::{behind, number};
 
 /// Blocks seen from the front, the right and above: one or more panels with one colour scale and one scale of lengths.
@@ -99,7 +99,7 @@ impl Solids {
                 front: Vec::new(),
             }
         });
-        Row {
+        PanelRow {
             name: &self.name,
             title: &self.title,
             axes: &self.axes,

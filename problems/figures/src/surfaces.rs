@@ -4,7 +4,7 @@ use super::error::{FigureError, grid, some};
 use super::figure::Figure;
 use super::levels::ColourScale;
 use super::oblique::{Point, Sheet};
-use super::panels::{Panel, Row};
+use super::panels::{Panel, PanelRow};
 use super::scale::{behind, extent, nice_below, number};
 
 /// Heights over rectangles, seen from the front, the right and above; magnified so that small differences are seen.
@@ -104,7 +104,7 @@ impl Surfaces {
             let same = self.panels.iter().all(|panel| panel.size[index] == side);
             if same { format!("{name} ({}{unit})", number(side)) } else { name.to_owned() }
         };
-        Row {
+        PanelRow {
             name: &self.name,
             title: &self.title,
             axes: &[side(0), side(1), "x₃".to_owned()],

@@ -22,7 +22,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, PowerConeT, SecondOrderConeT, SupportedConeT, ZeroConeT,
 };
 
-/// The last iterate of the method, of any quality: the caller judges it by weak duality.
+/// The last iterate of the method, of any quality: the caller checks it by weak duality.
 pub(super) struct ConeAnswer {
     pub step: Vector,
     /// The weights w of the outputs.

@@ -127,7 +127,7 @@ impl CompositeModel<'_> {
 
     /// h(c + G d) − h(c) + dᵀBd/2 + u(‖d − o‖² − ‖o‖²)/2 with the origin o.
     pub(super) fn merit(&self, step: &Vector) -> f64 {
-        let quadratic = self.bend(step) + self.weight * self.norm.squared(step);
+        let quadratic = self.curvature_term(step) + self.weight * self.norm.squared(step);
         self.outer.value(&self.outputs(step)) - self.value + 0.5 * quadratic + self.pull_to_origin().dot(step)
     }
 
@@ -138,7 +138,7 @@ impl CompositeModel<'_> {
     }
 
     /// dᵀBd.
-    fn bend(&self, step: &Vector) -> f64 {
+    fn curvature_term(&self, step: &Vector) -> f64 {
         self.curvature.map_or(0.0, |curvature| step.dot(&(curvature * step)))
     }
 
@@ -162,7 +162,7 @@ impl CompositeModel<'_> {
 
     /// The solution at a step; `sides` are the multipliers of the rows and of the bounds.
     pub(super) fn solved(&self, step: Vector, cuts: Vec<OuterCut>, sides: (Vector, Vector)) -> CompositeStep {
-        let decrease = self.value - self.outer.value(&self.outputs(&step)) - 0.5 * self.bend(&step);
+        let decrease = self.value - self.outer.value(&self.outputs(&step)) - 0.5 * self.curvature_term(&step);
         CompositeStep { decrease, step, cuts, row_multipliers: sides.0, bound_multipliers: sides.1 }
     }
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! min over d   h(c + G d) + u‖d‖²/2,   x + d ∈ U
 //! h smooth:    Newton's method, each step a quadratic program with Gᵀ∇²h G + u W, and a line search
-//! of cones:    an interior-point method (cones.rs), judged by weak duality
+//! of cones:    an interior-point method (cones.rs), checked by weak duality
 //! else:        max_j h(c_j) + ⟨w_j, c + G d − c_j⟩ in place of h, cuts added until they meet h
 //! w = Σ λ_j w_j:   Gᵀw + Aᵀμ + ν = −u W d,   error of w at c:  Σ λ_j (h(c) − h(c_j) − ⟨w_j, c − c_j⟩) ≥ 0
 //! ```

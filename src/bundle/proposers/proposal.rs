@@ -1,6 +1,6 @@
 //! A trial point, and how it is made admissible.
 
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::qp::{QpError, project};
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
@@ -104,7 +104,7 @@ impl Proposal {
     pub(crate) fn replaced(
         &self,
         (step, weight, origin): (Vector, f64, Origin),
-        (set, state): (&Polyhedron, &State),
+        (set, state): (&Polyhedron, &BundleState),
         change: impl Fn(&Vector) -> f64,
     ) -> Result<Self, SubproblemError> {
         let trial = &state.center + &step;
@@ -132,14 +132,19 @@ impl Proposal {
     }
 
     /// The same multipliers at another trial point, which promises nothing by itself.
-    pub(crate) fn moved_to(&self, trial: Vector, set: &Polyhedron, state: &State) -> Result<Self, SubproblemError> {
+    pub(crate) fn moved_to(
+        &self,
+        trial: Vector,
+        set: &Polyhedron,
+        state: &BundleState,
+    ) -> Result<Self, SubproblemError> {
         let step = &trial - &state.center;
         Self { trial, step, violation: 0.0, ..self.clone() }.admissible(set, state)
     }
 
     /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the center, which is
     /// admissible: a little where the violation is small, by a factor of 0.7 at a time otherwise.
-    pub(crate) fn admissible(mut self, set: &Polyhedron, state: &State) -> Result<Self, SubproblemError> {
+    pub(crate) fn admissible(mut self, set: &Polyhedron, state: &BundleState) -> Result<Self, SubproblemError> {
         let violation = |x: &Vector| set.violation_near(x, &state.center);
         self.trial = set.clamp_to_box(&self.trial);
         self.violation = violation(&self.trial);

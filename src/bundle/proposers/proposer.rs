@@ -12,7 +12,7 @@ use crate::Polyhedron;
 use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::proof::Ending;
 use crate::bundle::resolution::Resolution;
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::bundle::trial::Trial;
 use crate::composite::{Linearization, OuterFunction};
 use crate::qp::EpigraphQpSolver;
@@ -39,7 +39,7 @@ impl Answer {
 
 /// What a proposer sees of the run, and may change.
 pub(crate) struct Position<'a> {
-    pub state: &'a mut State,
+    pub state: &'a mut BundleState,
     pub set: &'a Polyhedron,
     pub config: &'a BundleTrustConfig,
     pub solver: &'a mut EpigraphQpSolver,

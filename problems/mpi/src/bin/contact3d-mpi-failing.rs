@@ -4,7 +4,7 @@
 //!
 //! * `panic`, a panic;
 //! * `kill`, the signal 9;
-//! * `exit`, an end without a word to MPI;
+//! * `exit`, an exit without notice to MPI;
 //! * `memory`, an allocation that no machine can serve;
 //! * `flat`, bodies so flat that they cannot be factored: from that call on, it hears another height than 100 mm.
 

@@ -84,7 +84,7 @@ pub struct OptimizationStudy {
 pub const TARGETS: [f64; 3] = [1.0, 0.1, 0.02];
 
 /// One run on one mesh.
-struct Run {
+struct StrategyRun {
     controls: Vector,
     /// One milestone per evaluation of this run.
     history: Vec<Milestone>,
@@ -149,7 +149,7 @@ fn minimize(
     start: Vector,
     accuracy: AccuracyPolicy,
     max_evaluations: usize,
-) -> Result<Run, Failure> {
+) -> Result<StrategyRun, Failure> {
     let clock = Instant::now();
     let first_step = objective.first_step(&start);
     let config = BundleTrustConfig {
@@ -168,13 +168,13 @@ fn minimize(
         work += record.work as f64;
         Milestone { evaluations: index + 1, work, seconds: record.seconds, best }
     });
-    Ok(Run { controls: report.solution, history: milestones.collect(), seconds: clock.elapsed().as_secs_f64() })
+    Ok(StrategyRun { controls: report.solution, history: milestones.collect(), seconds: clock.elapsed().as_secs_f64() })
 }
 
 fn course(
     strategy: &'static str,
     objective: &ContactObjective,
-    run: &Run,
+    run: &StrategyRun,
     passed: Milestone,
 ) -> Result<Course, Failure> {
     let points = run.history.iter().map(|point| Milestone {
@@ -196,13 +196,13 @@ fn course(
 
 /// Norms of several exponents and the peak pressure itself, each with the same number of evaluations.
 fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRow>, Failure> {
-    let judge = objective_of(scene, mesh, norm())?;
+    let reference = objective_of(scene, mesh, norm())?;
     let row = |measure: String, evaluations: usize, seconds: f64, controls: &Vector| -> Result<PeakRow, Failure> {
-        let SolvedShape { value: norm, peak_pressure: peak, .. } = SolvedShape::at(&judge, controls)?;
+        let SolvedShape { value: norm, peak_pressure: peak, .. } = SolvedShape::at(&reference, controls)?;
         Ok(PeakRow { measure, evaluations, seconds, peak, norm })
     };
     let norms = [4.0, 8.0, 16.0].map(|exponent| (format!("Σσ^{exponent}"), PressureMeasure::Norm { exponent }));
-    let mut rows = vec![row("nothing (start)".into(), 0, 0.0, &judge.solver().start())?];
+    let mut rows = vec![row("nothing (start)".into(), 0, 0.0, &reference.solver().start())?];
     for (measure, kind) in norms.into_iter().chain([("max σ".to_owned(), PressureMeasure::Peak)]) {
         let objective = objective_of(scene, mesh, kind)?;
         let run = minimize(&objective, objective.solver().start(), AccuracyPolicy::Tightest, evaluations)?;

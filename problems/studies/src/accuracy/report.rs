@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// The study; parts that were not asked for are empty.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Report {
+pub struct AccuracyReport {
     /// Threads of the machine.
     pub machine_threads: usize,
     /// Seconds of the whole study.

@@ -2,7 +2,7 @@
 
 use crate::rates::exponent;
 use crate::scaling::cases::{RATIO, SceneName, Variant};
-use crate::scaling::rows::{Row, Start};
+use crate::scaling::rows::{ScalingRow, Start};
 use clap::ValueEnum;
 use serde::Serialize;
 
@@ -39,19 +39,19 @@ const REFERENCE: usize = 3;
 
 impl Growth {
     /// Growth per variant, where at least two rows have H/h = 7.
-    pub fn of(rows: &[Row]) -> Vec<Self> {
-        let series = |variant: &Variant| -> Vec<&Row> {
-            let alike = |row: &&Row| row.variant == *variant && row.case.ratio() == RATIO && row.clusters == 1;
+    pub fn of(rows: &[ScalingRow]) -> Vec<Self> {
+        let series = |variant: &Variant| -> Vec<&ScalingRow> {
+            let alike = |row: &&ScalingRow| row.variant == *variant && row.case.ratio() == RATIO && row.clusters == 1;
             rows.iter().filter(alike).collect()
         };
         let all = Variant::value_variants().iter().map(series);
         all.filter(|series| series.len() > 1).map(|series| Self::of_series(&series)).collect()
     }
 
-    fn of_series(series: &[&Row]) -> Self {
-        let cold = |row: &&Row| Some([row.dofs as f64, row.cold.seconds()]);
-        let warm = |row: &&Row| row.warm.as_ref().map(|warm| [row.dofs as f64, warm.seconds()]);
-        let large = |row: &&&Row| row.case.subdomains >= REFERENCE;
+    fn of_series(series: &[&ScalingRow]) -> Self {
+        let cold = |row: &&ScalingRow| Some([row.dofs as f64, row.cold.seconds()]);
+        let warm = |row: &&ScalingRow| row.warm.as_ref().map(|warm| [row.dofs as f64, warm.seconds()]);
+        let large = |row: &&&ScalingRow| row.case.subdomains >= REFERENCE;
         Self {
             scene: series[0].scene,
             variant: series[0].variant,
@@ -63,7 +63,7 @@ impl Growth {
     }
 }
 
-fn count_growth(series: &[&Row], tolerance: f64) -> CountGrowth {
+fn count_growth(series: &[&ScalingRow], tolerance: f64) -> CountGrowth {
     let counts: Vec<(usize, f64)> = series
         .iter()
         .filter_map(|row| Some((row.case.subdomains, row.solve(Start::Cold, tolerance)?.applications() as f64)))

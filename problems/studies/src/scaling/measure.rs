@@ -2,7 +2,7 @@
 
 use crate::scaling::cases::{Case, SceneName, Variant};
 use crate::scaling::memory;
-use crate::scaling::rows::{Adjoint, Row, Sample, Solve, Start};
+use crate::scaling::rows::{Adjoint, Sample, ScalingRow, Solve, Start};
 use contact::contact_shape::{AnySolver, ContactState, ContactWarmStart};
 use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver, SolverState};
 use contact::error::ContactError;
@@ -32,7 +32,7 @@ const CHANGE: f64 = 1e-3;
 ///
 /// # Errors
 /// [`Failure`] when the timed cold state cannot be found; other failures are listed in the row.
-pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> Result<Row, Failure> {
+pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> Result<ScalingRow, Failure> {
     memory::reset_peak();
     let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
     let [first, second] = problem.scene.control_points;
@@ -59,7 +59,7 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> R
     let warm = warm.map_err(|error| failures.push(format!("warm to {TIMED:e}: {error}"))).ok();
     let others =
         if variant == Variant::Direct { Vec::new() } else { counted(&solver, [&controls, &nearby], &mut failures) };
-    Ok(Row {
+    Ok(ScalingRow {
         scene,
         case,
         variant,

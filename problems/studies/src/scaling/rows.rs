@@ -71,7 +71,7 @@ impl Sample {
 
 /// One case with one solver.
 #[derive(Debug, Clone, Serialize)]
-pub struct Row {
+pub struct ScalingRow {
     /// The scene.
     pub scene: SceneName,
     /// The mesh.
@@ -99,11 +99,11 @@ pub struct Row {
     pub others: Vec<Solve>,
     /// Peak resident memory of the process in this case, GiB; none where the system does not tell.
     pub peak_memory: Option<f64>,
-    /// Solves that did not reach their tolerance, in words.
+    /// Messages about solves that did not reach their tolerance.
     pub failures: Vec<String>,
 }
 
-impl Row {
+impl ScalingRow {
     /// The state solved from `start` to `tolerance`.
     pub fn solve(&self, start: Start, tolerance: f64) -> Option<&Solve> {
         let timed = std::iter::once(&self.cold).chain(&self.warm).map(|sample| &sample.state);

@@ -170,7 +170,7 @@ mod tests {
         1.050_599_379_970_918e7,
     ];
 
-    fn judged(name: &str, variant: Variant, x: &[f64]) -> bool {
+    fn is_stationary_at(name: &str, variant: Variant, x: &[f64]) -> bool {
         let problem = testset::find(name).expect("a problem of the collection");
         is_clarke_stationary(&Changed::new(&problem, variant), &Vector::from_column_slice(x)).expect("a set")
     }
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn stationarity_does_not_depend_on_the_unit() {
         let scaled = LOCAL_MINIMUM.map(|x| 100.0 * x);
-        assert!(judged("PBC1", Variant { unit: 100.0, ..Variant::PLAIN }, &scaled));
+        assert!(is_stationary_at("PBC1", Variant { unit: 100.0, ..Variant::PLAIN }, &scaled));
     }
 
     /// f = max(−x₁, 1e4 x₁) − x₂ falls along the foot of a steep wall.
@@ -208,10 +208,10 @@ mod tests {
         for (entry, share) in (0..5).flat_map(|entry| [(entry, 1.0 + 1e-3), (entry, 1.0 - 1e-3)]) {
             let mut x = LOCAL_MINIMUM;
             x[entry] *= share;
-            assert!(!judged("PBC1", Variant::PLAIN, &x), "entry {entry}, factor {share}");
+            assert!(!is_stationary_at("PBC1", Variant::PLAIN, &x), "entry {entry}, factor {share}");
         }
         // On the kink of a curved valley, away from its lowest point (1, 1).
-        assert!(judged("ChebRosenN1_2", Variant::PLAIN, &[1.0, 1.0]));
-        assert!(!judged("ChebRosenN1_2", Variant::PLAIN, &[0.5, -0.5]));
+        assert!(is_stationary_at("ChebRosenN1_2", Variant::PLAIN, &[1.0, 1.0]));
+        assert!(!is_stationary_at("ChebRosenN1_2", Variant::PLAIN, &[0.5, -0.5]));
     }
 }

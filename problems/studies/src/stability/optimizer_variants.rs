@@ -1,4 +1,4 @@
-//! The problems of the collection, changed in ways that must not change the optimizer's words.
+//! The problems of the collection, changed in ways that must not change the optimizer's terminations.
 //!
 //! ```text
 //! Θ(x) = a·(f(x/c) + η (1 + |f*|) noise) + s,   start σ c x₀,   one variable with a wide side, one call in ten failing

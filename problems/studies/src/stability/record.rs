@@ -6,7 +6,7 @@ use serde::Serialize;
 /// How a case ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Outcome {
+pub enum CaseOutcome {
     /// Solved to its certificate; the independent paths agree.
     Solved,
     /// Refused with a typed error that names the cause.
@@ -47,7 +47,7 @@ pub struct Record {
     /// Name of the case.
     pub name: String,
     /// How it ended.
-    pub outcome: Outcome,
+    pub outcome: CaseOutcome,
     /// Cause of a refusal or limit, what broke, or a finding.
     pub remark: String,
     /// What the solvers did.
@@ -68,7 +68,7 @@ pub struct Record {
 
 impl Record {
     /// A record without solver paths.
-    pub fn plain(outcome: Outcome, remark: String) -> Self {
+    pub fn plain(outcome: CaseOutcome, remark: String) -> Self {
         Self { outcome, remark, ..Self::default() }
     }
 
@@ -93,22 +93,22 @@ pub struct Counts {
 
 /// All records.
 #[derive(Debug, Clone, Serialize)]
-pub struct Report {
+pub struct StabilityReport {
     /// Numbers of cases per outcome.
     pub counts: Counts,
     /// The cases.
     pub records: Vec<Record>,
 }
 
-impl Report {
+impl StabilityReport {
     /// Counts the records.
     pub fn new(records: Vec<Record>) -> Self {
         let count = |outcome| records.iter().filter(|record| record.outcome == outcome).count();
         let counts = Counts {
-            solved: count(Outcome::Solved),
-            refused: count(Outcome::Refused),
-            limits: count(Outcome::Limit),
-            broken: count(Outcome::Broken),
+            solved: count(CaseOutcome::Solved),
+            refused: count(CaseOutcome::Refused),
+            limits: count(CaseOutcome::Limit),
+            broken: count(CaseOutcome::Broken),
         };
         Self { counts, records }
     }

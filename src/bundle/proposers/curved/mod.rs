@@ -11,7 +11,7 @@ use super::cuts::model::Model;
 use super::proposal::{Proposal, SubproblemError};
 use super::proposer::Position;
 use crate::Vector;
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::bundle::trial::{Comparison, Trial};
 use crate::report::Origin;
 use model::CurvedModel;
@@ -60,22 +60,22 @@ impl Curved {
     }
 
     /// Lowers the weight to what the observed change asks for.
-    fn after_serious(&mut self, state: &State, trial: &Trial<'_>) {
+    fn after_serious(&mut self, state: &BundleState, trial: &Trial<'_>) {
         let u = self.weight;
         let next = missing_weight(&trial.comparison, trial.proposal.step_length).max(u / 10.0);
         self.weight = next.min(u).max(state.weight_limits().0);
     }
 
     /// Raises the weight after the first null step already: the next matrix B knows the new point.
-    fn after_null(&mut self, state: &State, trial: &Trial<'_>) {
+    fn after_null(&mut self, state: &BundleState, trial: &Trial<'_>) {
         let u = self.weight;
         let next = missing_weight(&trial.comparison, trial.proposal.step_length).clamp(2.0 * u, 10.0 * u);
         self.weight = next.min(state.weight_limits().1);
     }
 }
 
-/// How far the curvatures of the pieces are trusted: up to the farthest cut, where pieces may bend down.
-fn longest_step(state: &State) -> f64 {
+/// How far the curvatures of the pieces are trusted: up to the farthest cut, where pieces may be concave.
+fn longest_step(state: &BundleState) -> f64 {
     if !state.nonconvex {
         return f64::INFINITY;
     }
@@ -112,7 +112,7 @@ impl Curved {
     }
 
     /// Takes note that the oracle failed at a trial point of any proposer.
-    pub(crate) fn shorten(&mut self, state: &mut State, proposal: &Proposal) {
+    pub(crate) fn shorten(&mut self, state: &mut BundleState, proposal: &Proposal) {
         if proposal.origin == Origin::CurvedModel {
             self.failed = true;
             self.weight = (10.0 * self.weight).min(state.weight_limits().1);
@@ -120,7 +120,7 @@ impl Curved {
     }
 
     /// Takes note of an evaluated trial point of any proposer; the center has not moved yet.
-    pub(crate) fn learn(&mut self, state: &mut State, trial: &Trial<'_>) {
+    pub(crate) fn learn(&mut self, state: &mut BundleState, trial: &Trial<'_>) {
         if trial.accurate {
             let curved = self.model.change(&trial.proposal.step);
             self.compare(trial.comparison.change, trial.proposal.cut_change, curved);

@@ -5,10 +5,10 @@
 //! round:  p minimises  max_i { (h_i + B_i d + w W d)·p − (m(d) − m_i(d)) } + ½ pᵀ(Σ λ_i B_i + w W) p       x̂ + d + p ∈ U
 //!         d ← d + t p,  t = 1, ½, ¼ … until m falls;   λ: multipliers of the round before
 //! ```
-//! If m is convex, every p ≠ 0 is a direction of descent. Pieces that bend down may make it nonconvex: where Σ λ_i B_i + w W is not
+//! If m is convex, every p ≠ 0 is a direction of descent. Concave pieces may make it nonconvex: where Σ λ_i B_i + w W is not
 //! positive definite, its eigenvalues (relative to W) are replaced by their absolute values, and the step stays within a radius: what was
-//! seen of a piece that bends down says nothing about points far beyond. The tangents are taken at the newest step: multipliers alone, with
-//! the pieces always transported to d = 0, leave a step that raises m wherever the active pieces bend differently.
+//! seen of a concave piece says nothing about points far beyond. The tangents are taken at the newest step: multipliers alone, with
+//! the pieces always transported to d = 0, leave a step that raises m wherever the curvatures of the active pieces differ.
 
 use super::model::CurvedModel;
 use crate::bundle::norm::ScaledNorm;
@@ -26,7 +26,7 @@ const ACCURACY: f64 = 1e-6;
 pub(super) struct Penalised<'a> {
     pub model: &'a CurvedModel,
     pub weight: f64,
-    /// The longest step; infinite where no piece bends down.
+    /// The longest step; infinite where no piece is concave.
     pub radius: f64,
     pub norm: &'a ScaledNorm,
     pub set: &'a Polyhedron,

@@ -30,10 +30,10 @@ fn minimum_within(radius: f64, model: &CurvedModel, weight: f64, set: &Polyhedro
 }
 
 #[test]
-fn pieces_that_bend_differently_meet_at_their_crossing() {
+fn pieces_of_different_curvature_meet_at_their_crossing() {
     // −d + d²/2 and 5d − 1 + 25d² meet at 24.5 d² + 6 d = 1, and fall towards it from both sides.
-    let bend = |factor| Curvature::from_terms(vec![(factor, vector(&[1.0]))]);
-    let pieces = vec![(vector(&[-1.0]), 0.0, bend(1.0)), (vector(&[5.0]), 1.0, bend(50.0))];
+    let curvature = |factor| Curvature::from_terms(vec![(factor, vector(&[1.0]))]);
+    let pieces = vec![(vector(&[-1.0]), 0.0, curvature(1.0)), (vector(&[5.0]), 1.0, curvature(50.0))];
     let step = minimum(&CurvedModel::from_pieces(pieces), 1e-9, &Polyhedron::unbounded(1));
     let crossing = (134.0_f64.sqrt() - 6.0) / 49.0;
     assert!((step[0] - crossing).abs() <= 1e-7 * crossing, "{} {crossing}", step[0]);
@@ -42,8 +42,8 @@ fn pieces_that_bend_differently_meet_at_their_crossing() {
 #[test]
 fn one_quadratic_has_the_step_of_newton() {
     // min ⟨h, d⟩ + ½ dᵀ(B + w) d with B = diag(3, 0), w = 1.
-    let bend = Curvature::from_terms(vec![(3.0, vector(&[1.0, 0.0]))]);
-    let model = CurvedModel::from_pieces(vec![(vector(&[4.0, -2.0]), 0.0, bend)]);
+    let curvature = Curvature::from_terms(vec![(3.0, vector(&[1.0, 0.0]))]);
+    let model = CurvedModel::from_pieces(vec![(vector(&[4.0, -2.0]), 0.0, curvature)]);
     let step = minimum(&model, 1.0, &Polyhedron::unbounded(2));
     assert!((step - vector(&[-1.0, 2.0])).amax() <= 1e-12);
     let set = Polyhedron::boxed(vector(&[-0.5, -9.0]), vector(&[9.0, 9.0])).expect("a box");
@@ -51,30 +51,30 @@ fn one_quadratic_has_the_step_of_newton() {
 }
 
 #[test]
-fn a_step_follows_a_valley_of_which_one_side_bends_down() {
+fn a_step_follows_a_valley_with_one_concave_side() {
     // 4 |y − x²| − x: the minimum with ½ w‖d‖² over the valley y = x² solves 1 = w (x + 2x³).
-    let bend = |factor| Curvature::from_terms(vec![(factor, vector(&[1.0, 0.0]))]);
-    let pieces = vec![(vector(&[-1.0, 4.0]), 0.0, bend(-8.0)), (vector(&[-1.0, -4.0]), 0.0, bend(8.0))];
+    let curvature = |factor| Curvature::from_terms(vec![(factor, vector(&[1.0, 0.0]))]);
+    let pieces = vec![(vector(&[-1.0, 4.0]), 0.0, curvature(-8.0)), (vector(&[-1.0, -4.0]), 0.0, curvature(8.0))];
     let step = minimum_within(10.0, &CurvedModel::from_pieces(pieces), 1.0 / 3.0, &Polyhedron::unbounded(2));
     assert!((&step - vector(&[1.0, 1.0])).amax() <= 1e-3, "{step}");
 }
 
 #[test]
-fn a_piece_that_bends_down_without_end_gives_a_step_within_the_radius() {
-    let bend = Curvature::from_terms(vec![(-2.0, vector(&[1.0, 0.0]))]);
-    let model = CurvedModel::from_pieces(vec![(vector(&[-1.0, 1.0]), 0.0, bend)]);
+fn an_unbounded_concave_piece_gives_a_step_within_the_radius() {
+    let curvature = Curvature::from_terms(vec![(-2.0, vector(&[1.0, 0.0]))]);
+    let model = CurvedModel::from_pieces(vec![(vector(&[-1.0, 1.0]), 0.0, curvature)]);
     let step = minimum_within(3.0, &model, 1.0, &Polyhedron::unbounded(2));
     assert!(step.norm() <= 3.0 && step.norm() > 1.0 && step[0] > 0.0 && step[1] < 0.0, "{step}");
 }
 
 /// A model of random pieces, the first of them through zero, in a box around the origin.
-fn random_model(seed: u64, (n, pieces): (usize, usize), bend: f64) -> (CurvedModel, Polyhedron) {
+fn random_model(seed: u64, (n, pieces): (usize, usize), curvature: f64) -> (CurvedModel, Polyhedron) {
     let mut random = Random(seed);
     let mut draw = |length: f64| Vector::from_fn(n, |_, _| length * random.signed());
     let pieces = (0..pieces).map(|i| {
         let offset = if i == 0 { 0.0 } else { draw(0.3)[0].abs() };
         let slope = draw(1.0);
-        let terms = (0..n).map(|k| (bend * 0.1_f64.powi(k as i32), draw(1.0))).collect();
+        let terms = (0..n).map(|k| (curvature * 0.1_f64.powi(k as i32), draw(1.0))).collect();
         (slope, offset, Curvature::from_terms(terms))
     });
     let model = CurvedModel::from_pieces(pieces.collect());

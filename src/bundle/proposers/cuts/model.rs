@@ -13,7 +13,7 @@ use crate::bundle::config::{BundleTrustConfig, Convexity};
 use crate::bundle::cut::offset;
 use crate::bundle::kept_cuts::VALUE_ROUNDING;
 use crate::bundle::proposers::subproblem::Cuts;
-use crate::bundle::state::{NOISE_MARGIN, State};
+use crate::bundle::state::{BundleState, NOISE_MARGIN};
 use crate::linalg::upper_median;
 use crate::qp::Gram;
 
@@ -44,7 +44,7 @@ pub(super) const MANY_VARIABLES: usize = 100;
 
 impl Model {
     /// Builds the model at the center. Slopes that stay are taken over from the `former` model.
-    pub(crate) fn new(state: &mut State, config: &BundleTrustConfig, former: Option<Self>) -> Self {
+    pub(crate) fn new(state: &mut BundleState, config: &BundleTrustConfig, former: Option<Self>) -> Self {
         let center = state.bundle.position(state.center_id);
         let (errors, distances) = state.errors_at_center(center.unwrap_or(0));
         let rounding = state.rounding();
@@ -95,7 +95,7 @@ impl Model {
 
     /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut. The mixture lies below the model, and meets the center's cut
     /// where the cut itself does.
-    fn soften(&mut self, state: &State) {
+    fn soften(&mut self, state: &BundleState) {
         self.shares = vec![1.0; self.slopes.len()];
         let Some(center) = self.center else { return };
         let norms: Vec<f64> = if self.convexification > 0.0 {
@@ -121,7 +121,7 @@ impl Model {
 
     /// The inner products of the slopes with the weight of the run, formed from those of the bundle; none where a cut was mixed, or tilted
     /// without a table of its own.
-    pub(crate) fn products<'s>(&'s self, state: &'s State) -> Option<Gram<'s>> {
+    pub(crate) fn products<'s>(&'s self, state: &'s BundleState) -> Option<Gram<'s>> {
         let rows = match &self.tilted {
             Some(tilted) => tilted,
             None if self.convexification > 0.0 || self.shares.iter().any(|share| *share < 1.0) => return None,
@@ -136,7 +136,7 @@ impl Model {
     /// ```text
     /// ⟨h_i, W⁻¹h_j⟩ = ⟨g_i, W⁻¹g_j⟩ − 2c (⟨g_i, p_j⟩ + ⟨g_j, p_i⟩) + 4c² p_iᵀW p_j
     /// ```
-    fn tilted_products(&self, state: &State) -> Option<Vec<Vec<f64>>> {
+    fn tilted_products(&self, state: &BundleState) -> Option<Vec<Vec<f64>>> {
         let (pairs, c, center) = (state.bundle.pairs(), self.convexification, self.center?);
         let mut rows = pairs.products().to_vec();
         for (i, &row) in pairs.slots().iter().enumerate() {
@@ -167,7 +167,7 @@ impl Model {
 }
 
 /// The curvature c that the bundle proves to be necessary.
-fn convexification(state: &State, config: &BundleTrustConfig, errors: &[f64], distances: &[f64]) -> f64 {
+fn convexification(state: &BundleState, config: &BundleTrustConfig, errors: &[f64], distances: &[f64]) -> f64 {
     let resolution = VALUE_ROUNDING * state.value_scale(config) + NOISE_MARGIN * state.noise;
     let pairs = quantile(&state.bundle.proven_curvatures(resolution), QUANTILE);
     let cuts = state.bundle.cuts().iter().zip(errors.iter().zip(distances));

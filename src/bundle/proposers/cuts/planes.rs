@@ -12,7 +12,7 @@ use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::proposers::proposer::Position;
 use crate::bundle::proposers::subproblem::{self, Cuts};
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::interruption::interrupted;
 use crate::qp::QpSolution;
 use crate::report::{Origin, Termination};
@@ -35,7 +35,7 @@ pub(crate) struct CuttingPlanes {
 /// Center and revision of the bundle that a model or an answer belongs to.
 type Key = (u64, u64);
 
-fn key(state: &State) -> Key {
+fn key(state: &BundleState) -> Key {
     (state.center_id, state.bundle.revision())
 }
 
@@ -51,7 +51,7 @@ impl CuttingPlanes {
     }
 
     /// The answer of the last subproblem, where center and bundle are still those it was solved for.
-    pub(crate) fn answer(&self, state: &State) -> Option<&Proposal> {
+    pub(crate) fn answer(&self, state: &BundleState) -> Option<&Proposal> {
         self.proposal.as_ref().filter(|(known, _)| *known == key(state)).map(|(_, proposal)| proposal)
     }
 
@@ -111,7 +111,7 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     proposal.admissible(at.set, state)
 }
 
-fn interpret(mut solution: QpSolution, (state, set): (&State, &Polyhedron), model: &Model) -> Proposal {
+fn interpret(mut solution: QpSolution, (state, set): (&BundleState, &Polyhedron), model: &Model) -> Proposal {
     let step = std::mem::take(&mut solution.step);
     let squared = state.norm.squared(&step);
     let predicted_decrease = (-solution.epigraph).max(0.0);

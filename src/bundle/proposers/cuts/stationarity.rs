@@ -154,11 +154,11 @@ fn look_closer(
             worthwhile = worthwhile.or(Some(proposal.weight));
         }
         let evidence = Evidence::new(at.state, at.set, &proposal);
-        let judged = verdict(at, &evidence);
+        let found = verdict(at, &evidence);
         let undecided = evidence.undecided(allowed(&at.resolution(), convex)).is_some();
         let long = !undecided && proposal.step_length >= LEAST_STEP_LENGTH * at.state.length_scale();
         let next = if long && !convex || decreases == MAX_DECREASES { None } else { planes.lower_weight(at) };
-        match judged {
+        match found {
             Verdict::End(termination)
                 if next.is_none() || convex && termination.is_confirmed() || evidence.is_exact(0.0) =>
             {

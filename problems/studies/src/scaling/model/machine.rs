@@ -5,7 +5,7 @@
 
 use crate::scaling::cases::{Case, SceneName, Variant};
 use crate::scaling::measure;
-use crate::scaling::rows::{Row, Start};
+use crate::scaling::rows::{ScalingRow, Start};
 use contact::WorkEstimate;
 use faer::Mat;
 use problems::commands::Failure;
@@ -73,7 +73,7 @@ impl Machine {
         let tight_seconds = tight_stages.newton + tight_stages.coarse_space;
         let factor = (stages.equilibrium + stages.factorization) / pieces;
         let untold = || Failure::Computation("this system does not tell the memory of a process".into());
-        let bytes_of = |row: &Row| row.peak_memory.map(|peak| peak * 1024.0_f64.powi(3)).ok_or_else(untold);
+        let bytes_of = |row: &ScalingRow| row.peak_memory.map(|peak| peak * 1024.0_f64.powi(3)).ok_or_else(untold);
         let (small, large) = (bytes_of(&small)?, bytes_of(&large)?);
         let bytes = (large - small) / (pieces - count(CASES[0]));
         Ok(Self {

@@ -22,7 +22,7 @@ pub struct Network {
 
 /// What runs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Run {
+pub struct Workload {
     /// Number of ranks.
     pub ranks: f64,
     /// Subdomains per rank.
@@ -37,7 +37,7 @@ pub struct Run {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Prediction {
     /// What runs.
-    pub run: Run,
+    pub run: Workload,
     /// Torn degrees of freedom of all ranks.
     pub dofs: f64,
     /// Work on own subdomains, s.
@@ -97,8 +97,8 @@ fn cube_ghosts(ranks: f64, subdomains: f64) -> f64 {
 
 impl Prediction {
     /// The prediction for a run.
-    pub fn new(machine: &Machine, network: &Network, run: Run) -> Self {
-        let Run { ranks, subdomains, clusters, ghosts } = run;
+    pub fn new(machine: &Machine, network: &Network, run: Workload) -> Self {
+        let Workload { ranks, subdomains, clusters, ghosts } = run;
         let all = ranks * subdomains;
         let factor = clusters.unwrap_or(1.0);
         let (products, adjoint) = (factor * machine.products, factor * machine.adjoint_products);
@@ -151,7 +151,7 @@ impl Prediction {
         self.own + self.coarse_factors + self.coarse_solves + self.neighbours + self.gathers
     }
 
-    /// The part beside the own work that takes most of the time, in words.
+    /// The part beside the own work that takes most of the time, as text.
     pub fn limit(&self) -> &'static str {
         let parts = [
             (self.coarse_factors, "coarse factors"),
@@ -193,7 +193,7 @@ mod tests {
     const NETWORK: Network = Network { latency: 2e-6, bandwidth: 1e10 };
 
     fn predicted(ranks: f64, subdomains: f64, clusters: Option<f64>) -> Prediction {
-        Prediction::new(&MACHINE, &NETWORK, Run { ranks, subdomains, clusters, ghosts: None })
+        Prediction::new(&MACHINE, &NETWORK, Workload { ranks, subdomains, clusters, ghosts: None })
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::markdown::section;
 use crate::scaling::cases::{Case, SceneName};
 use crate::scaling::model::interface::mean_ghosts;
 use crate::scaling::model::prediction::RATIO;
-use crate::scaling::model::{Machine, Network, Prediction, Run};
+use crate::scaling::model::{Machine, Network, Prediction, Workload};
 use contact::equilibrium::ContactProblem;
 use problems::commands::Failure;
 use serde::Serialize;
@@ -60,20 +60,20 @@ pub fn report(scene: SceneName, options: &Options) -> Result<ModelReport, Failur
     let factor = options.products.map_or(1.0, |products| products / (measured.products + measured.adjoint_products));
     let (products, adjoint_products) = (factor * measured.products, factor * measured.adjoint_products);
     let machine = Machine { products, adjoint_products, ..measured };
-    let runs: Vec<Run> = match options.case {
+    let runs: Vec<Workload> = match options.case {
         Some(case) => {
             let pieces = (case.subdomains as f64).powi(3);
             let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
             let run = |&ranks: &usize| {
                 let ghosts = Some(mean_ghosts(&problem, ranks)?);
-                Ok(Run { ranks: ranks as f64, subdomains: pieces / ranks as f64, clusters: None, ghosts })
+                Ok(Workload { ranks: ranks as f64, subdomains: pieces / ranks as f64, clusters: None, ghosts })
             };
             CASE_RANKS.iter().map(run).collect::<Result<_, Failure>>()?
         }
         None => {
             let subdomains = options.per_rank as f64;
             let of = |clusters| {
-                RANKS.iter().map(move |&ranks| Run { ranks: ranks as f64, subdomains, clusters, ghosts: None })
+                RANKS.iter().map(move |&ranks| Workload { ranks: ranks as f64, subdomains, clusters, ghosts: None })
             };
             of(None).chain(of(Some(options.cluster_products))).collect()
         }
@@ -99,7 +99,7 @@ impl ModelReport {
             1e-9 * self.network.bandwidth,
         );
         let rows = self.predictions.iter().map(|prediction| {
-            let Run { ranks, subdomains, clusters, .. } = prediction.run;
+            let Workload { ranks, subdomains, clusters, .. } = prediction.run;
             let seconds = prediction.seconds();
             vec![
                 if clusters.is_some() { "clusters" } else { "plain" }.into(),

@@ -37,7 +37,7 @@ impl Given {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Nothing, Self::Convexity, Self::Outputs];
 
-    /// The word for it in names.
+    /// The text for the units in names of cases.
     pub fn name(self) -> &'static str {
         match self {
             Self::Nothing => "plain",

@@ -19,7 +19,7 @@ pub enum Start {
 }
 
 impl Start {
-    /// The word for it in names.
+    /// The text for the form in names of cases.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Zero => "from zero",

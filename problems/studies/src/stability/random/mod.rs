@@ -5,7 +5,7 @@ mod scenes;
 
 use crate::markdown;
 use contact::contact_shape::SolverKind;
-use paths::{Examined, Found, Outcome};
+use paths::{Examined, Found, PathResult};
 use rayon::prelude::*;
 use scene_file::{Case, SceneFile};
 use scenes::Family;
@@ -54,7 +54,7 @@ pub struct Counts {
 
 /// The report of a study.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct RandomReport {
     /// Counts of all scenes.
     #[serde(flatten)]
     pub counts: Counts,
@@ -76,7 +76,7 @@ pub struct Short {
     pub text: String,
 }
 
-impl Report {
+impl RandomReport {
     /// What fell short.
     pub fn short(&self) -> &[Short] {
         &self.short
@@ -117,8 +117,8 @@ struct Examination {
 
 /// The paths of one scene.
 struct Paths {
-    default: Outcome,
-    others: Vec<Outcome>,
+    default: PathResult,
+    others: Vec<PathResult>,
     cost_bound: f64,
     has_statics: bool,
     rounding: f64,
@@ -126,7 +126,7 @@ struct Paths {
 }
 
 /// Examines scenes 0 … count − 1 of a seed on all threads; the counts do not depend on their number.
-pub fn run(seed: u64, count: usize) -> Report {
+pub fn run(seed: u64, count: usize) -> RandomReport {
     let clock = Instant::now();
     let done: Vec<(usize, Examination)> =
         (0..count).into_par_iter().map(|index| (index, examine(seed, index))).collect();
@@ -177,7 +177,7 @@ fn difference(a: &Found, b: &Found, smallest: f64) -> f64 {
     (a.objective - b.objective).abs() / a.objective.abs().max(b.objective.abs()).max(smallest).max(f64::MIN_POSITIVE)
 }
 
-fn collect(done: &[(usize, Examination)], seconds: f64) -> Report {
+fn collect(done: &[(usize, Examination)], seconds: f64) -> RandomReport {
     let mut short = Vec::new();
     let mut counts = Counts::default();
     let mut families = Family::ALL.map(|family| (format!("{family:?}"), Counts::default()));
@@ -188,7 +188,7 @@ fn collect(done: &[(usize, Examination)], seconds: f64) -> Report {
         counts.add(&one);
         families[position].1.add(&one);
     }
-    Report { counts, seconds, families: families.into(), short }
+    RandomReport { counts, seconds, families: families.into(), short }
 }
 
 /// The counts of one scene; `short` hears what fell short.

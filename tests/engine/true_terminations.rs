@@ -1,4 +1,4 @@
-//! The last word of a run is true, whatever the start, a shift, units, a wide side, failures and huge answers.
+//! The termination of a run is true, whatever the start, a shift, units, a wide side, failures and huge answers.
 use crate::common::{Inaccurate, maximum, median, nearby_starts, v};
 use nonsmooth::{
     Answer, BundleTrust, BundleTrustConfig, Convexity, Evaluation, FnObjective, NonsmoothObjective, OracleError,
@@ -37,7 +37,7 @@ fn convex() -> Vec<Problem> {
     testset::all().into_iter().filter(|problem| problem.convex && problem.family == Family::Unconstrained).collect()
 }
 
-/// Evaluations are medians over starts that differ by 1e-13; the words are those of the start of the collection.
+/// Evaluations are medians over starts that differ by 1e-13; the terminations are those from the start of the collection.
 #[test]
 fn a_convex_function_is_confirmed_by_its_bound_without_restarts() {
     let (mut evaluations, mut needed) = (0.0, 0.0);
@@ -337,10 +337,10 @@ fn a_shift_makes_no_noise_limit_far_from_the_minimum() {
         for start in 0..12 {
             let start = v(&[3.0 * (1.1 * f64::from(start)).sin(), 3.0 * (2.3 * f64::from(start)).cos()]);
             let valley = |x: &Vector| {
-                let bend = x[0] * x[0] - x[1];
-                let slope = steepness * bend.signum();
+                let residual = x[0] * x[0] - x[1];
+                let slope = steepness * residual.signum();
                 let slopes = v(&[2.0 * slope * x[0] - 2.0 * (1.0 - x[0]), -slope]);
-                (steepness * bend.abs() + (1.0 - x[0]).powi(2), slopes)
+                (steepness * residual.abs() + (1.0 - x[0]).powi(2), slopes)
             };
             let shifted = FnObjective::new(2, |x: &Vector| {
                 let (value, slope) = valley(x);

@@ -43,7 +43,7 @@ const ROUNDING: f64 = 2e-15;
 
 impl WorkingSet<'_> {
     /// Moves to the equality solution; on return all multipliers have their right sign.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn solve_equalities(&mut self) {
         let mut full_passes = 0;
         let mut previous = f64::INFINITY;
         loop {
