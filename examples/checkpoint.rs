@@ -1,6 +1,8 @@
-//! A journal: a run that was interrupted ends where the uninterrupted one ends, bit by bit, and nothing is evaluated twice.
+//! A journal: a run that was interrupted ends where the uninterrupted one ends, bit by bit, and nothing is evaluated
+//! twice.
 //!
-//! Θ(x) = max(x₁² + (x₂ − 1)² + x₂ − 1, −x₁² − (x₂ − 1)² + x₂ + 1), Kiwiel's crescent: nonconvex, minimum 0 at the origin.
+//! Θ(x) = max(x₁² + (x₂ − 1)² + x₂ − 1, −x₁² − (x₂ − 1)² + x₂ + 1), Kiwiel's crescent: nonconvex, minimum 0 at the
+//! origin.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Journaled, Report, StopRule, Vector};
 use std::path::Path;

@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--perturb K]`
 //!
-//! `--perturb K` replaces every count by the median over 2K + 1 runs from x0 (1 + 1e-13 N(0, 1)), the first of them from x0 itself: a
-//! single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size.
+//! `--perturb K` replaces every count by the median over 2K + 1 runs from x0 (1 + 1e-13 N(0, 1)), the first of them
+//! from x0 itself: a single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by
+//! about a tenth of their size.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 use serde::Serialize;
@@ -53,7 +54,8 @@ struct Summary {
     compared: usize,
     /// The same over all runs; an unsolved one counts as 1000 evaluations, and so does a missing MPBNGC.
     penalised_mean: f64,
-    /// Geometric means of the evaluations to 1e-6 over all, the convex and the other problems; an unsolved one counts as 2000.
+    /// Geometric means of the evaluations to 1e-6 over all, the convex and the other problems; an unsolved one counts
+    /// as 2000.
     means: [f64; 3],
     /// Sum over the unconstrained problems that all nine peers solve.
     common_sum: usize,

@@ -138,12 +138,13 @@ impl Polyhedron {
         self.violation_near(x, x)
     }
 
-    /// As [`violation`](Self::violation), but each term has the larger of its sizes at x and at `reference`. A point whose
-    /// entries happen to be near zero then does not depend on its rounding errors.
+    /// As [`violation`](Self::violation), but each term has the larger of its sizes at x and at `reference`. A point
+    /// whose entries happen to be near zero then does not depend on its rounding errors.
     pub fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
         let mut worst: f64 = 0.0;
         let sides = self.lower.as_slice().iter().zip(self.upper.as_slice());
-        // Nearly all entries lie within their sides: a test without a maximum passes over them fast. NaN lies within none.
+        // Nearly all entries lie within their sides: a test without a maximum passes over them fast. NaN lies within
+        // none.
         let entries = x.as_slice().iter().zip(reference.as_slice()).zip(sides);
         for ((x, reference), (&lower, &upper)) in
             entries.filter(|((x, _), (lower, upper))| !(**lower..=**upper).contains(*x))

@@ -187,7 +187,8 @@ impl ContactScene {
         }))
     }
 
-    /// Minimises Θ from the start of the setup; settings that it leaves open are those of the scene. As [`crate::run::minimize`].
+    /// Minimises Θ from the start of the setup; settings that it leaves open are those of the scene. As
+    /// [`crate::run::minimize`].
     fn optimize<'py>(
         &self,
         py: Python<'py>,

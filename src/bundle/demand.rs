@@ -4,8 +4,8 @@ use super::config::{AccuracyPolicy, BundleTrustConfig};
 use super::state::BundleState;
 use crate::Accuracy;
 
-/// A center that is evaluated again is asked for this share of the accuracy that would just do. With a tenth or a third of it, the runs with
-/// accuracy on demand cost 2 % more.
+/// A center that is evaluated again is asked for this share of the accuracy that would just do. With a tenth or a third
+/// of it, the runs with accuracy on demand cost 2 % more.
 const REFINEMENT_SHARE: f64 = 0.03;
 
 /// The accuracy with which a trial point is evaluated that promises a decrease.

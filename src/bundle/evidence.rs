@@ -6,21 +6,22 @@
 //! small:    |z̃_i| ≤ 1e-3 max(Σ_j λ_j |g_ji| + Σ |A_ki μ_k| + |ν_i|,  largest |g_i| of the run)      variable i
 //! distance of cut j:  Σ_i steepest |g_i| of the bundle · |y_ji − x̂_i|, in units of Θ
 //! ```
-//! No number changes if a variable is measured in another unit: a coordinate of z̃ is compared with what cancels in this coordinate, with
-//! the slopes seen along it, or with the width of the box.
+//! No number changes if a variable is measured in another unit: a coordinate of z̃ is compared with what cancels in
+//! this coordinate, with the slopes seen along it, or with the width of the box.
 
 use super::cut::{Cut, LEAST_ACTIVE_MULTIPLIER};
 use super::proposers::proposal::Proposal;
 use super::state::BundleState;
 use crate::{Polyhedron, Vector};
 
-/// A coordinate of the aggregate subgradient counts as small below this share of what cancels in it. Points that are not stationary have shares of 0.03 and more; at
-/// smooth minima, where nothing cancels, a share of 1e-3 of the slopes seen leaves 1e-6 of the decrease.
+/// A coordinate of the aggregate subgradient counts as small below this share of what cancels in it. Points that are
+/// not stationary have shares of 0.03 and more; at smooth minima, where nothing cancels, a share of 1e-3 of the slopes
+/// seen leaves 1e-6 of the decrease.
 const SMALL_SHARE: f64 = 1e-3;
 /// What cancels to this share of its terms is zero as far as the multipliers of a subproblem tell.
 const CANCELLED_SHARE: f64 = 1e-8;
-/// Subgradients of the center itself that cancel to this share of their terms prove it stationary: away from kinks and vertices nothing
-/// cancels, and where a point is not stationary shares are 0.03 and more.
+/// Subgradients of the center itself that cancel to this share of their terms prove it stationary: away from kinks and
+/// vertices nothing cancels, and where a point is not stationary shares are 0.03 and more.
 const EXACT_SHARE: f64 = 1e-5;
 /// Rounding of a sum, as a share of its terms.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
@@ -122,15 +123,16 @@ impl Evidence {
         self.coordinates.iter().map(|i| i.terms * i.moved).sum()
     }
 
-    /// ẽ + Σ |z̃_i| reach_i over the coordinates that do not cancel: what Θ, if it is convex, can still fall within reach and in the box. A variable
-    /// reaches as far as it has moved, or as far as the slopes along it would need for the decrease of the run.
+    /// ẽ + Σ |z̃_i| reach_i over the coordinates that do not cancel: what Θ, if it is convex, can still fall within
+    /// reach and in the box. A variable reaches as far as it has moved, or as far as the slopes along it would need for
+    /// the decrease of the run.
     pub(crate) fn remaining(&self) -> f64 {
         let falls = |i: &Coordinate| if i.is_zero() { 0.0 } else { i.fall(i.moved.max(self.drop / i.steepest)) };
         self.error + self.coordinates.iter().map(falls).sum::<f64>()
     }
 
-    /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds. The others reach as far as the run has gone,
-    /// and what cancels to 1e-8 along them counts as zero.
+    /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds. The others reach as
+    /// far as the run has gone, and what cancels to 1e-8 along them counts as zero.
     pub(crate) fn gap(&self) -> f64 {
         let reach = |i: &Coordinate| i.moved.max(i.farthest).max(self.drop / i.steepest);
         let falls = |i: &Coordinate| {
@@ -145,8 +147,8 @@ impl Evidence {
         self.error + self.coordinates.iter().map(falls).sum::<f64>()
     }
 
-    /// The first variable along which the aggregate subgradient is not small; a fall of at most `allowed` that the box proves counts as
-    /// small.
+    /// The first variable along which the aggregate subgradient is not small; a fall of at most `allowed` that the box
+    /// proves counts as small.
     pub(crate) fn undecided(&self, allowed: f64) -> Option<usize> {
         self.coordinates.iter().position(|i| !(i.is_small() || i.fall(f64::INFINITY) <= allowed))
     }

@@ -15,11 +15,11 @@ use serde::{Deserialize, Serialize};
 /// Widths beyond this many times the median width count as no wider.
 const MAX_WIDTH_RATIO: f64 = 1e3;
 
-/// The norm of a run, ‖d‖² = dᵀWd, and its dual for subgradients, ‖g‖*² = gᵀW⁻¹g, with a diagonal or a dense W. Vectors have one entry
-/// per variable.
+/// The norm of a run, ‖d‖² = dᵀWd, and its dual for subgradients, ‖g‖*² = gᵀW⁻¹g, with a diagonal or a dense W. Vectors
+/// have one entry per variable.
 ///
-/// All lengths of a run are in this norm: radii, steps, the aggregate subgradient (in the dual norm), curvatures and the
-/// distances of the stopping tests.
+/// All lengths of a run are in this norm: radii, steps, the aggregate subgradient (in the dual norm), curvatures and
+/// the distances of the stopping tests.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScaledNorm(Scale);
 

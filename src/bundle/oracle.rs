@@ -1,5 +1,6 @@
-//! The one place where the user's objective is called: panics, wrong sizes and numbers that are not finite become errors. Nothing else
-//! in the engine depends on the type of the objective, so that the engine is compiled once, not once per objective.
+//! The one place where the user's objective is called: panics, wrong sizes and numbers that are not finite become
+//! errors. Nothing else in the engine depends on the type of the objective, so that the engine is compiled once, not
+//! once per objective.
 
 use super::norm::ScaledNorm;
 use crate::checks::check_size;
@@ -70,8 +71,8 @@ impl<O: NonsmoothObjective> Oracle for WarmStarted<'_, O> {
     }
 }
 
-/// Evaluates the objective; never panics. `longest` is the largest ‖g‖* that can be held beside the subgradients known, with the norm in
-/// which it is measured; none as long as none is known.
+/// Evaluates the objective; never panics. `longest` is the largest ‖g‖* that can be held beside the subgradients known,
+/// with the norm in which it is measured; none as long as none is known.
 pub(super) fn evaluate(
     oracle: &mut dyn Oracle,
     request: &Request<'_, ()>,

@@ -4,7 +4,8 @@ use super::config::{AccuracyPolicy, BundleTrustConfig};
 use super::cut::Cut;
 use super::state::BundleState;
 
-/// Noise, or an error, below this share of the wanted decrease does not matter. A larger share calls small noise by its name and ends runs earlier.
+/// Noise, or an error, below this share of the wanted decrease does not matter. A larger share calls small noise by its
+/// name and ends runs earlier.
 const NEGLIGIBLE_SHARE: f64 = 1e-3;
 /// Noise explains decreases up to this many times the noise of two values.
 const MAX_NOISY_DECREASES: f64 = 4.0;

@@ -52,8 +52,8 @@ pub struct Run<'r, 'o> {
 }
 
 impl Run<'_, '_> {
-    /// One step with at most one evaluation: of a trial point, or of the center once more where its accuracy no longer suffices.
-    /// `Break` when the run has ended; further calls repeat the reason.
+    /// One step with at most one evaluation: of a trial point, or of the center once more where its accuracy no longer
+    /// suffices. `Break` when the run has ended; further calls repeat the reason.
     pub fn step(&mut self) -> ControlFlow<Termination> {
         if let Some(termination) = &self.termination {
             return Break(termination.clone());
@@ -135,8 +135,9 @@ impl Run<'_, '_> {
         standing.unwrap_or(Ending { termination, proof: None })
     }
 
-    /// Changes the step to a known point without an evaluation. The run ends where the weight cannot change any more, or does not lead away:
-    /// values and subgradients contradict each other, since the cuts of exact ones would predict what is known.
+    /// Changes the step to a known point without an evaluation. The run ends where the weight cannot change any more,
+    /// or does not lead away: values and subgradients contradict each other, since the cuts of exact ones would predict
+    /// what is known.
     fn leave_known_point(&mut self, proposal: Proposal) -> ControlFlow<Ending> {
         let before = self.state.weight;
         self.state.known_trials += 1;
@@ -230,8 +231,9 @@ impl Run<'_, '_> {
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
     }
 
-    /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Proposers that fail pause, so
-    /// that after repeated failures the steps of the plain cuts tell whether the oracle fails next to the center.
+    /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Proposers that
+    /// fail pause, so that after repeated failures the steps of the plain cuts tell whether the oracle fails next to
+    /// the center.
     fn shorten(&mut self, proposal: &Proposal, accuracy: Accuracy, error: &OracleError) -> ControlFlow<Ending> {
         let state = &mut self.state;
         state.failures += 1;
@@ -278,7 +280,8 @@ impl Run<'_, '_> {
     }
 }
 
-/// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another function.
+/// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another
+/// function.
 fn refuse_contradiction(error: &OracleError) -> ControlFlow<Ending> {
     let OracleError::Contradiction(reason) = error else { return Continue(()) };
     Break(Termination::OracleContradiction { reason: reason.to_string() }.into())

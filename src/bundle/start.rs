@@ -43,8 +43,8 @@ impl<'o> BundleTrust<'o> {
     /// Projects the start on the admissible set and evaluates it.
     ///
     /// # Errors
-    /// [`OptimizeError::Input`] on sizes and numbers, [`OptimizeError::Infeasible`] if the set is empty or the start cannot be
-    /// projected on it, [`OptimizeError::Oracle`] if the first evaluation fails or gives −∞.
+    /// [`OptimizeError::Input`] on sizes and numbers, [`OptimizeError::Infeasible`] if the set is empty or the start
+    /// cannot be projected on it, [`OptimizeError::Oracle`] if the first evaluation fails or gives −∞.
     pub fn start<'r, O: NonsmoothObjective>(
         &'r mut self,
         objective: &'r O,
@@ -177,9 +177,9 @@ fn first_evaluation(
     Ok((state, linearization))
 }
 
-/// A first step length that follows the units of variables and values: the length of the start, or where this is zero the distance at
-/// which a linear Θ would vanish; 1 where both are zero. A length below a small share of this distance is a rounding of zero, and the
-/// share takes its place.
+/// A first step length that follows the units of variables and values: the length of the start, or where this is zero
+/// the distance at which a linear Θ would vanish; 1 where both are zero. A length below a small share of this distance
+/// is a rounding of zero, and the share takes its place.
 fn natural_step(size: f64, value: f64, slope: f64) -> f64 {
     let vanishing = if slope > 0.0 { value.abs() / slope } else { 0.0 };
     if size > 0.0 {

@@ -57,8 +57,8 @@ impl Comparison {
         }
     }
 
-    /// Test SS(i) of \[SchrammZowe1992\]: Θ has fallen by enough of the predicted decrease. The values themselves must fall, because a
-    /// predicted decrease can be so small that no change at all would be enough.
+    /// Test SS(i) of \[SchrammZowe1992\]: Θ has fallen by enough of the predicted decrease. The values themselves must
+    /// fall, because a predicted decrease can be so small that no change at all would be enough.
     fn is_serious(&self) -> bool {
         self.change < 0.0 && self.change <= SERIOUS_FRACTION * self.model_change
     }

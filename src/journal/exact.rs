@@ -1,4 +1,5 @@
-//! Numbers in JSON without loss: the shortest text that reads back as the same bits, and texts such as "inf" for the numbers that JSON lacks.
+//! Numbers in JSON without loss: the shortest text that reads back as the same bits, and texts such as "inf" for the
+//! numbers that JSON lacks.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::num::ParseFloatError;

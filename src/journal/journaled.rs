@@ -88,8 +88,8 @@ impl<O> Journaled<O> {
         self.state.borrow().warnings.clone()
     }
 
-    /// Adds to the report of a run what only the journal knows: its warnings, and the time of earlier invocations, in the
-    /// history too.
+    /// Adds to the report of a run what only the journal knows: its warnings, and the time of earlier invocations, in
+    /// the history too.
     pub fn complete(&self, report: &mut Report) {
         let state = self.state.borrow();
         report.warnings.extend(state.warnings.iter().cloned());

@@ -81,7 +81,8 @@ impl WorkingSet<'_> {
         }
     }
 
-    /// Starts from the single cut of largest dual value −½ |ã|² − e, where |ã| takes the diagonal of a dense metric alone.
+    /// Starts from the single cut of largest dual value −½ |ã|² − e, where |ã| takes the diagonal of a dense metric
+    /// alone.
     fn hold_best_cut(&mut self) {
         let value = |j: usize| -0.5 * self.norms[j] * self.norms[j] - self.qp.offsets[j];
         let best = (0..self.qp.slopes.len()).max_by(|&i, &j| value(i).total_cmp(&value(j)));
@@ -160,8 +161,8 @@ impl WorkingSet<'_> {
         ExchangeRates { columns, column_noise, coordinates, noise }
     }
 
-    /// The rates of the cuts have a known sum. It gives the rate of the flattest cut more accurately than that cut's own equation does: steeper
-    /// cuts have smaller rates, and these have smaller rounding.
+    /// The rates of the cuts have a known sum. It gives the rate of the flattest cut more accurately than that cut's
+    /// own equation does: steeper cuts have smaller rates, and these have smaller rounding.
     fn keep_sum(&self, rates: &mut ExchangeRates, sum: f64) {
         let held = self.general.iter().enumerate().filter(|(_, active)| matches!(active.member, Member::Cut(_)));
         let cuts: Vec<usize> = held.map(|(position, _)| position).collect();

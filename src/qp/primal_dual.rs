@@ -5,8 +5,8 @@
 //! Newton step:      (H + Σ D_i g_i g_iᵀ + Σ θ_k E_k E_kᵀ) Δx + BᵀΔy = …,     θ = z/s of slacks s and multipliers z
 //!                   D_i = 4 θ⁺θ⁻/(θ⁺ + θ⁻) of the two sides of |c_i + ⟨g_i, x⟩| ≤ t_i
 //! ```
-//! The epigraph variables t leave the system in closed form, so that a step costs one product of dense matrices and one Cholesky factor of
-//! the size of x. Reference: \[Mehrotra1992\] (predictor and corrector).
+//! The epigraph variables t leave the system in closed form, so that a step costs one product of dense matrices and one
+//! Cholesky factor of the size of x. Reference: \[Mehrotra1992\] (predictor and corrector).
 
 use super::dense::{Cholesky, add_product};
 use super::interior_point::ScaledSide;
@@ -15,7 +15,8 @@ use crate::{Matrix, Vector};
 
 /// Largest number of steps.
 const MAX_STEPS: usize = 100;
-/// Steps in a row that may fail to halve the error, before the best iterate counts as the most that double precision gives.
+/// Steps in a row that may fail to halve the error, before the best iterate counts as the most that double precision
+/// gives.
 const MAX_STALLED: usize = 8;
 /// Relative error that ends the method.
 const ACCURATE: f64 = 1e-13;

@@ -79,9 +79,9 @@ impl EpigraphQpSolver {
     /// Solves one QP, starting from the active set of the last one.
     ///
     /// # Errors
-    /// [`QpError::Input`] for data that cannot be worked with, [`QpError::Infeasible`] if rows and box have no common point,
-    /// [`QpError::NotSolved`] if no answer reaches a relative KKT residual of 1e-10 (without the feature `interior-point`: if the
-    /// active-set method alone does not).
+    /// [`QpError::Input`] for data that cannot be worked with, [`QpError::Infeasible`] if rows and box have no common
+    /// point, [`QpError::NotSolved`] if no answer reaches a relative KKT residual of 1e-10 (without the feature
+    /// `interior-point`: if the active-set method alone does not).
     pub fn solve(&mut self, qp: &EpigraphQp<'_>) -> Result<QpSolution, QpError> {
         qp.validate()?;
         let coordinates = self.coordinates.factorise(qp.metric, qp.dimension())?;
@@ -116,8 +116,9 @@ impl EpigraphQpSolver {
         self.finish(qp, best)
     }
 
-    /// Solves one QP with a diagonal metric whose slopes have known inner products: first in the space of the multipliers, from the
-    /// working set that the last such call has left, and, where that does not succeed, as [`solve`](Self::solve) does.
+    /// Solves one QP with a diagonal metric whose slopes have known inner products: first in the space of the
+    /// multipliers, from the working set that the last such call has left, and, where that does not succeed, as
+    /// [`solve`](Self::solve) does.
     ///
     /// # Errors
     /// As [`solve`](Self::solve).
@@ -152,7 +153,8 @@ impl EpigraphQpSolver {
         best.ok_or(QpError::NotSolved { kkt_residual: f64::INFINITY })
     }
 
-    /// Runs the interior-point method, and then the active-set method from the members that the former has found active.
+    /// Runs the interior-point method, and then the active-set method from the members that the former has found
+    /// active.
     #[cfg(feature = "interior-point")]
     fn fall_back(
         &mut self,

@@ -53,7 +53,8 @@ fn linear_fits_end_confirmed_with_a_proof_that_holds() {
             assert!(report.termination.is_confirmed(), "{name}: {report}");
             assert!(report.counts.evaluations <= 10, "{name}: {report}");
             let certificate = report.certificate.unwrap();
-            // h and all residuals are convex, so that the certificate bounds what is left: within reach of each variable.
+            // h and all residuals are convex, so that the certificate bounds what is left: within reach of each
+            // variable.
             let check = certificate.recheck(&set).unwrap();
             let left = check.aggregate_error + check.aggregate_norm * 2.0 * report.solution.norm();
             assert!(left <= 1e-5 * report.value, "{name}: {left:e} of {:e}", report.value);

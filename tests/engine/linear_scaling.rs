@@ -3,7 +3,8 @@
 use crate::common::v;
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, VariableScaling, Vector};
 
-/// Steep across a curved kink, slowly falling along (1, 1, 1). No step ends on the kink itself, where rounding decides the side.
+/// Steep across a curved kink, slowly falling along (1, 1, 1). No step ends on the kink itself, where rounding decides
+/// the side.
 fn valley(x: &Vector) -> (f64, Vector) {
     let (across, difference, along) = (x[0] - x[1] + 0.05 * x[2] * x[2], x[1] - x[2], x.sum());
     let value = 10.0 * across.abs() + 5.0 * difference * difference + 1e-2 * along;

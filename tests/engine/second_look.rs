@@ -17,7 +17,8 @@ impl Random {
     }
 }
 
-/// Σ w_i |x_{i+1} − a_i x_i² − b_i sin 2x_i − c_i| + |x_1 − 1| or (x_1 − 1)²/4: curved valleys with flanks of many slopes.
+/// Σ w_i |x_{i+1} − a_i x_i² − b_i sin 2x_i − c_i| + |x_1 − 1| or (x_1 − 1)²/4: curved valleys with flanks of many
+/// slopes.
 struct Valley {
     weights: Vec<f64>,
     harmonics: Vec<[f64; 3]>,
@@ -58,8 +59,8 @@ impl Valley {
 
 #[test]
 fn a_second_look_finds_what_falls_along_a_curved_kink() {
-    // Without the second look these runs end confirmed, 6.9e-4, 6.1e-5 and 2.2e-5 (relative) above what can be attained next to them. With
-    // it they come to their limit of evaluations.
+    // Without the second look these runs end confirmed, 6.9e-4, 6.1e-5 and 2.2e-5 (relative) above what can be attained
+    // next to them. With it they come to their limit of evaluations.
     for (seed, scale) in [(20894, 10.0), (21368, 0.1), (31081, 0.1)] {
         let valley = Valley::new(seed);
         let mut random = Random(seed * 7919 + 13);

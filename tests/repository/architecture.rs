@@ -1,4 +1,5 @@
-//! The sizes of files and functions. The directions of dependency of docs/architecture.md are those of the package graph.
+//! The sizes of files and functions. The directions of dependency of docs/architecture.md are those of the package
+//! graph.
 
 use std::fs;
 use std::path::{Path, PathBuf};

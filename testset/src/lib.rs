@@ -5,9 +5,10 @@
 //! minimise f(x)  over  lower ≤ x ≤ upper,  row_lower ≤ A x ≤ row_upper
 //! ```
 //!
-//! Sources: L. Lukšan, J. Vlček, Test problems for nonsmooth unconstrained and linearly constrained optimization (2000),
-//! and ACM TOMS Algorithm 811; M. Haarala, K. Miettinen, M. Mäkelä, Optim. Methods Softw. 19 (2004); M. Gürbüzbalaban,
-//! M. Overton, Nonlinear Anal. 75 (2012); Yu. Nesterov, Introductory Lectures on Convex Optimization (2004).
+//! Sources: L. Lukšan, J. Vlček, Test problems for nonsmooth unconstrained and linearly constrained optimization
+//! (2000), and ACM TOMS Algorithm 811; M. Haarala, K. Miettinen, M. Mäkelä, Optim. Methods Softw. 19 (2004); M.
+//! Gürbüzbalaban, M. Overton, Nonlinear Anal. 75 (2012); Yu. Nesterov, Introductory Lectures on Convex Optimization
+//! (2004).
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -25,8 +25,8 @@ pub fn general([rows, columns]: [usize; 2], entries: &[Entry], comment: &str) ->
 /// A symmetric matrix by the entries of its lower triangle; `comment` stands at the head of the file.
 ///
 /// # Errors
-/// [`ExchangeError::Entry`] for an entry above the diagonal or outside the matrix, [`ExchangeError::Number`] for a value that is
-/// not finite.
+/// [`ExchangeError::Entry`] for an entry above the diagonal or outside the matrix, [`ExchangeError::Number`] for a
+/// value that is not finite.
 pub fn symmetric(dimension: usize, lower: &[Entry], comment: &str) -> Result<String, ExchangeError> {
     let allowed = || format!("column ≤ row < {dimension}");
     text("symmetric", [dimension; 2], lower, comment, |row, column| column <= row && row < dimension, allowed)

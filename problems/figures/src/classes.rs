@@ -8,8 +8,8 @@ use super::nodes::PlaneGrid;
 use super::panel_layout::PanelLayout;
 use super::scale::{Axis, behind, nice_below, number};
 
-/// Every node is in one of a few classes, which have a colour each. Where there are arrows, their middles are at the nodes, all on one scale;
-/// on fine grids only some are drawn.
+/// Every node is in one of a few classes, which have a colour each. Where there are arrows, their middles are at the
+/// nodes, all on one scale; on fine grids only some are drawn.
 ///
 /// ```
 /// use figures::{ClassPanel, Classes};
@@ -77,8 +77,8 @@ impl Classes {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels or classes; unless a panel has at least 2 × 2 nodes, a class per node that exists, an arrow
-    /// per node if there are arrows, sides of positive length, and all numbers are finite.
+    /// [`FigureError`] without panels or classes; unless a panel has at least 2 × 2 nodes, a class per node that
+    /// exists, an arrow per node if there are arrows, sides of positive length, and all numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         some(&self.name, "classes", self.classes.len())?;
@@ -194,7 +194,8 @@ impl Classes {
     }
 }
 
-/// The middle of a line of this half length, moved so that the line lies between two ends; the middle between them if it is longer.
+/// The middle of a line of this half length, moved so that the line lies between two ends; the middle between them if
+/// it is longer.
 fn inside(middle: f64, half: f64, [low, high]: [f64; 2]) -> f64 {
     if high - low < 2.0 * half { 0.5 * (low + high) } else { middle.clamp(low + half, high - half) }
 }

@@ -66,8 +66,8 @@ const SMALL: f64 = 10.0;
 const MAX_ROWS: usize = 3;
 
 impl Convergence {
-    /// Draws it. The axis holds the best values and all values below the first of them: larger ones have a mark at the upper side of the
-    /// frame, and their values are written there as long as there is room.
+    /// Draws it. The axis holds the best values and all values below the first of them: larger ones have a mark at the
+    /// upper side of the frame, and their values are written there as long as there is room.
     ///
     /// # Errors
     /// [`FigureError`] without evaluations, or for numbers that are not finite.

@@ -102,7 +102,8 @@ pub(super) fn cells(figure: &str, nodes: &[usize]) -> Result<(), FigureError> {
     all(figure, "number of nodes along axis", nodes, "numbers from 2", |nodes| nodes >= 2.0)
 }
 
-/// Checks a grid over a rectangle: cells along both axes, an area, a finite value per node; `what` names a value and all values.
+/// Checks a grid over a rectangle: cells along both axes, an area, a finite value per node; `what` names a value and
+/// all values.
 pub(super) fn grid(
     figure: &str,
     counts: [usize; 2],

@@ -11,8 +11,8 @@ pub struct Figure {
     pub title: String,
     /// The figure as SVG text.
     pub svg: String,
-    /// Left, top, width and height of its parts, in points: on a narrow page they stand one below the other. Without parts, the figure is
-    /// shown as a whole.
+    /// Left, top, width and height of its parts, in points: on a narrow page they stand one below the other. Without
+    /// parts, the figure is shown as a whole.
     pub parts: Vec<[u32; 4]>,
 }
 

@@ -74,8 +74,8 @@ impl Landscape {
     /// Draws it; what lies outside the rectangle is cut off.
     ///
     /// # Errors
-    /// [`FigureError`] unless there are at least 2 × 2 nodes, a value per node, sides of positive length, and all numbers are
-    /// finite.
+    /// [`FigureError`] unless there are at least 2 × 2 nodes, a value per node, sides of positive length, and all
+    /// numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         self.check()?;
         let scale = ColourScale::new(&self.quantity, "", self.values.iter().copied());

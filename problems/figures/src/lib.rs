@@ -6,9 +6,9 @@
 //! scale (ticks), chart (axes), plan (panels), marks (legends), nodes (texts over nodes), levels (filled areas), oblique (bodies),
 //! canvas (SVG text)
 //! ```
-//! The package knows numbers only: no mechanics, no optimizer, no command line. The same input gives the same bytes.
-//! In titles, captions and units `^{…}` is a superscript. The font of PNG files has Latin and Greek letters, ₀ … ₉, ∂, √, ∞ and
-//! the usual signs; ⟨ ⟩ ‖ ∇ → come from a second one.
+//! The package knows numbers only: no mechanics, no optimizer, no command line. The same input gives the same bytes. In
+//! titles, captions and units `^{…}` is a superscript. The font of PNG files has Latin and Greek letters, ₀ … ₉, ∂, √,
+//! ∞ and the usual signs; ⟨ ⟩ ‖ ∇ → come from a second one.
 
 mod canvas;
 mod chart;

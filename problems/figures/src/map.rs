@@ -9,8 +9,8 @@ use super::nodes::PlaneGrid;
 use super::panel_layout::PanelLayout;
 use super::scale::{Axis, behind, number};
 
-/// Values over the plane: one or more panels; the largest value of every panel is marked. Up to 5000 nodes of a panel, a browser
-/// shows number, place and value of the node under the pointer.
+/// Values over the plane: one or more panels; the largest value of every panel is marked. Up to 5000 nodes of a panel,
+/// a browser shows number, place and value of the node under the pointer.
 ///
 /// ```
 /// use figures::{ColourScales, Map, MapPanel};
@@ -87,8 +87,8 @@ impl Map {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels; unless a panel has at least 2 × 2 nodes, a value per node, sides of positive length, and
-    /// all numbers are finite.
+    /// [`FigureError`] without panels; unless a panel has at least 2 × 2 nodes, a value per node, sides of positive
+    /// length, and all numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         for panel in &self.panels {

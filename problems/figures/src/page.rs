@@ -1,7 +1,9 @@
-//! A self-contained HTML page: text, tables, figures and listings; nothing is loaded from elsewhere, so that it opens offline.
+//! A self-contained HTML page: text, tables, figures and listings; nothing is loaded from elsewhere, so that it opens
+//! offline.
 //!
-//! Figures stand in the page as SVG on a light ground, so that they look the same in a dark page. The page holds everything without its
-//! script, which only repeats the title of what the pointer is on below the figure, where it can be read at once and without a mouse.
+//! Figures stand in the page as SVG on a light ground, so that they look the same in a dark page. The page holds
+//! everything without its script, which only repeats the title of what the pointer is on below the figure, where it can
+//! be read at once and without a mouse.
 
 use crate::figure::Figure;
 use maud::{DOCTYPE, Markup, PreEscaped, html};

@@ -86,7 +86,8 @@ impl Sketch {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without bodies; unless every body has as many points as its nodes say and all numbers are finite.
+    /// [`FigureError`] without bodies; unless every body has as many points as its nodes say and all numbers are
+    /// finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "bodies", self.bodies.len())?;
         for body in &self.bodies {

@@ -73,8 +73,8 @@ impl Solids {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels or blocks; unless a block has at least 2 × 2 × 2 points, a value per point, all numbers
-    /// are finite and the points do not all lie on one spot of the drawing.
+    /// [`FigureError`] without panels or blocks; unless a block has at least 2 × 2 × 2 points, a value per point, all
+    /// numbers are finite and the points do not all lie on one spot of the drawing.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         for panel in &self.panels {

@@ -74,8 +74,8 @@ impl Surfaces {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels; unless a panel has at least 2 × 2 nodes, a height per node, sides of positive length, and
-    /// all numbers are finite.
+    /// [`FigureError`] without panels; unless a panel has at least 2 × 2 nodes, a height per node, sides of positive
+    /// length, and all numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         for panel in &self.panels {
@@ -133,7 +133,8 @@ impl SurfacePanel {
         }
     }
 
-    /// Walls below the surface on the two sides of the rectangle that are turned towards the viewer, x₂ = 0 and x₁ = max.
+    /// Walls below the surface on the two sides of the rectangle that are turned towards the viewer, x₂ = 0 and x₁ =
+    /// max.
     fn walls(&self, magnified: Magnified) -> Vec<Sheet> {
         let [n1, n2] = self.counts;
         let wall = |nodes: Vec<[usize; 2]>| {

@@ -4,9 +4,10 @@
 //! h = B α,   B = ⎡3/4 1/4⎤      y = S(α) = (y¹(h₁), y²(h₂)),   yⁱ = (λ_N, λ_T, n, w) of node i        node.rs
 //!                ⎣1/4 3/4⎦      D*S(α)(y*) ∋ Bᵀ (⟨y¹*, dy¹/dh⟩, ⟨y²*, dy²/dh⟩)
 //! ```
-//! The surface of the support is the linear spline with the two control heights α over [0, 1]; the nodes stand at 1/4 and 3/4. On
-//! a kink `coderivative` uses the derivative of the status that `solve` reports; B is regular and the nodes are independent, so
-//! any pair of one-sided derivatives is a limit of Jacobians and the result an element of D*S(α)(y*) and of the Clarke set.
+//! The surface of the support is the linear spline with the two control heights α over [0, 1]; the nodes stand at 1/4
+//! and 3/4. On a kink `coderivative` uses the derivative of the status that `solve` reports; B is regular and the nodes
+//! are independent, so any pair of one-sided derivatives is a limit of Jacobians and the result an element of
+//! D*S(α)(y*) and of the Clarke set.
 
 use super::node::{Kink, Node, NodeStatus, NodeValues};
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, Sensitivity, StateSolver, Vector};

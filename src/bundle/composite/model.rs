@@ -3,7 +3,8 @@
 //! ```text
 //! h(c + G d) + dᵀBd/2 + u‖d − o‖²/2,   x + d ∈ U
 //! ```
-//! B is the curvature of the outputs, u the weight, and o leads from the base x to the point that lengths are measured from.
+//! B is the curvature of the outputs, u the weight, and o leads from the base x to the point that lengths are measured
+//! from.
 
 use crate::bundle::norm::{ScaledNorm, WeightedMetric};
 use crate::bundle::proposers::proposal::SubproblemError;
@@ -41,8 +42,8 @@ impl OuterCut {
         Ok(Self { value, subgradient, outputs, multiplier: 0.0 })
     }
 
-    /// The same cut of a positively homogeneous h, taken at outputs that are no larger than a size: the error of the cut at outputs of this
-    /// size then carries no rounding of larger numbers.
+    /// The same cut of a positively homogeneous h, taken at outputs that are no larger than a size: the error of the
+    /// cut at outputs of this size then carries no rounding of larger numbers.
     pub(super) fn shrunk(self, outer: &dyn OuterFunction, size: f64) -> Self {
         let own = self.outputs.amax();
         if !(outer.is_homogeneous() && own > size && size > 0.0) {
@@ -148,7 +149,8 @@ impl CompositeModel<'_> {
         self.curvature.map_or(pull.clone(), |curvature| pull + curvature * step)
     }
 
-    /// The linearization error of a cut of h at the base. Fails if the cut lies above h at the base by more than rounding.
+    /// The linearization error of a cut of h at the base. Fails if the cut lies above h at the base by more than
+    /// rounding.
     pub(super) fn error(&self, cut: &OuterCut) -> Result<f64, SubproblemError> {
         let outputs = &self.linearization.outputs;
         let error = cut.error(outputs, self.value);

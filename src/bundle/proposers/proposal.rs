@@ -5,8 +5,8 @@ use crate::qp::{QpError, project};
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
 
-/// Share m_S of the predicted decrease that makes a step serious (\[SchrammZowe1992\], test SS). A share of 0.1 takes 6 % more evaluations in
-/// the mean over moved starts.
+/// Share m_S of the predicted decrease that makes a step serious (\[SchrammZowe1992\], test SS). A share of 0.1 takes 6
+/// % more evaluations in the mean over moved starts.
 pub(crate) const SERIOUS_FRACTION: f64 = 0.02;
 /// A trial point and what the model says about it.
 #[derive(Debug, Clone)]
@@ -99,8 +99,8 @@ impl SubproblemError {
 }
 
 impl Proposal {
-    /// Another step with its weight, made admissible. Multipliers and certificate quantities stay those of the plain cuts; the
-    /// predicted decrease is `−change(step)` and must be positive.
+    /// Another step with its weight, made admissible. Multipliers and certificate quantities stay those of the plain
+    /// cuts; the predicted decrease is `−change(step)` and must be positive.
     pub(crate) fn replaced(
         &self,
         (step, weight, origin): (Vector, f64, Origin),
@@ -142,8 +142,8 @@ impl Proposal {
         Self { trial, step, violation: 0.0, ..self.clone() }.admissible(set, state)
     }
 
-    /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the center, which is
-    /// admissible: a little where the violation is small, by a factor of 0.7 at a time otherwise.
+    /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the
+    /// center, which is admissible: a little where the violation is small, by a factor of 0.7 at a time otherwise.
     pub(crate) fn admissible(mut self, set: &Polyhedron, state: &BundleState) -> Result<Self, SubproblemError> {
         let violation = |x: &Vector| set.violation_near(x, &state.center);
         self.trial = set.clamp_to_box(&self.trial);

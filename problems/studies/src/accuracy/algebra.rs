@@ -1,4 +1,5 @@
-//! Error of the contact solvers against tolerance and seconds, with the estimate that they report beside the true error.
+//! Error of the contact solvers against tolerance and seconds, with the estimate that they report beside the true
+//! error.
 
 use crate::accuracy::extent::case;
 use crate::accuracy::objective::{METHODS, norm, objective_by};

@@ -1,4 +1,5 @@
-//! Points where Θ is not differentiable, constructed by bisection along a line, and what the returned element does there.
+//! Points where Θ is not differentiable, constructed by bisection along a line, and what the returned element does
+//! there.
 //!
 //! ```text
 //! t* : the contact status changes,   Θ′(t*−) and Θ′(t*+) by one-sided differences of second order

@@ -7,8 +7,8 @@
 //!      └─ optimization                              Θ(best) − Θ* against evaluations, seconds
 //! AccuracyReport ─ tables (Markdown), pictures (SVG, PNG) or JSON
 //! ```
-//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
-//! stdout and nothing else there.
+//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object
+//! on stdout and nothing else there.
 
 mod algebra;
 mod cli;

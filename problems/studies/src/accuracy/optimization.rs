@@ -1,8 +1,8 @@
-//! Θ(best) − Θ* against evaluations and seconds: always tight, accuracy on demand, coarse to fine; pressure norms against the
-//! true peak pressure.
+//! Θ(best) − Θ* against evaluations and seconds: always tight, accuracy on demand, coarse to fine; pressure norms
+//! against the true peak pressure.
 //!
-//! Work is counted in products with the dual operator of the finest mesh: one on a coarser mesh counts as its share of dofs. It
-//! leaves out factorisations, one set per evaluation.
+//! Work is counted in products with the dual operator of the finest mesh: one on a coarser mesh counts as its share of
+//! dofs. It leaves out factorisations, one set per evaluation.
 
 use crate::accuracy::extent::{Extent, case};
 use crate::accuracy::objective::{norm, objective_of};

@@ -5,8 +5,8 @@
 //! rows ─ growth ─ ScalingReport ─ table (Markdown) or JSON
 //! model: figures of one core ─ predictions for many machines
 //! ```
-//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
-//! stdout and nothing else there.
+//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object
+//! on stdout and nothing else there.
 
 mod cases;
 mod cli;

@@ -8,11 +8,11 @@ use crate::stability::record::{CaseOutcome, Path, Record};
 use contact::equilibrium::{ContactForces, ContactProblem};
 use std::sync::Arc;
 
-/// Largest relative residual of a solved state. A Newton residual of 1e-9 is accepted where rounding stops a solver; residuals in
-/// other norms may be four times as large. The solvers themselves refuse a state only above 1e-8.
+/// Largest relative residual of a solved state. A Newton residual of 1e-9 is accepted where rounding stops a solver;
+/// residuals in other norms may be four times as large. The solvers themselves refuse a state only above 1e-8.
 const CERTIFICATE: f64 = 4e-9;
-/// Largest difference of forces between independent paths, over the largest force. Forces are less accurate than residuals
-/// by the condition of the problem.
+/// Largest difference of forces between independent paths, over the largest force. Forces are less accurate than
+/// residuals by the condition of the problem.
 const AGREEMENT: f64 = 1e-6;
 /// Largest difference of shape sensitivities.
 const SUBGRADIENT_AGREEMENT: f64 = 1e-4;
@@ -82,7 +82,8 @@ fn compare_with_paper(record: &mut Record, (path, found): Attempt, torn: Option<
     let text = match (&found, torn) {
         (Some(found), Some(torn)) => {
             let difference = force_difference(&found.forces, &torn.forces);
-            // An accurate pressure costs accuracy of the residual; where Φ does not contract, another equilibrium is one.
+            // An accurate pressure costs accuracy of the residual; where Φ does not contract, another equilibrium is
+            // one.
             let contracts = record.contraction.is_none_or(|factor| factor < 1.0);
             if contracts && difference > 100.0 * AGREEMENT {
                 record.outcome = CaseOutcome::Broken;

@@ -16,8 +16,8 @@ pub enum Expected {
     Solved,
     /// All paths refuse with an error of this kind.
     Refused(&'static str),
-    /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause. A case that both
-    /// solve is as good, since rounding decides at the edge.
+    /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause. A case that
+    /// both solve is as good, since rounding decides at the edge.
     Limit(LimitKinds, &'static str),
 }
 

@@ -8,10 +8,10 @@
 //!                       └─ mixed_units: the same on convex problems in mixed units; cone programs give the minima
 //! Records ─ table (Markdown) or JSON
 //! ```
-//! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a named
-//! kind, or a limit with its cause. Anything else is *broken* and makes the exit status 1.
-//! Contract (kept stable): exit status 0 as expected, 1 a case is broken, 2 bad input; `--json` prints one JSON object on
-//! stdout and nothing else there.
+//! Every case states what it expects: a state with certificates that two independent paths agree on, a refusal of a
+//! named kind, or a limit with its cause. Anything else is *broken* and makes the exit status 1. Contract (kept
+//! stable): exit status 0 as expected, 1 a case is broken, 2 bad input; `--json` prints one JSON object on stdout and
+//! nothing else there.
 
 mod case;
 mod checked_run;

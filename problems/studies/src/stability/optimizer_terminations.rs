@@ -1,9 +1,11 @@
-//! Terminations of the optimizer on the collection in all its variants, compared with known minima and stationary points.
+//! Terminations of the optimizer on the collection in all its variants, compared with known minima and stationary
+//! points.
 //!
-//! A termination is false if it is *confirmed* above the gap, unless the function is not convex and true gradients prove Clarke
-//! stationarity, or it is convex and the bound stated for a finite box holds; if it is *confirmed* where the oracle is noisy and says
-//! so; or if it is a *noise limit* of a convex function above ten times the noise. A failure is false if a run ends by a failure of
-//! the oracle or of the subproblem above the gap although the oracle answers at the best point.
+//! A termination is false if it is *confirmed* above the gap, unless the function is not convex and true gradients
+//! prove Clarke stationarity, or it is convex and the bound stated for a finite box holds; if it is *confirmed* where
+//! the oracle is noisy and says so; or if it is a *noise limit* of a convex function above ten times the noise. A
+//! failure is false if a run ends by a failure of the oracle or of the subproblem above the gap although the oracle
+//! answers at the best point.
 
 use crate::markdown::table;
 use crate::stability::optimizer_stationarity::is_clarke_stationary;
@@ -163,7 +165,8 @@ fn check(record: &mut TerminationRecord, changed: &Changed<'_>, report: &Report)
     Ok(())
 }
 
-/// Runs the variants that `take` selects by their number, on all processors; the records are in the order of the problems.
+/// Runs the variants that `take` selects by their number, on all processors; the records are in the order of the
+/// problems.
 ///
 /// # Errors
 /// [`InputError`] if a problem of the collection cannot be posed.

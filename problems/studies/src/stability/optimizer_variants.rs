@@ -55,8 +55,8 @@ impl Variant {
     }
 }
 
-/// All variants: starts and shifts combined with each other, the other changes with three starts and two shifts each, noise with
-/// all starts.
+/// All variants: starts and shifts combined with each other, the other changes with three starts and two shifts each,
+/// noise with all starts.
 pub fn variants() -> Vec<Variant> {
     let plain = Variant::PLAIN;
     let starts = [1.0, 1e-12, 1e-8, 1e-4, 1e-2, 1e3, 1e6];

@@ -1,5 +1,5 @@
-//! The curved model proposes while its record of predictions is clearly better than that of the plain cuts, so that kinks switch the
-//! model off.
+//! The curved model proposes while its record of predictions is clearly better than that of the plain cuts, so that
+//! kinks switch the model off.
 
 mod model;
 mod pieces;
@@ -89,8 +89,8 @@ fn missing_weight(comparison: &Comparison, step_length: f64) -> f64 {
 }
 
 impl Curved {
-    /// A trial point that should replace that of the plain cuts; none if theirs should stay. A predicted decrease up to `small` is not worth
-    /// an evaluation.
+    /// A trial point that should replace that of the plain cuts; none if theirs should stay. A predicted decrease up to
+    /// `small` is not worth an evaluation.
     ///
     /// # Errors
     /// [`SubproblemError`]: the model proposes nothing.

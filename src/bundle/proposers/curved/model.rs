@@ -4,9 +4,10 @@
 //! q(d) = max_i { ⟨h_i + B_i p_i, d⟩ − (a_i − ½ p_iᵀB_i p_i)₊ + ½ dᵀB_i d },   p_i = x̂ − y_i
 //! over the cut of the center, the cuts whose value the quadratic of the center explains to less than half, and all certified cuts
 //! ```
-//! Every piece has its own curvature B_i (pieces.rs); step.rs minimises the model with its penalty.
-//! Once Θ is known to be nonconvex, pieces may be concave: a piece of known curvature then keeps its subgradient, without the tilt of the
-//! plain cuts, and its offset is |e_i − ½ p_iᵀB_i p_i|. Reference: \[LuksanVlcek1998\] (cuts transported by their own curvature).
+//! Every piece has its own curvature B_i (pieces.rs); step.rs minimises the model with its penalty. Once Θ is known to
+//! be nonconvex, pieces may be concave: a piece of known curvature then keeps its subgradient, without the tilt of the
+//! plain cuts, and its offset is |e_i − ½ p_iᵀB_i p_i|. Reference: \[LuksanVlcek1998\] (cuts transported by their own
+//! curvature).
 
 use super::pieces::{Curvature, SAME_PIECE};
 use crate::bundle::cut;

@@ -5,19 +5,20 @@
 //!       same piece:   cut B down to sᵀBs ≤ sᵀz, then B += r rᵀ/⟨r, s⟩, r = z − B s
 //!       other piece:  cut B down to sᵀBs ≤ 2 min(E_ij, E_ji)₊, so that the piece stays below Θ at y_j where it can
 //! ```
-//! B_i starts from zero; on a quadratic it is the multisecant matrix. A pair lies on one piece if its two linearization errors agree: on
-//! a quadratic both are ½ sᵀBs, and a kink between the points drives them apart. As long as Θ looks convex, B_i stays positive
-//! semidefinite. Afterwards ⟨r, s⟩ may have either sign, and pairs of one piece whose errors are both negative cut nothing down: a curved
-//! valley between two pieces makes one of them concave, and a model without this curvature sees the valley rise on both sides of every step along
-//! it.
+//! B_i starts from zero; on a quadratic it is the multisecant matrix. A pair lies on one piece if its two linearization
+//! errors agree: on a quadratic both are ½ sᵀBs, and a kink between the points drives them apart. As long as Θ looks
+//! convex, B_i stays positive semidefinite. Afterwards ⟨r, s⟩ may have either sign, and pairs of one piece whose errors
+//! are both negative cut nothing down: a curved valley between two pieces makes one of them concave, and a model
+//! without this curvature sees the valley rise on both sides of every step along it.
 
 use crate::bundle::cut::Cut;
 use crate::bundle::kept_cuts::allowance;
 use crate::bundle::state::{BundleState, NOISE_MARGIN};
 use crate::{Matrix, Vector};
 
-/// Ratio of the smaller to the larger linearization error of a pair from which on both points count as lying on one smooth piece; for pairs
-/// with the center, whose curvature does not change the model from afar, and for pairs whose errors are both negative, one half does.
+/// Ratio of the smaller to the larger linearization error of a pair from which on both points count as lying on one
+/// smooth piece; for pairs with the center, whose curvature does not change the model from afar, and for pairs whose
+/// errors are both negative, one half does.
 pub(super) const SAME_PIECE: f64 = 0.995;
 /// Least cosine between s and r for a rank-one update, and between s and B s where B is cut down.
 const LEAST_COSINE: f64 = 1e-3;
@@ -29,8 +30,8 @@ pub(super) struct Curvature {
 }
 
 impl Curvature {
-    /// The curvature around the cut at a position. Errors of a pair agree if the smaller is at least `same_piece` times the larger; where
-    /// both are negative, which a convex kink cannot cause, one half does.
+    /// The curvature around the cut at a position. Errors of a pair agree if the smaller is at least `same_piece` times
+    /// the larger; where both are negative, which a convex kink cannot cause, one half does.
     pub(super) fn around(base: usize, state: &BundleState, same_piece: f64) -> Self {
         let mut curvature = Self::default();
         let may_be_concave = state.nonconvex;

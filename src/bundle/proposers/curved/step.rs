@@ -5,10 +5,11 @@
 //! round:  p minimises  max_i { (h_i + B_i d + w W d)·p − (m(d) − m_i(d)) } + ½ pᵀ(Σ λ_i B_i + w W) p       x̂ + d + p ∈ U
 //!         d ← d + t p,  t = 1, ½, ¼ … until m falls;   λ: multipliers of the round before
 //! ```
-//! If m is convex, every p ≠ 0 is a direction of descent. Concave pieces may make it nonconvex: where Σ λ_i B_i + w W is not
-//! positive definite, its eigenvalues (relative to W) are replaced by their absolute values, and the step stays within a radius: what was
-//! seen of a concave piece says nothing about points far beyond. The tangents are taken at the newest step: multipliers alone, with
-//! the pieces always transported to d = 0, leave a step that raises m wherever the curvatures of the active pieces differ.
+//! If m is convex, every p ≠ 0 is a direction of descent. Concave pieces may make it nonconvex: where Σ λ_i B_i + w W
+//! is not positive definite, its eigenvalues (relative to W) are replaced by their absolute values, and the step stays
+//! within a radius: what was seen of a concave piece says nothing about points far beyond. The tangents are taken at
+//! the newest step: multipliers alone, with the pieces always transported to d = 0, leave a step that raises m wherever
+//! the curvatures of the active pieces differ.
 
 use super::model::CurvedModel;
 use crate::bundle::norm::ScaledNorm;
@@ -48,8 +49,8 @@ impl Penalised<'_> {
         self.model.change(step) + 0.5 * self.weight * self.norm.squared(step)
     }
 
-    /// The step that minimises m, and zero where no round finds a lower value. A round that cannot be solved ends the search; it is an
-    /// error where nothing has been found before.
+    /// The step that minimises m, and zero where no round finds a lower value. A round that cannot be solved ends the
+    /// search; it is an error where nothing has been found before.
     pub(super) fn minimum(&self, mut multipliers: Vec<f64>, solver: &mut EpigraphQpSolver) -> Result<Vector, QpError> {
         let mut step = Vector::zeros(self.center.len());
         let mut value = self.value(&step);

@@ -82,8 +82,9 @@ fn random_model(seed: u64, (n, pieces): (usize, usize), curvature: f64) -> (Curv
     (model, Polyhedron::boxed(lower, upper).expect("a box"))
 }
 
-/// The value of the step, and by how much the tangents at the step, which bound the model from below, can be lowered from it with
-/// ½ w‖·‖². The bound comes from one quadratic program that knows neither curvatures nor multipliers of the search.
+/// The value of the step, and by how much the tangents at the step, which bound the model from below, can be lowered
+/// from it with ½ w‖·‖². The bound comes from one quadratic program that knows neither curvatures nor multipliers of
+/// the search.
 fn value_and_room(model: &CurvedModel, set: &Polyhedron) -> (f64, f64) {
     let n = set.dimension();
     let (center, norm, weight) = (Vector::zeros(n), ScaledNorm::euclidean(n), 0.1);

@@ -4,9 +4,9 @@
 //! m(d) = max_i { ⟨h_i, d⟩ − a_i },   h_i = g_i − 2c W p_i,   a_i = max(e_i + c‖p_i‖², |e_i|),   p_i = x̂ − y_i
 //! c = max( quantile of −E_ij/‖y_i − y_j‖² over concave pairs,  −e_i/‖p_i‖² )
 //! ```
-//! c = 0 as long as no pair of cuts proves Θ nonconvex: m is then the plain cutting-plane model. The errors p that the oracle promised are
-//! added to a_i; for Θ declared convex, a_i = |e_i + p|.
-//! References: \[SchrammZowe1992\] (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
+//! c = 0 as long as no pair of cuts proves Θ nonconvex: m is then the plain cutting-plane model. The errors p that the
+//! oracle promised are added to a_i; for Θ declared convex, a_i = |e_i + p|. References: \[SchrammZowe1992\]
+//! (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
 
 use crate::Vector;
 use crate::bundle::config::{BundleTrustConfig, Convexity};
@@ -33,13 +33,14 @@ pub(crate) struct Model {
     tilted: Option<Vec<Vec<f64>>>,
 }
 
-/// A cut this much steeper than the median and the center's cut drowns the others in rounding, and is mixed with the center's cut.
+/// A cut this much steeper than the median and the center's cut drowns the others in rounding, and is mixed with the
+/// center's cut.
 const MAX_RELATIVE_SLOPE: f64 = 1e7;
-/// Quantile of the curvatures that pairs of cuts prove: at ½, runs of PBC3 hang on the last bit; at 1, the mean over the collection rises
-/// by 5 %.
+/// Quantile of the curvatures that pairs of cuts prove: at ½, runs of PBC3 hang on the last bit; at 1, the mean over
+/// the collection rises by 5 %.
 const QUANTILE: f64 = 0.8;
-/// Number of variables from which subproblems are solved with the inner products of the slopes: with fewer, orthogonal factors of the
-/// slopes cost little.
+/// Number of variables from which subproblems are solved with the inner products of the slopes: with fewer, orthogonal
+/// factors of the slopes cost little.
 pub(super) const MANY_VARIABLES: usize = 100;
 
 impl Model {
@@ -93,8 +94,8 @@ impl Model {
         slopes.filter(move |(_, share)| plain && *share == 1.0).map(|(slope, _)| slope)
     }
 
-    /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut. The mixture lies below the model, and meets the center's cut
-    /// where the cut itself does.
+    /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut. The mixture lies below the model, and meets the
+    /// center's cut where the cut itself does.
     fn soften(&mut self, state: &BundleState) {
         self.shares = vec![1.0; self.slopes.len()];
         let Some(center) = self.center else { return };
@@ -119,8 +120,8 @@ impl Model {
         self.shares[position] == 1.0
     }
 
-    /// The inner products of the slopes with the weight of the run, formed from those of the bundle; none where a cut was mixed, or tilted
-    /// without a table of its own.
+    /// The inner products of the slopes with the weight of the run, formed from those of the bundle; none where a cut
+    /// was mixed, or tilted without a table of its own.
     pub(crate) fn products<'s>(&'s self, state: &'s BundleState) -> Option<Gram<'s>> {
         let rows = match &self.tilted {
             Some(tilted) => tilted,

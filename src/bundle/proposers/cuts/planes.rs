@@ -18,8 +18,8 @@ use crate::qp::QpSolution;
 use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
 
-/// Tenfold decreases of the weight, without evaluations, where the predicted decrease is small: a restart may raise the weight by 1e12, and
-/// units of variables may differ by as much.
+/// Tenfold decreases of the weight, without evaluations, where the predicted decrease is small: a restart may raise the
+/// weight by 1e12, and units of variables may differ by as much.
 pub(super) const MAX_DECREASES: usize = 16;
 /// Weights tried, each ten times the one before, until a subproblem counts as unsolvable.
 const MAX_TRIALS: usize = 4;
@@ -101,7 +101,8 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     let cuts = Cuts { gram, ..model.cuts() };
     let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
     let proposal = interpret(solution, (state, at.set), model);
-    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution. Rounding of ⟨h, d⟩ aside.
+    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution. Rounding of ⟨h, d⟩
+    // aside.
     let steepest = state.bundle.dual_lengths().fold(0.0, f64::max);
     let rounding = state.rounding() + 8.0 * f64::EPSILON * steepest * proposal.step_length;
     let least = 0.5 * proposal.aggregate_norm * proposal.step_length - rounding;

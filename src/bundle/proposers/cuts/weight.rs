@@ -77,14 +77,14 @@ fn may_rest_on_errors(state: &BundleState) -> bool {
     !state.nonconvex && state.streak < -2 && state.center.len() >= MANY_VARIABLES
 }
 
-/// Whether the predicted decrease −v = u‖d‖² + ẽ is nearly all error: the cuts were then taken too far away to describe Θ around the
-/// center, where a larger weight looks. Cuts that were made convex carry errors of another kind.
+/// Whether the predicted decrease −v = u‖d‖² + ẽ is nearly all error: the cuts were then taken too far away to describe
+/// Θ around the center, where a larger weight looks. Cuts that were made convex carry errors of another kind.
 fn rests_on_errors(proposal: &Proposal) -> bool {
     proposal.aggregate_error > 10.0 * proposal.aggregate_norm * proposal.step_length
 }
 
-/// The weight at which the parabola through both values with the predicted slope has its minimum at the trial point; the weight itself
-/// where neither Θ nor the model has changed.
+/// The weight at which the parabola through both values with the predicted slope has its minimum at the trial point;
+/// the weight itself where neither Θ nor the model has changed.
 fn interpolated_weight(comparison: &Comparison, weight: f64) -> f64 {
     let ratio = comparison.change / comparison.model_change;
     if ratio.is_nan() { weight } else { 2.0 * weight * (1.0 - ratio) }

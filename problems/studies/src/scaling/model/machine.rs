@@ -1,7 +1,7 @@
 //! What one core of this machine does: the figures that the model scales.
 //!
-//! Everything is measured on one thread: two tearings of one scene for seconds and bytes per subdomain, a dense factorisation for the
-//! coarse matrices.
+//! Everything is measured on one thread: two tearings of one scene for seconds and bytes per subdomain, a dense
+//! factorisation for the coarse matrices.
 
 use crate::scaling::cases::{Case, SceneName, Variant};
 use crate::scaling::measure;
@@ -22,8 +22,8 @@ const DENSE_ROWS: usize = 1200;
 pub struct Machine {
     /// Seconds to assemble and factor a subdomain.
     pub factor: f64,
-    /// Seconds of a product with F and with the preconditioner, with all vector work, per subdomain, in a state to 1e-10, which takes
-    /// more of its products in double precision than one to 1e-8.
+    /// Seconds of a product with F and with the preconditioner, with all vector work, per subdomain, in a state to
+    /// 1e-10, which takes more of its products in double precision than one to 1e-8.
     pub product: f64,
     /// The same in an adjoint.
     pub adjoint_product: f64,

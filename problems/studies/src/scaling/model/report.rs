@@ -44,8 +44,8 @@ const CASE_RANKS: [usize; 3] = [1, 2, 4];
 /// Measures this machine and predicts.
 ///
 /// # Errors
-/// [`Failure`] for another scene or another number of bricks per subdomain than it knows, and if a state of the measurement cannot be
-/// found.
+/// [`Failure`] for another scene or another number of bricks per subdomain than it knows, and if a state of the
+/// measurement cannot be found.
 pub fn report(scene: SceneName, options: &Options) -> Result<ModelReport, Failure> {
     if scene != SceneName::Signorini {
         return Err(Failure::Input("the model knows one body only: --scene signorini".into()));

@@ -1,4 +1,5 @@
-//! Random scenes: whether the default finds an equilibrium wherever any path does, never a wrong one, at a bounded cost.
+//! Random scenes: whether the default finds an equilibrium wherever any path does, never a wrong one, at a bounded
+//! cost.
 
 mod paths;
 mod scenes;

@@ -116,8 +116,9 @@ impl Examined {
         })
     }
 
-    /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without its limit
-    /// on work, and so is its residual; the residuals of the other paths are computed by a routine of the study.
+    /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without
+    /// its limit on work, and so is its residual; the residuals of the other paths are computed by a routine of the
+    /// study.
     pub fn by_cone_programs(&self) -> PathResult {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));
@@ -144,7 +145,8 @@ impl Examined {
         points.zip(normal).map(|(point, force)| (force.max(0.0) / point.area).powi(EXPONENT)).sum()
     }
 
-    /// The residual of given forces in the problem condensed anew: equilibrium of the bodies, contact law at every node.
+    /// The residual of given forces in the problem condensed anew: equilibrium of the bodies, contact law at every
+    /// node.
     fn residual(&self, forces: &ContactForces) -> f64 {
         let Ok(contact) = &self.contact else { return f64::NAN };
         let (boundary, length) = (&self.problem.boundary, contact.unit * contact.load);
