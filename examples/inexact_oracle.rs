@@ -45,7 +45,7 @@ fn error_bound(residual: f64) -> f64 {
 }
 
 impl NonsmoothObjective for LevelString {
-    /// The deflection.
+    /// The deflection at the nodes.
     type WarmStart = Vector;
 
     fn dimension(&self) -> usize {

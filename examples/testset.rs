@@ -52,7 +52,8 @@ struct Summary {
     solved_constrained: (usize, usize),
     geometric_mean_to_mpbngc: f64,
     compared: usize,
-    /// The same over all runs; an unsolved one counts as 1000 evaluations, and so does a missing MPBNGC.
+    /// Geometric mean of the ratio to MPBNGC over all runs; an unsolved run and a missing MPBNGC count as 1000
+    /// evaluations.
     penalised_mean: f64,
     /// Geometric means of the evaluations to 1e-6 over all, the convex and the other problems; an unsolved one counts
     /// as 2000.

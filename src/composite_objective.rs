@@ -107,7 +107,7 @@ impl<S, H> CompositeObjective<S, H> {
         Self { solver, cost }
     }
 
-    /// The state solver.
+    /// The state solver S.
     pub fn solver(&self) -> &S {
         &self.solver
     }

@@ -9,7 +9,7 @@ pub enum InputError {
     /// A vector or matrix has the wrong size.
     #[error("{what} has {found} entries, expected {expected}")]
     Dimension {
-        /// What was measured.
+        /// Name of the vector or matrix.
         what: &'static str,
         /// The size it must have.
         expected: usize,
@@ -71,7 +71,7 @@ pub enum OracleError {
         solver: &'static str,
         /// Relative residual reached.
         residual: f64,
-        /// Iterations spent.
+        /// Number of iterations of the solver.
         iterations: usize,
     },
     /// Value or subgradient is not finite.
@@ -85,7 +85,7 @@ pub enum OracleError {
     TooLarge {
         /// `value` or `subgradient`.
         what: &'static str,
-        /// Its size.
+        /// Size of the value or the dual norm of the subgradient.
         size: f64,
         /// The largest size that is allowed.
         allowed: f64,

@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 #[pyclass(frozen, module = "nonsmooth._engine")]
 #[derive(Debug)]
 pub struct Certificate {
-    /// The engine's certificate.
+    /// Certificate as the engine returns it.
     pub certificate: nonsmooth::Certificate,
     /// The set that it refers to.
     pub set: Polyhedron,
@@ -50,7 +50,7 @@ impl Certificate {
         convert::array(py, &self.certificate.point)
     }
 
-    /// The value there.
+    /// Value of the function at the point.
     #[getter]
     fn fun(&self) -> f64 {
         self.certificate.value

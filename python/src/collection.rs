@@ -34,13 +34,13 @@ impl CollectionProblem {
         Ok((value, PyArray1::from_vec(py, gradient)))
     }
 
-    /// The start.
+    /// Published start.
     #[getter]
     fn start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.0.start)
     }
 
-    /// The optimal value.
+    /// Published optimal value.
     #[getter]
     fn optimal_value(&self) -> f64 {
         self.0.optimal_value

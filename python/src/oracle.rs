@@ -21,7 +21,7 @@ use pyo3::types::PyDict;
 /// A Python function with value and subgradient, or with outputs and Jacobian.
 #[derive(Debug)]
 pub struct PythonOracle {
-    /// The function.
+    /// The user's Python function.
     pub function: Py<PyAny>,
     /// Whether it is made of two functions of the user, `fun` and `jac`.
     pub jac_apart: bool,

@@ -10,9 +10,9 @@ use pyo3::prelude::*;
 #[pyclass(frozen, module = "nonsmooth._engine")]
 #[derive(Debug)]
 pub struct RunOutcome {
-    /// The engine's report.
+    /// Report as the engine returns it.
     pub report: Report,
-    /// The admissible set.
+    /// Admissible set, by which the certificate is checked.
     pub set: Polyhedron,
     /// One subgradient at the solution, if it is known.
     pub subgradient: Option<Vector>,
@@ -26,7 +26,7 @@ impl RunOutcome {
         convert::array(py, &self.report.solution)
     }
 
-    /// The value there.
+    /// Value of the function at the solution.
     #[getter]
     fn value(&self) -> f64 {
         self.report.value
@@ -120,7 +120,7 @@ impl RunOutcome {
         self.report.largest_violation
     }
 
-    /// Seconds used.
+    /// Wall-clock seconds of the run.
     #[getter]
     fn seconds(&self) -> f64 {
         self.report.seconds

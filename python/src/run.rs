@@ -26,11 +26,8 @@ const SIGNAL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// What a run needs besides its objective; nothing of it is bound to the interpreter.
 pub struct RunInput {
-    /// Settings.
     pub config: BundleTrustConfig,
-    /// Admissible set.
     pub set: Polyhedron,
-    /// Start.
     pub start: Vector,
     /// Called after every evaluation; true ends the run.
     pub callback: Option<Py<PyAny>>,
@@ -81,7 +78,7 @@ pub fn minimize<'py>(py: Python<'py>, setup: Setup) -> PyResult<(Option<RunOutco
 pub enum RunError {
     /// The engine refuses, or the first evaluation failed.
     Optimize(OptimizeError),
-    /// The journal refuses.
+    /// The journal could not be opened or does not belong to this run.
     Journal(nonsmooth::JournalError),
     /// The journal of this folder began at another point.
     OtherStart(String),

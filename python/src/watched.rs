@@ -9,13 +9,11 @@ use std::cell::RefCell;
 /// An objective with the point, the value and the subgradient of its best accurate answer.
 #[derive(Debug)]
 pub struct Watched<O> {
-    /// The objective.
     pub inner: O,
     best: RefCell<Option<(Vector, f64, Vector)>>,
 }
 
 impl<O> Watched<O> {
-    /// Watches an objective.
     pub fn new(inner: O) -> Self {
         Self { inner, best: RefCell::new(None) }
     }
@@ -44,7 +42,7 @@ impl<O: NonsmoothObjective> NonsmoothObjective for Watched<O> {
         let answer = self.inner.evaluate(request)?;
         if let Answer::Accurate(evaluation) = &answer {
             let mut best = self.best.borrow_mut();
-            // The same point again is a refinement, whatever its value.
+            // A second evaluation of the best point refines it and replaces the first, whatever its value.
             if best.as_ref().is_none_or(|(at, value, _)| evaluation.value <= *value || at == request.point) {
                 *best = Some((request.point.clone(), evaluation.value, evaluation.subgradient.clone()));
             }

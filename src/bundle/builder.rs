@@ -72,7 +72,7 @@ impl<'o> BundleTrust<'o> {
         self
     }
 
-    /// The settings.
+    /// The settings with which this method runs.
     pub fn config(&self) -> &BundleTrustConfig {
         &self.config
     }

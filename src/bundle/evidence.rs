@@ -26,7 +26,7 @@ const EXACT_SHARE: f64 = 1e-5;
 /// Rounding of a sum, as a share of its terms.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// One variable.
+/// What the aggregate subgradient says about a variable.
 #[derive(Debug, Clone, Copy)]
 struct Coordinate {
     /// |z̃_i|.
@@ -75,7 +75,7 @@ pub(crate) struct Evidence {
     pub drop: f64,
     /// Largest distance of an active cut, in units of Θ: how far the linearizations of the bundle can vary in between.
     pub distance: f64,
-    /// The same in the norm of the run, relative to the size of the variables; for reports.
+    /// Largest distance of an active cut in the norm of the run, relative to the size of the variables; for reports.
     pub radius: f64,
     /// Whether all active cuts are those of the center itself, so that no difference of values enters.
     at_center: bool,

@@ -49,7 +49,7 @@ impl WeightedMetric {
 }
 
 impl ScaledNorm {
-    /// The Euclidean norm.
+    /// The Euclidean norm, in which M is the identity.
     pub fn euclidean(dimension: usize) -> Self {
         Self(Scale::Weights(Vector::from_element(dimension, 1.0)))
     }

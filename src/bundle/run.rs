@@ -64,7 +64,7 @@ impl Run<'_, '_> {
         Break(termination)
     }
 
-    /// The whole method.
+    /// One round of the method: a trial point and its evaluation, or the end of the run.
     fn advance(&mut self) -> ControlFlow<Ending> {
         self.state.counts.iterations += 1;
         if let Break(limit) = limits::check(&self.state, self.method, self.seconds()) {

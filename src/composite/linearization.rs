@@ -52,7 +52,7 @@ pub enum Linearized {
     /// Nothing: the request did not ask for them, or asked only where Θ is lower.
     #[default]
     NotAsked,
-    /// Both are known.
+    /// Outputs and Jacobian are known.
     Known(Linearization),
     /// The reason why they cannot be had, which costs the run nothing but its composite model.
     Unavailable(String),

@@ -259,7 +259,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
         linearization
     }
 
-    /// Asks the oracle.
+    /// Evaluates the objective and writes the answer to the journal.
     fn ask(&self, request: &Request<'_, RestartData<O::WarmStart>>) -> Result<Answer<O::WarmStart>, OracleError> {
         let stored = match request.warm_start {
             Some(RestartData { data: None, evaluation }) => self.read(*evaluation),

@@ -220,6 +220,6 @@ struct ExchangeRates {
     column_noise: Vec<f64>,
     /// In the metric's coordinates: the multiplier divided by √H_ii.
     coordinates: Vec<f64>,
-    /// Their rounding.
+    /// Rates below this size are rounding.
     noise: f64,
 }

@@ -37,12 +37,12 @@ pub(crate) struct Program<'a> {
     pub quadratic: &'a Matrix,
     /// p, n entries.
     pub linear: &'a Vector,
-    /// Equalities first.
+    /// Sides of the constraints, equalities first.
     pub sides: &'a [ScaledSide],
     pub equalities: usize,
 }
 
-/// The best iterate.
+/// The iterate of smallest residual.
 pub(crate) struct PrimalDual {
     pub x: Vector,
     /// The weights of the outputs, in [−1, 1] up to rounding.
@@ -57,7 +57,7 @@ struct Constraints<'a> {
     program: &'a Program<'a>,
     /// G, and below it the inequalities of more than one entry.
     rows: Matrix,
-    /// Their transpose.
+    /// Transpose of `rows`.
     columns: Matrix,
     /// Inequalities, those of more than one entry first, as positions in the list of sides.
     order: Vec<usize>,

@@ -288,7 +288,6 @@ impl<'a> WorkingSet<'a> {
         self.pivots += 1;
     }
 
-    /// All active members.
     pub(super) fn actives(&self) -> impl Iterator<Item = &Active> {
         self.general.iter().chain(self.fixed.iter().flatten())
     }

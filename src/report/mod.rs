@@ -36,7 +36,7 @@ pub struct Report {
     pub termination: Termination,
     /// How stationary the solution is, with everything needed to check it; none if no subproblem was solved.
     pub certificate: Option<Certificate>,
-    /// Work done.
+    /// Numbers of evaluations, steps and subproblems.
     pub counts: Counts,
     /// One record per evaluation.
     pub history: Vec<IterationRecord>,

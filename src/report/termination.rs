@@ -66,12 +66,12 @@ pub enum Termination {
     /// An answer of the oracle contradicts an earlier one; see
     /// [`OracleError::Contradiction`](crate::OracleError::Contradiction).
     OracleContradiction {
-        /// The contradiction.
+        /// Description of the contradiction between the two answers.
         reason: String,
     },
     /// The subproblem could not be solved.
     SubproblemFailed {
-        /// What went wrong.
+        /// Description of the failure.
         reason: String,
     },
 }

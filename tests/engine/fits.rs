@@ -65,7 +65,7 @@ fn linear_fits_end_confirmed_with_a_proof_that_holds() {
     }
 }
 
-/// The same functions as closures are solved by cuts: a second path to the same values.
+/// As closures, the functions are solved by cuts: a second path to the values of the composite model.
 #[test]
 fn cones_and_cuts_lead_to_the_same_fit() {
     for (name, outer) in functions() {

@@ -36,7 +36,7 @@ fn scaled() -> Report {
     method.constraints(admissible()).minimize(&FnObjective::new(3, valley), start()).unwrap()
 }
 
-/// The same run in the coordinates β of x = M β, where bounds are rows.
+/// The run in the coordinates β of x = M β, where bounds are rows.
 fn by_hand() -> Report {
     let (matrix, set) = (stretch(), admissible());
     let theta = FnObjective::new(3, |beta: &Vector| {

@@ -258,7 +258,7 @@ fn dual_norm(qp: &OwnedQp, slope: &Vector) -> f64 {
     slope.dot(&inverse).sqrt()
 }
 
-/// The same cuts, rows and box seen from the end of the step.
+/// Moves the origin of cuts, rows and box to the end of the step.
 fn recenter(qp: &mut OwnedQp, solution: &QpSolution) {
     for (slope, offset) in qp.slopes.iter().zip(&mut qp.offsets) {
         *offset += solution.epigraph - slope.dot(&solution.step);

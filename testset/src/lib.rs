@@ -37,11 +37,11 @@ pub enum Family {
     LinearlyConstrained,
 }
 
-/// One test problem.
+/// A published problem with its start and its optimal value.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct Problem {
-    /// Unique name.
+    /// Name by which the collection finds the problem.
     pub name: String,
     /// Number of variables.
     pub dimension: usize,
@@ -55,7 +55,7 @@ pub struct Problem {
     pub convex_lower: Vec<f64>,
     /// Description of the function, with indices from one.
     pub formula: String,
-    /// Publication.
+    /// Publication that states the problem.
     pub source: String,
     /// Remark on the problem.
     pub note: Option<String>,

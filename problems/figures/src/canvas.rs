@@ -130,7 +130,7 @@ impl Canvas {
         }
     }
 
-    /// A closed outline.
+    /// Draws a closed polygon without filling it.
     pub fn outline(&mut self, places: &[Place], stroke: Stroke) {
         let _ = writeln!(self.body, "<path d=\"{}\" {}/>", path(places, true), stroke.attributes());
     }

@@ -37,7 +37,7 @@ use super::scale::{Axis, behind, nice_below, number};
 pub struct Classes {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// Names and units of both axes.
     pub axes: [String; 2],

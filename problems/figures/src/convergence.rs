@@ -31,7 +31,7 @@ use super::scale::{Axis, extent, number as number_text};
 pub struct Convergence {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the values are.
     pub quantity: String,
@@ -43,7 +43,7 @@ pub struct Convergence {
     pub reference: Option<(String, f64)>,
 }
 
-/// One evaluation.
+/// An evaluation of an optimization.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// What it was; every kind gets a mark of its own.

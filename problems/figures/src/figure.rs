@@ -1,13 +1,13 @@
-//! A finished figure.
+//! A finished figure: its SVG text with the texts that a page needs around it.
 
 use super::canvas::Canvas;
 
-/// A figure.
+/// A figure as SVG.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Figure {
     /// Name of the figure, for files; without an ending.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// The figure as SVG text.
     pub svg: String,

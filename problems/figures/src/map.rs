@@ -40,7 +40,7 @@ use super::scale::{Axis, behind, number};
 pub struct Map {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the values are.
     pub quantity: String,

@@ -20,7 +20,7 @@ pub(super) const MAX_MESHED_QUADS: usize = 1500;
 const MAX_BANDED_QUADS: usize = 400;
 /// Colour of sheets without values.
 const PLAIN: &str = "#e6e6e6";
-/// Mesh lines.
+/// Colour of mesh lines.
 const MESH: &str = "#4d4d4d";
 const MESH_WIDTH: f64 = 0.35;
 

@@ -73,7 +73,7 @@ impl PanelLayout {
     }
 }
 
-/// Sides in points.
+/// Width and height of a panel, points.
 fn sides([first, second]: [f64; 2]) -> [f64; 2] {
     let ratio = (second / first).clamp(MIN_SIDE_RATIO, 1.0 / MIN_SIDE_RATIO);
     if ratio > 1.0 { [SIDE / ratio, SIDE] } else { [SIDE, SIDE * ratio] }

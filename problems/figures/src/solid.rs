@@ -35,7 +35,7 @@ use super::scale::{behind, number};
 pub struct Solids {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the values are.
     pub quantity: String,
@@ -49,7 +49,7 @@ pub struct Solids {
     pub panels: Vec<SolidPanel>,
 }
 
-/// Some blocks.
+/// A panel with its blocks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolidPanel {
     /// What distinguishes it from the other panels.

@@ -32,7 +32,7 @@ use super::scale::{behind, extent, nice_below, number};
 pub struct Surfaces {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the heights are.
     pub quantity: String,

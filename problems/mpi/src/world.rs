@@ -25,7 +25,7 @@ impl World {
     #[allow(clippy::new_without_default, reason = "it needs an initialized MPI")]
     pub fn new() -> Self {
         let world = SimpleCommunicator::world();
-        // Neither is negative.
+        // MPI states rank and size as signed integers that are not negative.
         Self { rank: world.rank() as usize, size: world.size() as usize, calling: Mutex::new(()) }
     }
 }

@@ -81,7 +81,7 @@ impl MembraneControl {
         Ok(Self { grid, reduced, constant, obstacle, patch_of_node, patches: data.patches })
     }
 
-    /// The grid.
+    /// The grid on which the membrane is discretized.
     pub fn grid(&self) -> &MembraneGrid {
         &self.grid
     }

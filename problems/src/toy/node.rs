@@ -50,9 +50,9 @@ pub struct Node {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NodeStatus {
-    /// No contact.
+    /// The node does not touch the support.
     Open,
-    /// Closed, no sliding.
+    /// The node touches the support and does not slide.
     Stick,
     /// Closed, sliding with w > 0 (σ = 1).
     SlipForward,
@@ -100,9 +100,9 @@ impl NodeValues {
 pub struct Kink {
     /// Height h of the support at the kink.
     pub height: f64,
-    /// Status just below.
+    /// Status for supports slightly below `height`.
     pub below: NodeStatus,
-    /// Status just above.
+    /// Status for supports slightly above `height`.
     pub above: NodeStatus,
 }
 

@@ -35,7 +35,7 @@ pub struct NodeState {
 /// State of the toy: both nodes. The dual has 8 entries, (λ_N, λ_T, n, w) of the first node, then of the second.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToyState {
-    /// The two nodes.
+    /// States of the two nodes.
     pub nodes: [NodeState; 2],
 }
 
@@ -55,7 +55,7 @@ impl ToyContact {
         Self { nodes }
     }
 
-    /// The two nodes.
+    /// The data of the two nodes.
     pub fn nodes(&self) -> &[Node; 2] {
         &self.nodes
     }

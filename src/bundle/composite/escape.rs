@@ -24,7 +24,7 @@ pub(super) struct Escape {
     /// Where the model of the next step is built; none before the first evaluation.
     base: Option<Base>,
     pub weight: f64,
-    /// Evaluations left.
+    /// Number of evaluations that the escape steps may still spend.
     left: usize,
 }
 
@@ -78,7 +78,7 @@ impl Escape {
         }
     }
 
-    /// No further evaluation.
+    /// Ends the escape steps: no evaluation is spent on them any more.
     pub(super) fn give_up(&mut self) {
         self.left = 0;
     }

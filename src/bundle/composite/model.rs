@@ -42,8 +42,8 @@ impl OuterCut {
         Ok(Self { value, subgradient, outputs, multiplier: 0.0 })
     }
 
-    /// The same cut of a positively homogeneous h, taken at outputs that are no larger than a size: the error of the
-    /// cut at outputs of this size then carries no rounding of larger numbers.
+    /// Moves a cut of a positively homogeneous h to outputs that are no larger than a size: the error of the cut at
+    /// outputs of this size then carries no rounding of larger numbers.
     pub(super) fn shrunk(self, outer: &dyn OuterFunction, size: f64) -> Self {
         let own = self.outputs.amax();
         if !(outer.is_homogeneous() && own > size && size > 0.0) {
@@ -82,7 +82,7 @@ pub(crate) struct CompositeModel<'a> {
     pub origin: Option<&'a Vector>,
 }
 
-/// A solved subproblem.
+/// A solution of the subproblem of the composite model.
 #[derive(Debug, Clone)]
 pub(crate) struct CompositeStep {
     pub step: Vector,

@@ -29,7 +29,6 @@ impl Trust {
         self.pause.pass()
     }
 
-    /// Begins a pause.
     pub(super) fn pause(&mut self) {
         self.pause.fail();
     }

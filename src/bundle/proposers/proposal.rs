@@ -39,7 +39,7 @@ pub(crate) struct Proposal {
     pub weight: f64,
     /// Relative violation of the set at the trial point.
     pub violation: f64,
-    /// Who proposes it.
+    /// Model that proposes the trial point.
     pub origin: Origin,
 }
 
@@ -77,7 +77,7 @@ pub(crate) enum SubproblemError {
 }
 
 impl SubproblemError {
-    /// The same error, where h was asked for at the base of the model: a shorter step cannot help.
+    /// Marks an error of h as one at the base of the model, where a shorter step cannot help.
     pub(crate) fn at_base(self) -> Self {
         match self {
             Self::OuterNotFinite { .. } => Self::OuterNotFinite { at_base: true },
@@ -131,7 +131,7 @@ impl Proposal {
         self.trial.iter().zip(center.iter()).all(|(y, x)| (y - x).abs() <= SHORTEST_MOVE * x.abs())
     }
 
-    /// The same multipliers at another trial point, which promises nothing by itself.
+    /// A proposal with these multipliers at another trial point; it predicts no decrease.
     pub(crate) fn moved_to(
         &self,
         trial: Vector,

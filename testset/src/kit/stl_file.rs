@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-/// Three corners.
+/// Corners of a triangle with their coordinates.
 pub type Corners = [[f32; 3]; 3];
 
 /// The triangles of a binary STL file.

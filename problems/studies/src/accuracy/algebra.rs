@@ -37,7 +37,6 @@ pub struct AlgebraRow {
 /// All solvers and tolerances on one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AlgebraStudy {
-    /// The scene.
     pub scene: SceneName,
     /// Bricks per edge.
     pub bricks: usize,
@@ -94,7 +93,7 @@ pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<Algeb
     })
 }
 
-/// Controls of the start, perturbed at random by up to 1 %, so that no symmetry of the scene remains.
+/// Controls of the start, each lowered at random by 1 to 3 %, so that the shape has no symmetry.
 pub fn perturbed(objective: &ContactObjective) -> Vector {
     const SEED: u64 = 5;
     let start = objective.solver().start();

@@ -46,7 +46,7 @@ impl AccuracyArguments {
     }
 }
 
-/// Runs the binary.
+/// Runs the binary with the arguments of the process and returns its exit status.
 pub fn run() -> ExitCode {
     let arguments: AccuracyArguments = arguments();
     finish(execute(&arguments), arguments.out.as_deref())

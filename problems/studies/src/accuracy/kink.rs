@@ -22,7 +22,7 @@ use serde::Serialize;
 pub struct KinkRow {
     /// Where: a scene or the toy.
     pub scene: String,
-    /// What changes there.
+    /// Statuses that change at the kink, and how.
     pub change: String,
     /// t*, mm.
     pub position: f64,

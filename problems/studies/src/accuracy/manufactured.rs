@@ -39,7 +39,6 @@ pub struct ManufacturedErrors {
 const AMPLITUDE: [f64; 3] = [1.0, -0.6, 0.8];
 const WAVE: [f64; 3] = [1.7, 2.3, -1.1];
 const PHASE: f64 = 0.4;
-/// The smooth solution.
 struct Wave {
     force: [f64; 3],
 }

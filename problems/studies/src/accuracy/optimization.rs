@@ -30,7 +30,6 @@ pub struct Milestone {
 /// The course of one strategy on the finest mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Course {
-    /// The strategy.
     pub strategy: &'static str,
     /// One milestone per evaluation on the finest mesh.
     pub points: Vec<Milestone>,
@@ -49,11 +48,11 @@ pub struct Course {
 /// One measure of pressure as the objective.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PeakRow {
-    /// The measure.
+    /// Name of the measure that is minimised.
     pub measure: String,
-    /// Evaluations.
+    /// Number of evaluations of Θ.
     pub evaluations: usize,
-    /// Seconds.
+    /// Wall-clock seconds of the optimization.
     pub seconds: f64,
     /// Peak pressure at the end, MPa.
     pub peak: f64,
@@ -64,7 +63,6 @@ pub struct PeakRow {
 /// All courses on one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OptimizationStudy {
-    /// The scene.
     pub scene: SceneName,
     /// The meshes, coarse to fine.
     pub levels: Vec<usize>,
@@ -72,7 +70,7 @@ pub struct OptimizationStudy {
     pub start: f64,
     /// Lowest Σσ⁴ of all strategies, Θ*.
     pub lowest: f64,
-    /// The strategies.
+    /// Course of each strategy.
     pub courses: Vec<Course>,
     /// Mesh of the measures of pressure.
     pub peak_mesh: usize,

@@ -14,14 +14,14 @@ pub struct AccuracyReport {
     pub machine_threads: usize,
     /// Seconds of the whole study.
     pub seconds: f64,
-    /// Smooth solution.
+    /// Errors for a manufactured smooth solution.
     pub smooth: Vec<ManufacturedErrors>,
-    /// Meshes.
+    /// Errors of the discretisation per scene.
     pub discretisation: Vec<MeshStudy>,
-    /// Contact solvers.
+    /// Errors of the contact solvers per scene.
     pub algebra: Vec<AlgebraStudy>,
     /// Taylor tables and kinks.
     pub subgradient: Option<SubgradientStudy>,
-    /// Optimizations.
+    /// Effect of mesh and tolerance on optimizations.
     pub optimization: Vec<OptimizationStudy>,
 }

@@ -10,12 +10,12 @@ use problems::commands::{DIRECTION_SEED, Failure, smooth_taylor_test, taylor_ste
 use problems::toy;
 use serde::Serialize;
 
-/// A Taylor table.
+/// A Taylor test of a scene's objective.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TaylorStudy {
     /// Where: a scene or the toy.
     pub scene: String,
-    /// The table.
+    /// Remainders of the test per step.
     pub test: TaylorTest,
 }
 

@@ -12,7 +12,7 @@ use crate::markdown::{or_dash, seconds, section, yes_or_no};
 use crate::rates::observed;
 use crate::scaling::option_name;
 
-/// All tables.
+/// The tables of the report as Markdown.
 pub fn markdown(report: &AccuracyReport) -> String {
     let mut text = format!(
         "{} threads run at once on this machine; the study took {:.0} s.\n",

@@ -89,7 +89,7 @@ impl ScalingArguments {
     }
 }
 
-/// Runs the binary.
+/// Runs the binary with the arguments of the process and returns its exit status.
 pub fn run() -> ExitCode {
     finish(execute(&arguments()), None)
 }

@@ -9,15 +9,15 @@ use serde::Serialize;
 /// Growth of one solver at H/h = 7, without clusters.
 #[derive(Debug, Clone, Serialize)]
 pub struct Growth {
-    /// The scene.
+    /// Scene whose rows are compared.
     pub scene: SceneName,
-    /// The solver.
+    /// Contact solver whose rows are compared.
     pub variant: Variant,
     /// Least-squares slope of log(seconds of cold state and subgradient) over log(dofs).
     pub cold_exponent: Option<f64>,
-    /// The same from s = 3 on, where the fixed costs weigh less.
+    /// `cold_exponent` over the cases from s = 3 on, where fixed costs are a smaller share.
     pub cold_exponent_large: Option<f64>,
-    /// The same for warm states, all s.
+    /// Least-squares slope of log(seconds of warm state and subgradient) over log(dofs), all s.
     pub warm_exponent: Option<f64>,
     /// Cold counts per tolerance and their growth.
     pub counts: Vec<CountGrowth>,

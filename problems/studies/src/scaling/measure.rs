@@ -15,7 +15,7 @@ use std::time::Instant;
 pub const TIMED: f64 = 1e-8;
 /// Tolerances of the states that are only counted, cold.
 pub const COLD: [f64; 2] = [1e-6, 1e-10];
-/// The same for warm states.
+/// Tolerances of the warm states that are only counted.
 const WARM: [f64; 1] = [1e-10];
 /// Repetitions of what takes less than [`LONG_RUN`].
 const REPETITIONS: usize = 3;
@@ -135,7 +135,7 @@ fn counted(solver: &AnySolver, [controls, nearby]: [&[f64]; 2], failures: &mut V
     solves
 }
 
-/// One state, timed.
+/// Solves a state and measures its time.
 fn solve(
     solver: &AnySolver,
     controls: &[f64],

@@ -20,7 +20,7 @@ pub fn progress(row: &ScalingRow) -> String {
     )
 }
 
-/// All tables.
+/// The tables of the report as Markdown.
 pub fn markdown(report: &ScalingReport) -> String {
     let machine = format!("{} threads run at once on this machine.\n", report.machine_threads);
     [

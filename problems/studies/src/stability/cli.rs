@@ -38,7 +38,7 @@ pub struct StabilityArguments {
     pub json: bool,
 }
 
-/// Runs the binary.
+/// Runs the binary with the arguments of the process and returns its exit status.
 pub fn run() -> ExitCode {
     finish(execute(&arguments()), None)
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 /// A part of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Part {
-    /// Both.
+    /// The collection and the runs in mixed units.
     All,
     /// The collection of test problems in all its variants.
     Collection,
@@ -22,7 +22,7 @@ pub enum Part {
 pub enum Listed {
     /// Those with a false termination, those that do not reach the minimum, and those that do not say so.
     Short,
-    /// All.
+    /// All runs.
     All,
 }
 

@@ -134,7 +134,7 @@ pub fn is_clarke_stationary(changed: &Changed<'_>, x: &Vector) -> Result<bool, I
     Ok(RADII.into_iter().any(|radius| balance_within(radius, &around, &set)))
 }
 
-/// The same for the gradients within one radius.
+/// Whether gradients within one radius prove Clarke stationarity.
 fn balance_within(radius: f64, around: &Around<'_>, set: &Polyhedron) -> bool {
     let mut gradients = around.random_gradients(radius);
     for _ in 0..=ROUNDS_PER_VARIABLE * around.x.len() {

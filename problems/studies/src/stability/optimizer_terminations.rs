@@ -51,7 +51,6 @@ pub enum TerminationKind {
 pub struct TerminationRecord {
     /// Name of the problem.
     pub problem: String,
-    /// What was changed.
     pub variant: Variant,
     /// Whether it is convex, and declared so.
     pub convex: bool,

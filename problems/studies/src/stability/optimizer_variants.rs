@@ -16,7 +16,7 @@ const WIDE_SIDE: f64 = 1e8;
 /// Every how many calls one fails.
 const FAILING: usize = 10;
 
-/// What is changed.
+/// Changes of start, function, variables, bounds and noise of a problem.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Variant {
     /// Factor σ of the start.

@@ -35,7 +35,7 @@ pub struct Path {
     pub kink: Option<Kink>,
     /// Kind of the error, if the case was refused.
     pub refusal: Option<String>,
-    /// Its text.
+    /// Text of the error.
     pub reason: Option<String>,
 }
 
@@ -46,7 +46,6 @@ pub struct Record {
     pub group: &'static str,
     /// Name of the case.
     pub name: String,
-    /// How it ended.
     pub outcome: CaseOutcome,
     /// Cause of a refusal or limit, what broke, or a finding.
     pub remark: String,
@@ -83,25 +82,25 @@ impl Record {
 pub struct Counts {
     /// Solved to the certificate.
     pub solved: usize,
-    /// Refused with reason.
+    /// Number of cases refused with a correct reason.
     pub refused: usize,
-    /// Known limits.
+    /// Number of cases beyond a documented limit.
     pub limits: usize,
-    /// Not as expected.
+    /// Number of cases whose result is not as expected.
     pub broken: usize,
 }
 
-/// All records.
+/// Records of all cases with their counts.
 #[derive(Debug, Clone, Serialize)]
 pub struct StabilityReport {
     /// Numbers of cases per outcome.
     pub counts: Counts,
-    /// The cases.
+    /// Records in the order of the cases.
     pub records: Vec<Record>,
 }
 
 impl StabilityReport {
-    /// Counts the records.
+    /// Counts the outcomes of the records.
     pub fn new(records: Vec<Record>) -> Self {
         let count = |outcome| records.iter().filter(|record| record.outcome == outcome).count();
         let counts = Counts {

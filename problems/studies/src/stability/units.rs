@@ -1,4 +1,4 @@
-//! The same scene in N–mm and in N–m gives the same dimensionless results: no tolerance knows a unit.
+//! Dimensionless results of a scene in N–mm and in N–m are equal: no tolerance depends on a unit.
 //!
 //! ```text
 //! lengths × s, moduli and tractions / s²:   forces stay, displacements × s, pressures / s²

@@ -19,7 +19,7 @@ fn minimum(model: &CurvedModel, weight: f64, set: &Polyhedron) -> Vector {
     minimum_within(f64::INFINITY, model, weight, set)
 }
 
-/// The same, of at most the length given.
+/// The minimum of the model among the steps of at most the length given.
 fn minimum_within(radius: f64, model: &CurvedModel, weight: f64, set: &Polyhedron) -> Vector {
     let center = Vector::zeros(set.dimension());
     let norm = ScaledNorm::euclidean(set.dimension());

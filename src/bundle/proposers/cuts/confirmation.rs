@@ -35,13 +35,13 @@ pub(super) struct Confirmation {
     unconfirmed: Termination,
     /// The weight at which they are asked.
     weight: f64,
-    /// Evaluations left.
+    /// Number of evaluations that the confirmation may still spend.
     left: usize,
     /// Whether a step has been evaluated that promises more than may be left.
     probed: bool,
 }
 
-/// What comes next.
+/// What follows in a confirmation: a trial point, or the end of the run.
 pub(super) enum Confirmed {
     Trial(Box<Proposal>),
     End(Box<Ending>),

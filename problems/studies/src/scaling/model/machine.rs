@@ -25,7 +25,7 @@ pub struct Machine {
     /// Seconds of a product with F and with the preconditioner, with all vector work, per subdomain, in a state to
     /// 1e-10, which takes more of its products in double precision than one to 1e-8.
     pub product: f64,
-    /// The same in an adjoint.
+    /// Seconds of a product with F and with the preconditioner, with all vector work, per subdomain, in an adjoint.
     pub adjoint_product: f64,
     /// Seconds of the shape derivative and of the recovery of displacements, per subdomain.
     pub derivative: f64,

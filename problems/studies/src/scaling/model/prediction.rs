@@ -21,10 +21,10 @@ pub struct Network {
     pub bandwidth: f64,
 }
 
-/// What runs.
+/// Number and size of the parts into which the bodies are divided.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Workload {
-    /// Number of ranks.
+    /// Number of MPI processes.
     pub ranks: f64,
     /// Subdomains per rank.
     pub subdomains: f64,
@@ -38,7 +38,7 @@ pub struct Workload {
 /// Seconds, bytes and messages of one rank, for a state to 1e-8 and its subgradient.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Prediction {
-    /// What runs.
+    /// Division of the bodies that is predicted.
     pub run: Workload,
     /// Torn degrees of freedom of all ranks.
     pub dofs: f64,
@@ -149,7 +149,7 @@ impl Prediction {
         }
     }
 
-    /// Seconds in all.
+    /// Seconds of state and subgradient: the sum of all parts.
     pub fn seconds(&self) -> f64 {
         self.own + self.coarse_factors + self.coarse_solves + self.neighbours + self.gathers
     }

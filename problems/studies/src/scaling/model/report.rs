@@ -10,10 +10,10 @@ use problems::commands::Failure;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// What to predict.
+/// Options of the prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// The network.
+    /// Network that the prediction assumes.
     pub network: Network,
     /// Subdomains per rank.
     pub per_rank: usize,
@@ -30,7 +30,7 @@ pub struct Options {
 pub struct ModelReport {
     /// Figures of one core of this machine.
     pub machine: Machine,
-    /// The network.
+    /// Network that the prediction assumes.
     pub network: Network,
     /// One entry per number of ranks, without and with clusters.
     pub predictions: Vec<Prediction>,

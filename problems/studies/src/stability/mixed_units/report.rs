@@ -15,7 +15,7 @@ const USUAL_SPREAD: usize = 3;
 pub struct Share {
     /// Those that are so.
     pub part: usize,
-    /// All.
+    /// Number of runs considered.
     pub of: usize,
 }
 
@@ -38,7 +38,7 @@ impl std::fmt::Display for Share {
 /// All runs and what they came to.
 #[derive(Debug, Clone, Serialize)]
 pub struct UnitReport {
-    /// Number of runs.
+    /// Number of runs of all problems, starts and declarations.
     pub runs: usize,
     /// Runs with a false termination.
     pub false_terminations: usize,
@@ -46,7 +46,7 @@ pub struct UnitReport {
     pub reached_in_usual_units: Share,
     /// Reached minima that are confirmed, where convexity is declared or outputs are given.
     pub said_informed: Share,
-    /// The same where neither is.
+    /// Reached minima that are confirmed, where neither convexity is declared nor outputs are given.
     pub said_plain: Share,
     /// All runs, in the order of the problems.
     pub records: Vec<UnitRecord>,

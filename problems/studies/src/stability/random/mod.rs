@@ -26,7 +26,7 @@ const MAX_COST: f64 = 3.0;
 /// Of so many scenes, one has its cone programs solved although the default has found a state.
 const CONE_EVERY: usize = 10;
 
-/// What is counted.
+/// Numbers of scenes by result.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Counts {
     /// Scenes drawn.
@@ -68,17 +68,17 @@ pub struct RandomReport {
 /// A scene that fell short.
 #[derive(Debug, Clone, Serialize)]
 pub struct Short {
-    /// Its number.
+    /// Number of the scene in the sequence of its seed.
     pub index: usize,
-    /// In words.
+    /// Message about the shortcoming.
     pub reason: String,
-    /// The scene file.
+    /// Text of the scene file.
     #[serde(skip)]
     pub text: String,
 }
 
 impl RandomReport {
-    /// What fell short.
+    /// Scenes with a shortcoming, each with its reason.
     pub fn short(&self) -> &[Short] {
         &self.short
     }
@@ -108,7 +108,6 @@ impl RandomReport {
     }
 }
 
-/// One scene, examined.
 struct Examination {
     family: Family,
     frictionless: bool,

@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 1e-12;
 /// A state that a path found.
 #[derive(Debug, Clone)]
 pub struct Found {
-    /// Who found it.
+    /// Name of the solver.
     pub path: String,
     /// Θ.
     pub objective: f64,
