@@ -70,7 +70,7 @@
 //!
 //! // 2. The coderivative: S′(p, g)ᵀ y* of the piece that the state lies on; on the kink p = g that of the free spring.
 //! impl Coderivative for SpringWithStop {
-//!     fn coderivative(&self, _control: &Vector, state: &Travel, direction: &Vector) -> Result<Sensitivity, OracleError> {
+//!     fn coderivative(&self, _: &Vector, state: &Travel, direction: &Vector) -> Result<Sensitivity, OracleError> {
 //!         let dual = direction[0];
 //!         let element = if state.at_the_stop { vec![0.0, dual] } else { vec![dual, 0.0] };
 //!         Ok(Sensitivity::exact(Vector::from_vec(element)))

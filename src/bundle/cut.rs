@@ -52,7 +52,7 @@ pub struct Cut {
 
 impl Cut {
     /// Whether the multiplier is more than rounding of the subproblem: above 1e-9.
-    pub fn is_active(&self) -> bool {
+    pub(crate) fn is_active(&self) -> bool {
         self.multiplier > LEAST_ACTIVE_MULTIPLIER
     }
 
@@ -102,7 +102,7 @@ impl Cut {
     }
 
     /// e = value − Θ(y) − ⟨g, x − y⟩: the linearization error at a point x where Θ has the value given.
-    pub fn linearization_error(&self, x: &Vector, value: f64) -> f64 {
+    pub(crate) fn linearization_error(&self, x: &Vector, value: f64) -> f64 {
         value - self.value - difference_dot(self.subgradient.as_slice(), x.as_slice(), self.point.as_slice())
     }
 }

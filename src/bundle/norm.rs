@@ -50,7 +50,7 @@ impl WeightedMetric {
 
 impl ScaledNorm {
     /// The Euclidean norm, in which M is the identity.
-    pub fn euclidean(dimension: usize) -> Self {
+    pub(crate) fn euclidean(dimension: usize) -> Self {
         Self(Scale::Weights(Vector::from_element(dimension, 1.0)))
     }
 
@@ -201,7 +201,7 @@ impl ScaledNorm {
     }
 
     /// ‖x − y‖².
-    pub fn squared_distance(&self, x: &Vector, y: &Vector) -> f64 {
+    pub(crate) fn squared_distance(&self, x: &Vector, y: &Vector) -> f64 {
         match &self.0 {
             Scale::Weights(weights) => weighted_squared_distance(weights.as_slice(), x.as_slice(), y.as_slice()),
             Scale::Linear(_) => self.squared(&(x - y)),

@@ -25,9 +25,9 @@ use std::rc::Rc;
 const LEAST_SHARE: f64 = 1e-8;
 /// The least scale of Θ, as a share of what the active cuts vary within reach.
 const LEAST_VALUE_SHARE: f64 = 1e-6;
-/// The least scale of a Θ that is declared convex, as a share of what the active cuts vary within reach. A termination of
-/// a convex Θ rests on a bound, which needs a smaller share: with 1e-6, bounds of 2e-5 counted as small after starts 1e6
-/// times too far.
+/// The least scale of a Θ that is declared convex, as a share of what the active cuts vary within reach. A termination
+/// of a convex Θ rests on a bound, which needs a smaller share: with 1e-6, bounds of 2e-5 counted as small after starts
+/// 1e6 times too far.
 const LEAST_CONVEX_SHARE: f64 = 1e-7;
 /// Values beyond this many times their variation carry a shift.
 const MAX_VALUE_SHARE: f64 = 10.0;

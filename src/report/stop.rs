@@ -9,7 +9,8 @@ use std::ops::{BitAnd, BitOr};
 ///
 /// ```
 /// use nonsmooth::StopRule;
-/// let rule = StopRule::ValueBelow(1.5) | (StopRule::Evaluations(20) & StopRule::Stalled { evaluations: 10, relative: 1e-3 });
+/// let stalled = StopRule::Stalled { evaluations: 10, relative: 1e-3 };
+/// let rule = StopRule::ValueBelow(1.5) | (StopRule::Evaluations(20) & stalled);
 /// assert!(rule.holds(&[]).is_none());
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -274,7 +274,12 @@ fn quadratics(n: usize, pieces: usize, seed: u64) -> Vec<(Matrix, Vector, f64)> 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, rng_seed: RngSeed::Fixed(7), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 64,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(7),
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn minimax_of_random_quadratics_agrees_with_cuts(n in 1_usize..7, pieces in 1_usize..8, seed in 0_u64..1 << 40) {

@@ -122,14 +122,24 @@ proptest! {
 
     /// Cuts of any steepness exclude no point of the set.
     #[test]
-    fn cuts_of_any_steepness_contradict_no_sides(seed: u64, shape in shapes(), poles in 1usize..20, power in 10.0..15.0f64) {
+    fn cuts_of_any_steepness_contradict_no_sides(
+        seed: u64,
+        shape in shapes(),
+        poles in 1usize..20,
+        power in 10.0..15.0f64,
+    ) {
         let qp = with_poles(random_qp(seed, shape), seed, poles, power);
         let result = EpigraphQpSolver::new().solve(&qp.view());
         prop_assert!(!matches!(result, Err(QpError::Infeasible { .. })), "{:?}", result);
     }
 
     #[test]
-    fn units_of_values_and_variables_do_not_matter(seed: u64, shape in shapes(), value in -6i32..=6, length in -6i32..=6) {
+    fn units_of_values_and_variables_do_not_matter(
+        seed: u64,
+        shape in shapes(),
+        value in -6i32..=6,
+        length in -6i32..=6,
+    ) {
         let qp = random_qp(seed, shape);
         let (value, length) = (10f64.powi(value), 10f64.powi(length));
         let mut scaled = qp.clone();

@@ -146,7 +146,9 @@ impl Block {
             Self::Table { head, rows } => html! {
                 div.wide { table class=[(head.len() >= MANY_COLUMNS).then_some("many")] {
                     thead { tr { @for cell in head { th { (cell) } } } }
-                    tbody { @for row in rows { tr { @for (column, cell) in row.iter().enumerate() { (table_cell(cell, column, row.len(), head.len())) } } } }
+                    tbody { @for row in rows { tr { @for (column, cell) in row.iter().enumerate() {
+                        (table_cell(cell, column, row.len(), head.len()))
+                    } } } }
                 } }
             },
             Self::Picture { figure, caption } => html! {

@@ -11,7 +11,8 @@ use super::scale::{behind, number};
 ///
 /// ```
 /// use figures::{SolidBlock, SolidPanel, Solids};
-/// let corner = |node: u8| [100.0 * f64::from(node >> 2 & 1), 50.0 * f64::from(node >> 1 & 1), 50.0 * f64::from(node & 1)];
+/// let bit = |node: u8, place: u8| f64::from(node >> place & 1);
+/// let corner = |node| [100.0 * bit(node, 2), 50.0 * bit(node, 1), 50.0 * bit(node, 0)];
 /// let block = |peak: f64| SolidBlock {
 ///     nodes: [2, 2, 2],
 ///     points: (0..8).map(corner).collect(),

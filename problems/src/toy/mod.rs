@@ -18,9 +18,8 @@
 //!
 //! **It is the only stationary point in U**: ⟨ξ, α − α*⟩ > 0 for all ξ ∈ ∂Θ(α), α ≠ α*, hence 0 ∉ ∂Θ(α) + N_U(α). For
 //! ⟨ξ, α − α*⟩ = Σ φᵢ'(hᵢ)(hᵢ − hᵢ*) + γ⟨α − ᾱ, α − α*⟩, where φᵢ' ≤ 0 below and > 0 above hᵢ*. The last term is
-//! positive unless
-//! |α − α*| ≤ |ᾱ − α*| = √(5/8) < 1; and for |α − α*| ≤ 1 both nodes are closed, |φᵢ'| ≥ 3/5, and with σ_min(B) = 1/2
-//! the sum is at least (3/10)|α − α*| > γ|ᾱ − α*||α − α*|. The same estimate gives the sharp growth
+//! positive unless |α − α*| ≤ |ᾱ − α*| = √(5/8) < 1; and for |α − α*| ≤ 1 both nodes are closed, |φᵢ'| ≥ 3/5, and with
+//! σ_min(B) = 1/2 the sum is at least (3/10)|α − α*| > γ|ᾱ − α*||α − α*|. This estimate also gives the sharp growth
 //! Θ(α) − Θ* ≥ |α − α*|/5 for |α − α*| ≤ 1.
 //!
 //! **Nonconvex**: φᵢ' drops at touch (0 to −5/3, −10/3) and at the start of backward slip; below touch Θ is nearly a
@@ -31,8 +30,6 @@ mod cost;
 mod node;
 mod solver;
 mod study;
-#[cfg(test)]
-mod tests;
 mod trace;
 
 pub use clarke::{KINK_WIDTH, clarke_vertices};

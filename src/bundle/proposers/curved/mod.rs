@@ -4,8 +4,6 @@
 mod model;
 mod pieces;
 mod step;
-#[cfg(test)]
-mod step_tests;
 
 use super::cuts::model::Model;
 use super::proposal::{Proposal, SubproblemError};
@@ -17,7 +15,8 @@ use crate::report::Origin;
 use model::CurvedModel;
 use step::Penalised;
 
-/// Number of variables above which a run does without the curved model, because its dense matrices become too dear.
+/// Number of variables above which a run does without the curved model, because its dense matrices become too
+/// expensive.
 pub(crate) const MAX_DIMENSION: usize = 200;
 /// Prediction errors below this share of the changes that are compared count as equally good.
 const ERROR_FLOOR: f64 = 1e-2;

@@ -1,8 +1,9 @@
-//! Closed forms against enumeration, differences, grids and the definition of the Clarke set.
+//! The toy: closed forms against enumeration, differences, grids and the definition of the Clarke set.
+#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
-use super::*;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
-use nonsmooth::{Accuracy, Coderivative, Cost, NonsmoothObjective, Request, StateSolver};
+use nonsmooth::{Accuracy, Coderivative, Cost, NonsmoothObjective, Request, StateSolver, Vector};
+use problems::toy::*;
 use proptest::prelude::*;
 
 const STATUSES: [NodeStatus; 4] =
