@@ -47,7 +47,7 @@ impl Curved {
         Ok(penalised.minimum(model.multipliers_of(state.center_id), at.solver)?)
     }
 
-    /// Judges both predictions by the actual change.
+    /// Compares both predictions with the actual change.
     fn compare(&mut self, change: f64, plain: f64, curved: f64) {
         let size = change.abs() + plain.abs();
         let floor = ERROR_FLOOR * size;
