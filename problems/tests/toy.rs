@@ -1,5 +1,4 @@
 //! The toy: closed forms against enumeration, differences, grids and the definition of the Clarke set.
-#![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 use nonsmooth::{Accuracy, Coderivative, Cost, NonsmoothObjective, Request, StateSolver, Vector};
