@@ -37,14 +37,15 @@ pub struct Evaluation<W> {
     pub value: f64,
     /// One element of the Clarke subdifferential, `dimension()` entries, as accurate relatively as the value.
     pub subgradient: Vector,
-    /// Bound or estimate of |value − Θ(point)| in units of Θ; 0 means exact up to rounding. The engine does not use it in
-    /// an [`Answer::NoDescent`], whose cut is certified to hold.
+    /// Bound or estimate of |value − Θ(point)| in units of Θ; 0 means exact up to rounding. The engine does not use it
+    /// in an [`Answer::NoDescent`], whose cut is certified to hold.
     pub error_bound: f64,
     /// Warm start for evaluations at nearby points.
     pub warm_start: W,
     /// Outputs and Jacobian of a composite objective, or why there are none.
     pub linearization: Linearized,
-    /// Work that the evaluation took, in a unit of the oracle's own; 0 where none is counted. It goes into the records of a run.
+    /// Work that the evaluation took, in a unit of the oracle's own; 0 where none is counted. It goes into the records
+    /// of a run.
     pub work: usize,
 }
 
@@ -117,8 +118,8 @@ impl<O: NonsmoothObjective + ?Sized> NonsmoothObjective for &O {
     }
 }
 
-/// What a closure behind [`FnObjective`] may return: the pair (Θ(x), one subgradient), or a `Result` of it with any error that fits
-/// into a box, text included.
+/// What a closure behind [`FnObjective`] may return: the pair (Θ(x), one subgradient), or a `Result` of it with any
+/// error that fits into a box, text included.
 pub trait FnAnswer {
     /// The pair, or why there is none.
     ///
@@ -142,8 +143,8 @@ impl<E: Into<Box<dyn std::error::Error + Send + Sync>>> FnAnswer for Result<(f64
     }
 }
 
-/// A closure `x ↦ (Θ(x), one subgradient)` as an objective. A closure that may fail returns a `Result` of the pair; a failure
-/// shortens the step.
+/// A closure `x ↦ (Θ(x), one subgradient)` as an objective. A closure that may fail returns a `Result` of the pair; a
+/// failure shortens the step.
 ///
 /// ```
 /// use nonsmooth::{FnObjective, NonsmoothObjective, Request, Vector};

@@ -1,13 +1,13 @@
 //! A run, driven step by step with at most one evaluation per step.
 
 use super::builder::BundleTrust;
-use super::oracle::{Oracle, Outcome, evaluate};
+use super::oracle::{Oracle, OracleResult, evaluate};
 use super::proof::{Ending, Proof};
 use super::proposers::list::Proposers;
 use super::proposers::proposal::Proposal;
 use super::proposers::proposer::{Answer as Proposed, Position};
 use super::record::{Event, record};
-use super::state::State;
+use super::state::BundleState;
 use super::trial::{Trial, descent_target};
 use super::{demand, limits, noise, verdict};
 use crate::composite::{Linearization, LinearizationRequest, Linearized, OuterFunction};
@@ -42,7 +42,7 @@ pub struct Run<'r, 'o> {
     /// The convex function of a composite objective, if its model is wanted.
     pub(super) outer: Option<&'r dyn OuterFunction>,
     pub(super) set: Polyhedron,
-    pub(super) state: State,
+    pub(super) state: BundleState,
     pub(super) solver: EpigraphQpSolver,
     pub(super) proposers: Proposers,
     pub(super) termination: Option<Termination>,
@@ -52,8 +52,8 @@ pub struct Run<'r, 'o> {
 }
 
 impl Run<'_, '_> {
-    /// One step with at most one evaluation: of a trial point, or of the center once more where its accuracy no longer suffices.
-    /// `Break` when the run has ended; further calls repeat the reason.
+    /// One step with at most one evaluation: of a trial point, or of the center once more where its accuracy no longer
+    /// suffices. `Break` when the run has ended; further calls repeat the reason.
     pub fn step(&mut self) -> ControlFlow<Termination> {
         if let Some(termination) = &self.termination {
             return Break(termination.clone());
@@ -64,7 +64,7 @@ impl Run<'_, '_> {
         Break(termination)
     }
 
-    /// The whole method.
+    /// One round of the method: a trial point and its evaluation, or the end of the run.
     fn advance(&mut self) -> ControlFlow<Ending> {
         self.state.counts.iterations += 1;
         if let Break(limit) = limits::check(&self.state, self.method, self.seconds()) {
@@ -86,10 +86,10 @@ impl Run<'_, '_> {
         // The correction of a rejected step of the composite model needs the Jacobian at the rejected point.
         let below = if proposal.origin == Origin::CompositeModel { f64::INFINITY } else { target };
         match self.evaluate(&proposal.trial, accuracy, Some(target), below) {
-            Outcome::MinusInfinity => return Break(Termination::UnboundedBelow.into()),
-            Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
-            Outcome::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
-            Outcome::Answer(answer) => self.accept_or_reject(&proposal, accuracy, answer),
+            OracleResult::MinusInfinity => return Break(Termination::UnboundedBelow.into()),
+            OracleResult::Failure(OracleError::Interrupted) => return self.interrupted(),
+            OracleResult::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
+            OracleResult::Answer(answer) => self.accept_or_reject(&proposal, accuracy, answer),
         }
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
     }
@@ -135,8 +135,9 @@ impl Run<'_, '_> {
         standing.unwrap_or(Ending { termination, proof: None })
     }
 
-    /// Changes the step to a known point without an evaluation. The run ends where the weight cannot change any more, or does not lead away:
-    /// values and subgradients contradict each other, since the cuts of exact ones would predict what is known.
+    /// Changes the step to a known point without an evaluation. The run ends where the weight cannot change any more,
+    /// or does not lead away: values and subgradients contradict each other, since the cuts of exact ones would predict
+    /// what is known.
     fn leave_known_point(&mut self, proposal: Proposal) -> ControlFlow<Ending> {
         let before = self.state.weight;
         self.state.known_trials += 1;
@@ -149,7 +150,7 @@ impl Run<'_, '_> {
     }
 
     /// Evaluates Θ, with a descent target if there is one; `below` is the value of Θ up to which a Jacobian is wanted.
-    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> Outcome {
+    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> OracleResult {
         self.state.counts.evaluations += 1;
         self.state.known_trials = 0;
         let linearization = self.outer.map(|_| LinearizationRequest::below(below));
@@ -207,7 +208,7 @@ impl Run<'_, '_> {
         let mut event =
             Event { kind: StepKind::Refinement, value: None, failure: None, noted: Noted::Nothing, work: 0 };
         match self.evaluate(&center, accuracy, None, f64::INFINITY) {
-            Outcome::Answer(Answer::Accurate(mut evaluation)) => {
+            OracleResult::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;
                 (event.value, event.work) = (Some(evaluation.value), evaluation.work);
                 let (known, noted) = self.take_linearization(std::mem::take(&mut evaluation.linearization));
@@ -218,8 +219,8 @@ impl Run<'_, '_> {
                 self.state.bundle.retain(|cut| cut.id != old);
                 self.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
             }
-            Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
-            Outcome::Failure(error) => {
+            OracleResult::Failure(OracleError::Interrupted) => return self.interrupted(),
+            OracleResult::Failure(error) => {
                 event.failure = Some(error.to_string());
                 contradiction = refuse_contradiction(&error);
             }
@@ -230,8 +231,9 @@ impl Run<'_, '_> {
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
     }
 
-    /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Proposers that fail pause, so
-    /// that after repeated failures the steps of the plain cuts tell whether the oracle fails next to the center.
+    /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Proposers that
+    /// fail pause, so that after repeated failures the steps of the plain cuts tell whether the oracle fails next to
+    /// the center.
     fn shorten(&mut self, proposal: &Proposal, accuracy: Accuracy, error: &OracleError) -> ControlFlow<Ending> {
         let state = &mut self.state;
         state.failures += 1;
@@ -278,7 +280,8 @@ impl Run<'_, '_> {
     }
 }
 
-/// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another function.
+/// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another
+/// function.
 fn refuse_contradiction(error: &OracleError) -> ControlFlow<Ending> {
     let OracleError::Contradiction(reason) = error else { return Continue(()) };
     Break(Termination::OracleContradiction { reason: reason.to_string() }.into())

@@ -1,7 +1,7 @@
-//! Judging a trial point: serious or null step.
+//! Classifies an evaluated trial point as a serious or a null step.
 
 use super::proposers::proposal::{Proposal, SERIOUS_FRACTION};
-use super::state::State;
+use super::state::BundleState;
 use crate::composite::Linearization;
 use crate::{Evaluation, Vector};
 
@@ -21,7 +21,7 @@ pub(crate) struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     pub(super) fn new(
-        state: &State,
+        state: &BundleState,
         proposal: &'a Proposal,
         (evaluation, accurate): (&Evaluation<()>, bool),
         linearization: Option<&'a Linearization>,
@@ -33,7 +33,7 @@ impl<'a> Trial<'a> {
 }
 
 /// The value below which a trial point is a serious step.
-pub(super) fn descent_target(state: &State, proposal: &Proposal) -> f64 {
+pub(super) fn descent_target(state: &BundleState, proposal: &Proposal) -> f64 {
     state.center_value - SERIOUS_FRACTION * proposal.predicted_decrease
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct Comparison {
 }
 
 impl Comparison {
-    pub(crate) fn new(state: &State, proposal: &Proposal, value: f64, subgradient: &Vector) -> Self {
+    pub(crate) fn new(state: &BundleState, proposal: &Proposal, value: f64, subgradient: &Vector) -> Self {
         Self {
             change: value - state.center_value,
             slope: subgradient.dot(&proposal.step),
@@ -57,8 +57,8 @@ impl Comparison {
         }
     }
 
-    /// Test SS(i) of \[SchrammZowe1992\]: Θ has fallen by enough of the predicted decrease. The values themselves must fall, because a
-    /// predicted decrease can be so small that no change at all would be enough.
+    /// Test SS(i) of \[SchrammZowe1992\]: Θ has fallen by enough of the predicted decrease. The values themselves must
+    /// fall, because a predicted decrease can be so small that no change at all would be enough.
     fn is_serious(&self) -> bool {
         self.change < 0.0 && self.change <= SERIOUS_FRACTION * self.model_change
     }

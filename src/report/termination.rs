@@ -8,23 +8,23 @@ use std::fmt;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Termination {
-    /// Aggregate subgradient and aggregate error are small, and every active cut lies next to the center or Θ is declared
-    /// convex.
+    /// Aggregate subgradient and aggregate error are small, and every active cut lies next to the center or Θ is
+    /// declared convex.
     Stationary {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
-        /// If Θ is declared convex: how far Θ can lie above its minimum within reach, in units of Θ. Every variable reaches as far as
-        /// the one does that lies farthest from zero or from its start.
+        /// If Θ is declared convex: how far Θ can lie above its minimum within reach, in units of Θ. Every variable
+        /// reaches as far as the one does that lies farthest from zero or from its start.
         #[serde(default)]
         gap: Option<f64>,
     },
-    /// The model promises less than the tolerance, again after local restarts or because Θ looks convex, but some active
-    /// cuts lie away from the center: optimal if Θ is convex there, probably stationary otherwise.
+    /// The model promises less than the tolerance, again after local restarts or because Θ looks convex, but some
+    /// active cuts lie away from the center: optimal if Θ is convex there, probably stationary otherwise.
     StationaryUnconfirmed {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
-        /// A variable, counted from 0, about which the subgradients say nothing: along it, they do not cancel, and its unit hides what is
-        /// left to gain.
+        /// A variable, counted from 0, about which the subgradients say nothing: along it, they do not cancel, and its
+        /// unit hides what is left to gain.
         #[serde(default)]
         undecided: Option<usize>,
     },
@@ -63,14 +63,15 @@ pub enum Termination {
         /// Text of the last one.
         last: String,
     },
-    /// An answer of the oracle contradicts an earlier one; see [`OracleError::Contradiction`](crate::OracleError::Contradiction).
+    /// An answer of the oracle contradicts an earlier one; see
+    /// [`OracleError::Contradiction`](crate::OracleError::Contradiction).
     OracleContradiction {
-        /// The contradiction.
+        /// Description of the contradiction between the two answers.
         reason: String,
     },
     /// The subproblem could not be solved.
     SubproblemFailed {
-        /// What went wrong.
+        /// Description of the failure.
         reason: String,
     },
 }

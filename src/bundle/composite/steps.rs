@@ -11,7 +11,8 @@ use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
 
-/// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h overflows along the step.
+/// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h
+/// overflows along the step.
 pub(super) type Found = Option<(Proposal, CompositeStep)>;
 
 /// Where a subproblem differs from that of the run.
@@ -63,7 +64,8 @@ impl Steps {
         }
     }
 
-    /// Solves the subproblem. Once steps have failed without it, the curvature of the outputs is added, for the weights of the solution.
+    /// Solves the subproblem. Once steps have failed without it, the curvature of the outputs is added, for the weights
+    /// of the solution.
     fn solve(
         &mut self,
         at: &mut Position<'_>,

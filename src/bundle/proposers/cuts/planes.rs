@@ -12,14 +12,14 @@ use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::proposers::proposer::Position;
 use crate::bundle::proposers::subproblem::{self, Cuts};
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::interruption::interrupted;
 use crate::qp::QpSolution;
 use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
 
-/// Tenfold decreases of the weight, without evaluations, where the predicted decrease is small: a restart may raise the weight by 1e12, and
-/// units of variables may differ by as much.
+/// Tenfold decreases of the weight, without evaluations, where the predicted decrease is small: a restart may raise the
+/// weight by 1e12, and units of variables may differ by as much.
 pub(super) const MAX_DECREASES: usize = 16;
 /// Weights tried, each ten times the one before, until a subproblem counts as unsolvable.
 const MAX_TRIALS: usize = 4;
@@ -35,7 +35,7 @@ pub(crate) struct CuttingPlanes {
 /// Center and revision of the bundle that a model or an answer belongs to.
 type Key = (u64, u64);
 
-fn key(state: &State) -> Key {
+fn key(state: &BundleState) -> Key {
     (state.center_id, state.bundle.revision())
 }
 
@@ -51,7 +51,7 @@ impl CuttingPlanes {
     }
 
     /// The answer of the last subproblem, where center and bundle are still those it was solved for.
-    pub(crate) fn answer(&self, state: &State) -> Option<&Proposal> {
+    pub(crate) fn answer(&self, state: &BundleState) -> Option<&Proposal> {
         self.proposal.as_ref().filter(|(known, _)| *known == key(state)).map(|(_, proposal)| proposal)
     }
 
@@ -101,7 +101,8 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     let cuts = Cuts { gram, ..model.cuts() };
     let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
     let proposal = interpret(solution, (state, at.set), model);
-    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution. Rounding of ⟨h, d⟩ aside.
+    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution. Rounding of ⟨h, d⟩
+    // aside.
     let steepest = state.bundle.dual_lengths().fold(0.0, f64::max);
     let rounding = state.rounding() + 8.0 * f64::EPSILON * steepest * proposal.step_length;
     let least = 0.5 * proposal.aggregate_norm * proposal.step_length - rounding;
@@ -111,7 +112,7 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     proposal.admissible(at.set, state)
 }
 
-fn interpret(mut solution: QpSolution, (state, set): (&State, &Polyhedron), model: &Model) -> Proposal {
+fn interpret(mut solution: QpSolution, (state, set): (&BundleState, &Polyhedron), model: &Model) -> Proposal {
     let step = std::mem::take(&mut solution.step);
     let squared = state.norm.squared(&step);
     let predicted_decrease = (-solution.epigraph).max(0.0);
