@@ -1,8 +1,10 @@
-//! The method's own time per evaluation with many variables, beside that of one product of the slopes of its bundle with a vector.
+//! The method's own time per evaluation with many variables, beside that of one product of the slopes of its bundle
+//! with a vector.
 //!
-//! A run goes to 1e-6 several times. The time between two calls of the objective is that of one evaluation, and the least of the same
-//! evaluation in all runs counts, so that other work of the machine does not. The product is that of the slopes, each in a vector of its
-//! own, with a vector that stays in the cache: of as many slopes as the bundle holds at the evaluation, and of those of the last bundle.
+//! A run goes to 1e-6 several times. The time between two calls of the objective is that of one evaluation, and the
+//! least of the same evaluation in all runs counts, so that other work of the machine does not. The product is that of
+//! the slopes, each in a vector of its own, with a vector that stays in the cache: of as many slopes as the bundle
+//! holds at the evaluation, and of those of the last bundle.
 
 use std::cell::{Cell, RefCell};
 use std::hint::black_box;

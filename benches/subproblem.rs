@@ -1,7 +1,7 @@
 //! Time of the QP on the sequences a bundle method makes, against the interior-point solver from scratch.
 //!
-//! A proximal bundle loop on a synthetic maximum of convex quadratics is run once and its QPs are recorded: one new cut per
-//! solve, the center moves now and then, the weight changes by factors. Then both solvers go through the record.
+//! A proximal bundle loop on a synthetic maximum of convex quadratics is run once and its QPs are recorded: one new cut
+//! per solve, the center moves now and then, the weight changes by factors. Then both solvers go through the record.
 
 #[path = "../tests/qp/qps.rs"]
 #[allow(dead_code)]

@@ -1,6 +1,8 @@
-//! A journal: a run that was interrupted ends where the uninterrupted one ends, bit by bit, and nothing is evaluated twice.
+//! A journal: a run that was interrupted ends where the uninterrupted one ends, bit by bit, and nothing is evaluated
+//! twice.
 //!
-//! Θ(x) = max(x₁² + (x₂ − 1)² + x₂ − 1, −x₁² − (x₂ − 1)² + x₂ + 1), Kiwiel's crescent: nonconvex, minimum 0 at the origin.
+//! Θ(x) = max(x₁² + (x₂ − 1)² + x₂ − 1, −x₁² − (x₂ − 1)² + x₂ + 1), Kiwiel's crescent: nonconvex, minimum 0 at the
+//! origin.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Journaled, Report, StopRule, Vector};
 use std::path::Path;
@@ -21,7 +23,7 @@ pub fn both_ways(folder: &Path) -> Result<[Report; 2], Box<dyn std::error::Error
     let theta = Journaled::open(FnObjective::new(2, crescent), folder, "Kiwiel's crescent")?;
     let stopped = method()?.stop_when(StopRule::Evaluations(10)).minimize(&theta, start.clone())?;
     println!("stopped: {}", stopped.termination);
-    // The same program again: the method begins at its start and is answered from the journal.
+    // A second run of this program begins at the same start; the journal answers its requests.
     let theta = Journaled::open(FnObjective::new(2, crescent), folder, "Kiwiel's crescent")?;
     println!("evaluations in the journal: {}", theta.held());
     let mut continued = method()?.minimize(&theta, start)?;

@@ -1,11 +1,12 @@
 //! A closure as objective: the geometric median of three points (the Fermat point of a triangle).
 //!
-//! Θ(x) = Σ |x − pᵢ| is smooth except at the points themselves. For the triangle (0,0), (1,0), (½, √3/2) the Fermat point is the
-//! centre (½, √3/6), Θ = √3.
+//! Θ(x) = Σ |x − pᵢ| is smooth except at the points themselves. For the triangle (0,0), (1,0), (½, √3/2) the Fermat
+//! point is the centre (½, √3/6), Θ = √3.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Report, Vector};
 
-/// Sum of the distances, and one subgradient: at a point pᵢ its own distance contributes 0, which lies in the unit ball.
+/// Sum of the distances, and one subgradient: at a point pᵢ its own distance contributes 0, which lies in the unit
+/// ball.
 fn distances(x: &Vector) -> (f64, Vector) {
     let corners = [[0.0, 0.0], [1.0, 0.0], [0.5, 0.75_f64.sqrt()]];
     corners.iter().fold((0.0, Vector::zeros(2)), |(sum, subgradient), corner| {

@@ -1,9 +1,11 @@
-//! Minimax with constraints: the straight line a + b t that meets √t at t = 1 and is as close to it as possible on [0, 1].
+//! Minimax with constraints: the straight line a + b t that meets √t at t = 1 and is as close to it as possible on [0,
+//! 1].
 //!
 //! ```text
 //! min over (a, b) of  max over 0 ≤ t ≤ 1 of |√t − a − b t|    subject to  a + b = 1,  0 ≤ a
 //! ```
-//! The error is 1 − b at t = 0 and 1/(4b) − 1 + b at √t = 1/(2b); both are equal at b = (2 + √2)/4, with the error (2 − √2)/4.
+//! The error is 1 − b at t = 0 and 1/(4b) − 1 + b at √t = 1/(2b); both are equal at b = (2 + √2)/4, with the error (2 −
+//! √2)/4.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 

@@ -3,9 +3,9 @@
 //! ```text
 //! −y″ = 1 − x δ(½) on (0, 1),  y(0) = y(1) = c          Θ(x, c) = max |y|: the force x at the middle and the height c are free
 //! ```
-//! Optimal: x = ½, c = −1/64, where y = −1/64 at the ends and at the middle and +1/64 at the quarters. The 32 differences used here
-//! are exact at their nodes. Gauss–Seidel sweeps stop as soon as the error max|residual|/8 (maximum principle) is small enough,
-//! or as soon as it is certain that there is no descent.
+//! Optimal: x = ½, c = −1/64, where y = −1/64 at the ends and at the middle and +1/64 at the quarters. The 32
+//! differences used here are exact at their nodes. Gauss–Seidel sweeps stop as soon as the error max|residual|/8
+//! (maximum principle) is small enough, or as soon as it is certain that there is no descent.
 
 use nonsmooth::{
     AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Evaluation, NonsmoothObjective, OracleError, Report,
@@ -45,7 +45,7 @@ fn error_bound(residual: f64) -> f64 {
 }
 
 impl NonsmoothObjective for LevelString {
-    /// The deflection.
+    /// The deflection at the nodes.
     type WarmStart = Vector;
 
     fn dimension(&self) -> usize {

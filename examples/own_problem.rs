@@ -1,9 +1,9 @@
 //! A problem of one's own in three traits: a string above a table.
 //!
-//! A string of tension T is pulled down by a unit weight at its middle, a table of height a ≤ 0 may catch it there:
-//! 4T u = −1 + λ, u ≥ a, λ ≥ 0, λ (u − a) = 0, so λ = max(0, 1 + 4T a). Wanted: little tension, a high table, little load on it:
-//! J = T²/2 + 2a² + λ. As λ ≥ (1 + 4T a)/2, Θ ≥ 1/2 + (T + 2a)²/2, with equality only where the string just touches the table:
-//! a = −√2/4, T = √2/2, Θ = 1/2.
+//! A string of tension T is pulled down by a unit weight at its middle, a table of height a ≤ 0 may catch it there: 4T
+//! u = −1 + λ, u ≥ a, λ ≥ 0, λ (u − a) = 0, so λ = max(0, 1 + 4T a). Wanted: little tension, a high table, little load
+//! on it: J = T²/2 + 2a² + λ. As λ ≥ (1 + 4T a)/2, Θ ≥ 1/2 + (T + 2a)²/2, with equality only where the string just
+//! touches the table: a = −√2/4, T = √2/2, Θ = 1/2.
 
 use nonsmooth::{
     Accuracy, BundleTrust, BundleTrustConfig, Coderivative, Cost, CostGradient, OracleError, Polyhedron,

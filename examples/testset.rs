@@ -2,8 +2,9 @@
 //!
 //! `cargo run --release --example testset -- [--json] [--scale S] [--only NAME] [--jitter K] [--perturb K]`
 //!
-//! `--perturb K` replaces every count by the median over 2K + 1 runs from x0 (1 + 1e-13 N(0, 1)), the first of them from x0 itself: a
-//! single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by about a tenth of their size.
+//! `--perturb K` replaces every count by the median over 2K + 1 runs from x0 (1 + 1e-13 N(0, 1)), the first of them
+//! from x0 itself: a single count hangs on the last bit. `--jitter K` adds K runs per problem from starts moved by
+//! about a tenth of their size.
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, Vector};
 use serde::Serialize;
@@ -25,7 +26,7 @@ const LEVELS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 
 /// What one problem needed.
 #[derive(Serialize)]
-struct Row {
+struct ProblemRow {
     name: String,
     dimension: usize,
     constrained: bool,
@@ -51,9 +52,11 @@ struct Summary {
     solved_constrained: (usize, usize),
     geometric_mean_to_mpbngc: f64,
     compared: usize,
-    /// The same over all runs; an unsolved one counts as 1000 evaluations, and so does a missing MPBNGC.
+    /// Geometric mean of the ratio to MPBNGC over all runs; an unsolved run and a missing MPBNGC count as 1000
+    /// evaluations.
     penalised_mean: f64,
-    /// Geometric means of the evaluations to 1e-6 over all, the convex and the other problems; an unsolved one counts as 2000.
+    /// Geometric means of the evaluations to 1e-6 over all, the convex and the other problems; an unsolved one counts
+    /// as 2000.
     means: [f64; 3],
     /// Sum over the unconstrained problems that all nine peers solve.
     common_sum: usize,
@@ -73,7 +76,7 @@ fn main() {
     let config = BundleTrustConfig::default();
     let jitter: u64 = value("--jitter").and_then(|text| text.parse().ok()).unwrap_or(0);
     let perturb: u64 = value("--perturb").and_then(|text| text.parse().ok()).unwrap_or(0);
-    let rows: Vec<Row> = problems
+    let rows: Vec<ProblemRow> = problems
         .flat_map(|problem| (0..=jitter).map(move |seed| jittered(&problem, seed)))
         .map(|problem| median_run(&problem, perturb, scale, &config))
         .collect();
@@ -88,11 +91,11 @@ fn main() {
 }
 
 /// The row of the problem with the medians of its counts over 2·`perturb` + 1 runs from starts that differ by rounding.
-fn median_run(problem: &Problem, perturb: u64, scale: f64, config: &BundleTrustConfig) -> Row {
+fn median_run(problem: &Problem, perturb: u64, scale: f64, config: &BundleTrustConfig) -> ProblemRow {
     let mut row = run(problem, scale, config);
-    let others: Vec<Row> = (1..=2 * perturb).map(|seed| run(&perturbed(problem, seed), scale, config)).collect();
+    let others: Vec<ProblemRow> = (1..=2 * perturb).map(|seed| run(&perturbed(problem, seed), scale, config)).collect();
     let levels = row.evaluations;
-    let with = |first, of: fn(&Row, usize) -> Option<usize>, level| {
+    let with = |first, of: fn(&ProblemRow, usize) -> Option<usize>, level| {
         median(std::iter::once(first).chain(others.iter().map(|row| of(row, level))).collect())
     };
     row.evaluations = std::array::from_fn(|level| with(levels[level], |row, level| row.evaluations[level], level));
@@ -142,7 +145,7 @@ fn perturbed(problem: &Problem, seed: u64) -> Problem {
 }
 
 /// Minimises f(x/scale) from scale·x0 and reads the counts off the sequence of evaluations.
-fn run(problem: &Problem, scale: f64, settings: &BundleTrustConfig) -> Row {
+fn run(problem: &Problem, scale: f64, settings: &BundleTrustConfig) -> ProblemRow {
     let log: RefCell<Vec<(f64, bool)>> = RefCell::new(vec![]);
     let theta = FnObjective::new(problem.dimension, |x: &Vector| {
         let original = x / scale;
@@ -167,7 +170,7 @@ fn constraints(problem: &Problem, scale: f64) -> Polyhedron {
         .expect("the table is valid")
 }
 
-fn row(problem: &Problem, log: &[(f64, bool)], report: Option<Report>) -> Row {
+fn row(problem: &Problem, log: &[(f64, bool)], report: Option<Report>) -> ProblemRow {
     let size = 1.0 + problem.optimal_value.abs();
     let lowest = log.iter().filter(|entry| entry.1).map(|entry| entry.0).fold(f64::INFINITY, f64::min);
     let diverged = lowest < problem.optimal_value - 1e-6 * size;
@@ -177,7 +180,7 @@ fn row(problem: &Problem, log: &[(f64, bool)], report: Option<Report>) -> Row {
     };
     let solved = problem.peers.iter().filter_map(|(name, count)| count.map(|count| (count, name.clone())));
     let best = solved.min();
-    Row {
+    ProblemRow {
         name: problem.name.clone(),
         dimension: problem.dimension,
         constrained: problem.family == Family::LinearlyConstrained,
@@ -196,7 +199,7 @@ fn row(problem: &Problem, log: &[(f64, bool)], report: Option<Report>) -> Row {
     }
 }
 
-fn summarize(rows: &[Row], scale: f64) -> Summary {
+fn summarize(rows: &[ProblemRow], scale: f64) -> Summary {
     let count = |constrained: bool| {
         let family = || rows.iter().filter(move |row| row.constrained == constrained);
         (family().filter(|row| row.evaluations[2].is_some()).count(), family().count())
@@ -207,7 +210,7 @@ fn summarize(rows: &[Row], scale: f64) -> Summary {
         let peer = row.mpbngc.or(row.best_peer).unwrap_or(UNSOLVED);
         (row.evaluations[2].unwrap_or(UNSOLVED) as f64 / peer as f64).ln()
     });
-    let mean = |rows: &mut dyn Iterator<Item = &Row>| {
+    let mean = |rows: &mut dyn Iterator<Item = &ProblemRow>| {
         let logs: Vec<f64> = rows.map(|row| (row.evaluations[2].unwrap_or(BUDGET) as f64).ln()).collect();
         (logs.iter().sum::<f64>() / logs.len().max(1) as f64).exp()
     };
@@ -233,7 +236,7 @@ fn summarize(rows: &[Row], scale: f64) -> Summary {
     }
 }
 
-fn print_row(row: &Row) {
+fn print_row(row: &ProblemRow) {
     let text = |count: Option<usize>| count.map_or_else(|| "-".to_owned(), |count| count.to_string());
     println!(
         "{:<18} {:>3} | {:>5} {:>5} {:>5} {:>5} | mpbngc {:>5} best {:>5} {:<9} | total {:>5} gap {:>9.1e} {}{}",

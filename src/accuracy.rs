@@ -2,8 +2,8 @@
 
 use crate::InputError;
 
-/// Relative accuracy τ asked of a value or a state: |value − Θ| ≤ τ·|Θ| for an objective, and the corresponding relative
-/// tolerance of the inner solver for a state. Dimensionless, 0 ≤ τ < 1; 0 means "as accurate as you can".
+/// Relative accuracy τ asked of a value or a state: |value − Θ| ≤ τ·|Θ| for an objective, and the corresponding
+/// relative tolerance of the inner solver for a state. Dimensionless, 0 ≤ τ < 1; 0 means "as accurate as you can".
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, serde::Serialize, serde::Deserialize)]
 pub struct Accuracy(f64);
 

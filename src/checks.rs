@@ -15,7 +15,8 @@ pub(crate) fn check_finite(what: &'static str, values: &[f64]) -> Result<(), Inp
 }
 
 impl InputError {
-    /// Refuses a vector with more or fewer entries than expected, or with one that is not finite; `what` names it in the message.
+    /// Refuses a vector with more or fewer entries than expected, or with one that is not finite; `what` names it in
+    /// the message.
     ///
     /// # Errors
     /// [`InputError::Dimension`], [`InputError::NotFinite`].

@@ -32,7 +32,8 @@ pub struct CompositeFunction<H, F> {
 }
 
 impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> CompositeFunction<H, F> {
-    /// An objective of `dimension` variables; the closure returns m outputs, always as many, and their m × `dimension` Jacobian.
+    /// An objective of `dimension` variables; the closure returns m outputs, always as many, and their m × `dimension`
+    /// Jacobian.
     pub fn new(dimension: usize, outer: H, function: F) -> Self {
         Self { dimension, outer, function }
     }
@@ -61,8 +62,8 @@ impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> NonsmoothObjective fo
     }
 }
 
-/// The outputs c of a state problem that a convex cost is a function of, with their generalized Jacobian. Their number does not depend on
-/// the state.
+/// The outputs c of a state problem that a convex cost is a function of, with their generalized Jacobian. Their number
+/// does not depend on the state.
 pub trait OutputJacobian: Coderivative {
     /// c(S(α)), m entries.
     fn outputs(&self, state: &Self::State) -> Vector;
@@ -70,8 +71,9 @@ pub trait OutputJacobian: Coderivative {
     /// y* = (∂c/∂y)ᵀ w, in the layout of the solver's dual: what the coderivative is asked for.
     fn output_dual(&self, state: &Self::State, weights: &Vector) -> Vector;
 
-    /// Outputs and G, to a relative accuracy of its columns. The default takes one coderivative per output, which is exact and
-    /// right for few outputs; a solver that has forward derivatives should use them where there are fewer controls.
+    /// Outputs and G, to a relative accuracy of its columns. The default takes one coderivative per output, which is
+    /// exact and right for few outputs; a solver that has forward derivatives should use them where there are fewer
+    /// controls.
     ///
     /// # Errors
     /// [`OracleError`] when a linearized problem cannot be solved.
@@ -105,7 +107,7 @@ impl<S, H> CompositeObjective<S, H> {
         Self { solver, cost }
     }
 
-    /// The state solver.
+    /// The state solver S.
     pub fn solver(&self) -> &S {
         &self.solver
     }
@@ -130,7 +132,8 @@ impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
     /// Θ and one subgradient at a state already found.
     ///
     /// # Errors
-    /// Whatever the coderivative reports, [`OracleError::NotFinite`], and [`OracleError::Input`] for outputs that are not finite.
+    /// Whatever the coderivative reports, [`OracleError::NotFinite`], and [`OracleError::Input`] for outputs that are
+    /// not finite.
     pub fn differentiate(&self, control: &Vector, state: &S::State) -> Result<Evaluation<S::WarmStart>, OracleError> {
         check_finite("outputs", self.solver.outputs(state).as_slice())?;
         chain_rule(&self.solver, control, state, self.value(state), || CostGradient {

@@ -157,12 +157,13 @@ impl Polyhedron {
         self.violation_near(x, x)
     }
 
-    /// As [`violation`](Self::violation), but each term has the larger of its sizes at x and at `reference`. A point whose
-    /// entries happen to be near zero is then not judged by its rounding errors.
-    pub fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
+    /// As [`violation`](Self::violation), but each term has the larger of its sizes at x and at `reference`. A point
+    /// whose entries happen to be near zero then does not depend on its rounding errors.
+    pub(crate) fn violation_near(&self, x: &Vector, reference: &Vector) -> f64 {
         let mut worst: f64 = 0.0;
         let sides = self.lower.as_slice().iter().zip(self.upper.as_slice());
-        // Nearly all entries lie within their sides: a test without a maximum passes over them fast. NaN lies within none.
+        // Nearly all entries lie within their sides: a test without a maximum passes over them fast. NaN lies within
+        // none.
         let entries = x.as_slice().iter().zip(reference.as_slice()).zip(sides);
         for ((x, reference), (&lower, &upper)) in
             entries.filter(|((x, _), (lower, upper))| !(**lower..=**upper).contains(*x))
@@ -181,7 +182,7 @@ impl Polyhedron {
     }
 
     /// x with every entry moved into its box.
-    pub fn clamp_to_box(&self, x: &Vector) -> Vector {
+    pub(crate) fn clamp_to_box(&self, x: &Vector) -> Vector {
         Vector::from_fn(x.len(), |i, _| x[i].max(self.lower[i]).min(self.upper[i]))
     }
 }

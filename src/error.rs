@@ -9,7 +9,7 @@ pub enum InputError {
     /// A vector or matrix has the wrong size.
     #[error("{what} has {found} entries, expected {expected}")]
     Dimension {
-        /// What was measured.
+        /// Name of the vector or matrix.
         what: &'static str,
         /// The size it must have.
         expected: usize,
@@ -53,8 +53,8 @@ pub enum InputError {
 /// Why an oracle (state solver, coderivative, objective) has no answer at a point.
 ///
 /// The engine treats every variant as "shorten the step", except [`Interrupted`](Self::Interrupted) and
-/// [`Contradiction`](Self::Contradiction), which end the run at once; otherwise the run ends only when failures repeat. The report has the
-/// best point and the whole history.
+/// [`Contradiction`](Self::Contradiction), which end the run at once; otherwise the run ends only when failures repeat.
+/// The report has the best point and the whole history.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum OracleError {
@@ -71,7 +71,7 @@ pub enum OracleError {
         solver: &'static str,
         /// Relative residual reached.
         residual: f64,
-        /// Iterations spent.
+        /// Number of iterations of the solver.
         iterations: usize,
     },
     /// Value or subgradient is not finite.
@@ -85,7 +85,7 @@ pub enum OracleError {
     TooLarge {
         /// `value` or `subgradient`.
         what: &'static str,
-        /// Its size.
+        /// Size of the value or the dual norm of the subgradient.
         size: f64,
         /// The largest size that is allowed.
         allowed: f64,
@@ -99,12 +99,13 @@ pub enum OracleError {
     /// The answer has a wrong size, or an entry that is not finite: a Jacobian among others.
     #[error(transparent)]
     Input(InputError),
-    /// The answer contradicts an earlier one of the same oracle: its number of outputs is another one. The run ends at once with
-    /// [`Termination::OracleContradiction`](crate::Termination::OracleContradiction).
+    /// The answer contradicts an earlier one of the same oracle: its number of outputs is another one. The run ends at
+    /// once with [`Termination::OracleContradiction`](crate::Termination::OracleContradiction).
     #[error("the oracle contradicts its earlier answers: {0}")]
     Contradiction(#[source] InputError),
     /// The caller wants the run to end: nothing is wrong with the point. The run ends at once with
-    /// [`Termination::StoppedByObserver`](crate::Termination::StoppedByObserver); the evaluation does not count, and no journal keeps it.
+    /// [`Termination::StoppedByObserver`](crate::Termination::StoppedByObserver); the evaluation does not count, and no
+    /// journal keeps it.
     #[error("the evaluation was interrupted")]
     Interrupted,
     /// Any other failure of the problem behind the oracle.

@@ -1,8 +1,9 @@
 //! The wish that a computation end before its result: an interrupt key, a closed window.
 //!
-//! Between evaluations, an observer ends a run. Inside an evaluation or a subproblem, only the code that computes can stop. Whoever waits says
-//! by [`watched`] how it is asked; long loops ask [`interrupted`] once per pass, and give up. Both belong to the thread that computes: nothing
-//! is shared, and where nobody watches, nothing is asked and no result depends on it.
+//! Between evaluations, an observer ends a run. Inside an evaluation or a subproblem, only the code that computes can
+//! stop. Whoever waits says by [`watched`] how it is asked; long loops ask [`interrupted`] once per pass, and give up.
+//! Both belong to the thread that computes: nothing is shared, and where nobody watches, nothing is asked and no result
+//! depends on it.
 
 use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
@@ -32,8 +33,8 @@ impl Drop for Restored {
     }
 }
 
-/// Does some work on this thread; `wants_end` is asked now and then whether the work shall end before its result. A watch inside a watch takes
-/// its place until it ends.
+/// Does some work on this thread; `wants_end` is asked now and then whether the work shall end before its result. A
+/// watch inside a watch takes its place until it ends.
 ///
 /// ```
 /// use nonsmooth::interruption::{interrupted, watched};
@@ -56,7 +57,8 @@ impl Drop for FormerDeadline {
     }
 }
 
-/// Does some work on this thread that shall end by a deadline, or earlier if the watch says so. Returns whether the deadline has passed, too.
+/// Does some work on this thread that shall end by a deadline, or earlier if the watch says so. Returns whether the
+/// deadline has passed, too.
 pub(crate) fn until<T>(deadline: Option<Instant>, work: impl FnOnce() -> T) -> (T, bool) {
     let _before = FormerDeadline(DEADLINE.replace(deadline));
     (work(), is_late())

@@ -18,8 +18,8 @@
 //! continuously differentiable, ξ is the gradient. For |x| it is sign x, and at 0 any number in \[−1, 1\]. A minimiser
 //! inside U has 0 ∈ ∂Θ(α), although no single gradient nearby need be small.
 //!
-//! **A coderivative.** For a smooth S, the coderivative D\*S(α)(y\*) is S′(α)ᵀ y\*. For an S with kinks, it contains the
-//! limits of S′(αₖ)ᵀ y\* with αₖ → α. One element costs one adjoint solve at the state that was found, whatever the
+//! **A coderivative.** For a smooth S, the coderivative D\*S(α)(y\*) is S′(α)ᵀ y\*. For an S with kinks, it contains
+//! the limits of S′(αₖ)ᵀ y\* with αₖ → α. One element costs one adjoint solve at the state that was found, whatever the
 //! number of controls; on a kink, the derivative of either side gives an element. The chain rule above turns an element
 //! into a subgradient of Θ.
 //!
@@ -70,7 +70,7 @@
 //!
 //! // 2. The coderivative: S′(p, g)ᵀ y* of the piece that the state lies on; on the kink p = g that of the free spring.
 //! impl Coderivative for SpringWithStop {
-//!     fn coderivative(&self, _control: &Vector, state: &Travel, direction: &Vector) -> Result<Sensitivity, OracleError> {
+//!     fn coderivative(&self, _: &Vector, state: &Travel, direction: &Vector) -> Result<Sensitivity, OracleError> {
 //!         let dual = direction[0];
 //!         let element = if state.at_the_stop { vec![0.0, dual] } else { vec![dual, 0.0] };
 //!         Ok(Sensitivity::exact(Vector::from_vec(element)))
@@ -128,8 +128,8 @@
 //!
 //! # What the report promises
 //!
-//! * [`Report::solution`] is the point that [`Report::termination`] speaks about, or, where the run ends by a limit or a failure,
-//!   the lowest point evaluated; it is admissible. Θ was never evaluated outside U, up to the rounding that
+//! * [`Report::solution`] is the point that [`Report::termination`] speaks about, or, where the run ends by a limit or
+//!   a failure, the lowest point evaluated; it is admissible. Θ was never evaluated outside U, up to the rounding that
 //!   [`Report::largest_violation`] states.
 //! * [`Report::termination`] says why the run ended, with numbers. Only [`Termination::Stationary`] calls the point a
 //!   confirmed stationary point; [`Termination::advice`] says what to try after each of the others.
@@ -149,19 +149,19 @@
 //! * States from an iterative solver: every request states the [`Accuracy`] it needs, and the answer states its
 //!   [`Evaluation::error_bound`]. [`AccuracyPolicy::ON_DEMAND`] asks for no more than a step needs, and
 //!   [`Answer::NoDescent`] ends an evaluation early that cannot become a serious step.
-//! * Long runs: [`Journaled`] keeps every evaluation, so that a run that was killed continues bit by bit; [`Observer`] and
-//!   [`StopRule`] watch and end it.
+//! * Long runs: [`Journaled`] keeps every evaluation, so that a run that was killed continues bit by bit; [`Observer`]
+//!   and [`StopRule`] watch and end it.
 //! * The examples of the repository: `own_problem` (three traits), `closure`, `constrained_minimax`, `inexact_oracle`,
 //!   `checkpoint`, `observer`, `testset`. Its guides: `docs/plug_in_your_problem.md` (the steps above with all
 //!   details), `docs/bundle.md` (the method's rules, constants and measured evaluation counts).
-//! * State problems in the same repository: contact with friction in the crate `contact`, a membrane over an obstacle and
-//!   a closed-form toy in the crate `problems`.
+//! * State problems in the same repository: contact with friction in the crate `contact`, a membrane over an obstacle
+//!   and a closed-form toy in the crate `problems`.
 //!
 //! # Features
 //!
-//! `interior-point` (on by default) brings an interior-point method as the second path of the subproblem, and 18 packages.
-//! Without it, a subproblem that the active-set method cannot finish is tried again with shorter steps; if that does not help,
-//! the run ends with [`Termination::SubproblemFailed`]. None of the test problems needs it.
+//! `interior-point` (on by default) brings an interior-point method as the second path of the subproblem, and 18
+//! packages. Without it, a subproblem that the active-set method cannot finish is tried again with shorter steps; if
+//! that does not help, the run ends with [`Termination::SubproblemFailed`]. None of the test problems needs it.
 //!
 //! # Modules
 //!

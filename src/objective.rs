@@ -37,8 +37,8 @@ pub struct Evaluation<W> {
     pub value: f64,
     /// One element of the Clarke subdifferential, `dimension()` entries, as accurate relatively as the value.
     pub subgradient: Vector,
-    /// Bound or estimate of |value − Θ(point)| in units of Θ; 0 means exact up to rounding. The engine does not use it in
-    /// an [`Answer::NoDescent`], whose cut is certified to hold.
+    /// Bound or estimate of |value − Θ(point)| in units of Θ; 0 means exact up to rounding. The engine does not use it
+    /// in an [`Answer::NoDescent`], whose cut is certified to hold.
     pub error_bound: f64,
     /// Warm start for evaluations at nearby points.
     pub warm_start: W,
@@ -53,7 +53,15 @@ pub struct Evaluation<W> {
 impl<W> Evaluation<W> {
     /// A value and a subgradient that are exact up to rounding.
     pub fn exact(value: f64, subgradient: Vector, warm_start: W) -> Self {
-        Self { value, subgradient, error_bound: 0.0, warm_start, linearization: Linearized::NotAsked, constraints: None, work: 0 }
+        Self {
+            value,
+            subgradient,
+            error_bound: 0.0,
+            warm_start,
+            linearization: Linearized::NotAsked,
+            constraints: None,
+            work: 0,
+        }
     }
 }
 
@@ -128,8 +136,8 @@ impl<O: NonsmoothObjective + ?Sized> NonsmoothObjective for &O {
     }
 }
 
-/// What a closure behind [`FnObjective`] may return: the pair (Θ(x), one subgradient), or a `Result` of it with any error that fits
-/// into a box, text included.
+/// What a closure behind [`FnObjective`] may return: the pair (Θ(x), one subgradient), or a `Result` of it with any
+/// error that fits into a box, text included.
 pub trait FnAnswer {
     /// The pair, or why there is none.
     ///
@@ -153,8 +161,8 @@ impl<E: Into<Box<dyn std::error::Error + Send + Sync>>> FnAnswer for Result<(f64
     }
 }
 
-/// A closure `x ↦ (Θ(x), one subgradient)` as an objective. A closure that may fail returns a `Result` of the pair; a failure
-/// shortens the step.
+/// A closure `x ↦ (Θ(x), one subgradient)` as an objective. A closure that may fail returns a `Result` of the pair; a
+/// failure shortens the step.
 ///
 /// ```
 /// use nonsmooth::{FnObjective, NonsmoothObjective, Request, Vector};

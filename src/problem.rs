@@ -10,8 +10,8 @@ use crate::{Accuracy, OracleError, Vector};
 pub trait StateSolver {
     /// The solution at one control with all that its coderivative needs (factors, contact status). May be heavy.
     type State;
-    /// Data that restart a solve at a nearby control (multipliers, active sets); `()` if there are none. Should be light:
-    /// the engine keeps one per center.
+    /// Data that restart a solve at a nearby control (multipliers, active sets); `()` if there are none. Should be
+    /// light: the engine keeps one per center.
     type WarmStart;
 
     /// Number of controls d.
@@ -31,8 +31,8 @@ pub trait StateSolver {
     /// The part of a state that restarts a solve at a nearby control.
     fn warm_start(&self, state: &Self::State) -> Self::WarmStart;
 
-    /// Work that a state and what was derived from it have taken so far, in a unit of the solver's own (products with its operator,
-    /// for example); 0 (the default) where none is counted. It goes into the records of a run.
+    /// Work that a state and what was derived from it have taken so far, in a unit of the solver's own (products with
+    /// its operator, for example); 0 (the default) where none is counted. It goes into the records of a run.
     fn work(&self, _state: &Self::State) -> usize {
         0
     }
@@ -40,7 +40,8 @@ pub trait StateSolver {
 
 /// The derivative information of a [`StateSolver`]: one element of its coderivative; method.md (1.2).
 pub trait Coderivative: StateSolver {
-    /// One element of D*S(α)(y*); `direction` is y*, a dual of the state in the layout that the solver's documentation states.
+    /// One element of D*S(α)(y*); `direction` is y*, a dual of the state in the layout that the solver's documentation
+    /// states.
     ///
     /// # Errors
     /// An [`OracleError`] when the adjoint system cannot be solved.
@@ -57,8 +58,9 @@ pub trait Coderivative: StateSolver {
 pub struct Sensitivity {
     /// One element of D*S(α)(y*), `control_dimension()` entries.
     pub element: Vector,
-    /// Bound or estimate of |⟨y*, y − S(α)⟩|, the error that y causes in a cost with the gradient y*; 0 means exact up to rounding. An
-    /// adjoint solver gets it by weighing the residuals of y. Where only ‖y − S(α)‖ is known, it is the product with the dual norm of y*.
+    /// Bound or estimate of |⟨y*, y − S(α)⟩|, the error that y causes in a cost with the gradient y*; 0 means exact up
+    /// to rounding. An adjoint solver gets it by weighing the residuals of y. Where only ‖y − S(α)‖ is known, it is the
+    /// product with the dual norm of y*.
     pub error_bound: f64,
 }
 

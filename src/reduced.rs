@@ -19,12 +19,12 @@ impl<S, J> ReducedObjective<S, J> {
         Self { solver, cost }
     }
 
-    /// The state solver.
+    /// The state solver S.
     pub fn solver(&self) -> &S {
         &self.solver
     }
 
-    /// The cost.
+    /// The cost J.
     pub fn cost(&self) -> &J {
         &self.cost
     }

@@ -41,8 +41,8 @@ pub struct TaylorTest {
     pub directional_derivative: f64,
     /// Rows in the order of the steps.
     pub rows: Vec<TaylorRow>,
-    /// Slope fitted over the rows whose remainder exceeds rounding and the error bounds of Θ: 2 for a smooth Θ and a right
-    /// ξ, 1 for a wrong ξ or across a kink; none if fewer than two rows can be used.
+    /// Slope fitted over the rows whose remainder exceeds rounding and the error bounds of Θ: 2 for a smooth Θ and a
+    /// right ξ, 1 for a wrong ξ or across a kink; none if fewer than two rows can be used.
     pub fitted_slope: Option<f64>,
     /// The smallest derivative error of all rows.
     pub best_derivative_error: f64,
@@ -127,8 +127,8 @@ fn check_input(dimension: usize, x: &Vector, direction: &Direction, steps: &[f64
     }
 }
 
-/// The reproducible pseudo-random direction of [`Direction::Seeded`]: entries in (−1, 1) from the generator SplitMix64, a
-/// counter with a constant increment whose values are mixed by multiplications and shifts \[SteeleLeaFlood2014\].
+/// The reproducible pseudo-random direction of [`Direction::Seeded`]: entries in (−1, 1) from the generator SplitMix64,
+/// a counter with a constant increment whose values are mixed by multiplications and shifts \[SteeleLeaFlood2014\].
 pub fn seeded_direction(dimension: usize, seed: u64) -> Vector {
     let mut state = seed;
     Vector::from_fn(dimension, |_, _| {

@@ -11,12 +11,12 @@ use pyo3::prelude::*;
 
 /// How stationary the solution is, with all that is needed to compute that again.
 ///
-/// Attributes are the quantities of the last subproblem: cuts with their multipliers, multipliers of the rows and of the bounds, and
-/// norm and error of the aggregate subgradient.
+/// Attributes are the quantities of the last subproblem: cuts with their multipliers, multipliers of the rows and of
+/// the bounds, and norm and error of the aggregate subgradient.
 #[pyclass(frozen, module = "nonsmooth._engine")]
 #[derive(Debug)]
 pub struct Certificate {
-    /// The engine's certificate.
+    /// Certificate as the engine returns it.
     pub certificate: nonsmooth::Certificate,
     /// The set that it refers to.
     pub set: Polyhedron,
@@ -50,7 +50,7 @@ impl Certificate {
         convert::array(py, &self.certificate.point)
     }
 
-    /// The value there.
+    /// Value of the function at the point.
     #[getter]
     fn fun(&self) -> f64 {
         self.certificate.value
@@ -135,8 +135,8 @@ impl Certificate {
         json(&self.certificate.recheck(&self.set).map_err(errors::input)?)
     }
 
-    /// Computes the cuts of a composite certificate again from outputs, Jacobian and outer function; the largest relative difference,
-    /// or none if the certificate has no such proof.
+    /// Computes the cuts of a composite certificate again from outputs, Jacobian and outer function; the largest
+    /// relative difference, or none if the certificate has no such proof.
     fn recheck_composite(&self, py: Python<'_>, outer: OuterSetup) -> PyResult<Option<f64>> {
         let Some(proof) = &self.certificate.composite else { return Ok(None) };
         let failure = Failure::default();

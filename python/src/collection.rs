@@ -1,7 +1,7 @@
 //! For the tests alone: the collection of test problems, and the same runs by the engine in Rust.
 
 use crate::convert;
-use crate::outcome::Outcome;
+use crate::outcome::RunOutcome;
 use crate::setup::Setup;
 use nonsmooth::{BundleTrust, FnObjective, Vector};
 use numpy::{PyArray1, PyArray2};
@@ -34,13 +34,13 @@ impl CollectionProblem {
         Ok((value, PyArray1::from_vec(py, gradient)))
     }
 
-    /// The start.
+    /// Published start.
     #[getter]
     fn start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, &self.0.start)
     }
 
-    /// The optimal value.
+    /// Published optimal value.
     #[getter]
     fn optimal_value(&self) -> f64 {
         self.0.optimal_value
@@ -71,7 +71,7 @@ impl CollectionProblem {
     }
 
     /// The run that the package makes of this setup, without Python: the function is that of the collection.
-    fn minimize(&self, py: Python<'_>, setup: Setup) -> PyResult<Outcome> {
+    fn minimize(&self, py: Python<'_>, setup: Setup) -> PyResult<RunOutcome> {
         let (config, set, start) = (setup.config(py)?, setup.constraints.polyhedron(py)?, setup.start());
         let theta = FnObjective::new(self.0.dimension, |x: &Vector| {
             let (value, gradient) = self.0.evaluate(x.as_slice());
@@ -82,6 +82,6 @@ impl CollectionProblem {
             .constraints(set.clone())
             .minimize(&theta, start)
             .map_err(crate::errors::optimize)?;
-        Ok(Outcome { report, set, subgradient: None })
+        Ok(RunOutcome { report, set, subgradient: None })
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::convert;
 use crate::failure::Failure;
-use crate::outcome::Outcome;
-use crate::run::{Plan, RunError, drive, journaled, signal};
+use crate::outcome::RunOutcome;
+use crate::run::{RunError, RunInput, drive, journaled, signal};
 use crate::setup::Setup;
 use crate::watched::Watched;
 use contact::communication::InProcess;
@@ -187,8 +187,13 @@ impl ContactScene {
         }))
     }
 
-    /// Minimises Θ from the start of the setup; settings that it leaves open are those of the scene. As [`crate::run::minimize`].
-    fn optimize<'py>(&self, py: Python<'py>, setup: Setup) -> PyResult<(Option<Outcome>, Option<Bound<'py, PyAny>>)> {
+    /// Minimises Θ from the start of the setup; settings that it leaves open are those of the scene. As
+    /// [`crate::run::minimize`].
+    fn optimize<'py>(
+        &self,
+        py: Python<'py>,
+        setup: Setup,
+    ) -> PyResult<(Option<RunOutcome>, Option<Bound<'py, PyAny>>)> {
         let failure = Failure::default();
         let mut config = setup.config(py)?;
         config.composite_model = self.case.method == MethodName::Composite;
@@ -202,7 +207,7 @@ impl ContactScene {
             config.scaling = VariableScaling::Linear(mean_height_coordinates(&start, step));
         }
         problem.admissible.check(&start).map_err(input)?;
-        let plan = Plan {
+        let input = RunInput {
             config,
             set: problem.admissible.polyhedron().clone(),
             start,
@@ -211,10 +216,10 @@ impl ContactScene {
             failure: failure.clone(),
         };
         let result = py.detach(|| match setup.journal.as_ref() {
-            Some((folder, identity)) => journaled(plan, &objective, folder, identity),
+            Some((folder, identity)) => journaled(input, &objective, folder, identity),
             None => {
                 let watched = Watched::new(&objective);
-                drive(plan, &watched).map(|(report, set)| watched.outcome(report, set)).map_err(RunError::Optimize)
+                drive(input, &watched).map(|(report, set)| watched.outcome(report, set)).map_err(RunError::Optimize)
             }
         });
         let exception = failure.take().map(|error| error.into_value(py).into_bound(py).into_any());

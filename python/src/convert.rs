@@ -24,8 +24,8 @@ pub fn array2<'py>(
     flat.to_pyarray(py).reshape([rows, columns])
 }
 
-/// A vector of `expected` entries from anything that numpy makes a one-dimensional array of real numbers of. Where one entry is expected,
-/// a number is one.
+/// A vector of `expected` entries from anything that numpy makes a one-dimensional array of real numbers of. Where one
+/// entry is expected, a number is one.
 pub fn vector(object: &Bound<'_, PyAny>, what: &str, expected: Option<usize>) -> PyResult<Vector> {
     let form = "a one-dimensional array of real numbers";
     let entries = match object.cast::<PyArray1<f64>>() {
@@ -68,8 +68,8 @@ pub fn number(object: &Bound<'_, PyAny>, what: &str) -> PyResult<f64> {
     number.extract().map_err(|error| refused(Some(error), object, what, "a real number"))
 }
 
-/// An array of doubles of an object. Complex numbers, whose imaginary parts numpy would drop with no more than a warning, texts and
-/// dates are refused. An array of fewer dimensions is given the shape, if there is one.
+/// An array of doubles of an object. Complex numbers, whose imaginary parts numpy would drop with no more than a
+/// warning, texts and dates are refused. An array of fewer dimensions is given the shape, if there is one.
 fn real<'py, A: PyTypeCheck>(
     object: &Bound<'py, PyAny>,
     what: &str,
@@ -93,8 +93,8 @@ fn real<'py, A: PyTypeCheck>(
     array.cast_into().map_err(|_| refused(None, object, what, form))
 }
 
-/// What is said of an object that has no numbers of this form. What the object itself raised while it was converted, an interrupt
-/// or a failed computation for example, comes back unchanged.
+/// What is said of an object that has no numbers of this form. What the object itself raised while it was converted, an
+/// interrupt or a failed computation for example, comes back unchanged.
 fn refused(error: Option<PyErr>, object: &Bound<'_, PyAny>, what: &str, form: &str) -> PyErr {
     let py = object.py();
     if let Some(error) = &error {
@@ -113,7 +113,8 @@ fn refused(error: Option<PyErr>, object: &Bound<'_, PyAny>, what: &str, form: &s
     refusal
 }
 
-/// The two parts of what a function returns, as a tuple or a list; with three an error bound, where there `may_be_bound` one.
+/// The two parts of what a function returns, as a tuple or a list; with three an error bound, where there
+/// `may_be_bound` one.
 pub fn parts<'py>(
     answer: &Bound<'py, PyAny>,
     function: &str,

@@ -27,7 +27,8 @@ pub fn optimize(error: OptimizeError) -> PyErr {
     }
 }
 
-/// A journal that cannot be continued: `OSError` of the kind `PermissionError` for example where the system refuses, else `ValueError`.
+/// A journal that cannot be continued: `OSError` of the kind `PermissionError` for example where the system refuses,
+/// else `ValueError`.
 pub fn journal(error: JournalError) -> PyErr {
     match &error {
         JournalError::File { source, .. } => std::io::Error::new(source.kind(), error.to_string()).into(),

@@ -4,7 +4,8 @@
 //! fun(x) → (value, subgradient)               fun(x, accuracy=τ) → the same, or (value, subgradient, error bound)
 //! fun(x) → (outputs, Jacobian)                with an outer function; smooth(x) → (value, gradient) of what is added
 //! ```
-//! `OutsideDomain` and numbers that are not finite shorten the step. Every other exception ends the run and is kept as it is.
+//! `OutsideDomain` and numbers that are not finite shorten the step. Every other exception ends the run and is kept as
+//! it is.
 
 use crate::convert;
 use crate::errors::OutsideDomain;
@@ -20,7 +21,7 @@ use pyo3::types::PyDict;
 /// A Python function with value and subgradient, or with outputs and Jacobian.
 #[derive(Debug)]
 pub struct PythonOracle {
-    /// The function.
+    /// The user's Python function.
     pub function: Py<PyAny>,
     /// Whether it is made of two functions of the user, `fun` and `jac`.
     pub jac_apart: bool,

@@ -9,24 +9,24 @@ use pyo3::prelude::*;
 /// The report of a run, with the set that its certificate refers to.
 #[pyclass(frozen, module = "nonsmooth._engine")]
 #[derive(Debug)]
-pub struct Outcome {
-    /// The engine's report.
+pub struct RunOutcome {
+    /// Report as the engine returns it.
     pub report: Report,
-    /// The admissible set.
+    /// Admissible set, by which the certificate is checked.
     pub set: Polyhedron,
     /// One subgradient at the solution, if it is known.
     pub subgradient: Option<Vector>,
 }
 
 #[pymethods]
-impl Outcome {
+impl RunOutcome {
     /// The best admissible point.
     #[getter]
     fn x<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         convert::array(py, &self.report.solution)
     }
 
-    /// The value there.
+    /// Value of the function at the solution.
     #[getter]
     fn value(&self) -> f64 {
         self.report.value
@@ -75,7 +75,7 @@ impl Outcome {
         }
     }
 
-    /// What the engine advises; the package has words of its own for users of Python.
+    /// What the engine advises; the package has its own advice for users of Python.
     #[getter]
     fn advice(&self) -> &'static str {
         self.report.termination.advice()
@@ -120,7 +120,7 @@ impl Outcome {
         self.report.largest_violation
     }
 
-    /// Seconds used.
+    /// Wall-clock seconds of the run.
     #[getter]
     fn seconds(&self) -> f64 {
         self.report.seconds

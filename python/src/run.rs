@@ -1,10 +1,11 @@
-//! A run: the engine works without the interpreter, which it takes only for the user's function, the callback and signals.
+//! A run: the engine works without the interpreter, which it takes only for the user's function, the callback and
+//! signals.
 
 use crate::convert;
 use crate::errors;
 use crate::failure::Failure;
 use crate::oracle::PythonOracle;
-use crate::outcome::Outcome;
+use crate::outcome::RunOutcome;
 use crate::outer::Outer;
 use crate::setup::Setup;
 use crate::watched::Watched;
@@ -24,12 +25,9 @@ use std::time::{Duration, Instant};
 const SIGNAL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// What a run needs besides its objective; nothing of it is bound to the interpreter.
-pub struct Plan {
-    /// Settings.
+pub struct RunInput {
     pub config: BundleTrustConfig,
-    /// Admissible set.
     pub set: Polyhedron,
-    /// Start.
     pub start: Vector,
     /// Called after every evaluation; true ends the run.
     pub callback: Option<Py<PyAny>>,
@@ -41,9 +39,9 @@ pub struct Plan {
 
 /// Minimises a function. Returns the outcome, none if there is no point, and the exception that ended the run.
 #[pyfunction]
-pub fn minimize<'py>(py: Python<'py>, setup: Setup) -> PyResult<(Option<Outcome>, Option<Bound<'py, PyAny>>)> {
+pub fn minimize<'py>(py: Python<'py>, setup: Setup) -> PyResult<(Option<RunOutcome>, Option<Bound<'py, PyAny>>)> {
     let failure = Failure::default();
-    let plan = Plan {
+    let input = RunInput {
         config: setup.config(py)?,
         set: setup.constraints.polyhedron(py)?,
         start: setup.start(),
@@ -62,7 +60,7 @@ pub fn minimize<'py>(py: Python<'py>, setup: Setup) -> PyResult<(Option<Outcome>
         failure: failure.clone(),
         outside: Failure::default(),
     };
-    let (result, outside) = py.detach(|| run(plan, oracle, setup.journal.as_ref()));
+    let (result, outside) = py.detach(|| run(input, oracle, setup.journal.as_ref()));
     let exception = |error: PyErr| error.into_value(py).into_bound(py).into_any();
     match (result, failure.take()) {
         (Ok(outcome), None) => Ok((Some(outcome), None)),
@@ -80,7 +78,7 @@ pub fn minimize<'py>(py: Python<'py>, setup: Setup) -> PyResult<(Option<Outcome>
 pub enum RunError {
     /// The engine refuses, or the first evaluation failed.
     Optimize(OptimizeError),
-    /// The journal refuses.
+    /// The journal could not be opened or does not belong to this run.
     Journal(nonsmooth::JournalError),
     /// The journal of this folder began at another point.
     OtherStart(String),
@@ -101,56 +99,59 @@ impl From<RunError> for PyErr {
 
 /// Runs with or without a journal; the second part is the first `OutsideDomain` of the function.
 fn run(
-    plan: Plan,
+    input: RunInput,
     oracle: PythonOracle,
     journal: Option<&(String, String)>,
-) -> (Result<Outcome, RunError>, Option<PyErr>) {
+) -> (Result<RunOutcome, RunError>, Option<PyErr>) {
     let result = match journal {
-        Some((folder, identity)) => journaled(plan, &oracle, folder, identity),
+        Some((folder, identity)) => journaled(input, &oracle, folder, identity),
         None => {
             let watched = Watched::new(&oracle);
-            drive(plan, &watched).map(|(report, set)| watched.outcome(report, set)).map_err(RunError::Optimize)
+            drive(input, &watched).map(|(report, set)| watched.outcome(report, set)).map_err(RunError::Optimize)
         }
     };
     (result, oracle.outside.take())
 }
 
 /// Runs with a journal.
-pub fn journaled<O>(plan: Plan, objective: &O, folder: &str, identity: &str) -> Result<Outcome, RunError>
+pub fn journaled<O>(input: RunInput, objective: &O, folder: &str, identity: &str) -> Result<RunOutcome, RunError>
 where
     O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>,
 {
-    check_start(folder, &plan)?;
+    check_start(folder, &input)?;
     let watched = Watched::new(Journaled::open(objective, folder, identity).map_err(RunError::Journal)?);
-    let (mut report, set) = drive(plan, &watched).map_err(RunError::Optimize)?;
+    let (mut report, set) = drive(input, &watched).map_err(RunError::Optimize)?;
     watched.inner.complete(&mut report);
     Ok(watched.outcome(report, set))
 }
 
-/// Refuses to continue from another start: the run would drop every evaluation of the journal, and they may be dear.
-fn check_start(folder: &str, plan: &Plan) -> Result<(), RunError> {
+/// Refuses to continue from another start: the run would drop every evaluation of the journal, and they may be
+/// expensive.
+fn check_start(folder: &str, input: &RunInput) -> Result<(), RunError> {
     let journal = Journal::read(folder).map_err(RunError::Journal)?;
     let first = journal.as_ref().and_then(|journal| journal.entries.first());
     // Coordinates of the run round.
     let same =
-        |point: &[f64]| point.iter().zip(plan.start.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * plan.start.amax());
+        |point: &[f64]| point.iter().zip(input.start.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * input.start.amax());
     match first {
-        // A journal of other size is refused as such; an inadmissible start is moved, so that it need not be the first point.
-        Some(entry) if entry.point.len() == plan.start.len() && plan.set.dimension() == plan.start.len() => {
-            let is_other = plan.set.violation(&plan.start) == 0.0 && !same(&entry.point);
+        // A journal of other size is refused as such; an inadmissible start is moved, so that it need not be the first
+        // point.
+        Some(entry) if entry.point.len() == input.start.len() && input.set.dimension() == input.start.len() => {
+            let is_other = input.set.violation(&input.start) == 0.0 && !same(&entry.point);
             if is_other { Err(RunError::OtherStart(folder.to_owned())) } else { Ok(()) }
         }
         _ => Ok(()),
     }
 }
 
-/// Drives the run to its end, to an exception, to a signal, or to the callback's word.
-pub fn drive<O: NonsmoothObjective>(plan: Plan, objective: &O) -> Result<(Report, Polyhedron), OptimizeError> {
-    let failure = plan.failure.clone();
-    watched(move || signal(&failure), || drive_watched(plan, objective))
+/// Drives the run to its end, to an exception, to a signal, or until the callback ends it.
+pub fn drive<O: NonsmoothObjective>(input: RunInput, objective: &O) -> Result<(Report, Polyhedron), OptimizeError> {
+    let failure = input.failure.clone();
+    watched(move || signal(&failure), || drive_watched(input, objective))
 }
 
-/// Whether an exception is to end what the engine does: one that is kept already, or that of a signal which has arrived.
+/// Whether an exception is to end what the engine does: one that is kept already, or that of a signal which has
+/// arrived.
 pub fn signal(failure: &Failure) -> bool {
     if let Err(error) = Python::attach(|py| py.check_signals()) {
         failure.set(error);
@@ -158,15 +159,15 @@ pub fn signal(failure: &Failure) -> bool {
     failure.is_set()
 }
 
-fn drive_watched<O: NonsmoothObjective>(plan: Plan, objective: &O) -> Result<(Report, Polyhedron), OptimizeError> {
-    let mut method = BundleTrust::new(plan.config)?.constraints(plan.set.clone());
-    if plan.disp {
+fn drive_watched<O: NonsmoothObjective>(input: RunInput, objective: &O) -> Result<(Report, Polyhedron), OptimizeError> {
+    let mut method = BundleTrust::new(input.config)?.constraints(input.set.clone());
+    if input.disp {
         let mut table = TablePrinter::new(PythonStdout);
         method = method.observer(move |record: &nonsmooth::IterationRecord| table.observe(record));
     }
-    let mut run = method.start(objective, plan.start)?;
+    let mut run = method.start(objective, input.start)?;
     let mut interrupter =
-        Interrupter { callback: plan.callback, failure: plan.failure, told: 0, looked: Instant::now() };
+        Interrupter { callback: input.callback, failure: input.failure, told: 0, looked: Instant::now() };
     let mut stopped = interrupter.wants_end(&run);
     while !stopped && run.step().is_continue() {
         stopped = interrupter.wants_end(&run);
@@ -177,7 +178,7 @@ fn drive_watched<O: NonsmoothObjective>(plan: Plan, objective: &O) -> Result<(Re
     if stopped && report.termination == Termination::Unfinished {
         report.termination = Termination::StoppedByObserver;
     }
-    Ok((report, plan.set))
+    Ok((report, input.set))
 }
 
 /// What may end a run from outside: callback, exceptions, signals.

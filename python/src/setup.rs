@@ -21,9 +21,7 @@ pub struct Setup {
     pub outer: Option<OuterSetup>,
     /// The smooth function that is added, if there is one.
     pub smooth: Option<Py<PyAny>>,
-    /// The start.
     pub x0: Vec<f64>,
-    /// The admissible set.
     pub constraints: Constraints,
     /// The fields of [`BundleTrustConfig`] that are set, as JSON, without the scaling.
     pub options: String,
@@ -49,7 +47,7 @@ pub struct Constraints {
 }
 
 impl Constraints {
-    /// The admissible set.
+    /// Bounds and rows as the engine's set.
     pub fn polyhedron(&self, py: Python<'_>) -> PyResult<Polyhedron> {
         let vector = |object: &Py<PyAny>, what| convert::vector(object.bind(py), what, None);
         let rows = convert::matrix(self.rows.bind(py), "constraint matrix")?;
@@ -79,7 +77,6 @@ impl Setup {
         Ok(config)
     }
 
-    /// The start.
     pub fn start(&self) -> Vector {
         Vector::from_column_slice(&self.x0)
     }

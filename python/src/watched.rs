@@ -1,6 +1,7 @@
-//! An objective that remembers the subgradient of its lowest value: a report holds the best point, but not what belongs to it.
+//! An objective that remembers the subgradient of its lowest value: a report holds the best point, but not what belongs
+//! to it.
 
-use crate::outcome::Outcome;
+use crate::outcome::RunOutcome;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{Answer, NonsmoothObjective, OracleError, Polyhedron, Report, Request, Vector};
 use std::cell::RefCell;
@@ -8,23 +9,21 @@ use std::cell::RefCell;
 /// An objective with the point, the value and the subgradient of its best accurate answer.
 #[derive(Debug)]
 pub struct Watched<O> {
-    /// The objective.
     pub inner: O,
     best: RefCell<Option<(Vector, f64, Vector)>>,
 }
 
 impl<O> Watched<O> {
-    /// Watches an objective.
     pub fn new(inner: O) -> Self {
         Self { inner, best: RefCell::new(None) }
     }
 
     /// The report with the subgradient at its solution.
-    pub fn outcome(&self, report: Report, set: Polyhedron) -> Outcome {
+    pub fn outcome(&self, report: Report, set: Polyhedron) -> RunOutcome {
         let best = self.best.borrow();
         let there = best.as_ref().filter(|(at, ..)| *at == report.solution);
         let subgradient = there.map(|(_, _, subgradient)| subgradient.clone());
-        Outcome { report, set, subgradient }
+        RunOutcome { report, set, subgradient }
     }
 }
 
@@ -43,7 +42,7 @@ impl<O: NonsmoothObjective> NonsmoothObjective for Watched<O> {
         let answer = self.inner.evaluate(request)?;
         if let Answer::Accurate(evaluation) = &answer {
             let mut best = self.best.borrow_mut();
-            // The same point again is a refinement, whatever its value.
+            // A second evaluation of the best point refines it and replaces the first, whatever its value.
             if best.as_ref().is_none_or(|(at, value, _)| evaluation.value <= *value || at == request.point) {
                 *best = Some((request.point.clone(), evaluation.value, evaluation.subgradient.clone()));
             }

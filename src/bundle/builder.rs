@@ -12,7 +12,8 @@ use crate::{InputError, Polyhedron};
 /// let theta = FnObjective::new(2, |x: &Vector| {
 ///     (x[0].abs() + 2.0 * x[1] * x[1], Vector::from_vec(vec![x[0].signum(), 4.0 * x[1]]))
 /// });
-/// let set = Polyhedron::boxed(Vector::from_vec(vec![1.0, f64::NEG_INFINITY]), Vector::from_element(2, f64::INFINITY))?;
+/// let lower = Vector::from_vec(vec![1.0, f64::NEG_INFINITY]);
+/// let set = Polyhedron::boxed(lower, Vector::from_element(2, f64::INFINITY))?;
 /// let report = BundleTrust::new(BundleTrustConfig::default())?
 ///     .constraints(set)
 ///     .minimize(&theta, Vector::from_vec(vec![3.0, 2.0]))?;
@@ -72,7 +73,7 @@ impl<'o> BundleTrust<'o> {
         self
     }
 
-    /// The settings.
+    /// The settings with which this method runs.
     pub fn config(&self) -> &BundleTrustConfig {
         &self.config
     }

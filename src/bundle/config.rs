@@ -13,8 +13,9 @@ pub enum Convexity {
     /// Nothing. The model stays the plain cutting-plane model until a pair of cuts proves Θ nonconvex.
     #[default]
     Unknown,
-    /// Θ is convex. The cuts bound how far Θ can still fall within reach of the variables, this bound decides the end, and no
-    /// restart is made. Linearization errors below zero by more than promised errors and rounding are noise of the oracle.
+    /// Θ is convex. The cuts bound how far Θ can still fall within reach of the variables, this bound decides the end,
+    /// and no restart is made. Linearization errors below zero by more than promised errors and rounding are noise of
+    /// the oracle.
     Convex,
 }
 
@@ -23,8 +24,8 @@ pub enum Convexity {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum VariableScaling {
-    /// If the box is finite in every variable, Dᵢ is its width, counted up to 1000 times the median width, divided by the
-    /// geometric mean of the widths; fixed variables have Dᵢ = 1. Otherwise all Dᵢ = 1.
+    /// If the box is finite in every variable, Dᵢ is its width, counted up to 1000 times the median width, divided by
+    /// the geometric mean of the widths; fixed variables have Dᵢ = 1. Otherwise all Dᵢ = 1.
     #[default]
     FromBox,
     /// Dᵢ = 1.
@@ -32,8 +33,8 @@ pub enum VariableScaling {
     /// Given typical sizes Dᵢ > 0 of the variables.
     Typical(Vector),
     /// ‖d‖ = |M⁻¹ d| for a regular n × n matrix M. The run takes the course that it would take in the coordinates β of
-    /// x = M β: a direction in which Θ hardly changes is made short if M stretches it, and the first subproblems already
-    /// reach along it. Points, cuts, bounds, history and certificate stay in x.
+    /// x = M β: a direction in which Θ hardly changes is made short if M stretches it, and the first subproblems
+    /// already reach along it. Points, cuts, bounds, history and certificate stay in x.
     Linear(Matrix),
 }
 
@@ -45,8 +46,8 @@ pub enum AccuracyPolicy {
     /// Always as accurate as the oracle can.
     #[default]
     Tightest,
-    /// τ = clip(factor · predicted decrease / |Θ(x̂)|, tightest, coarsest). The center is evaluated again when its promised error
-    /// exceeds factor · predicted decrease.
+    /// τ = clip(factor · predicted decrease / |Θ(x̂)|, tightest, coarsest). The center is evaluated again when its
+    /// promised error exceeds factor · predicted decrease.
     OnDemand {
         /// Tightest accuracy ever asked, 0 ≤ tightest ≤ coarsest.
         tightest: f64,
@@ -58,7 +59,8 @@ pub enum AccuracyPolicy {
 }
 
 impl AccuracyPolicy {
-    /// Accuracy on demand with the numbers measured in docs/bundle.md: between 1e-12 and 1e-2, a tenth of the predicted decrease.
+    /// Accuracy on demand with the numbers measured in docs/bundle.md: between 1e-12 and 1e-2, a tenth of the predicted
+    /// decrease.
     pub const ON_DEMAND: Self = Self::OnDemand { tightest: 1e-12, coarsest: 1e-2, factor: 0.1 };
 }
 
@@ -78,8 +80,8 @@ pub struct BundleTrustConfig {
     /// Predicted decrease, relative to the size of Θ, that counts as small. Default 1e-7; in (0, 1). Larger stops
     /// earlier; the relative error of the value reached is usually ten times smaller than the tolerance.
     pub tolerance: f64,
-    /// The size of Θ that `tolerance` refers to, in units of Θ. Default none: |Θ| at the center, at most what values and
-    /// linearizations vary near it. Positive. Larger stops earlier.
+    /// The size of Θ that `tolerance` refers to, in units of Θ. Default none: |Θ| at the center, at most what values
+    /// and linearizations vary near it. Positive. Larger stops earlier.
     pub objective_scale: Option<f64>,
     /// Largest number of evaluations, failed ones included. Default 2000; ≥ 1.
     pub max_evaluations: usize,
@@ -87,9 +89,10 @@ pub struct BundleTrustConfig {
     pub max_iterations: usize,
     /// Largest time in seconds. Default none. Positive.
     pub max_seconds: Option<f64>,
-    /// Length of the first step in scaled variables. Default none: the length of the start vector, but at least 1e-6 of the
-    /// distance |Θ|/‖g‖* at which a linear Θ would vanish; this distance where the start is zero, and 1 where both vanish.
-    /// Positive. A typical change of the variables is the best value; too small or too large costs some evaluations.
+    /// Length of the first step in scaled variables. Default none: the length of the start vector, but at least 1e-6 of
+    /// the distance |Θ|/‖g‖* at which a linear Θ would vanish; this distance where the start is zero, and 1 where both
+    /// vanish. Positive. A typical change of the variables is the best value; too small or too large costs some
+    /// evaluations.
     pub first_step: Option<f64>,
     /// What is known about convexity. Default unknown.
     pub convexity: Convexity,
@@ -97,11 +100,13 @@ pub struct BundleTrustConfig {
     pub scaling: VariableScaling,
     /// Accuracy asked of the oracle. Default always the tightest; an oracle that ignores the request is not affected.
     pub accuracy: AccuracyPolicy,
-    /// Largest number of cuts. Default none: n + 15, at most 500. ≥ 3: the cut of the center, the newest one, and one for all others
-    /// together. A large bundle remembers cuts that mislead a nonconvex run; a small one merges active cuts, and needs more evaluations.
+    /// Largest number of cuts. Default none: n + 15, at most 500. ≥ 3: the cut of the center, the newest one, and one
+    /// for all others together. A large bundle remembers cuts that mislead a nonconvex run; a small one merges active
+    /// cuts, and needs more evaluations.
     pub bundle_size: Option<usize>,
-    /// Whether an end whose active cuts lie away from the best point is confirmed by evaluations next to it, at most one more than there are
-    /// variables. Default true; of no effect where Θ is declared convex. Where false, such a run ends as unconfirmed.
+    /// Whether an end whose active cuts lie away from the best point is confirmed by evaluations next to it, at most
+    /// one more than there are variables. Default true; of no effect where Θ is declared convex. Where false, such a
+    /// run ends as unconfirmed.
     pub confirm: bool,
     /// The composite model, for objectives that have an outer function and return Jacobians. Default on.
     pub composite_model: bool,

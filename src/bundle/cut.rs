@@ -9,16 +9,17 @@ use crate::Vector;
 use crate::qp::kernels::difference_dot;
 use serde::{Deserialize, Serialize};
 
-/// A cut is active if its multiplier exceeds this, where Σ λ = 1: stopping test, noise, scales and certificate count active cuts only.
-/// A smaller multiplier is rounding of the subproblem: the cut is idle, and the longest idle cut leaves the bundle first.
+/// A cut is active if its multiplier exceeds this, where Σ λ = 1: stopping test, noise, scales and certificate count
+/// active cuts only. A smaller multiplier is rounding of the subproblem: the cut is idle, and the longest idle cut
+/// leaves the bundle first.
 pub(crate) const LEAST_ACTIVE_MULTIPLIER: f64 = 1e-9;
 
 /// A subgradient this many times longer than all before cannot be held beside them in double precision.
 pub(crate) const MAX_RELATIVE_SLOPE: f64 = 1e15;
 
-/// How far a cut lies below Θ(x̂) at x̂, as model and certificate count it: the linearization error e, what convexification adds, and the
-/// errors that the oracle promised. A cut above a convex Θ by no more than those is lowered; one that is farther above shows noise, and
-/// counts as far below.
+/// How far a cut lies below Θ(x̂) at x̂, as model and certificate count it: the linearization error e, what
+/// convexification adds, and the errors that the oracle promised. A cut above a convex Θ by no more than those is
+/// lowered; one that is farther above shows noise, and counts as far below.
 pub(crate) fn offset(error: f64, convexified: f64, promised: f64, convex: bool) -> f64 {
     if convex { (error + promised).abs() } else { (error + convexified).max(error.abs()) + promised }
 }
@@ -40,8 +41,8 @@ pub struct Cut {
     pub subgradient: Vector,
     /// Bound or estimate of the error of `value` that the oracle promised, in units of Θ.
     pub error_bound: f64,
-    /// Whether the oracle certified the cut to lie below Θ (an answer [`NoDescent`](crate::Answer::NoDescent)), or the cut is
-    /// merged: it holds, but its value bounds Θ(y) from below only.
+    /// Whether the oracle certified the cut to lie below Θ (an answer [`NoDescent`](crate::Answer::NoDescent)), or the
+    /// cut is merged: it holds, but its value bounds Θ(y) from below only.
     pub certified: bool,
     /// Multiplier λ ≥ 0 in the last subproblem; Σ λ = 1 over all cuts.
     pub multiplier: f64,
@@ -51,7 +52,7 @@ pub struct Cut {
 
 impl Cut {
     /// Whether the multiplier is more than rounding of the subproblem: above 1e-9.
-    pub fn is_active(&self) -> bool {
+    pub(crate) fn is_active(&self) -> bool {
         self.multiplier > LEAST_ACTIVE_MULTIPLIER
     }
 
@@ -60,7 +61,8 @@ impl Cut {
         norm.squared_distance(x, &self.point).sqrt() + self.radius
     }
 
-    /// The mean of two cuts, weighted by their multipliers. The last subproblem has the same answer with it as with both.
+    /// The mean of two cuts, weighted by their multipliers. The last subproblem has the same answer with it as with
+    /// both.
     pub(super) fn merged(&self, lighter: &Self, id: u64, norm: &ScaledNorm) -> Self {
         let multiplier = self.multiplier + lighter.multiplier;
         let share = lighter.multiplier / multiplier;
@@ -100,7 +102,7 @@ impl Cut {
     }
 
     /// e = value − Θ(y) − ⟨g, x − y⟩: the linearization error at a point x where Θ has the value given.
-    pub fn linearization_error(&self, x: &Vector, value: f64) -> f64 {
+    pub(crate) fn linearization_error(&self, x: &Vector, value: f64) -> f64 {
         value - self.value - difference_dot(self.subgradient.as_slice(), x.as_slice(), self.point.as_slice())
     }
 }

@@ -3,29 +3,30 @@
 //! ```text
 //! z̃ = Σ λ_j g_j + Aᵀμ + ν,   ẽ                      aggregate subgradient and aggregate error
 //! Θ(x̂) − Θ(y) ≤ ẽ + Σ_i |z̃_i| |y_i − x̂_i|             if Θ is convex
-//! settled:  |z̃_i| ≤ 1e-3 max(Σ_j λ_j |g_ji| + Σ |A_ki μ_k| + |ν_i|,  largest |g_i| of the run)      variable i
+//! small:    |z̃_i| ≤ 1e-3 max(Σ_j λ_j |g_ji| + Σ |A_ki μ_k| + |ν_i|,  largest |g_i| of the run)      variable i
 //! distance of cut j:  Σ_i steepest |g_i| of the bundle · |y_ji − x̂_i|, in units of Θ
 //! ```
-//! No number changes if a variable is measured in another unit: a coordinate of z̃ is compared with what cancels in this coordinate, with
-//! the slopes seen along it, or with the width of the box.
+//! No number changes if a variable is measured in another unit: a coordinate of z̃ is compared with what cancels in
+//! this coordinate, with the slopes seen along it, or with the width of the box.
 
 use super::cut::{Cut, LEAST_ACTIVE_MULTIPLIER};
 use super::proposers::proposal::Proposal;
-use super::state::State;
+use super::state::BundleState;
 use crate::{Polyhedron, Vector};
 
-/// A coordinate of the aggregate subgradient is settled below this share of what cancels in it. Wrong ends have shares of 0.03 and more; at
-/// smooth minima, where nothing cancels, a share of 1e-3 of the slopes seen leaves 1e-6 of the decrease.
-const SETTLED_SHARE: f64 = 1e-3;
+/// A coordinate of the aggregate subgradient counts as small below this share of what cancels in it. Points that are
+/// not stationary have shares of 0.03 and more; at smooth minima, where nothing cancels, a share of 1e-3 of the slopes
+/// seen leaves 1e-6 of the decrease.
+const SMALL_SHARE: f64 = 1e-3;
 /// What cancels to this share of its terms is zero as far as the multipliers of a subproblem tell.
 const CANCELLED_SHARE: f64 = 1e-8;
-/// Subgradients of the center itself that cancel to this share of their terms prove it stationary: away from kinks and vertices nothing
-/// cancels, and at a wrong one shares are 0.03 and more.
+/// Subgradients of the center itself that cancel to this share of their terms prove it stationary: away from kinks and
+/// vertices nothing cancels, and where a point is not stationary shares are 0.03 and more.
 const EXACT_SHARE: f64 = 1e-5;
 /// Rounding of a sum, as a share of its terms.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// One variable.
+/// What the aggregate subgradient says about a variable.
 #[derive(Debug, Clone, Copy)]
 struct Coordinate {
     /// |z̃_i|.
@@ -48,8 +49,8 @@ impl Coordinate {
         self.slope + ROUNDING * self.terms
     }
 
-    fn is_settled(&self) -> bool {
-        self.largest_slope() <= SETTLED_SHARE * self.terms.max(self.steepest)
+    fn is_small(&self) -> bool {
+        self.largest_slope() <= SMALL_SHARE * self.terms.max(self.steepest)
     }
 
     /// Whether the slope is zero as far as the multipliers tell.
@@ -74,7 +75,7 @@ pub(crate) struct Evidence {
     pub drop: f64,
     /// Largest distance of an active cut, in units of Θ: how far the linearizations of the bundle can vary in between.
     pub distance: f64,
-    /// The same in the norm of the run, relative to the size of the variables; for reports.
+    /// Largest distance of an active cut in the norm of the run, relative to the size of the variables; for reports.
     pub radius: f64,
     /// Whether all active cuts are those of the center itself, so that no difference of values enters.
     at_center: bool,
@@ -85,7 +86,7 @@ pub(crate) struct Evidence {
 }
 
 impl Evidence {
-    pub(crate) fn new(state: &State, set: &Polyhedron, proposal: &Proposal) -> Self {
+    pub(crate) fn new(state: &BundleState, set: &Polyhedron, proposal: &Proposal) -> Self {
         let (sum, terms) = aggregate(state, set, proposal);
         let coordinate = |i: usize| Coordinate {
             slope: f64::abs(sum[i]),
@@ -136,15 +137,16 @@ impl Evidence {
         self.coordinates.iter().map(|i| i.terms * i.moved).sum()
     }
 
-    /// ẽ + Σ |z̃_i| reach_i over the coordinates that do not cancel: what Θ, if it is convex, can still fall within reach and in the box. A variable
-    /// reaches as far as it has moved, or as far as the slopes along it would need for the decrease of the run.
+    /// ẽ + Σ |z̃_i| reach_i over the coordinates that do not cancel: what Θ, if it is convex, can still fall within
+    /// reach and in the box. A variable reaches as far as it has moved, or as far as the slopes along it would need for
+    /// the decrease of the run.
     pub(crate) fn remaining(&self) -> f64 {
         let falls = |i: &Coordinate| if i.is_zero() { 0.0 } else { i.fall(i.moved.max(self.drop / i.steepest)) };
         self.error + self.coordinates.iter().map(falls).sum::<f64>()
     }
 
-    /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds. The others reach as far as the run has gone,
-    /// and what cancels to 1e-8 along them counts as zero.
+    /// How far a convex Θ can lie above its minimum: a proof in the variables with finite bounds. The others reach as
+    /// far as the run has gone, and what cancels to 1e-8 along them counts as zero.
     pub(crate) fn gap(&self) -> f64 {
         let reach = |i: &Coordinate| i.moved.max(i.farthest).max(self.drop / i.steepest);
         let falls = |i: &Coordinate| {
@@ -159,28 +161,28 @@ impl Evidence {
         self.error + self.coordinates.iter().map(falls).sum::<f64>()
     }
 
-    /// The first variable along which the aggregate subgradient has not cancelled; a fall of at most `allowed` that the box proves counts as
-    /// settled.
+    /// The first variable along which the aggregate subgradient is not small; a fall of at most `allowed` that the box
+    /// proves counts as small.
     pub(crate) fn undecided(&self, allowed: f64) -> Option<usize> {
-        self.coordinates.iter().position(|i| !(i.is_settled() || i.fall(f64::INFINITY) <= allowed))
+        self.coordinates.iter().position(|i| !(i.is_small() || i.fall(f64::INFINITY) <= allowed))
     }
 }
 
 /// The cuts of the bundle with a multiplier in the proposal that is no rounding.
-pub(crate) fn active_cuts<'s>(state: &'s State, proposal: &'s Proposal) -> impl Iterator<Item = &'s Cut> {
+pub(crate) fn active_cuts<'s>(state: &'s BundleState, proposal: &'s Proposal) -> impl Iterator<Item = &'s Cut> {
     let cuts = state.bundle.cuts().iter().zip(&proposal.cut_multipliers);
     cuts.filter(|(_, multiplier)| **multiplier > LEAST_ACTIVE_MULTIPLIER).map(|(cut, _)| cut)
 }
 
 /// Distances of cuts from the center in units of Θ.
 pub(crate) struct Distances<'s> {
-    state: &'s State,
+    state: &'s BundleState,
     /// The largest |g_i| in the bundle, for every variable.
     steepest: Vector,
 }
 
 impl<'s> Distances<'s> {
-    pub(crate) fn new(state: &'s State) -> Self {
+    pub(crate) fn new(state: &'s BundleState) -> Self {
         let mut steepest = Vector::zeros(state.center.len());
         for cut in state.bundle.cuts() {
             steepest.zip_apply(&cut.subgradient, |largest, slope| *largest = largest.max(slope.abs()));
@@ -208,7 +210,7 @@ impl<'s> Distances<'s> {
 }
 
 /// The radius of the active cuts, relative to the size of the variables in the run.
-fn radius(state: &State, proposal: &Proposal, of_outputs: bool) -> f64 {
+fn radius(state: &BundleState, proposal: &Proposal, of_outputs: bool) -> f64 {
     let tangents = proposal.active_tangents().map(|(tangent, _)| state.norm.length(&(&*tangent.point - &state.center)));
     let of_tangents = tangents.fold(0.0, f64::max);
     let cuts = active_cuts(state, proposal).filter(|_| !of_outputs);
@@ -217,7 +219,7 @@ fn radius(state: &State, proposal: &Proposal, of_outputs: bool) -> f64 {
 }
 
 /// Whether the multipliers of the nonlinear constraints are those of degenerate constraints.
-fn degenerate(state: &State, proposal: &Proposal, terms: &Vector) -> bool {
+fn degenerate(state: &BundleState, proposal: &Proposal, terms: &Vector) -> bool {
     let Some(constraints) = &state.constraints else { return false };
     let mut multipliers = vec![0.0; constraints.kinds().len()];
     for (tangent, multiplier) in proposal.active_tangents() {
@@ -235,7 +237,7 @@ fn degenerate(state: &State, proposal: &Proposal, terms: &Vector) -> bool {
 }
 
 /// z̃ and the sum of the absolute values of its terms, from the multipliers and the subgradients as they are.
-fn aggregate(state: &State, set: &Polyhedron, proposal: &Proposal) -> (Vector, Vector) {
+fn aggregate(state: &BundleState, set: &Polyhedron, proposal: &Proposal) -> (Vector, Vector) {
     let (rows, bounds) = (&proposal.row_multipliers, &proposal.bound_multipliers);
     let mut sum = bounds + set.rows().tr_mul(rows);
     let mut terms = bounds.abs() + set.rows().abs().tr_mul(&rows.abs());

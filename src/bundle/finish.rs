@@ -8,7 +8,8 @@ use super::run::Run;
 use crate::report::{Certificate, Report, Termination};
 
 impl Run<'_, '_> {
-    /// Ends the run and returns its report; the termination is [`Termination::Unfinished`] if the run had not ended by itself.
+    /// Ends the run and returns its report; the termination is [`Termination::Unfinished`] if the run had not ended by
+    /// itself.
     pub fn finish(mut self) -> Report {
         self.end_at_lowest();
         let proof = match self.proof.take() {
@@ -32,8 +33,8 @@ impl Run<'_, '_> {
         }
     }
 
-    /// A run that ends with nothing to say about its center ends at the lowest point evaluated: a step that brings little of what the model
-    /// promised is a null step, also where it lowers Θ.
+    /// A run that ends with nothing to say about its center ends at the lowest point evaluated: a step that brings
+    /// little of what the model promised is a null step, also where it lowers Θ.
     fn end_at_lowest(&mut self) {
         let about_center = matches!(
             self.termination,
@@ -51,7 +52,8 @@ impl Run<'_, '_> {
 
     fn certificate(&mut self, proof: &Proof) -> Certificate {
         let mut certificate = proof.certificate(self.of_bundle(&proof.proposal));
-        // As a later check computes them. Where the weight is small, the step tells them less accurately than the multipliers do.
+        // As a later check computes them. Where the weight is small, the step tells them less accurately than the
+        // multipliers do.
         if let Ok(check) = certificate.recheck(&self.set) {
             (certificate.aggregate_norm, certificate.aggregate_error) = (check.aggregate_norm, check.aggregate_error);
         }

@@ -29,7 +29,8 @@ pub(crate) fn allowance(one: &Cut, other: &Cut) -> f64 {
     one.error_bound + other.error_bound + VALUE_ROUNDING * (one.value.abs() + other.value.abs())
 }
 
-/// ‖g‖* and Σ |g_i y_i| of a cut, and how far its linearization varies, with the center for which this spread was formed.
+/// ‖g‖* and Σ |g_i y_i| of a cut, and how far its linearization varies, with the center for which this spread was
+/// formed.
 #[derive(Debug, Clone)]
 struct Sizes {
     dual_length: f64,
@@ -69,7 +70,8 @@ impl Bundle {
         self.cuts.iter().find(|cut| cut.id == id)
     }
 
-    /// Whether a cut knows a point, with a promised error of at most the one given: an evaluation would tell nothing new.
+    /// Whether a cut knows a point, with a promised error of at most the one given: an evaluation would tell nothing
+    /// new.
     pub(crate) fn knows(&self, point: &Vector, largest_error: f64) -> bool {
         let known = |cut: &Cut| !cut.certified && cut.point == *point && cut.error_bound <= largest_error;
         self.cuts.iter().any(known)
@@ -109,8 +111,9 @@ impl Bundle {
         }
     }
 
-    /// Makes one more cut fit into `size` without touching the protected one. The cut idle longest leaves. Where every cut is active, the
-    /// two of smallest multipliers become one, so that the model keeps its minimiser; it is numbered by `next_id`.
+    /// Makes one more cut fit into `size` without touching the protected one. The cut idle longest leaves. Where every
+    /// cut is active, the two of smallest multipliers become one, so that the model keeps its minimiser; it is numbered
+    /// by `next_id`.
     pub(crate) fn make_room(&mut self, size: usize, protected: u64, next_id: &mut u64, norm: &ScaledNorm) {
         while self.cuts.len() >= size {
             let candidates = || self.cuts.iter().enumerate().filter(|(_, cut)| cut.id != protected);

@@ -2,7 +2,7 @@
 
 use super::builder::BundleTrust;
 use super::config::BundleTrustConfig;
-use super::state::State;
+use super::state::BundleState;
 use crate::report::Termination;
 use std::ops::ControlFlow::{self, Break, Continue};
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 const UNBOUNDED_DECREASE: f64 = 1e12;
 
 /// Ends the run once a limit of evaluations, steps or time is reached.
-pub(super) fn check(state: &State, method: &BundleTrust<'_>, seconds: f64) -> ControlFlow<Termination> {
+pub(super) fn check(state: &BundleState, method: &BundleTrust<'_>, seconds: f64) -> ControlFlow<Termination> {
     let config = &method.config;
     if state.counts.evaluations >= config.max_evaluations {
         Break(Termination::EvaluationLimit)
@@ -31,7 +31,7 @@ pub(super) fn deadline(config: &BundleTrustConfig, start: Instant) -> Option<Ins
 }
 
 /// Calls the observers, and tests the stopping rules and divergence.
-pub(super) fn after_evaluation(state: &State, method: &mut BundleTrust<'_>) -> ControlFlow<Termination> {
+pub(super) fn after_evaluation(state: &BundleState, method: &mut BundleTrust<'_>) -> ControlFlow<Termination> {
     let Some(record) = state.history.last() else { return Continue(()) };
     let mut stop = false;
     for observer in &mut method.observers {
@@ -44,8 +44,8 @@ pub(super) fn after_evaluation(state: &State, method: &mut BundleTrust<'_>) -> C
         return Break(Termination::StopRule { rule });
     }
     let slope = state.first_weight * state.first_step;
-    // Next to zero, the first step may be a rounding, beside which every decrease is large. A length of 1 costs an unbounded run some steps
-    // more and says nothing about bounded ones, whatever their units.
+    // Next to zero, the first step may be a rounding, beside which every decrease is large. A length of 1 costs an
+    // unbounded run some steps more and says nothing about bounded ones, whatever their units.
     let limit = UNBOUNDED_DECREASE * (state.start_value.abs() + slope * state.first_step.max(1.0));
     if state.start_value - state.center_value > limit {
         return Break(Termination::UnboundedBelow);

@@ -2,17 +2,18 @@
 
 use super::config::Convexity;
 use super::proposers::proposal::Proposal;
-use super::state::{NOISE_MARGIN, State};
+use super::state::{BundleState, NOISE_MARGIN};
 use crate::Evaluation;
 
-/// Only steps shorter than this share of the length scale tell noise from slope: on longer ones, unseen steep pieces pass for noise.
+/// Only steps shorter than this share of the length scale tell noise from slope: on longer ones, unseen steep pieces
+/// pass for noise.
 const NOISE_STEP: f64 = 1e-4;
 /// A change of Θ is noise if it exceeds this many times ‖d‖ times the largest ‖g‖*, promised errors and rounding aside.
 const STEEPNESS_MARGIN: f64 = 4.0;
 
-/// Takes note of an accurate value: values that jump although the points almost coincide, and cuts above the values of a convex function,
-/// are noise.
-pub(super) fn watch(state: &mut State, convexity: Convexity, proposal: &Proposal, evaluation: &Evaluation<()>) {
+/// Takes note of an accurate value: values that jump although the points almost coincide, and cuts above the values of
+/// a convex function, are noise.
+pub(super) fn watch(state: &mut BundleState, convexity: Convexity, proposal: &Proposal, evaluation: &Evaluation<()>) {
     let change = evaluation.value - state.center_value;
     let promised = evaluation.error_bound + state.center_error_bound() + state.rounding();
     if proposal.step_length <= NOISE_STEP * state.length_scale().max(state.first_step) {

@@ -15,11 +15,11 @@ use serde::{Deserialize, Serialize};
 /// Widths beyond this many times the median width count as no wider.
 const MAX_WIDTH_RATIO: f64 = 1e3;
 
-/// The norm of a run, ‖d‖² = dᵀWd, and its dual for subgradients, ‖g‖*² = gᵀW⁻¹g, with a diagonal or a dense W. Vectors have one entry
-/// per variable.
+/// The norm of a run, ‖d‖² = dᵀWd, and its dual for subgradients, ‖g‖*² = gᵀW⁻¹g, with a diagonal or a dense W. Vectors
+/// have one entry per variable.
 ///
-/// All lengths of a run are in this norm: radii, steps, the aggregate subgradient (in the dual norm), curvatures and the
-/// distances of the stopping tests.
+/// All lengths of a run are in this norm: radii, steps, the aggregate subgradient (in the dual norm), curvatures and
+/// the distances of the stopping tests.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScaledNorm(Scale);
 
@@ -49,8 +49,8 @@ impl WeightedMetric {
 }
 
 impl ScaledNorm {
-    /// The Euclidean norm.
-    pub fn euclidean(dimension: usize) -> Self {
+    /// The Euclidean norm, in which M is the identity.
+    pub(crate) fn euclidean(dimension: usize) -> Self {
         Self(Scale::Weights(Vector::from_element(dimension, 1.0)))
     }
 
@@ -201,7 +201,7 @@ impl ScaledNorm {
     }
 
     /// ‖x − y‖².
-    pub fn squared_distance(&self, x: &Vector, y: &Vector) -> f64 {
+    pub(crate) fn squared_distance(&self, x: &Vector, y: &Vector) -> f64 {
         match &self.0 {
             Scale::Weights(weights) => weighted_squared_distance(weights.as_slice(), x.as_slice(), y.as_slice()),
             Scale::Linear(_) => self.squared(&(x - y)),

@@ -1,5 +1,6 @@
-//! The one place where the user's objective is called: panics, wrong sizes and numbers that are not finite become errors. Nothing else
-//! in the engine depends on the type of the objective, so that the engine is compiled once, not once per objective.
+//! The one place where the user's objective is called: panics, wrong sizes and numbers that are not finite become
+//! errors. Nothing else in the engine depends on the type of the objective, so that the engine is compiled once, not
+//! once per objective.
 
 use super::norm::ScaledNorm;
 use crate::checks::check_size;
@@ -11,7 +12,7 @@ use crate::{Answer, Evaluation, InputError, NonsmoothObjective, OracleError, Req
 const LARGEST: f64 = 1e150;
 
 /// What an evaluation can end with.
-pub(super) enum Outcome {
+pub(super) enum OracleResult {
     Answer(Answer<()>),
     /// Θ = −∞.
     MinusInfinity,
@@ -49,7 +50,8 @@ impl<O: NonsmoothObjective> Oracle for WarmStarted<'_, O> {
         let warm_start = self.kept.as_ref();
         let request = Request { point, warm_start, accuracy, descent_target, linearization };
         let mut without = |evaluation: Evaluation<O::WarmStart>| {
-            let Evaluation { value, subgradient, error_bound, warm_start, linearization, constraints, work } = evaluation;
+            let Evaluation { value, subgradient, error_bound, warm_start, linearization, constraints, work } =
+                evaluation;
             self.last = Some(warm_start);
             Evaluation { value, subgradient, error_bound, warm_start: (), linearization, constraints, work }
         };
@@ -70,27 +72,27 @@ impl<O: NonsmoothObjective> Oracle for WarmStarted<'_, O> {
     }
 }
 
-/// Evaluates the objective; never panics. `longest` is the largest ‖g‖* that can be held beside the subgradients known, with the norm in
-/// which it is measured; none as long as none is known.
+/// Evaluates the objective; never panics. `longest` is the largest ‖g‖* that can be held beside the subgradients known,
+/// with the norm in which it is measured; none as long as none is known.
 pub(super) fn evaluate(
     oracle: &mut dyn Oracle,
     request: &Request<'_, ()>,
     constraints: usize,
     longest: Option<(f64, &ScaledNorm)>,
-) -> Outcome {
+) -> OracleResult {
     match oracle.answer(request) {
         Ok(answer) => match (check(answer, request.point.len(), constraints), longest) {
-            (Outcome::Answer(answer), Some((allowed, norm))) => {
+            (OracleResult::Answer(answer), Some((allowed, norm))) => {
                 let size = norm.dual_length(&answer.evaluation().subgradient);
                 if size <= allowed {
-                    Outcome::Answer(answer)
+                    OracleResult::Answer(answer)
                 } else {
-                    Outcome::Failure(OracleError::TooLarge { what: "subgradient", size, allowed })
+                    OracleResult::Failure(OracleError::TooLarge { what: "subgradient", size, allowed })
                 }
             }
             (outcome, _) => outcome,
         },
-        Err(error) => Outcome::Failure(error),
+        Err(error) => OracleResult::Failure(error),
     }
 }
 
@@ -98,24 +100,24 @@ fn negative(error_bound: f64) -> InputError {
     InputError::OutOfRange { setting: "error bound", value: error_bound.to_string(), allowed: "≥ 0" }
 }
 
-fn check(answer: Answer<()>, expected: usize, constraints: usize) -> Outcome {
+fn check(answer: Answer<()>, expected: usize, constraints: usize) -> OracleResult {
     let evaluation = answer.evaluation();
     let found = evaluation.subgradient.len();
     if expected != found {
-        return Outcome::Failure(InputError::Dimension { what: "subgradient", expected, found }.into());
+        return OracleResult::Failure(InputError::Dimension { what: "subgradient", expected, found }.into());
     }
     if evaluation.value == f64::NEG_INFINITY {
-        return Outcome::MinusInfinity;
+        return OracleResult::MinusInfinity;
     }
     if let Some(linearization) = evaluation.linearization.known()
         && let Err(error) = linearization.check(expected)
     {
-        return Outcome::Failure(error.into());
+        return OracleResult::Failure(error.into());
     }
     if let Some(found) = &evaluation.constraints
         && let Err(error) = check_size("the vector of constraints", constraints, found.values.len())
     {
-        return Outcome::Failure(OracleError::Contradiction(error));
+        return OracleResult::Failure(OracleError::Contradiction(error));
     }
     let failure = match &evaluation.constraints {
         Some(found) => found.check(expected).err(),
@@ -125,7 +127,7 @@ fn check(answer: Answer<()>, expected: usize, constraints: usize) -> Outcome {
         None => None,
     };
     if let Some(error) = failure {
-        return Outcome::Failure(error.into());
+        return OracleResult::Failure(error.into());
     }
     let finite = |what, finite: bool| if finite { None } else { Some(OracleError::NotFinite { what }) };
     let failure = finite("value", evaluation.value.is_finite())
@@ -137,7 +139,7 @@ fn check(answer: Answer<()>, expected: usize, constraints: usize) -> Outcome {
         .or_else(|| small("value", evaluation.value.abs()))
         .or_else(|| small("subgradient", evaluation.subgradient.amax()));
     match failure {
-        Some(error) => Outcome::Failure(error),
-        None => Outcome::Answer(answer),
+        Some(error) => OracleResult::Failure(error),
+        None => OracleResult::Answer(answer),
     }
 }

@@ -1,7 +1,7 @@
 //! The record of an evaluation.
 
 use super::proposers::proposal::Proposal;
-use super::state::State;
+use super::state::BundleState;
 use crate::Accuracy;
 use crate::report::{IterationRecord, Noted, Origin, StepKind};
 use std::time::Instant;
@@ -19,7 +19,7 @@ pub(super) struct Event {
 }
 
 /// Counts an evaluation and adds its record to the history.
-pub(super) fn record(state: &mut State, proposal: &Proposal, accuracy: Accuracy, event: Event, clock: Instant) {
+pub(super) fn record(state: &mut BundleState, proposal: &Proposal, accuracy: Accuracy, event: Event, clock: Instant) {
     let Event { kind, value, failure, noted, work } = event;
     let origin = if kind == StepKind::Refinement { Origin::Given } else { proposal.origin };
     state.counts.add(kind, origin);

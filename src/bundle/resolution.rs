@@ -2,9 +2,10 @@
 
 use super::config::{AccuracyPolicy, BundleTrustConfig};
 use super::cut::Cut;
-use super::state::State;
+use super::state::BundleState;
 
-/// Noise, or an error, below this share of the wanted decrease does not matter. A larger share calls small noise by its name and ends runs earlier.
+/// Noise, or an error, below this share of the wanted decrease does not matter. A larger share calls small noise by its
+/// name and ends runs earlier.
 const NEGLIGIBLE_SHARE: f64 = 1e-3;
 /// Noise explains decreases up to this many times the noise of two values.
 const MAX_NOISY_DECREASES: f64 = 4.0;
@@ -21,7 +22,7 @@ pub(crate) struct Resolution {
 }
 
 impl Resolution {
-    pub(crate) fn new(state: &State, config: &BundleTrustConfig) -> Self {
+    pub(crate) fn new(state: &BundleState, config: &BundleTrustConfig) -> Self {
         Self {
             wanted: config.tolerance * state.natural_scale(config),
             rounding: state.rounding(),
@@ -55,7 +56,7 @@ impl Resolution {
     }
 }
 
-fn noise_level(state: &State, config: &BundleTrustConfig) -> f64 {
+fn noise_level(state: &BundleState, config: &BundleTrustConfig) -> f64 {
     let center = state.center_error_bound();
     let promised = match config.accuracy {
         AccuracyPolicy::Tightest => {

@@ -2,14 +2,14 @@
 
 use super::builder::BundleTrust;
 use super::constrained::WorkingSet;
-use super::oracle::{Oracle, Outcome, evaluate};
+use super::oracle::{Oracle, OracleResult, evaluate};
 use super::proof::{Ending, Proof};
 use super::proposers::list::Proposers;
 use super::proposers::proposal::Proposal;
 use super::proposers::proposer::{Answer as Proposed, Position};
 use super::record::{Event, record};
 use super::resolution::Resolution;
-use super::state::State;
+use super::state::BundleState;
 use super::trial::{Trial, descent_target};
 use super::{demand, limits, noise, verdict};
 use crate::composite::{Linearization, LinearizationRequest, Linearized, OuterFunction};
@@ -17,8 +17,8 @@ use crate::interruption::until;
 use crate::qp::EpigraphQpSolver;
 use crate::report::{IterationRecord, Noted, Origin, StepKind, Termination};
 use crate::{Accuracy, Answer, OracleError, Polyhedron, Request, Vector};
-use std::rc::Rc;
 use std::ops::ControlFlow::{self, Break, Continue};
+use std::rc::Rc;
 use std::time::Instant;
 
 /// Failures end the run only where the oracle fails next to the center: within this share of the length scale.
@@ -47,7 +47,7 @@ pub struct Run<'r, 'o> {
     pub(super) set: Polyhedron,
     /// The set of the subproblems where there are nonlinear constraints, with the center and the linearizations that it belongs to.
     pub(super) working: Option<((u64, u64), Rc<WorkingSet>)>,
-    pub(super) state: State,
+    pub(super) state: BundleState,
     pub(super) solver: EpigraphQpSolver,
     pub(super) proposers: Proposers,
     pub(super) termination: Option<Termination>,
@@ -57,8 +57,8 @@ pub struct Run<'r, 'o> {
 }
 
 impl Run<'_, '_> {
-    /// One step with at most one evaluation: of a trial point, or of the center once more where its accuracy no longer suffices.
-    /// `Break` when the run has ended; further calls repeat the reason.
+    /// One step with at most one evaluation: of a trial point, or of the center once more where its accuracy no longer
+    /// suffices. `Break` when the run has ended; further calls repeat the reason.
     pub fn step(&mut self) -> ControlFlow<Termination> {
         if let Some(termination) = &self.termination {
             return Break(termination.clone());
@@ -69,7 +69,7 @@ impl Run<'_, '_> {
         Break(termination)
     }
 
-    /// The whole method.
+    /// One round of the method: a trial point and its evaluation, or the end of the run.
     fn advance(&mut self) -> ControlFlow<Ending> {
         self.state.counts.iterations += 1;
         if let Break(limit) = limits::check(&self.state, self.method, self.seconds()) {
@@ -95,10 +95,10 @@ impl Run<'_, '_> {
         let everywhere = proposal.origin == Origin::CompositeModel || self.state.constraints.is_some();
         let below = if everywhere { f64::INFINITY } else { target };
         match self.evaluate(&proposal.trial, accuracy, Some(target), below) {
-            Outcome::MinusInfinity => return Break(Termination::UnboundedBelow.into()),
-            Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
-            Outcome::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
-            Outcome::Answer(answer) => self.accept_or_reject(&proposal, accuracy, answer),
+            OracleResult::MinusInfinity => return Break(Termination::UnboundedBelow.into()),
+            OracleResult::Failure(OracleError::Interrupted) => return self.interrupted(),
+            OracleResult::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
+            OracleResult::Answer(answer) => self.accept_or_reject(&proposal, accuracy, answer),
         }
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
     }
@@ -145,7 +145,8 @@ impl Run<'_, '_> {
             Some((known, working)) if *known == wanted => Some(Rc::clone(working)),
             _ => {
                 let (center, norm) = (&self.state.center, &self.state.norm);
-                let working = WorkingSet::new(&self.set, constraints, center, (norm, negligible, reach), &mut self.solver);
+                let working =
+                    WorkingSet::new(&self.set, constraints, center, (norm, negligible, reach), &mut self.solver);
                 let working = Rc::new(working);
                 self.working = Some((wanted, Rc::clone(&working)));
                 Some(working)
@@ -186,8 +187,9 @@ impl Run<'_, '_> {
         standing.unwrap_or(Ending { termination, proof: None })
     }
 
-    /// Changes the step to a known point without an evaluation. The run ends where the weight cannot change any more, or does not lead away:
-    /// values and subgradients contradict each other, since the cuts of exact ones would predict what is known.
+    /// Changes the step to a known point without an evaluation. The run ends where the weight cannot change any more,
+    /// or does not lead away: values and subgradients contradict each other, since the cuts of exact ones would predict
+    /// what is known.
     fn leave_known_point(&mut self, proposal: Proposal) -> ControlFlow<Ending> {
         let before = self.state.weight;
         self.state.known_trials += 1;
@@ -200,7 +202,7 @@ impl Run<'_, '_> {
     }
 
     /// Evaluates Θ, with a descent target if there is one; `below` is the value of Θ up to which a Jacobian is wanted.
-    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> Outcome {
+    fn evaluate(&mut self, point: &Vector, accuracy: Accuracy, target: Option<f64>, below: f64) -> OracleResult {
         self.state.counts.evaluations += 1;
         self.state.known_trials = 0;
         let linearization = self.outer.map(|_| LinearizationRequest::below(below));
@@ -260,7 +262,7 @@ impl Run<'_, '_> {
         let mut event =
             Event { kind: StepKind::Refinement, value: None, failure: None, noted: Noted::Nothing, work: 0 };
         match self.evaluate(&center, accuracy, None, f64::INFINITY) {
-            Outcome::Answer(Answer::Accurate(mut evaluation)) => {
+            OracleResult::Answer(Answer::Accurate(mut evaluation)) => {
                 let old = self.state.center_id;
                 (event.value, event.work) = (Some(evaluation.value), evaluation.work);
                 let (known, noted) = self.take_linearization(std::mem::take(&mut evaluation.linearization));
@@ -271,8 +273,8 @@ impl Run<'_, '_> {
                 self.state.bundle.retain(|cut| cut.id != old);
                 self.ask(|proposers, at| proposers.recenter(at, known.as_ref()));
             }
-            Outcome::Failure(OracleError::Interrupted) => return self.interrupted(),
-            Outcome::Failure(error) => {
+            OracleResult::Failure(OracleError::Interrupted) => return self.interrupted(),
+            OracleResult::Failure(error) => {
                 event.failure = Some(error.to_string());
                 contradiction = refuse_contradiction(&error);
             }
@@ -283,8 +285,9 @@ impl Run<'_, '_> {
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
     }
 
-    /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Proposers that fail pause, so
-    /// that after repeated failures the steps of the plain cuts tell whether the oracle fails next to the center.
+    /// Takes a failed evaluation, which gives no cut: the proposer of the point shortens its next step. Proposers that
+    /// fail pause, so that after repeated failures the steps of the plain cuts tell whether the oracle fails next to
+    /// the center.
     fn shorten(&mut self, proposal: &Proposal, accuracy: Accuracy, error: &OracleError) -> ControlFlow<Ending> {
         let state = &mut self.state;
         state.failures += 1;

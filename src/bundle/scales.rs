@@ -8,14 +8,14 @@
 //! scale     = |Θ(x̂)| clamped to [1e-6 least, variation], or to [1e-7 least, variation] for a Θ declared convex
 //! least     = min( highest − Θ(x̂),  max( Σ_j λ_j Σ_i |g_ji| reach_i,  h(c ± |G| reach) − h(c) of a composite Θ ) )
 //! ```
-//! Here `highest` is the highest value at the start and in the bundle. Decreases and sums do not change if Θ is shifted, and the sums
-//! do not depend on the units of the variables. Cuts farther away than the variables are large tell nothing about the
-//! values near x̂. A run that has not gone anywhere has seen no variation, unless
-//! outputs tell it: nothing is small yet.
+//! Here `highest` is the highest value at the start and in the bundle. Decreases and sums do not change if Θ is
+//! shifted, and the sums do not depend on the units of the variables. Cuts farther away than the variables are large
+//! tell nothing about the values near x̂. A run that has not gone anywhere has seen no variation, unless outputs tell
+//! it: nothing is small yet.
 
 use super::config::{BundleTrustConfig, Convexity};
 use super::kept_cuts::Spread;
-use super::state::{Lengths, OutputScales, State};
+use super::state::{BundleState, Lengths, OutputScales};
 use crate::Vector;
 use crate::linalg::upper_median;
 use crate::qp::kernels::{dot_terms, two_dot_terms};
@@ -25,16 +25,17 @@ use std::rc::Rc;
 const LEAST_SHARE: f64 = 1e-8;
 /// The least scale of Θ, as a share of what the active cuts vary within reach.
 const LEAST_VALUE_SHARE: f64 = 1e-6;
-/// The same for a Θ that is declared convex. Its word is a bound, which is that much sharper: after starts 1e6 times too far, bounds of 2e-5
-/// counted as small.
+/// The least scale of a Θ that is declared convex, as a share of what the active cuts vary within reach. A termination
+/// of a convex Θ rests on a bound, which needs a smaller share: with 1e-6, bounds of 2e-5 counted as small after starts
+/// 1e6 times too far.
 const LEAST_CONVEX_SHARE: f64 = 1e-7;
 /// Values beyond this many times their variation carry a shift.
 const MAX_VALUE_SHARE: f64 = 10.0;
-/// Where values carry a shift, the variation alone tells the scale, and only this share of it counts: without a shift the values
-/// near a minimum are that much smaller than the terms of their linearizations.
+/// Where values carry a shift, the variation alone tells the scale, and only this share of it counts: without a shift
+/// the values near a minimum are that much smaller than the terms of their linearizations.
 const SHIFTED_SHARE: f64 = 0.02;
 
-impl State {
+impl BundleState {
     /// How far a variable lies from zero or from its start, whichever is more.
     pub(crate) fn reach(&self, i: usize) -> f64 {
         self.center[i].abs().max((self.center[i] - self.start[i]).abs())

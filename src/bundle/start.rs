@@ -7,19 +7,20 @@ use super::cut::Cut;
 use super::kept_cuts::Bundle;
 use super::limits;
 use super::norm::ScaledNorm;
-use super::oracle::{Oracle, Outcome, WarmStarted, evaluate};
+use super::oracle::{Oracle, OracleResult, WarmStarted, evaluate};
 use super::proposers::list::Proposers;
 use super::proposers::proposal::FEASIBILITY;
 use super::run::Run;
 use super::seen::Seen;
-use super::state::State;
+use super::state::BundleState;
 use super::verdict;
 use crate::checks::check_size;
 use crate::composite::{LinearizationRequest, Linearized, OuterFunction};
 use crate::qp::{EpigraphQpSolver, QpError, is_only_point, project};
 use crate::report::{Counts, IterationRecord, Origin, Report, StepKind};
 use crate::{
-    Accuracy, ConstraintKind, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron, Request, Vector,
+    Accuracy, ConstraintKind, Evaluation, InputError, NonsmoothObjective, OptimizeError, OracleError, Polyhedron,
+    Request, Vector,
 };
 use std::cell::RefCell;
 use std::ops::ControlFlow::Break;
@@ -44,8 +45,8 @@ impl<'o> BundleTrust<'o> {
     /// Projects the start on the admissible set and evaluates it.
     ///
     /// # Errors
-    /// [`OptimizeError::Input`] on sizes and numbers, [`OptimizeError::Infeasible`] if the set is empty or the start cannot be
-    /// projected on it, [`OptimizeError::Oracle`] if the first evaluation fails or gives −∞.
+    /// [`OptimizeError::Input`] on sizes and numbers, [`OptimizeError::Infeasible`] if the set is empty or the start
+    /// cannot be projected on it, [`OptimizeError::Oracle`] if the first evaluation fails or gives −∞.
     pub fn start<'r, O: NonsmoothObjective>(
         &'r mut self,
         objective: &'r O,
@@ -67,7 +68,8 @@ impl<'o> BundleTrust<'o> {
         let set = self.constraints.clone().unwrap_or_else(|| Polyhedron::unbounded(dimension));
         let start = admissible_start(&set, dimension, x0)?;
         let outer = outer.filter(|_| self.config.composite_model);
-        let (state, linearization) = first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, &set, start)?;
+        let (state, linearization) =
+            first_evaluation(oracle.as_mut(), (outer.is_some(), kinds), &self.config, &set, start)?;
         oracle.keep_warm_start();
         let proposers = Proposers::new(outer.is_some(), dimension, state.first_weight);
         let mut run = Run {
@@ -117,7 +119,7 @@ fn admissible_start(set: &Polyhedron, dimension: usize, x0: Vector) -> Result<Ve
 }
 
 /// The state after the first evaluation, and what that said about outputs and Jacobian.
-type FirstEvaluation = (State, Linearized);
+type FirstEvaluation = (BundleState, Linearized);
 
 /// Evaluates the start and sets up the state.
 fn first_evaluation(
@@ -135,9 +137,9 @@ fn first_evaluation(
     let wanted = structured.then(|| LinearizationRequest::below(f64::INFINITY));
     let request = Request { linearization: wanted, accuracy, ..Request::tight(&start) };
     let evaluation = match evaluate(oracle, &request, kinds.len(), None) {
-        Outcome::Answer(answer) => answer.into_evaluation(),
-        Outcome::MinusInfinity => return Err(OptimizeError::Oracle(OracleError::NotFinite { what: "value" })),
-        Outcome::Failure(error) => return Err(OptimizeError::Oracle(error)),
+        OracleResult::Answer(answer) => answer.into_evaluation(),
+        OracleResult::MinusInfinity => return Err(OptimizeError::Oracle(OracleError::NotFinite { what: "value" })),
+        OracleResult::Failure(error) => return Err(OptimizeError::Oracle(error)),
     };
     let Evaluation { value, subgradient, error_bound, linearization, constraints, work, .. } = evaluation;
     let slope = norm.dual_length(&subgradient);
@@ -149,7 +151,7 @@ fn first_evaluation(
     let seen = Seen::new(&start, value, &subgradient);
     let cut =
         Cut { id: 1, point, radius: 0.0, value, subgradient, error_bound, certified: false, multiplier: 0.0, idle: 0 };
-    let mut state = State {
+    let mut state = BundleState {
         norm,
         start: start.clone(),
         start_value: value,
@@ -183,9 +185,9 @@ fn first_evaluation(
     Ok((state, linearization))
 }
 
-/// A first step length that follows the units of variables and values: the length of the start, or where this is zero the distance at
-/// which a linear Θ would vanish; 1 where both are zero. A length below a small share of this distance is a rounding of zero, and the
-/// share takes its place.
+/// A first step length that follows the units of variables and values: the length of the start, or where this is zero
+/// the distance at which a linear Θ would vanish; 1 where both are zero. A length below a small share of this distance
+/// is a rounding of zero, and the share takes its place.
 fn natural_step(size: f64, value: f64, slope: f64) -> f64 {
     let vanishing = if slope > 0.0 { value.abs() / slope } else { 0.0 };
     if size > 0.0 {
@@ -197,7 +199,7 @@ fn natural_step(size: f64, value: f64, slope: f64) -> f64 {
     }
 }
 
-fn first_record(state: &State, set: &Polyhedron, slope: f64, work: usize) -> IterationRecord {
+fn first_record(state: &BundleState, set: &Polyhedron, slope: f64, work: usize) -> IterationRecord {
     IterationRecord {
         evaluation: 1,
         kind: StepKind::Start,

@@ -10,7 +10,8 @@ use crate::{Accuracy, BundleTrustConfig, Evaluation, Vector};
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Promised errors and rounding explain a change of Θ, or a cut above a convex Θ, up to this many times their sum; more is noise.
+/// Promised errors and rounding explain a change of Θ, or a cut above a convex Θ, up to this many times their sum; more
+/// is noise.
 pub(crate) const NOISE_MARGIN: f64 = 8.0;
 
 /// Range of the weight around its first value; good steps lower the floor further.
@@ -18,8 +19,8 @@ const WEIGHT_RANGE: f64 = 1e10;
 /// The floor of the weight never falls below this: a weight of zero gives no step.
 pub(crate) const LEAST_WEIGHT: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
-/// Cuts in the bundle beyond the number of variables, unless `bundle_size` is set. With 8 or 50 of them, the collection takes 6 % more
-/// evaluations.
+/// Cuts in the bundle beyond the number of variables, unless `bundle_size` is set. With 8 or 50 of them, the collection
+/// takes 6 % more evaluations.
 const EXTRA_CUTS: usize = 15;
 /// Largest number of cuts, unless `bundle_size` is set: it bounds memory and time of a subproblem.
 const MAX_CUTS: usize = 500;
@@ -42,9 +43,9 @@ pub(crate) struct OutputScales {
     pub within_reach: f64,
 }
 
-/// State of a run between two steps. The weight is u = 1/t of the trust parameter t.
+/// BundleState of a run between two steps. The weight is u = 1/t of the trust parameter t.
 #[derive(Debug, Clone)]
-pub(crate) struct State {
+pub(crate) struct BundleState {
     pub norm: ScaledNorm,
     pub start: Vector,
     pub start_value: f64,
@@ -59,11 +60,12 @@ pub(crate) struct State {
     pub next_id: u64,
     pub weight: f64,
     pub first_weight: f64,
-    /// What is left of the floor of the weight: beside a pole, the first subgradient can be 1e16 times as long as those at the minimum.
+    /// What is left of the floor of the weight: beside a pole, the first subgradient can be 1e16 times as long as those
+    /// at the minimum.
     pub floor_share: f64,
     pub first_step: f64,
-    /// Serious steps in a row (> 0), or minus the null steps in a row (< 0), of the plain cuts, counted from the one that last changed
-    /// the weight.
+    /// Serious steps in a row (> 0), or minus the null steps in a row (< 0), of the plain cuts, counted from the one
+    /// that last changed the weight.
     pub streak: i64,
     /// ε_v, an estimate of how far the model varies; none means unlimited.
     pub variation: Option<f64>,
@@ -89,9 +91,9 @@ pub(crate) struct State {
     pub lengths: RefCell<Option<(u64, Rc<Lengths>)>>,
 }
 
-impl State {
-    /// The size of Θ beside which linearization errors count as rounding: |Θ(x̂)|, but at least 1e-5 of the decrease so far. The stopping
-    /// tests refer to `natural_scale` instead.
+impl BundleState {
+    /// The size of Θ beside which linearization errors count as rounding: |Θ(x̂)|, but at least 1e-5 of the decrease so
+    /// far. The stopping tests refer to `natural_scale` instead.
     pub(crate) fn value_scale(&self, config: &BundleTrustConfig) -> f64 {
         let automatic = || self.center_value.abs().max(1e-5 * (self.start_value - self.center_value).abs());
         config.objective_scale.unwrap_or_else(automatic)
@@ -110,8 +112,8 @@ impl State {
         self.norm.length(&self.center).max(travelled).max(self.norm.length(&self.start))
     }
 
-    /// Linearization errors of all cuts at the center and their squared distances from it, in their order. `center` is the position
-    /// of the center's cut.
+    /// Linearization errors of all cuts at the center and their squared distances from it, in their order. `center` is
+    /// the position of the center's cut.
     pub(crate) fn errors_at_center(&self, center: usize) -> (Vec<f64>, Vec<f64>) {
         let pairs = self.bundle.pairs();
         let error = |i: usize| {
@@ -126,8 +128,8 @@ impl State {
         self.bundle.cut(self.center_id).map_or(0.0, |cut| cut.error_bound)
     }
 
-    /// Least and largest weight. The least one falls as the run comes to lengths beyond that of its first step, which is arbitrary where
-    /// it starts at zero.
+    /// Least and largest weight. The least one falls as the run comes to lengths beyond that of its first step, which
+    /// is arbitrary where it starts at zero.
     pub(crate) fn weight_limits(&self) -> (f64, f64) {
         let share = self.first_step / self.first_step.max(self.length_scale());
         let floor = self.floor_share * share * self.first_weight / WEIGHT_RANGE;

@@ -1,7 +1,7 @@
-//! Judging a trial point: serious or null step.
+//! Classifies an evaluated trial point as a serious or a null step.
 
 use super::proposers::proposal::{Proposal, SERIOUS_FRACTION};
-use super::state::State;
+use super::state::BundleState;
 use crate::composite::Linearization;
 use crate::{ConstraintEvaluation, Evaluation, Vector};
 
@@ -23,7 +23,7 @@ pub(crate) struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     pub(super) fn new(
-        state: &State,
+        state: &BundleState,
         proposal: &'a Proposal,
         (evaluation, accurate): (&'a Evaluation<()>, bool),
         linearization: Option<&'a Linearization>,
@@ -34,12 +34,20 @@ impl<'a> Trial<'a> {
             comparison.change += constraints.penalty * change;
         }
         let serious = accurate && comparison.is_serious();
-        Self { proposal, comparison, value: evaluation.value, accurate, serious, linearization, constraints: evaluation.constraints.as_ref() }
+        Self {
+            proposal,
+            comparison,
+            value: evaluation.value,
+            accurate,
+            serious,
+            linearization,
+            constraints: evaluation.constraints.as_ref(),
+        }
     }
 }
 
 /// The value below which a trial point is a serious step.
-pub(super) fn descent_target(state: &State, proposal: &Proposal) -> f64 {
+pub(super) fn descent_target(state: &BundleState, proposal: &Proposal) -> f64 {
     state.merit() - SERIOUS_FRACTION * proposal.predicted_decrease
 }
 
@@ -57,7 +65,7 @@ pub(crate) struct Comparison {
 }
 
 impl Comparison {
-    pub(crate) fn new(state: &State, proposal: &Proposal, value: f64, subgradient: &Vector) -> Self {
+    pub(crate) fn new(state: &BundleState, proposal: &Proposal, value: f64, subgradient: &Vector) -> Self {
         Self {
             change: value - state.center_value,
             objective_change: value - state.center_value,
@@ -66,8 +74,8 @@ impl Comparison {
         }
     }
 
-    /// Test SS(i) of \[SchrammZowe1992\]: Θ has fallen by enough of the predicted decrease. The values themselves must fall, because a
-    /// predicted decrease can be so small that no change at all would be enough.
+    /// Test SS(i) of \[SchrammZowe1992\]: Θ has fallen by enough of the predicted decrease. The values themselves must
+    /// fall, because a predicted decrease can be so small that no change at all would be enough.
     fn is_serious(&self) -> bool {
         self.change < 0.0 && self.change <= SERIOUS_FRACTION * self.model_change
     }

@@ -6,7 +6,8 @@
 //! remaining    ẽ + Σ |z̃_i| reach_i small beside the wanted decrease, active cuts near, or Θ declared convex          confirmed
 //! noise        noise or rounding hides what remains                                              noise limit
 //! ```
-//! A small aggregate error alone proves nothing, nor does a small predicted decrease: both are small for a variable whose unit hides it.
+//! A small aggregate error alone proves nothing, nor does a small predicted decrease: both are small for a variable
+//! whose unit hides it.
 
 use super::config::Convexity;
 use super::evidence::Evidence;
@@ -15,16 +16,16 @@ use super::proposers::proposer::Position;
 use super::resolution::Resolution;
 use crate::report::Termination;
 
-/// What may be left within reach at a confirmed end, in wanted decreases: a decrease that is small at a step of a hundredth of the variables
-/// is at most 100 times as large within reach. With 10, smooth minima end unconfirmed.
+/// What may be left within reach at a confirmed end, in wanted decreases: a decrease that is small at a step of a
+/// hundredth of the variables is at most 100 times as large within reach. With 10, smooth minima end unconfirmed.
 const MAX_REMAINING_DECREASES: f64 = 100.0;
 
-/// The slopes next to a center may lead as far down, over the reach of the variables, as this share of Θ and of the decrease of the run: the
-/// curvature of Θ bounds what is left. Valleys that are flat over large distances leave more.
+/// The slopes next to a center may lead as far down, over the reach of the variables, as this share of Θ and of the
+/// decrease of the run: the curvature of Θ bounds what is left. Valleys that are flat over large distances leave more.
 const MAX_SLOPE_SHARE: f64 = 1e-3;
 
-/// Where subgradients cancel next to a center, rounding may be this share of what cancels within reach: curved valleys whose curvature rounding
-/// hides look like kinks from 1e-9 on.
+/// Where subgradients cancel next to a center, rounding may be this share of what cancels within reach: curved valleys
+/// whose curvature rounding hides look like kinks from 1e-9 on.
 const MAX_ROUNDING_SHARE: f64 = 1e-11;
 
 /// What the evidence at a center amounts to.
@@ -37,7 +38,7 @@ pub(crate) enum Verdict {
     Open,
 }
 
-/// Judges the evidence that a subproblem gives.
+/// Classifies the evidence that a subproblem gives.
 pub(crate) fn verdict(at: &Position<'_>, evidence: &Evidence) -> Verdict {
     match judged(at, evidence) {
         Verdict::End(termination) if termination.is_confirmed() && evidence.degenerate => {
@@ -89,13 +90,14 @@ fn judged(at: &Position<'_>, evidence: &Evidence) -> Verdict {
 pub(crate) enum Near {
     /// They promise as little.
     Confirmed,
-    /// They promise more, although their subgradients nearly cancel: only the curvature of Θ, which they do not show, bounds what is left.
+    /// They promise more, although their subgradients nearly cancel: only the curvature of Θ, which they do not show,
+    /// bounds what is left.
     Falls,
     /// Their subgradients do not cancel.
     Open,
 }
 
-/// Judges the cuts next to a center by their subproblem at the weight of the run.
+/// Classifies the cuts next to a center by their subproblem at the weight of the run.
 pub(crate) fn near_verdict(
     at: &Position<'_>,
     resolution: &Resolution,
@@ -129,12 +131,14 @@ pub(crate) fn confirmed(near: &Evidence) -> Termination {
     Termination::Stationary { radius: near.radius, gap: None }
 }
 
-/// The distance, in units of Θ, up to which a cut lies next to the center: Θ varies by no more in between than what may be left.
+/// The distance, in units of Θ, up to which a cut lies next to the center: Θ varies by no more in between than what may
+/// be left.
 pub(crate) fn near(resolution: &Resolution) -> f64 {
     10.0 * resolution.small()
 }
 
-/// What may be left within reach, what rounding hides included. Where Θ is declared convex, it is a bound, and five wanted decreases.
+/// What may be left within reach, what rounding hides included. Where Θ is declared convex, it is a bound, and five
+/// wanted decreases.
 pub(crate) fn allowed(resolution: &Resolution, convex: bool) -> f64 {
     let decreases = if convex { 5.0 } else { MAX_REMAINING_DECREASES };
     decreases * resolution.wanted + resolution.rounding

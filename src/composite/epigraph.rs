@@ -22,7 +22,8 @@ pub enum Epigraph {
 }
 
 impl Epigraph {
-    /// h*(w) = sup ⟨w, c⟩ − h(c) over c, in units of h, for w with one entry per output; ∞ where w is no subgradient of h anywhere.
+    /// h*(w) = sup ⟨w, c⟩ − h(c) over c, in units of h, for w with one entry per output; ∞ where w is no subgradient of
+    /// h anywhere.
     pub fn conjugate(&self, weights: &Vector) -> f64 {
         match *self {
             Self::EuclideanNorm if weights.norm() <= unit(weights.len()) => 0.0,

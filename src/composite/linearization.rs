@@ -36,8 +36,8 @@ pub struct Linearization {
     pub inactive: Option<InactiveConstraints>,
 }
 
-/// Slacks of constraints that change the piece of c when they become active: gaps of open contact nodes, for example. The
-/// engine uses them once it has found a stationary point, to look at the neighbouring piece.
+/// Slacks of constraints that change the piece of c when they become active: gaps of open contact nodes, for example.
+/// The engine uses them once it has found a stationary point, to look at the neighbouring piece.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InactiveConstraints {
     /// Slacks s > 0, k entries, each in a unit of its own.
@@ -52,7 +52,7 @@ pub enum Linearized {
     /// Nothing: the request did not ask for them, or asked only where Θ is lower.
     #[default]
     NotAsked,
-    /// Both are known.
+    /// Outputs and Jacobian are known.
     Known(Linearization),
     /// The reason why they cannot be had, which costs the run nothing but its composite model.
     Unavailable(String),
@@ -90,8 +90,8 @@ impl Linearization {
         check_finite("Jacobian of the slacks", inactive.jacobian.as_slice())
     }
 
-    /// Changes G by a matrix of rank one so that Gᵀw, for weights w of m entries, equals a subgradient of n entries that is known to
-    /// be more accurate. G stays where w = 0.
+    /// Changes G by a matrix of rank one so that Gᵀw, for weights w of m entries, equals a subgradient of n entries
+    /// that is known to be more accurate. G stays where w = 0.
     pub fn correct(&mut self, weights: &Vector, subgradient: &Vector) {
         let size = weights.norm_squared();
         if size > 0.0 && size.is_finite() {

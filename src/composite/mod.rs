@@ -4,13 +4,14 @@
 //! Θ(x) = h(c(x)),   c: Rⁿ → Rᵐ piecewise smooth with G ∈ ∂c(x),   h: Rᵐ → R convex and known,   Gᵀw ∈ ∂Θ(x) for w ∈ ∂h(c)
 //! model at x:   d ↦ h(c + G d)                                             exact in h, linear in c
 //! ```
-//! A cut knows one direction of Θ; the composite model knows all of them at once, and the curvature of h. Where c is smooth, a dozen
-//! evaluations do what takes hundreds by cuts, and the run ends confirmed. On kinks of c the cuts take over.
-//! Implement [`OuterFunction`] (or take [`Maximum`], [`SumOfPowers`], [`PositiveParts`], [`EuclideanNorm`], [`GroupNorms`],
-//! [`FnOuter`], and [`SmoothPlus`] for their sum with a smooth function), and either give outputs and Jacobian as a closure ([`CompositeFunction`](crate::CompositeFunction)) or as outputs of a state
-//! ([`OutputJacobian`](crate::OutputJacobian), [`CompositeObjective`](crate::CompositeObjective)).
-//! References: \[Fletcher1982\], \[LewisWright2016\] (proximal method for composite minimization), \[Sagastizabal2013\]
-//! (composite bundle method).
+//! A cut knows one direction of Θ; the composite model knows all of them at once, and the curvature of h. Where c is
+//! smooth, a dozen evaluations do what takes hundreds by cuts, and the run ends confirmed. On kinks of c the cuts take
+//! over. Implement [`OuterFunction`] (or take [`Maximum`], [`SumOfPowers`], [`PositiveParts`], [`EuclideanNorm`],
+//! [`GroupNorms`], [`FnOuter`], and [`SmoothPlus`] for their sum with a smooth function), and either give outputs and
+//! Jacobian as a closure ([`CompositeFunction`](crate::CompositeFunction)) or as outputs of a state
+//! ([`OutputJacobian`](crate::OutputJacobian), [`CompositeObjective`](crate::CompositeObjective)). References:
+//! \[Fletcher1982\], \[LewisWright2016\] (proximal method for composite minimization), \[Sagastizabal2013\] (composite
+//! bundle method).
 
 mod epigraph;
 mod linearization;

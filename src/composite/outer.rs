@@ -11,20 +11,22 @@ pub trait OuterFunction {
     /// One w ∈ ∂h(c), m entries.
     fn subgradient(&self, outputs: &Vector) -> Vector;
 
-    /// Gᵀ∇²h(c) G, n × n, for G of shape m × n, if h is smooth: the subproblem is then solved by Newton's method. None (the default):
-    /// h may have kinks, and the subproblem is solved by cuts of h. The answer must not be a matrix for some outputs and none for others.
+    /// Gᵀ∇²h(c) G, n × n, for G of shape m × n, if h is smooth: the subproblem is then solved by Newton's method. None
+    /// (the default): h may have kinks, and the subproblem is solved by cuts of h. The answer must not be a matrix for
+    /// some outputs and none for others.
     fn curvature(&self, _outputs: &Vector, _jacobian: &Matrix) -> Option<Matrix> {
         None
     }
 
-    /// The cones that the epigraph of h is built from, if there are any: where h has no curvature, the subproblem is then solved by an
-    /// interior-point method (feature `interior-point`; by cuts without it), and errors of subgradients are taken from the conjugate h*.
+    /// The cones that the epigraph of h is built from, if there are any: where h has no curvature, the subproblem is
+    /// then solved by an interior-point method (feature `interior-point`; by cuts without it), and errors of
+    /// subgradients are taken from the conjugate h*.
     fn epigraph(&self) -> Option<Epigraph> {
         None
     }
 
-    /// Whether h(t c) = t h(c) for all t > 0, as for maxima and norms; false by default. A subgradient at outputs far away then says as much
-    /// about h here as if it had been taken nearby, without the rounding of large numbers.
+    /// Whether h(t c) = t h(c) for all t > 0, as for maxima and norms; false by default. A subgradient at outputs far
+    /// away then says as much about h here as if it had been taken nearby, without the rounding of large numbers.
     fn is_homogeneous(&self) -> bool {
         false
     }
@@ -156,7 +158,8 @@ impl OuterFunction for PositiveParts {
 /// h(c) = Σ |c_g|₂ over consecutive groups c_g of outputs: penalties that let whole groups vanish.
 #[derive(Debug, Clone, Default)]
 pub struct GroupNorms {
-    /// Numbers of outputs in the groups, with the number of all outputs as their sum; for any other number of outputs h is NaN.
+    /// Numbers of outputs in the groups, with the number of all outputs as their sum; for any other number of outputs h
+    /// is NaN.
     pub sizes: Vec<usize>,
 }
 
@@ -202,7 +205,8 @@ impl OuterFunction for GroupNorms {
     }
 }
 
-/// A closure `c ↦ (h(c), one subgradient)` as an outer function without a curvature: its subproblems are solved by cuts of h.
+/// A closure `c ↦ (h(c), one subgradient)` as an outer function without a curvature: its subproblems are solved by cuts
+/// of h.
 ///
 /// ```
 /// use nonsmooth::{Vector, composite::{FnOuter, OuterFunction}};
@@ -235,8 +239,8 @@ impl<F: Fn(&Vector) -> (f64, Vector)> OuterFunction for FnOuter<F> {
     }
 }
 
-/// Gᵀ diag(weights) G, n × n, for G of shape m × n and m weights: the curvature of a sum of functions of single outputs, whose second
-/// derivatives are the weights.
+/// Gᵀ diag(weights) G, n × n, for G of shape m × n and m weights: the curvature of a sum of functions of single
+/// outputs, whose second derivatives are the weights.
 pub fn weighted_gram(jacobian: &Matrix, weights: &Vector) -> Matrix {
     let mut scaled = jacobian.clone();
     for (mut row, weight) in scaled.row_iter_mut().zip(weights.iter()) {

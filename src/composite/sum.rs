@@ -3,8 +3,8 @@
 //! ```text
 //! Θ(x) = s(x) + μ h(c(x)),    outputs (s, c_1, …, c_m),    outer function (s, c) ↦ s + μ h(c)
 //! ```
-//! The smooth part is an output like the others: the model linearizes it, and learns its curvature from gradients at other points once
-//! steps fail without it.
+//! The smooth part is an output like the others: the model linearizes it, and learns its curvature from gradients at
+//! other points once steps fail without it.
 
 use super::OuterFunction;
 use crate::{Matrix, Vector};
@@ -37,8 +37,8 @@ pub struct SmoothPlus<H> {
 }
 
 impl SmoothPlus<()> {
-    /// The outputs (s, c), m + 1 entries, and their Jacobian, from value and gradient of the smooth part (n entries), and from m outputs
-    /// with their m × n Jacobian.
+    /// The outputs (s, c), m + 1 entries, and their Jacobian, from value and gradient of the smooth part (n entries),
+    /// and from m outputs with their m × n Jacobian.
     ///
     /// # Panics
     /// If gradient and Jacobian have different numbers of variables.

@@ -41,8 +41,8 @@ impl Journal {
         Self::file(folder.as_ref()).exists()
     }
 
-    /// Reads the journal of a folder, which is not changed; `None` if there is none, or if the run ended before its first
-    /// line was written.
+    /// Reads the journal of a folder, which is not changed; `None` if there is none, or if the run ended before its
+    /// first line was written.
     ///
     /// # Errors
     /// [`JournalError::File`], and as [`parse`](Self::parse).
@@ -55,8 +55,8 @@ impl Journal {
         }
     }
 
-    /// Reads the bytes of a journal; `path` stands in messages. A last line without its end, which was being written when
-    /// the run ended, does not count; `None` if that is the first one.
+    /// Reads the bytes of a journal; `path` stands in messages. A last line without its end, which was being written
+    /// when the run ended, does not count; `None` if that is the first one.
     ///
     /// # Errors
     /// [`JournalError::Line`] and [`JournalError::Version`].

@@ -5,7 +5,7 @@ use crate::Request;
 use crate::composite::LinearizationRequest;
 use serde::{Deserialize, Serialize};
 
-/// One evaluation.
+/// The record of an evaluation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -69,7 +69,7 @@ pub enum RecordedAnswer {
         /// Θ(point), or a lower bound of it.
         #[serde(with = "exact")]
         value: f64,
-        /// One subgradient.
+        /// A subgradient at the point.
         #[serde(with = "exact")]
         subgradient: Vec<f64>,
         /// Promised error of the value.

@@ -13,13 +13,13 @@ pub enum JournalError {
     File {
         /// The file or folder.
         path: PathBuf,
-        /// The system's reason.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A complete line is neither a first line nor the entry that is expected there.
     #[error("{}: line {line}: {reason}", path.display())]
     Line {
-        /// The file.
+        /// Path of the file of the journal.
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
@@ -29,9 +29,9 @@ pub enum JournalError {
     /// The journal has another version of the format.
     #[error("{}: the journal has version {found} of the format, expected {expected}", path.display())]
     Version {
-        /// The file.
+        /// Path of the file of the journal.
         path: PathBuf,
-        /// Version found.
+        /// Version of the format that the file states.
         found: u32,
         /// Version that this library reads and writes.
         expected: u32,
@@ -39,7 +39,7 @@ pub enum JournalError {
     /// The journal belongs to an objective with another number of variables.
     #[error("{}: the journal is that of {found} variables, the objective has {expected}", path.display())]
     Dimension {
-        /// The file.
+        /// Path of the file of the journal.
         path: PathBuf,
         /// Variables of the journal.
         found: usize,
@@ -49,7 +49,7 @@ pub enum JournalError {
     /// The journal belongs to another objective.
     #[error("{}: the journal is that of another objective: {}", path.display(), difference(found, expected))]
     Identity {
-        /// The file.
+        /// Path of the file of the journal.
         path: PathBuf,
         /// Identity in the journal.
         found: String,

@@ -1,4 +1,5 @@
-//! Numbers in JSON without loss: the shortest text that reads back as the same bits, and words for what JSON lacks.
+//! Numbers in JSON without loss: the shortest text that reads back as the same bits, and texts such as "inf" for the
+//! numbers that JSON lacks.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::num::ParseFloatError;
@@ -9,7 +10,7 @@ use std::num::ParseFloatError;
 pub(super) enum Written {
     Finite(f64),
     /// `inf`, `-inf` or `NaN`.
-    Word(String),
+    Text(String),
 }
 
 /// A number, or several, with their written form.
@@ -23,13 +24,13 @@ impl Exact for f64 {
     type Written = Written;
 
     fn write(&self) -> Written {
-        if self.is_finite() { Written::Finite(*self) } else { Written::Word(self.to_string()) }
+        if self.is_finite() { Written::Finite(*self) } else { Written::Text(self.to_string()) }
     }
 
     fn read(written: Written) -> Result<Self, ParseFloatError> {
         match written {
             Written::Finite(x) => Ok(x),
-            Written::Word(word) => word.parse(),
+            Written::Text(text) => text.parse(),
         }
     }
 }

@@ -25,11 +25,11 @@ pub struct RestartData<W> {
 #[derive(Debug)]
 pub struct Journaled<O> {
     inner: O,
-    state: RefCell<State>,
+    state: RefCell<JournalState>,
 }
 
 #[derive(Debug)]
-struct State {
+struct JournalState {
     journal: Writer,
     /// Number of evaluations in the journal when it was opened.
     held: usize,
@@ -57,7 +57,7 @@ impl<O: NonsmoothObjective> Journaled<O> {
     /// [`JournalError::File`] if the folder cannot be read or written.
     pub fn open(inner: O, folder: impl AsRef<Path>, identity: &str) -> Result<Self, JournalError> {
         let (journal, entries) = Writer::open(folder.as_ref(), identity, inner.dimension())?;
-        let state = State {
+        let state = JournalState {
             journal,
             held: entries.len(),
             before: entries.last().map_or(0.0, |entry| entry.seconds),
@@ -83,13 +83,13 @@ impl<O> Journaled<O> {
         !self.state.borrow().is_failing
     }
 
-    /// What could not be kept or continued so far, in words.
+    /// Messages about what could not be kept or continued so far.
     pub fn warnings(&self) -> Vec<String> {
         self.state.borrow().warnings.clone()
     }
 
-    /// Adds to the report of a run what only the journal knows: its warnings, and the time of earlier invocations, in the
-    /// history too.
+    /// Adds to the report of a run what only the journal knows: its warnings, and the time of earlier invocations, in
+    /// the history too.
     pub fn complete(&self, report: &mut Report) {
         let state = self.state.borrow();
         report.warnings.extend(state.warnings.iter().cloned());
@@ -99,8 +99,8 @@ impl<O> Journaled<O> {
         report.seconds += state.before;
     }
 
-    fn warn(&self, words: String) {
-        self.state.borrow_mut().warnings.push(words);
+    fn warn(&self, message: String) {
+        self.state.borrow_mut().warnings.push(message);
     }
 
     /// The entry of the journal for the current evaluation, if there is one and the request is the recorded one.
@@ -259,7 +259,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
         linearization
     }
 
-    /// Asks the oracle.
+    /// Evaluates the objective and writes the answer to the journal.
     fn ask(&self, request: &Request<'_, RestartData<O::WarmStart>>) -> Result<Answer<O::WarmStart>, OracleError> {
         let stored = match request.warm_start {
             Some(RestartData { data: None, evaluation }) => self.read(*evaluation),

@@ -3,8 +3,8 @@
 //! ```text
 //! "NSLIN1\n\0", m, n, k (u64), accuracy, outputs (m), Jacobian (m × n by columns), slacks (k), their Jacobian (k × n), checksum
 //! ```
-//! All numbers are little endian. There are m outputs of n variables and k slacks of inactive constraints; k = 2⁶⁴ − 1 stands for
-//! no slacks. The checksum is that of Fowler, Noll and Vo (FNV-1a, 64 bits) over all bytes before it.
+//! All numbers are little endian. There are m outputs of n variables and k slacks of inactive constraints; k = 2⁶⁴ − 1
+//! stands for no slacks. The checksum is that of Fowler, Noll and Vo (FNV-1a, 64 bits) over all bytes before it.
 
 use crate::composite::{InactiveConstraints, Linearization};
 use crate::{Matrix, Vector};

@@ -7,14 +7,13 @@ use std::path::{Path, PathBuf};
 /// What a file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// Restart data.
+    /// Data from which the oracle starts again.
     WarmStart,
-    /// Outputs and Jacobian.
+    /// Outputs of a composite objective with their Jacobian.
     Linearization,
 }
 
 impl Kind {
-    /// Both kinds.
     pub(super) const ALL: [Self; 2] = [Self::WarmStart, Self::Linearization];
 
     fn affixes(self) -> (&'static str, &'static str) {
@@ -78,7 +77,7 @@ pub(super) fn present(folder: &Path) -> io::Result<Vec<(Kind, usize)>> {
     Ok(found)
 }
 
-/// Removes all files.
+/// Removes the restart files of all evaluations.
 pub(super) fn remove_all(folder: &Path) -> io::Result<()> {
     present(folder)?.into_iter().try_for_each(|(kind, evaluation)| remove(folder, kind, evaluation))
 }

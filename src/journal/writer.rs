@@ -29,13 +29,14 @@ pub(super) struct Writer {
     pending: Vec<Pending>,
     /// Files that lie in the folder.
     kept: Vec<(Kind, usize)>,
-    /// Evaluations whose restart data a Jacobian was computed from: they are kept to compute it again if its file is lost.
+    /// Evaluations whose restart data a Jacobian was computed from: they are kept to compute it again if its file is
+    /// lost.
     origins: Vec<usize>,
 }
 
 impl Writer {
-    /// Continues the journal of a folder, or begins one; returns it with the entries that it holds. A last line that is not
-    /// whole is cut off.
+    /// Continues the journal of a folder, or begins one; returns it with the entries that it holds. A last line that is
+    /// not whole is cut off.
     pub fn open(folder: &Path, identity: &str, dimension: usize) -> Result<(Self, Vec<Entry>), JournalError> {
         fs::create_dir_all(folder).map_err(JournalError::file(folder))?;
         let path = Journal::file(folder);
@@ -80,8 +81,8 @@ impl Writer {
         restart_files::write(&self.folder, Kind::Linearization, evaluation, &bytes)
     }
 
-    /// Adds an evaluation. Restart data are kept of this evaluation, of the one that it was restarted from, and of those that
-    /// Jacobians were computed from; no others, since the next request can carry only one of the first two.
+    /// Adds an evaluation. Restart data are kept of this evaluation, of the one that it was restarted from, and of
+    /// those that Jacobians were computed from; no others, since the next request can carry only one of the first two.
     ///
     /// # Errors
     /// The system's reason; what was not written is tried again with the next evaluation.

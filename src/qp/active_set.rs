@@ -1,7 +1,7 @@
 //! Dual active-set method on the multipliers.
 //!
 //! ```text
-//! repeat:  settle (equality solution of the working set, wrong signs leave)
+//! repeat:  solve (equality solution of the working set, wrong signs leave)
 //!          price  (violated side of largest distance; none: solved)
 //!          enter  (take it in; if its normal depends on those held, exchange it against one of them)
 //! ```
@@ -15,7 +15,7 @@ use crate::interruption::interrupted;
 
 /// How a run of the active-set method ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Outcome {
+pub(super) enum ActiveSetEnd {
     /// Every side is satisfied.
     Solved,
     /// A side cannot be satisfied together with those held.
@@ -81,7 +81,8 @@ impl WorkingSet<'_> {
         }
     }
 
-    /// Starts from the single cut of largest dual value −½ |ã|² − e, where |ã| takes the diagonal of a dense metric alone.
+    /// Starts from the single cut of largest dual value −½ |ã|² − e, where |ã| takes the diagonal of a dense metric
+    /// alone.
     fn hold_best_cut(&mut self) {
         let value = |j: usize| -0.5 * self.norms[j] * self.norms[j] - self.qp.offsets[j];
         let best = (0..self.qp.slopes.len()).max_by(|&i, &j| value(i).total_cmp(&value(j)));
@@ -97,19 +98,19 @@ impl WorkingSet<'_> {
     }
 
     /// Runs to the end.
-    pub(super) fn run(&mut self) -> Outcome {
+    pub(super) fn run(&mut self) -> ActiveSetEnd {
         let limit = 100 + 5 * (self.qp.slopes.len() + self.qp.rows.nrows() + self.qp.dimension());
         let mut skipped = Vec::new();
-        self.settle();
+        self.solve_equalities();
         loop {
             if !self.epigraph.is_finite() || self.pivots > limit || interrupted() {
-                return Outcome::Stalled;
+                return ActiveSetEnd::Stalled;
             }
-            let Some(violation) = self.most_violated(&skipped) else { return Outcome::Solved };
+            let Some(violation) = self.most_violated(&skipped) else { return ActiveSetEnd::Solved };
             match self.enter(&violation) {
-                Entry::Held => self.settle(),
+                Entry::Held => self.solve_equalities(),
                 Entry::Refused if violation.relative > CONTRADICTION && !matches!(violation.member, Member::Cut(_)) => {
-                    return Outcome::Infeasible { violation: violation.relative };
+                    return ActiveSetEnd::Infeasible { violation: violation.relative };
                 }
                 Entry::Refused => {}
             }
@@ -160,8 +161,8 @@ impl WorkingSet<'_> {
         ExchangeRates { columns, column_noise, coordinates, noise }
     }
 
-    /// The rates of the cuts have a known sum. It gives the rate of the flattest cut more accurately than that cut's own equation does: steeper
-    /// cuts have smaller rates, and these have smaller rounding.
+    /// The rates of the cuts have a known sum. It gives the rate of the flattest cut more accurately than that cut's
+    /// own equation does: steeper cuts have smaller rates, and these have smaller rounding.
     fn keep_sum(&self, rates: &mut ExchangeRates, sum: f64) {
         let held = self.general.iter().enumerate().filter(|(_, active)| matches!(active.member, Member::Cut(_)));
         let cuts: Vec<usize> = held.map(|(position, _)| position).collect();
@@ -219,6 +220,6 @@ struct ExchangeRates {
     column_noise: Vec<f64>,
     /// In the metric's coordinates: the multiplier divided by √H_ii.
     coordinates: Vec<f64>,
-    /// Their rounding.
+    /// Rates below this size are rounding.
     noise: f64,
 }

@@ -9,8 +9,8 @@ use crate::Vector;
 /// Largest residual with which an answer is returned at once; a worse one is tried again by other means.
 pub(super) const WANTED: f64 = 1e-12;
 
-/// Completes a step and its multipliers to an answer with certificate; the step is moved into the box unless the certificate
-/// suffers (with a large H the rounding of a bound may weigh more than the whole step).
+/// Completes a step and its multipliers to an answer with certificate; the step is moved into the box unless the
+/// certificate suffers (with a large H the rounding of a bound may weigh more than the whole step).
 pub(super) fn assemble(
     qp: &EpigraphQp<'_>,
     step: Vector,
@@ -31,7 +31,8 @@ pub(super) fn assemble(
 /// Differences of values below this share of their terms are rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The answer with v = max_j g_jᵀ d − e_j, or with that of the sharpest active cut where the certificate is better with it.
+/// The answer with v = max_j g_jᵀ d − e_j, or with that of the sharpest active cut where the certificate is better with
+/// it.
 fn complete(qp: &EpigraphQp<'_>, step: Vector, actives: &[Active], pivots: usize, method: QpMethod) -> QpSolution {
     let epigraph = (0..qp.slopes.len()).map(|j| value(qp, j, &step)).fold(f64::NEG_INFINITY, f64::max);
     let mut solution = QpSolution {
@@ -64,8 +65,8 @@ fn complete(qp: &EpigraphQp<'_>, step: Vector, actives: &[Active], pivots: usize
     solution
 }
 
-/// The value of the active cut whose terms are smallest, if it differs from v by rounding only: a cut 1e10 times as steep hides in its
-/// rounding what the others say about v.
+/// The value of the active cut whose terms are smallest, if it differs from v by rounding only: a cut 1e10 times as
+/// steep hides in its rounding what the others say about v.
 fn sharpest_value(qp: &EpigraphQp<'_>, solution: &QpSolution) -> Option<f64> {
     let step = &solution.step;
     let size = |j: usize| dot_terms(qp.slopes[j].as_slice(), step.as_slice()) + qp.offsets[j].abs();

@@ -6,19 +6,21 @@
 //! dual              |Σ π − 1|,  −π_j,  multipliers of open or wrong sides relative to t
 //! complementarity   (relative size of the multiplier) · (relative slack)
 //! ```
-//! ℓ = |d| + max_j |g_j| in the norms of the metric gives a side a size where all its terms vanish, as at d = 0; |g_j| is the
-//! length of the unconstrained step of cut j alone. b is the largest distance |side| / |a| of any row or bound (0 for cuts):
-//! sides are differences, and what is left of an active row's side at the center is rounding of that size.
-//! Every part is a quotient of like quantities, so the residual does not depend on the units of values and variables.
+//! ℓ = |d| + max_j |g_j| in the norms of the metric gives a side a size where all its terms vanish, as at d = 0; |g_j|
+//! is the length of the unconstrained step of cut j alone. b is the largest distance |side| / |a| of any row or bound
+//! (0 for cuts): sides are differences, and what is left of an active row's side at the center is rounding of that
+//! size. Every part is a quotient of like quantities, so the residual does not depend on the units of values and
+//! variables.
 
 use crate::Vector;
 
 use super::problem::{EpigraphQp, Metric, QpSolution};
 
-/// Largest relative residual of the KKT system at an answer; the stored `kkt_residual`, `pivots` and `method` are not read.
+/// Largest relative residual of the KKT system at an answer; the stored `kkt_residual`, `pivots` and `method` are not
+/// read.
 ///
-/// Parts: stationarity, primal feasibility, signs of the multipliers and Σ π = 1, complementarity, each relative to the size
-/// of its terms. NaN anywhere gives +∞.
+/// Parts: stationarity, primal feasibility, signs of the multipliers and Σ π = 1, complementarity, each relative to the
+/// size of its terms. NaN anywhere gives +∞.
 pub fn kkt_residual(qp: &EpigraphQp<'_>, solution: &QpSolution) -> f64 {
     let stationarity = Stationarity::new(qp, solution);
     let mut worst = stationarity.residual;
@@ -34,8 +36,8 @@ pub(super) const LENGTH_SHARE: f64 = 1e-10;
 /// Share of |a| b in the size of a row's or a bound's side.
 pub(super) const SIDE_SHARE: f64 = 1e-3;
 
-/// b: the largest distance |side| / |a| among rows and bounds. Sides are differences in the caller's hands (side − A x̂), so
-/// each carries the rounding of the largest. Numbers from 1e15 on stand for open sides.
+/// b: the largest distance |side| / |a| among rows and bounds. Sides are differences in the caller's hands (side − A
+/// x̂), so each carries the rounding of the largest. Numbers from 1e15 on stand for open sides.
 pub(super) fn largest_side(qp: &EpigraphQp<'_>, row_norms: &[f64], weights: &[f64]) -> f64 {
     let rows = qp.row_lower.iter().zip(qp.row_upper).zip(row_norms);
     let bounds = qp.lower.iter().zip(qp.upper).zip(weights);

@@ -1,4 +1,5 @@
-//! A symmetric positive definite matrix, summed and factorised by blocks of columns, so that products of matrices do the work.
+//! A symmetric positive definite matrix, summed and factorised by blocks of columns, so that products of matrices do
+//! the work.
 
 use crate::interruption::interrupted;
 use crate::{Matrix, Vector};
@@ -6,8 +7,8 @@ use crate::{Matrix, Vector};
 /// Columns of a block: all of them together stay in the cache.
 const BLOCK: usize = 64;
 
-/// Adds the product of a matrix with n rows and one with n columns to the lower triangle of a sum that is symmetric; none where nobody waits
-/// for it any more.
+/// Adds the product of a matrix with n rows and one with n columns to the lower triangle of a sum that is symmetric;
+/// none where nobody waits for it any more.
 pub(super) fn add_product(sum: &mut Matrix, left: &Matrix, right: &Matrix) -> Option<()> {
     let n = sum.nrows();
     for first in (0..n).step_by(BLOCK) {
@@ -27,8 +28,8 @@ pub(super) struct Cholesky {
 }
 
 impl Cholesky {
-    /// Factorises the matrix with this lower triangle. A pivot that is rounding becomes infinite: solutions are zero there, as suits
-    /// equations that repeat others.
+    /// Factorises the matrix with this lower triangle. A pivot that is rounding becomes infinite: solutions are zero
+    /// there, as suits equations that repeat others.
     pub(super) fn new(mut lower: Matrix) -> Self {
         let n = lower.nrows();
         let least = lower.diagonal() * (n as f64 * f64::EPSILON);

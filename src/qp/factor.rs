@@ -3,8 +3,8 @@
 //! ```text
 //! Ã = [ã_1 … ã_k],   P Ã = Q R,   QᵀQ = I,   R upper triangular,   P = deletes the rows of fixed coordinates
 //! ```
-//! Adding and removing a column, fixing and releasing a coordinate cost O(rows · k) each. Working with Q R rather than with the
-//! Gram matrix ÃᵀÃ keeps the condition number unsquared: cuts 1e-8 apart are normal late in a bundle run.
+//! Adding and removing a column, fixing and releasing a coordinate cost O(rows · k) each. Working with Q R rather than
+//! with the Gram matrix ÃᵀÃ keeps the condition number unsquared: cuts 1e-8 apart are normal late in a bundle run.
 //! Reference: \[DanielGraggKaufmanStewart1976\] (updating of Gram–Schmidt factors with reorthogonalisation).
 
 use super::kernels::{Rotation, add_scaled, dot, norm};

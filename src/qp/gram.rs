@@ -4,10 +4,10 @@
 //! min over π   ½ πᵀG π / u + eᵀπ,   π ≥ 0,  Σ π = 1         G = ⟨g_i, W⁻¹ g_j⟩,  H = u W
 //! d = −Σ π_j W⁻¹ g_j / u,    w_j = e_j − g_jᵀd = −(value of cut j),    at the solution  w_j = −v where π_j > 0,  w_j ≥ −v elsewhere
 //! ```
-//! With m cuts of which k are held, a pivot costs O(k² + m k) and no pass over the n variables; the working set and its factor
-//! R, RᵀR = G + s 𝟏𝟏ᵀ on the cuts held, stay from one problem to the next. Each round forms d and the values of all cuts in the
-//! variables themselves, and repeats the pivots from there, so that the answer has the accuracy of the data and not that of G.
-//! What this method cannot finish goes to the method that works with orthogonal factors.
+//! With m cuts of which k are held, a pivot costs O(k² + m k) and no pass over the n variables; the working set and its
+//! factor R, RᵀR = G + s 𝟏𝟏ᵀ on the cuts held, stay from one problem to the next. Each round forms d and the values of
+//! all cuts in the variables themselves, and repeats the pivots from there, so that the answer has the accuracy of the
+//! data and not that of G. What this method cannot finish goes to the method that works with orthogonal factors.
 //! Reference: \[Kiwiel1986\].
 
 use super::certificate::LENGTH_SHARE;
@@ -59,8 +59,8 @@ struct Dual<'a> {
     shift: f64,
     held: Vec<usize>,
     multipliers: Vec<f64>,
-    /// What the multipliers have changed since d was formed, by cuts: finer than the multipliers, whose last bit moves w_j by as much as
-    /// ‖g‖²/u times the machine precision.
+    /// What the multipliers have changed since d was formed, by cuts: finer than the multipliers, whose last bit moves
+    /// w_j by as much as ‖g‖²/u times the machine precision.
     moved: Vec<f64>,
     /// w_j, by slots.
     gradient: Vec<f64>,
@@ -320,7 +320,7 @@ impl<'a> Dual<'a> {
     fn pivot(&mut self) -> Option<()> {
         let limit = self.pivots + 100 + 5 * self.qp.slopes.len();
         loop {
-            let level = self.settle();
+            let level = self.solve_equalities();
             if self.pivots > limit || !level.is_finite() {
                 return None;
             }
@@ -333,7 +333,7 @@ impl<'a> Dual<'a> {
     }
 
     /// Moves to the equality solution of the cuts held; multipliers that would change sign leave. Returns −v.
-    fn settle(&mut self) -> f64 {
+    fn solve_equalities(&mut self) -> f64 {
         loop {
             let mut ones = vec![1.0; self.held.len()];
             let mut change = self.held_gradient();
@@ -371,7 +371,8 @@ impl<'a> Dual<'a> {
         worst.map(|(_, j)| j)
     }
 
-    /// Takes in a cut j. As long as it depends on the cuts held, one of them leaves in exchange; none if nothing can be exchanged.
+    /// Takes in a cut j. As long as it depends on the cuts held, one of them leaves in exchange; none if nothing can be
+    /// exchanged.
     fn enter(&mut self, j: usize) -> Option<()> {
         let mut multiplier = 0.0;
         loop {

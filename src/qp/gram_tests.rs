@@ -50,7 +50,8 @@ impl Sequence {
         act(&qp, Gram { rows: &rows, slots: &slots, weight, lasting: true });
     }
 
-    /// Solves the problem of the cuts from `first` up to `last` with all three: warm and cold with products, cold without.
+    /// Solves the problem of the cuts from `first` up to `last` with all three: warm and cold with products, cold
+    /// without.
     fn compare(&self, range: (usize, usize), weight: f64, warm: &mut EpigraphQpSolver) {
         self.with_products(range, weight, |qp, gram| {
             let expected = EpigraphQpSolver::new().solve(qp).expect("no sides");
@@ -59,7 +60,8 @@ impl Sequence {
             let size = expected.step.amax().max(1e-3 / weight);
             for answer in [&again, &cold] {
                 assert!(kkt_residual(qp, answer) <= 1e-12, "{:e}", kkt_residual(qp, answer));
-                // The residual bounds the step through the strong convexity, as a square root where cuts are nearly dependent.
+                // The residual bounds the step through the strong convexity, as a square root where cuts are nearly
+                // dependent.
                 assert!((&answer.step - &expected.step).amax() <= 1e-9 * size);
                 assert!((answer.epigraph - expected.epigraph).abs() <= 1e-11 * (1.0 + expected.epigraph.abs()));
             }
@@ -82,8 +84,8 @@ proptest! {
     }
 }
 
-/// Steep cuts of a flat valley: half the last bit of a multiplier moves the value of a cut by ‖g‖²/u · 3e-17 = 1e-7, which is 1e-12 of its
-/// terms, and the step is found to 1e-14 of them nevertheless.
+/// Steep cuts of a flat valley: half the last bit of a multiplier moves the value of a cut by ‖g‖²/u · 3e-17 = 1e-7,
+/// which is 1e-12 of its terms, and the step is found to 1e-14 of them nevertheless.
 #[test]
 fn multipliers_of_finite_accuracy_give_the_step_to_rounding() {
     let (n, weight) = (30, 0.3);

@@ -58,7 +58,8 @@ impl ScaledSide {
         self.side == Side::Both
     }
 
-    /// The multiplier of the member, > 0 at an upper side and < 0 at a lower one, for one of this inequality in units of `unit`.
+    /// The multiplier of the member, > 0 at an upper side and < 0 at a lower one, for one of this inequality in units
+    /// of `unit`.
     fn multiplier(&self, multiplier: f64, unit: f64) -> f64 {
         let sign = if self.side == Side::Lower { -1.0 } else { 1.0 };
         sign * multiplier * unit / self.divisor
@@ -251,7 +252,8 @@ mod tests {
         with_example(|qp| {
             let own = EpigraphQpSolver::new().solve(qp).expect("feasible");
             let interior = solve(qp).expect("feasible").solution;
-            // Without a polish: tolerance 1e-13 of the objective, about its root in the step.
+            // Without refinement by the active-set method: tolerance 1e-13 of the objective, about its root in the
+            // step.
             assert!(interior.kkt_residual <= 1e-7, "{:e}", interior.kkt_residual);
             assert!((&own.step - &interior.step).norm() <= 1e-6 * own.step.norm());
         });

@@ -75,8 +75,8 @@ pub(crate) fn pair_sums(g: &[f64], x: &[f64], h: &[f64], y: &[f64], r: &[f64]) -
     sums.map(|lanes| (lanes[0] + lanes[2]) + (lanes[1] + lanes[3]))
 }
 
-/// The sums of [`pair_sums`] over whole blocks. Not inlined: where the compiler sees the four results side by side, it packs them into one
-/// register instead of four terms of one sum, and the pass takes more than twice as long.
+/// The sums of [`pair_sums`] over whole blocks. Not inlined: where the compiler sees the four results side by side, it
+/// packs them into one register instead of four terms of one sum, and the pass takes more than twice as long.
 #[inline(never)]
 fn pair_lanes([g, x, h, y, r]: [&[[f64; 4]]; 5]) -> [[f64; 4]; 4] {
     let (mut ahead, mut behind, mut product, mut squared) = ([0.0; 4], [0.0; 4], [0.0; 4], [0.0; 4]);

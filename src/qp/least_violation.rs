@@ -3,8 +3,8 @@
 //! ```text
 //! min over y in the box   max_i violation_i(y)/s_i + δ|y − y_k|²/2,   s_i = max(|side|, Σ_j |a_ij y_j|) at y_k
 //! ```
-//! The violations are the cuts of a program that has a solution whatever the rows are. Its solution is the next y_k: a proximal
-//! method, which ends after a few steps because the maximum is piecewise linear.
+//! The violations are the cuts of a program that has a solution whatever the rows are. Its solution is the next y_k: a
+//! proximal method, which ends after a few steps because the maximum is piecewise linear.
 
 use super::problem::{EpigraphQp, Metric};
 use super::solver::EpigraphQpSolver;
@@ -15,8 +15,8 @@ const MAX_STEPS: usize = 20;
 /// Weight δ in units of the inverse square of the distances s_i/|a_i|: steps of this length are free.
 const WEIGHT: f64 = 1e-3;
 
-/// The least relative violation found among the points of the box, from one of them on. It is that of a point, hence an upper bound of
-/// the least one.
+/// The least relative violation found among the points of the box, from one of them on. It is that of a point, hence an
+/// upper bound of the least one.
 pub(super) fn least_violation(set: &Polyhedron, start: &Vector) -> f64 {
     let mut point = start.clone();
     let mut least = set.violation(&point);

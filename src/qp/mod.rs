@@ -7,10 +7,10 @@
 //!                   lower ≤ d ≤ upper           (multipliers ν, signed likewise)
 //! KKT:              H d + Σ π_j g_j + Aᵀ μ + ν = 0
 //! ```
-//! [`EpigraphQpSolver`] is a warm-started dual active-set method. What it cannot finish it tries again in other scales of the cuts; what it
-//! cannot finish then goes to an interior-point method (feature `interior-point`, on by default), whose answer it polishes. Every
-//! answer carries its [`kkt_residual`], computed from the data alone. [`project`] is the Euclidean projection onto a polyhedron, a
-//! special case.
+//! [`EpigraphQpSolver`] is a warm-started dual active-set method. What it cannot finish it tries again in other scales
+//! of the cuts; what it cannot finish then goes to an interior-point method (feature `interior-point`, on by default),
+//! whose answer it refines. Every answer carries its [`kkt_residual`], computed from the data alone. [`project`] is the
+//! Euclidean projection onto a polyhedron, a special case.
 
 mod active_set;
 mod answer;
@@ -18,6 +18,7 @@ mod certificate;
 mod coordinates;
 #[cfg(feature = "interior-point")]
 mod dense;
+mod equality_step;
 mod factor;
 mod gram;
 #[cfg(test)]
@@ -31,7 +32,6 @@ mod pricing;
 pub(crate) mod primal_dual;
 mod problem;
 mod projection;
-mod settle;
 mod solver;
 mod triangular;
 mod working_set;

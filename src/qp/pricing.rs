@@ -9,7 +9,7 @@ const SATISFIED: f64 = 2e-14;
 /// An excess below this share of the terms of a side cannot be told from rounding.
 const ROUNDING: f64 = 2e-15;
 
-/// A violated side.
+/// A violated side of a cut, row or bound.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Violation {
     pub(super) member: Member,

@@ -5,8 +5,8 @@
 //! Newton step:      (H + Σ D_i g_i g_iᵀ + Σ θ_k E_k E_kᵀ) Δx + BᵀΔy = …,     θ = z/s of slacks s and multipliers z
 //!                   D_i = 4 θ⁺θ⁻/(θ⁺ + θ⁻) of the two sides of |c_i + ⟨g_i, x⟩| ≤ t_i
 //! ```
-//! The epigraph variables t leave the system in closed form, so that a step costs one product of dense matrices and one Cholesky factor of
-//! the size of x. Reference: \[Mehrotra1992\] (predictor and corrector).
+//! The epigraph variables t leave the system in closed form, so that a step costs one product of dense matrices and one
+//! Cholesky factor of the size of x. Reference: \[Mehrotra1992\] (predictor and corrector).
 
 use super::dense::{Cholesky, add_product};
 use super::interior_point::ScaledSide;
@@ -15,7 +15,8 @@ use crate::{Matrix, Vector};
 
 /// Largest number of steps.
 const MAX_STEPS: usize = 100;
-/// Steps in a row that may fail to halve the error, before the best iterate counts as the most that double precision gives.
+/// Steps in a row that may fail to halve the error, before the best iterate counts as the most that double precision
+/// gives.
 const MAX_STALLED: usize = 8;
 /// Relative error that ends the method.
 const ACCURATE: f64 = 1e-13;
@@ -36,12 +37,12 @@ pub(crate) struct Program<'a> {
     pub quadratic: &'a Matrix,
     /// p, n entries.
     pub linear: &'a Vector,
-    /// Equalities first.
+    /// Sides of the constraints, equalities first.
     pub sides: &'a [ScaledSide],
     pub equalities: usize,
 }
 
-/// The best iterate.
+/// The iterate of smallest residual.
 pub(crate) struct PrimalDual {
     pub x: Vector,
     /// The weights of the outputs, in [−1, 1] up to rounding.
@@ -56,7 +57,7 @@ struct Constraints<'a> {
     program: &'a Program<'a>,
     /// G, and below it the inequalities of more than one entry.
     rows: Matrix,
-    /// Their transpose.
+    /// Transpose of `rows`.
     columns: Matrix,
     /// Inequalities, those of more than one entry first, as positions in the list of sides.
     order: Vec<usize>,

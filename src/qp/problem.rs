@@ -74,7 +74,7 @@ pub struct EpigraphQp<'a> {
 pub enum QpMethod {
     /// The dual active-set method.
     ActiveSet,
-    /// The interior-point method; the polish by the active-set method brought no better answer.
+    /// The interior-point method; refinement by the active-set method brought no better answer.
     InteriorPoint,
 }
 
@@ -122,8 +122,8 @@ pub enum QpError {
     /// No point satisfies rows and box.
     #[error("rows and box have no common point: relative violation {violation:.3e}")]
     Infeasible {
-        /// Violation, relative to the size of the violated side and of its terms, of a side that cannot be satisfied together
-        /// with the others.
+        /// Violation, relative to the size of the violated side and of its terms, of a side that cannot be satisfied
+        /// together with the others.
         violation: f64,
     },
     /// No method that is built in reached the required accuracy.
@@ -140,7 +140,8 @@ impl EpigraphQp<'_> {
         self.lower.len()
     }
 
-    /// Checks sizes, finiteness, intervals and the metric (positive definiteness of a dense one is seen when it is factorised).
+    /// Checks sizes, finiteness, intervals and the metric (positive definiteness of a dense one is seen when it is
+    /// factorised).
     pub(super) fn validate(&self) -> Result<(), InputError> {
         let (n, m, p) = (self.dimension(), self.slopes.len(), self.rows.nrows());
         check_size("cuts", m.max(1), m)?;

@@ -13,8 +13,9 @@ use crate::{InputError, Polyhedron, Vector};
 /// The point of the polyhedron nearest to x (`dimension()` entries); x itself if it is admissible.
 ///
 /// # Errors
-/// [`QpError::Infeasible`] for an empty set, with the least violation that a point can have; [`QpError::Input`] for an x of wrong size or
-/// with entries that are not finite; [`QpError::NotSolved`] if rounding keeps the quadratic program from being solved.
+/// [`QpError::Infeasible`] for an empty set, with the least violation that a point can have; [`QpError::Input`] for an
+/// x of wrong size or with entries that are not finite; [`QpError::NotSolved`] if rounding keeps the quadratic program
+/// from being solved.
 ///
 /// ```
 /// use nonsmooth::{Polyhedron, Vector, qp::project};
@@ -47,7 +48,8 @@ pub fn project(set: &Polyhedron, x: &Vector) -> Result<Vector, QpError> {
     Ok(nearest)
 }
 
-/// The solver reports the violation of one side where it gave up, or none at all; what is told is the least that a point of the box has.
+/// The solver reports the violation of one side where it gave up, or none at all; what is told is the least that a
+/// point of the box has.
 fn measured(set: &Polyhedron, x: &Vector, error: QpError) -> QpError {
     match error {
         QpError::Infeasible { .. } | QpError::NotSolved { .. } => {
@@ -61,9 +63,9 @@ fn measured(set: &Polyhedron, x: &Vector, error: QpError) -> QpError {
 
 /// Whether a point x of the polyhedron is its only one, as far as points within `distance` tell.
 ///
-/// The unit vectors and minus their sum span everything with positive factors. If the points at the given distance from x along them all
-/// have x as their nearest point, the normal cone at x is therefore the whole space. A nearest point within [`ALONE`] of the distance
-/// counts as x.
+/// The unit vectors and minus their sum span everything with positive factors. If the points at the given distance from
+/// x along them all have x as their nearest point, the normal cone at x is therefore the whole space. A nearest point
+/// within [`ALONE`] of the distance counts as x.
 pub(crate) fn is_only_point(set: &Polyhedron, x: &Vector, distance: f64) -> bool {
     if set.rows().nrows() == 0 {
         return set.lower() == set.upper();

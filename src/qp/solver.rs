@@ -1,6 +1,6 @@
 //! The solver: warm start, active-set method, certificate, interior-point fallback.
 
-use super::active_set::Outcome;
+use super::active_set::ActiveSetEnd;
 use super::answer::{WANTED, assemble};
 use super::coordinates::{Coordinates, CoordinatesCache};
 use super::gram::{Gram, GramMemory};
@@ -55,7 +55,7 @@ enum Identity {
 
 /// What one run of the active-set method left behind.
 struct Attempt {
-    outcome: Outcome,
+    outcome: ActiveSetEnd,
     solution: QpSolution,
     actives: Vec<Active>,
 }
@@ -79,9 +79,9 @@ impl EpigraphQpSolver {
     /// Solves one QP, starting from the active set of the last one.
     ///
     /// # Errors
-    /// [`QpError::Input`] for data that cannot be worked with, [`QpError::Infeasible`] if rows and box have no common point,
-    /// [`QpError::NotSolved`] if no answer reaches a relative KKT residual of 1e-10 (without the feature `interior-point`: if the
-    /// active-set method alone does not).
+    /// [`QpError::Input`] for data that cannot be worked with, [`QpError::Infeasible`] if rows and box have no common
+    /// point, [`QpError::NotSolved`] if no answer reaches a relative KKT residual of 1e-10 (without the feature
+    /// `interior-point`: if the active-set method alone does not).
     pub fn solve(&mut self, qp: &EpigraphQp<'_>) -> Result<QpSolution, QpError> {
         qp.validate()?;
         let coordinates = self.coordinates.factorise(qp.metric, qp.dimension())?;
@@ -96,8 +96,8 @@ impl EpigraphQpSolver {
         for start in first.into_iter().chain(cold) {
             let attempt = run_active_set(qp, &coordinates, start);
             self.counts.pivots += attempt.solution.pivots;
-            let done = attempt.outcome == Outcome::Solved && attempt.solution.kkt_residual <= WANTED;
-            if let (Outcome::Infeasible { violation }, true) = (attempt.outcome, start.0.is_empty()) {
+            let done = attempt.outcome == ActiveSetEnd::Solved && attempt.solution.kkt_residual <= WANTED;
+            if let (ActiveSetEnd::Infeasible { violation }, true) = (attempt.outcome, start.0.is_empty()) {
                 contradictions.push(violation);
             }
             keep_better(&mut best, attempt);
@@ -116,8 +116,9 @@ impl EpigraphQpSolver {
         self.finish(qp, best)
     }
 
-    /// Solves one QP with a diagonal metric whose slopes have known inner products: first in the space of the multipliers, from the
-    /// working set that the last such call has left, and, where that does not succeed, as [`solve`](Self::solve) does.
+    /// Solves one QP with a diagonal metric whose slopes have known inner products: first in the space of the
+    /// multipliers, from the working set that the last such call has left, and, where that does not succeed, as
+    /// [`solve`](Self::solve) does.
     ///
     /// # Errors
     /// As [`solve`](Self::solve).
@@ -152,7 +153,8 @@ impl EpigraphQpSolver {
         best.ok_or(QpError::NotSolved { kkt_residual: f64::INFINITY })
     }
 
-    /// Runs the interior-point method, and then the active-set method from the members that the former has found active.
+    /// Runs the interior-point method, and then the active-set method from the members that the former has found
+    /// active.
     #[cfg(feature = "interior-point")]
     fn fall_back(
         &mut self,
@@ -167,13 +169,13 @@ impl EpigraphQpSolver {
                 answer
             }
             // The sides contradict each other by rounding only: the active-set method has found a point.
-            (Err(_), Some(known)) if known.outcome == Outcome::Solved => return Ok(known),
+            (Err(_), Some(known)) if known.outcome == ActiveSetEnd::Solved => return Ok(known),
             (Err(error), _) => return Err(error),
         };
-        let polished = run_active_set(qp, coordinates, (&answer.actives, CutEntry::Median));
-        self.counts.pivots += polished.solution.pivots;
-        keep_better(&mut best, polished);
-        let outcome = Outcome::Stalled;
+        let refined = run_active_set(qp, coordinates, (&answer.actives, CutEntry::Median));
+        self.counts.pivots += refined.solution.pivots;
+        keep_better(&mut best, refined);
+        let outcome = ActiveSetEnd::Stalled;
         keep_better(&mut best, Attempt { outcome, solution: answer.solution, actives: answer.actives });
         best.ok_or(QpError::NotSolved { kkt_residual: f64::INFINITY })
     }
@@ -225,7 +227,7 @@ mod tests {
     use crate::{Matrix, Vector};
 
     #[test]
-    fn the_fallback_is_polished_to_the_accuracy_of_the_active_set_method() {
+    fn the_fallback_is_refined_to_the_accuracy_of_the_active_set_method() {
         let n = 6;
         let slopes: Vec<Vector> =
             (0..9).map(|j| Vector::from_fn(n, |i, _| (0.3 + (i * i + 1) as f64 * j as f64).sin())).collect();

@@ -3,10 +3,10 @@
 //! ```text
 //! column of a member:  ã = (L⁻¹ normal, c s),   s = 1 for a cut, 0 otherwise
 //! ```
-//! The extra entry c carries the equality Σ π = 1 into the orthogonal factors: ÃᵀÃ = N H⁻¹Nᵀ + c² s sᵀ, with the active normals
-//! as rows of N, is regular whenever the vectors (normal, s) of the active members are linearly independent. The last row of Q
-//! is c R⁻ᵀs, so that the factors hold s as well.
-//! With a diagonal metric an active bound is no column: it fixes its coordinate.
+//! The extra entry c carries the equality Σ π = 1 into the orthogonal factors: ÃᵀÃ = N H⁻¹Nᵀ + c² s sᵀ, with the active
+//! normals as rows of N, is regular whenever the vectors (normal, s) of the active members are linearly independent.
+//! The last row of Q is c R⁻ᵀs, so that the factors hold s as well. With a diagonal metric an active bound is no
+//! column: it fixes its coordinate.
 
 use crate::Vector;
 use crate::linalg::upper_median;
@@ -50,15 +50,16 @@ pub(super) enum Place {
     Coordinate(usize),
 }
 
-/// The extra entry c of a cut's column (g̃, c). Columns lose the digits of what is small beside c, and of c where it is small itself.
+/// The extra entry c of a cut's column (g̃, c). Columns lose the digits of what is small beside c, and of c where it is
+/// small itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CutEntry {
     /// The median norm of the cuts.
     Median,
     /// The geometric mean of the median and the least norm: where most cuts are far steeper than the active ones.
     Lower,
-    /// The geometric mean of the median and the largest norm: where the active cuts are far steeper than most, and beside them a side looks
-    /// as if it depended on those held.
+    /// The geometric mean of the median and the largest norm: where the active cuts are far steeper than most, and
+    /// beside them a side looks as if it depended on those held.
     Upper,
 }
 
@@ -287,7 +288,6 @@ impl<'a> WorkingSet<'a> {
         self.pivots += 1;
     }
 
-    /// All active members.
     pub(super) fn actives(&self) -> impl Iterator<Item = &Active> {
         self.general.iter().chain(self.fixed.iter().flatten())
     }

@@ -25,7 +25,8 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Report {
-    /// The admissible point that the termination speaks about; where a limit or a failure ended the run, the lowest one evaluated.
+    /// The admissible point that the termination speaks about; where a limit or a failure ended the run, the lowest one
+    /// evaluated.
     pub solution: Vector,
     /// Θ there.
     pub value: f64,
@@ -35,13 +36,14 @@ pub struct Report {
     pub termination: Termination,
     /// How stationary the solution is, with everything needed to check it; none if no subproblem was solved.
     pub certificate: Option<Certificate>,
-    /// Work done.
+    /// Numbers of evaluations, steps and subproblems.
     pub counts: Counts,
     /// One record per evaluation.
     pub history: Vec<IterationRecord>,
     /// Largest relative violation of the admissible set among all points evaluated.
     pub largest_violation: f64,
-    /// What went wrong without ending the run: [`Journaled::complete`](crate::Journaled::complete) adds to it, the method does not.
+    /// What went wrong without ending the run: [`Journaled::complete`](crate::Journaled::complete) adds to it, the
+    /// method does not.
     pub warnings: Vec<String>,
     /// Seconds used; with those of earlier invocations after [`Journaled::complete`](crate::Journaled::complete).
     pub seconds: f64,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum StepKind {
-    /// The first evaluation.
+    /// The evaluation at the start of the run.
     Start,
     /// The trial point became the center.
     Serious,
@@ -41,11 +41,11 @@ impl std::fmt::Display for StepKind {
 pub enum Origin {
     /// Nobody: the point is the start, or the center once more.
     Given,
-    /// The plain cuts.
+    /// The cutting-plane model proposed the point.
     Cuts,
-    /// The curved model.
+    /// The curved model proposed the point.
     CurvedModel,
-    /// The composite model.
+    /// The composite model proposed the point.
     CompositeModel,
     /// Nobody: the point lies next to the center, for the proof of an end.
     Confirmation,
@@ -115,7 +115,7 @@ pub(crate) enum Noted {
     /// The oracle said nothing about a Jacobian.
     #[default]
     Nothing,
-    /// There was one.
+    /// The evaluation computed a Jacobian.
     Jacobian,
     /// The reason why it could not be had.
     NoJacobian(String),
@@ -140,13 +140,13 @@ pub struct Counts {
     pub evaluations: usize,
     /// Steps of the engine, those without evaluation included.
     pub iterations: usize,
-    /// Serious steps.
+    /// Number of serious steps.
     pub serious: usize,
     /// Null steps, certified no-descent answers included.
     pub null: usize,
     /// Evaluations of the center repeated with a tighter accuracy.
     pub refined: usize,
-    /// Failed evaluations.
+    /// Number of evaluations without an answer.
     pub failed: usize,
     /// Evaluations by who proposed their point.
     pub trials: TrialCounts,
@@ -155,7 +155,7 @@ pub struct Counts {
     /// Jacobians of a composite objective's outputs that the oracle returned.
     #[serde(default)]
     pub jacobians: usize,
-    /// Subproblems solved.
+    /// Number of subproblems solved.
     pub qp_solves: usize,
     /// Subproblems that needed the fallback solver.
     pub qp_fallbacks: usize,
@@ -179,11 +179,11 @@ impl Counts {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct TrialCounts {
-    /// The plain cuts.
+    /// Number of trial points of the cutting-plane model.
     pub cuts: usize,
-    /// The curved model.
+    /// Number of trial points of the curved model.
     pub curved_model: usize,
-    /// The composite model.
+    /// Number of trial points of the composite model.
     pub composite_model: usize,
     /// Points next to the center, for the proof of an end.
     #[serde(default)]
@@ -191,7 +191,6 @@ pub struct TrialCounts {
 }
 
 impl TrialCounts {
-    /// Counts one evaluation.
     pub(crate) fn add(&mut self, origin: Origin) {
         match origin {
             Origin::Given => {}

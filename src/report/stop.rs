@@ -9,7 +9,8 @@ use std::ops::{BitAnd, BitOr};
 ///
 /// ```
 /// use nonsmooth::StopRule;
-/// let rule = StopRule::ValueBelow(1.5) | (StopRule::Evaluations(20) & StopRule::Stalled { evaluations: 10, relative: 1e-3 });
+/// let stalled = StopRule::Stalled { evaluations: 10, relative: 1e-3 };
+/// let rule = StopRule::ValueBelow(1.5) | (StopRule::Evaluations(20) & stalled);
 /// assert!(rule.holds(&[]).is_none());
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -89,9 +90,9 @@ impl BitAnd for StopRule {
 
 impl fmt::Display for StopRule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let join = |f: &mut fmt::Formatter<'_>, rules: &[Self], word: &str| {
+        let join = |f: &mut fmt::Formatter<'_>, rules: &[Self], separator: &str| {
             let texts: Vec<String> = rules.iter().map(|rule| format!("({rule})")).collect();
-            write!(f, "{}", texts.join(word))
+            write!(f, "{}", texts.join(separator))
         };
         match self {
             Self::ValueBelow(target) => write!(f, "value ≤ {target}"),

@@ -8,23 +8,23 @@ use std::fmt;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Termination {
-    /// Aggregate subgradient and aggregate error are small, and every active cut lies next to the center or Θ is declared
-    /// convex.
+    /// Aggregate subgradient and aggregate error are small, and every active cut lies next to the center or Θ is
+    /// declared convex.
     Stationary {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
-        /// If Θ is declared convex: how far Θ can lie above its minimum within reach, in units of Θ. Every variable reaches as far as
-        /// the one does that lies farthest from zero or from its start.
+        /// If Θ is declared convex: how far Θ can lie above its minimum within reach, in units of Θ. Every variable
+        /// reaches as far as the one does that lies farthest from zero or from its start.
         #[serde(default)]
         gap: Option<f64>,
     },
-    /// The model promises less than the tolerance, again after local restarts or because Θ looks convex, but some active
-    /// cuts lie away from the center: optimal if Θ is convex there, probably stationary otherwise.
+    /// The model promises less than the tolerance, again after local restarts or because Θ looks convex, but some
+    /// active cuts lie away from the center: optimal if Θ is convex there, probably stationary otherwise.
     StationaryUnconfirmed {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,
-        /// A variable, counted from 0, about which the subgradients say nothing: along it, they do not cancel, and its unit hides what is
-        /// left to gain.
+        /// A variable, counted from 0, about which the subgradients say nothing: along it, they do not cancel, and its
+        /// unit hides what is left to gain.
         #[serde(default)]
         undecided: Option<usize>,
     },
@@ -74,14 +74,15 @@ pub enum Termination {
         /// Text of the last one.
         last: String,
     },
-    /// An answer of the oracle contradicts an earlier one; see [`OracleError::Contradiction`](crate::OracleError::Contradiction).
+    /// An answer of the oracle contradicts an earlier one; see
+    /// [`OracleError::Contradiction`](crate::OracleError::Contradiction).
     OracleContradiction {
-        /// The contradiction.
+        /// Description of the contradiction between the two answers.
         reason: String,
     },
     /// The subproblem could not be solved.
     SubproblemFailed {
-        /// What went wrong.
+        /// Description of the failure.
         reason: String,
     },
 }
@@ -106,7 +107,9 @@ impl Termination {
                 "optimal if the objective is convex; otherwise start again from here, or from elsewhere, and compare"
             }
             Self::Infeasible { .. } => "start elsewhere, or relax the constraints",
-            Self::DegenerateConstraints { .. } => "write the constraints so that their gradients do not vanish or oppose each other",
+            Self::DegenerateConstraints { .. } => {
+                "write the constraints so that their gradients do not vanish or oppose each other"
+            }
             Self::NoiseLimit { .. } => {
                 "a more accurate oracle is needed to get further; where convexity is declared, check that the objective is convex"
             }
@@ -148,7 +151,10 @@ impl fmt::Display for Termination {
                 write!(f, "stationary, unconfirmed: active cuts reach out to relative distance {radius:.1e}")
             }
             Self::Infeasible { violation } => {
-                write!(f, "infeasible: the violation of the constraints is stationary, at a distance of about {violation:.1e}")
+                write!(
+                    f,
+                    "infeasible: the violation of the constraints is stationary, at a distance of about {violation:.1e}"
+                )
             }
             Self::DegenerateConstraints { .. } => {
                 write!(f, "degenerate constraints: nothing lower was found, but no multipliers prove it")

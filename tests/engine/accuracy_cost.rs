@@ -1,10 +1,10 @@
 //! What accuracy on demand saves on the convex problems of the collection.
 //!
-//! The oracle stands for an inner solver that gains one decade of accuracy per unit of work: a relative error 10^−k costs k.
-//! Its answer after k decades is value and slope at y of the tangent plane at a point y' near y, so close that the plane lies
-//! at most 10^−k |Θ(y)| below Θ(y): a valid cut, as inexact solves of convex inner problems give. It stops at the accuracy
-//! asked for, or as soon as the plane lies above the descent target. An answer at the point of the warm start continues
-//! there and costs the missing decades only.
+//! The oracle stands for an inner solver that gains one decade of accuracy per unit of work: a relative error 10^−k
+//! costs k. Its answer after k decades is value and slope at y of the tangent plane at a point y' near y, so close that
+//! the plane lies at most 10^−k |Θ(y)| below Θ(y): a valid cut, as inexact solves of convex inner problems give. It
+//! stops at the accuracy asked for, or as soon as the plane lies above the descent target. An answer at the point of
+//! the warm start continues there and costs the missing decades only.
 use crate::common::{median, nearby_starts};
 use nonsmooth::{
     AccuracyPolicy, Answer, BundleTrust, BundleTrustConfig, Evaluation, NonsmoothObjective, OracleError, Request,
@@ -78,7 +78,8 @@ impl NonsmoothObjective for Decades<'_> {
     }
 }
 
-/// Medians over starts that differ by 1e-13: cost of a whole run, its evaluations, and the true gap at its end relative to 1 + |f*|.
+/// Medians over starts that differ by 1e-13: cost of a whole run, its evaluations, and the true gap at its end relative
+/// to 1 + |f*|.
 fn run(problem: &Problem, accuracy: AccuracyPolicy) -> (f64, f64, f64) {
     let runs: Vec<_> = nearby_starts(problem, 5).map(|start| run_from(problem, start, accuracy)).collect();
     let column = |entry: fn(&(f64, f64, f64)) -> f64| median(runs.iter().map(entry).collect());
@@ -92,7 +93,8 @@ fn run_from(problem: &Problem, start: Vector, accuracy: AccuracyPolicy) -> (f64,
     let report = BundleTrust::new(config).unwrap().minimize(&theta, start).unwrap();
     let value = problem.evaluate(report.solution.as_slice()).0;
     let gap = (value - problem.optimal_value) / (1.0 + problem.optimal_value.abs());
-    // Where minimum and minimiser are zero, the last digits are lost to rounding before they are small beside what is left.
+    // Where minimum and minimiser are zero, the last digits are lost to rounding before they are small beside what is
+    // left.
     let rounding = matches!(report.termination, Termination::NoiseLimit { estimate } if estimate < 1e-8);
     assert!(report.termination.is_stationary() || rounding, "{}: {report}", problem.name);
     assert!(gap <= 1e-6, "{}: {gap:.1e} {report}", problem.name);

@@ -4,7 +4,8 @@ use nonsmooth::verify::seeded_direction;
 use nonsmooth::{BundleTrust, BundleTrustConfig, Certificate, Convexity, Polyhedron, Vector};
 use testset::Family;
 
-/// Norm and error follow from the multipliers, the predicted decrease from the step: −v = ‖z̃‖²/u + ẽ at the solution of a subproblem.
+/// Norm and error follow from the multipliers, the predicted decrease from the step: −v = ‖z̃‖²/u + ẽ at the solution
+/// of a subproblem.
 fn assert_agrees(certificate: &Certificate, set: &Polyhedron) {
     let check = certificate.recheck(set).unwrap();
     assert_eq!(

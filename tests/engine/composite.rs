@@ -274,7 +274,12 @@ fn quadratics(n: usize, pieces: usize, seed: u64) -> Vec<(Matrix, Vector, f64)> 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, rng_seed: RngSeed::Fixed(7), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 64,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(7),
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn minimax_of_random_quadratics_agrees_with_cuts(n in 1_usize..7, pieces in 1_usize..8, seed in 0_u64..1 << 40) {
@@ -293,8 +298,8 @@ proptest! {
         let (start, set) = (seeded_direction(n, seed + 100) * 3.0, Polyhedron::unbounded(n));
         let report = run(&theta, &set, start.clone(), config());
         let plain = run(&cuts, &set, start, config());
-        // At a smooth optimum the slopes of the last cuts vanish so fast that the scale of Θ which is taken from them may fall
-        // below rounding: the word is then that of noise, with a bound of what is left.
+        // At a smooth optimum the slopes of the last cuts vanish so fast that the scale of Θ which is taken from them
+        // may fall below rounding: the termination is then the noise limit, with a bound of what is left.
         let bounded = matches!(report.termination, Termination::NoiseLimit { estimate } if estimate <= 1e-6);
         prop_assert!(report.termination.is_confirmed() || bounded, "{report}");
         prop_assert!((report.value - plain.value).abs() <= 1e-6 * plain.value.abs().max(1.0), "{report}{plain}");
@@ -307,7 +312,7 @@ proptest! {
     }
 }
 
-/// A stiff output far from its optimum at the start sets the weights; y then falls along a straight line that is all but flat. Steps along
+/// A stiff output far from its optimum at the start sets the weights; y then falls slowly along a line. Steps along
 /// it are short beside its length, each promises less than a small decrease, and all of them together little more.
 #[test]
 fn a_decrease_that_is_small_at_every_step_does_not_hold_up_the_end() {
@@ -327,8 +332,8 @@ fn a_decrease_that_is_small_at_every_step_does_not_hold_up_the_end() {
     }
 }
 
-/// Beyond y = 0.1 another output grows steeply, which the Jacobian before it does not tell: steps along the slope of y are rejected there,
-/// and those that are short enough promise less than a small decrease.
+/// Beyond y = 0.1 another output grows steeply, which the Jacobian before it does not tell: steps along the slope of y
+/// are rejected there, and those that are short enough promise less than a small decrease.
 #[test]
 fn a_rejected_point_is_not_proposed_again() {
     for (slope, wall, [x, y]) in [(1e-4, 1e6, [0.043, 0.0]), (3e-5, 1e4, [0.43, 0.09]), (3e-6, 1e6, [0.43, 0.099])] {

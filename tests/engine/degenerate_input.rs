@@ -1,4 +1,5 @@
-//! Input at the edge of what is allowed: a set of one point, subgradients that contradict the values, the smallest bundles.
+//! Input at the edge of what is allowed: a set of one point, subgradients that contradict the values, the smallest
+//! bundles.
 use crate::common::v;
 use nonsmooth::{
     AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, FnObjective, InputError, Matrix, NonsmoothObjective,
@@ -88,7 +89,8 @@ fn subgradients_that_contradict_the_values_end_the_run_unconfirmed_before_its_li
                 let fitting = match report.termination {
                     Termination::StepTooShort { .. } => true,
                     Termination::StationaryUnconfirmed { .. } => convexity == Convexity::Unknown,
-                    // Of a convex function, a cut above the values can only be noise; so is a change that no subgradient explains.
+                    // Of a convex function, a cut above the values can only be noise; so is a change that no
+                    // subgradient explains.
                     Termination::NoiseLimit { .. } => true,
                     _ => false,
                 };
@@ -128,8 +130,9 @@ fn the_smallest_bundles_go_on_with_merged_cuts() {
         for size in [3, 4, 6, 10] {
             let report = with_bundle(&problem, size, Convexity::Convex);
             let gap = (report.value - problem.optimal_value) / (1.0 + problem.optimal_value.abs());
-            // A bundle of three cuts is hardly better than a subgradient method, but must not stand still: Maxquad is left with 5.2e-4
-            // after 2000 evaluations, and with 8.8e-5 without the curved model, which such a bundle tells little.
+            // A bundle of three cuts is hardly better than a subgradient method, but must not stand still: Maxquad is
+            // left with 5.2e-4 after 2000 evaluations, and with 8.8e-5 without the curved model, which such a bundle
+            // tells little.
             assert!(gap <= 6e-4, "{name} with {size} cuts: {gap:.1e} {report}");
         }
     }

@@ -1,14 +1,14 @@
 //! Evaluations per problem of the collection, pinned: a change of the engine that changes one fails here.
 //!
-//! The dense kernels choose their instructions by the processor, and on another one a run may take another course, as they round differently:
-//! each problem may take 15 % and 2 evaluations more than the number below, the sum over the unconstrained problems that all peers solve and
-//! the geometric mean to MPBNGC 5 % more.
+//! The dense kernels choose their instructions by the processor, and on another one a run may take another course, as
+//! they round differently: each problem may take 15 % and 2 evaluations more than the number below, the sum over the
+//! unconstrained problems that all peers solve and the geometric mean to MPBNGC 5 % more.
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Vector};
 use std::cell::Cell;
 use testset::{Family, Problem};
 
-/// Evaluations to f − f* ≤ 1e-6 (1 + |f*|). Not pinned: ChebRosenN1_5, which is not solved, and ShellDual, where the last bit
-/// decides whether 2000 are enough.
+/// Evaluations to f − f* ≤ 1e-6 (1 + |f*|). Not pinned: ChebRosenN1_5, which is not solved, and ShellDual, where the
+/// last bit decides whether 2000 are enough.
 const MEASURED: [(&str, usize); 42] = [
     ("Rosenbrock", 71),
     ("CB2", 10),

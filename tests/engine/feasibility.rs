@@ -34,7 +34,7 @@ proptest! {
     fn every_evaluation_is_admissible(
         (set, size) in polyhedron(),
         slopes in prop::collection::vec(-2.0..2.0f64, 5 * N),
-        bend in -0.5..1.0f64,
+        curvature in -0.5..1.0f64,
         start in prop::collection::vec(-3.0..3.0f64, N),
     ) {
         let worst = Cell::new(0.0_f64);
@@ -44,11 +44,12 @@ proptest! {
             let y = x / size;
             let values = &slopes * &y;
             let active = values.imax();
-            let gradient = slopes.row(active).transpose() + &y * (2.0 * bend);
-            (values[active] + bend * y.norm_squared(), gradient / size)
+            let gradient = slopes.row(active).transpose() + &y * (2.0 * curvature);
+            (values[active] + curvature * y.norm_squared(), gradient / size)
         });
         let config = BundleTrustConfig { max_evaluations: 120, ..Default::default() };
-        let report = BundleTrust::new(config).unwrap().constraints(set.clone()).minimize(&theta, v(&start) * size).unwrap();
+        let method = BundleTrust::new(config).unwrap().constraints(set.clone());
+        let report = method.minimize(&theta, v(&start) * size).unwrap();
         prop_assert!(worst.get() <= 1e-9, "violation {} {report}", worst.get());
         let failed = matches!(report.termination, nonsmooth::Termination::SubproblemFailed { .. });
         prop_assert!(!failed, "{report}");

@@ -7,15 +7,15 @@ use nonsmooth::{BundleTrust, BundleTrustConfig, CompositeFunction, Matrix, Polyh
 const VARIABLES: usize = 10;
 
 /// Residuals a_i·x + s sin(a_i·x) − b_i with a_i scaled by rows and columns over two decades.
-fn residuals(data: usize, bend: f64) -> impl Fn(&Vector) -> (Vector, Matrix) {
+fn residuals(data: usize, curvature: f64) -> impl Fn(&Vector) -> (Vector, Matrix) {
     let columns = |i: usize| seeded_direction(VARIABLES, i as u64);
     let scale = |i: usize, j: usize| 10_f64.powf((0.37 * i as f64).sin() + (0.7 * j as f64).cos());
     let rows = Matrix::from_fn(data, VARIABLES, |i, j| columns(i)[j] * scale(i, j));
     let wanted = seeded_direction(data, 7) * 3.0;
     move |x| {
         let linear = &rows * x;
-        let slopes = linear.map(|z| 1.0 + bend * z.cos());
-        (linear.map(|z| z + bend * z.sin()) - &wanted, Matrix::from_diagonal(&slopes) * &rows)
+        let slopes = linear.map(|z| 1.0 + curvature * z.cos());
+        (linear.map(|z| z + curvature * z.sin()) - &wanted, Matrix::from_diagonal(&slopes) * &rows)
     }
 }
 
@@ -27,8 +27,8 @@ fn tight() -> Polyhedron {
     Polyhedron::boxed(-&side, side).and_then(|set| set.with_rows(&row, &low, &high)).unwrap()
 }
 
-fn fit(outer: &dyn OuterFunction, (data, bend): (usize, f64), set: &Polyhedron) -> Report {
-    let theta = CompositeFunction::new(VARIABLES, outer, residuals(data, bend));
+fn fit(outer: &dyn OuterFunction, (data, curvature): (usize, f64), set: &Polyhedron) -> Report {
+    let theta = CompositeFunction::new(VARIABLES, outer, residuals(data, curvature));
     let config = BundleTrustConfig { max_evaluations: 60, ..BundleTrustConfig::default() };
     BundleTrust::new(config).unwrap().constraints(set.clone()).minimize(&theta, Vector::zeros(VARIABLES)).unwrap()
 }
@@ -53,7 +53,8 @@ fn linear_fits_end_confirmed_with_a_proof_that_holds() {
             assert!(report.termination.is_confirmed(), "{name}: {report}");
             assert!(report.counts.evaluations <= 10, "{name}: {report}");
             let certificate = report.certificate.unwrap();
-            // h and all residuals are convex, so that the certificate bounds what is left: within reach of each variable.
+            // h and all residuals are convex, so that the certificate bounds what is left: within reach of each
+            // variable.
             let check = certificate.recheck(&set).unwrap();
             let left = check.aggregate_error + check.aggregate_norm * 2.0 * report.solution.norm();
             assert!(left <= 1e-5 * report.value, "{name}: {left:e} of {:e}", report.value);
@@ -64,7 +65,7 @@ fn linear_fits_end_confirmed_with_a_proof_that_holds() {
     }
 }
 
-/// The same functions as closures are solved by cuts: a second path to the same values.
+/// As closures, the functions are solved by cuts: a second path to the values of the composite model.
 #[test]
 fn cones_and_cuts_lead_to_the_same_fit() {
     for (name, outer) in functions() {

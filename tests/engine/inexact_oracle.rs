@@ -77,8 +77,8 @@ fn accuracy_on_demand_costs_less_and_ends_as_well() {
         theta.cost.get()
     };
     let (tight, demand) = (run(AccuracyPolicy::Tightest), run(AccuracyPolicy::ON_DEMAND));
-    // The cost is the number of digits: the last digits are bought in both runs, the first ones in one only. One of the two ends takes a
-    // second look (second_look.rs): 0.803.
+    // The cost is the number of digits: the last digits are bought in both runs, the first ones in one only. One of the
+    // two ends takes a second look (second_look.rs): 0.803.
     assert!(demand < 0.85 * tight, "{demand} against {tight}");
 }
 

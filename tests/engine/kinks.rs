@@ -21,8 +21,9 @@ fn random(rows: usize, columns: usize, seed: u64) -> Matrix {
     Matrix::from_fn(rows, columns, |i, j| entries[i * columns + j])
 }
 
-/// h of c_i = b_i + |a_i (x − x*) + ½β (a_i (x − x*))²|, b_i > 0, h growing in each output: x* on all kinks is the optimum.
-fn folded(outer: Box<dyn OuterFunction>, n: usize, seed: u64, bend: f64) -> Kinked {
+/// h of c_i = b_i + |a_i (x − x*) + ½β (a_i (x − x*))²|, b_i > 0, h growing in each output: x* on all kinks is the
+/// optimum.
+fn folded(outer: Box<dyn OuterFunction>, n: usize, seed: u64, curvature: f64) -> Kinked {
     let rows = random(n + 2, n, seed + 3);
     let floor = seeded_direction(n + 2, seed + 4).map(|entry| 0.5 + 0.4 * entry);
     let solution = seeded_direction(n, seed + 1);
@@ -30,15 +31,15 @@ fn folded(outer: Box<dyn OuterFunction>, n: usize, seed: u64, bend: f64) -> Kink
     let optimum = Some(outer.value(&floor));
     let linearize = move |x: &Vector| {
         let lengths = &rows * (x - &solution);
-        let signed = lengths.map(|length| length + 0.5 * bend * length * length);
-        let slope = |i: usize, j: usize| signed[i].signum() * (1.0 + bend * lengths[i]) * rows[(i, j)];
+        let signed = lengths.map(|length| length + 0.5 * curvature * length * length);
+        let slope = |i: usize, j: usize| signed[i].signum() * (1.0 + curvature * lengths[i]) * rows[(i, j)];
         (&floor + signed.abs(), Matrix::from_fn(n + 2, n, slope))
     };
     Kinked { dimension: n, outer, linearize: Box::new(linearize), start, optimum }
 }
 
-/// A chain of m = 2n springs over the ground, K y = B x − load + λ, y ≥ 0 ⊥ λ ≥ 0: y near a shape that lies below the ground in
-/// parts, and small forces λ; outputs (y, λ, x).
+/// A chain of m = 2n springs over the ground, K y = B x − load + λ, y ≥ 0 ⊥ λ ≥ 0: y near a shape that lies below the
+/// ground in parts, and small forces λ; outputs (y, λ, x).
 fn obstacle(n: usize, seed: u64) -> Kinked {
     let m = 2 * n;
     let forces = random(m, n, seed + 3);
@@ -146,7 +147,8 @@ fn on_kinks_of_the_outputs_the_composite_model_costs_at_most_a_tenth() {
     assert!(means.iter().all(|(_, mean)| *mean <= LARGEST_MEAN), "{means:?}");
 }
 
-/// Each problem takes at most a tenth and one evaluation more than with the cuts alone, and about the counts measured before.
+/// Each problem takes at most a tenth and one evaluation more than with the cuts alone, and about the counts measured
+/// before.
 #[test]
 fn three_kinked_problems_take_what_the_cuts_take() {
     let problems = [

@@ -3,11 +3,12 @@
 use crate::common::v;
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Matrix, Polyhedron, Report, VariableScaling, Vector};
 
-/// Steep across a bent kink, slowly falling along (1, 1, 1). No step ends on the kink itself, where rounding decides the side.
+/// Steep across a curved kink, slowly falling along (1, 1, 1). No step ends on the kink itself, where rounding decides
+/// the side.
 fn valley(x: &Vector) -> (f64, Vector) {
-    let (across, bend, along) = (x[0] - x[1] + 0.05 * x[2] * x[2], x[1] - x[2], x.sum());
-    let value = 10.0 * across.abs() + 5.0 * bend * bend + 1e-2 * along;
-    let (side, slope) = (10.0 * across.signum(), 10.0 * bend);
+    let (across, difference, along) = (x[0] - x[1] + 0.05 * x[2] * x[2], x[1] - x[2], x.sum());
+    let value = 10.0 * across.abs() + 5.0 * difference * difference + 1e-2 * along;
+    let (side, slope) = (10.0 * across.signum(), 10.0 * difference);
     (value, v(&[side + 1e-2, -side + slope + 1e-2, 0.1 * x[2] * side - slope + 1e-2]))
 }
 
@@ -35,7 +36,7 @@ fn scaled() -> Report {
     method.constraints(admissible()).minimize(&FnObjective::new(3, valley), start()).unwrap()
 }
 
-/// The same run in the coordinates β of x = M β, where bounds are rows.
+/// The run in the coordinates β of x = M β, where bounds are rows.
 fn by_hand() -> Report {
     let (matrix, set) = (stretch(), admissible());
     let theta = FnObjective::new(3, |beta: &Vector| {

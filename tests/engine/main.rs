@@ -23,4 +23,4 @@ mod proposers;
 mod restart;
 mod second_look;
 mod terminations;
-mod words;
+mod true_terminations;

@@ -9,9 +9,9 @@ use nonsmooth::{
 fn run(config: BundleTrustConfig) -> Report {
     // The valley of a steep quadratic with a kink beside it: the curved model earns its trust here.
     let theta = nonsmooth::FnObjective::new(3, |x: &Vector| {
-        let bend = x[1] - x[0] * x[0];
-        let value = 50.0 * bend * bend + (1.0 - x[0]).powi(2) + x[2].abs();
-        let gradient = vec![-200.0 * bend * x[0] - 2.0 * (1.0 - x[0]), 100.0 * bend, x[2].signum()];
+        let residual = x[1] - x[0] * x[0];
+        let value = 50.0 * residual * residual + (1.0 - x[0]).powi(2) + x[2].abs();
+        let gradient = vec![-200.0 * residual * x[0] - 2.0 * (1.0 - x[0]), 100.0 * residual, x[2].signum()];
         (value, Vector::from_vec(gradient))
     });
     BundleTrust::new(config).unwrap().minimize(&theta, v(&[-1.2, 1.0, 0.7])).unwrap()
@@ -58,11 +58,11 @@ fn solve(name: &str, config: BundleTrustConfig) -> (Report, usize) {
     (report, evaluations)
 }
 
-/// |x₂ − 2x₁² + 1| is a curved valley of which one piece bends down: a model that knows that follows it.
+/// |x₂ − 2x₁² + 1| is a curved valley with one concave piece: a model that allows concave pieces follows it.
 #[test]
 fn a_curved_valley_is_followed() {
     let (report, evaluations) = solve("ChebRosenN1_2", BundleTrustConfig::default());
-    // 16 where this was written; 102 with pieces that bend up alone.
+    // 16 where this was written; 102 with convex pieces alone.
     assert!(evaluations <= 30, "{evaluations}");
     // The minimum is zero, beside which no slope along the valley is small: the end need not be confirmed.
     assert!(report.termination.is_stationary(), "{}", report.termination);
@@ -71,8 +71,8 @@ fn a_curved_valley_is_followed() {
 #[test]
 fn a_start_beside_a_pole_is_left() {
     let theta = FnObjective::new(1, |x: &Vector| {
-        let bend = if x[0] > 2.0 { 1.0 } else { -1.0 };
-        (1.0 / x[0].abs() + (x[0] - 2.0).abs(), v(&[-1.0 / (x[0] * x[0].abs()) + bend]))
+        let slope = if x[0] > 2.0 { 1.0 } else { -1.0 };
+        (1.0 / x[0].abs() + (x[0] - 2.0).abs(), v(&[-1.0 / (x[0] * x[0].abs()) + slope]))
     });
     let report = BundleTrust::new(BundleTrustConfig::default()).unwrap().minimize(&theta, v(&[1e-8])).unwrap();
     // 78 where this was written; 223 with a floor that stays.

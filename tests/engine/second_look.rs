@@ -17,10 +17,11 @@ impl Random {
     }
 }
 
-/// Σ w_i |x_{i+1} − a_i x_i² − b_i sin 2x_i − c_i| + |x_1 − 1| or (x_1 − 1)²/4: curved valleys with flanks of many slopes.
+/// Σ w_i |x_{i+1} − a_i x_i² − b_i sin 2x_i − c_i| + |x_1 − 1| or (x_1 − 1)²/4: curved valleys with flanks of many
+/// slopes.
 struct Valley {
     weights: Vec<f64>,
-    bends: Vec<[f64; 3]>,
+    harmonics: Vec<[f64; 3]>,
     smooth: bool,
 }
 
@@ -30,8 +31,8 @@ impl Valley {
         (0..10).for_each(|_| _ = random.uniform());
         let n = 2 + (random.uniform() * 9.0) as usize;
         let weights = (0..n).map(|_| 10_f64.powf(3.0 * random.uniform() - 0.5)).collect();
-        let bends = (0..n).map(|_| [random.normal(), random.normal(), random.normal()]).collect();
-        Self { weights, bends, smooth: random.uniform() < 0.5 }
+        let harmonics = (0..n).map(|_| [random.normal(), random.normal(), random.normal()]).collect();
+        Self { weights, harmonics, smooth: random.uniform() < 0.5 }
     }
 
     fn at(&self, x: &Vector) -> (f64, Vector) {
@@ -39,7 +40,7 @@ impl Valley {
         let (mut value, mut slope) = (if self.smooth { 0.25 * off * off } else { off.abs() }, Vector::zeros(x.len()));
         slope[0] = if self.smooth { 0.5 * off } else { off.signum() };
         for i in 0..x.len() - 1 {
-            let [a, b, c] = self.bends[i];
+            let [a, b, c] = self.harmonics[i];
             let across = x[i + 1] - (a * x[i] * x[i] + b * (2.0 * x[i]).sin() + c);
             let flank = self.weights[i] * across.signum();
             value += self.weights[i] * across.abs();
@@ -58,8 +59,8 @@ impl Valley {
 
 #[test]
 fn a_second_look_finds_what_falls_along_a_curved_kink() {
-    // Without the second look these runs end confirmed, 6.9e-4, 6.1e-5 and 2.2e-5 (relative) above what can be attained next to them. With
-    // it they come to their limit of evaluations.
+    // Without the second look these runs end confirmed, 6.9e-4, 6.1e-5 and 2.2e-5 (relative) above what can be attained
+    // next to them. With it they come to their limit of evaluations.
     for (seed, scale) in [(20894, 10.0), (21368, 0.1), (31081, 0.1)] {
         let valley = Valley::new(seed);
         let mut random = Random(seed * 7919 + 13);
@@ -98,7 +99,7 @@ fn the_first_proof_comes_back_where_nothing_lower_is_found() {
         let start = Vector::from_column_slice(&problem.start);
         let report = BundleTrust::new(config).unwrap().minimize(&theta, start).unwrap();
         let Termination::Stationary { radius, .. } = report.termination else { continue };
-        // Beyond 1e-6, the end has been looked at twice; its certificate is that of the cuts the word speaks of.
+        // Beyond 1e-6, the end has been checked twice; its certificate holds the cuts on which the termination rests.
         assert!(radius <= 1e-6 || report.counts.restarts > 0, "{}: {report}", problem.name);
         let certificate = report.certificate.as_ref().unwrap();
         let largest = certificate.active_radius / report.solution.norm().max(f64::MIN_POSITIVE);
@@ -106,7 +107,7 @@ fn the_first_proof_comes_back_where_nothing_lower_is_found() {
         assert!(certificate.cuts.iter().any(|cut| cut.point == report.solution), "{}: {report}", problem.name);
         if radius > 1e-6 {
             kept += 1;
-            // A limit that ends the look keeps its word.
+            // A limit that ends the second check remains the termination.
             let max_evaluations = report.counts.evaluations - 1;
             let config = BundleTrustConfig { max_evaluations, ..Default::default() };
             let start = Vector::from_column_slice(&problem.start);

@@ -1,5 +1,5 @@
-//! Every `cargo run --example` of the pages runs and succeeds; every other command is one that is tested elsewhere; every link
-//! and every path that they name exists.
+//! Every `cargo run --example` of the pages runs and succeeds; every other command is one that is tested elsewhere;
+//! every link and every path that they name exists.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -24,7 +24,8 @@ fn shapes() -> impl Strategy<Value = Shape> {
     (1usize..40, 1usize..60, 0usize..60).prop_map(|(dimension, cuts, rows)| Shape { dimension, cuts, rows })
 }
 
-/// min max(d, −s(d + ½)) + ½ d² at the wall d = −½: v = −½ to rounding, although the steep cut knows its own value to 0.1 only.
+/// min max(d, −s(d + ½)) + ½ d² at the wall d = −½: v = −½ to rounding, although the steep cut knows its own value to
+/// 0.1 only.
 #[test]
 fn beside_a_wall_the_other_cut_says_the_value() {
     let steepness = 1e15;
@@ -49,7 +50,8 @@ fn metric_norm(qp: &OwnedQp, step: &Vector) -> f64 {
     step.dot(&qp.view().metric.apply(step)).max(0.0).sqrt()
 }
 
-/// The problem with cuts taken near poles, up to 10^power times as steep as the others; none excludes 0, some are active.
+/// The problem with cuts taken near poles, up to 10^power times as steep as the others; none excludes 0, some are
+/// active.
 fn with_poles(mut qp: OwnedQp, seed: u64, poles: usize, power: f64) -> OwnedQp {
     let (mut random, dimension) = (Random(seed ^ 1), qp.slopes[0].len());
     let first = qp.slopes.len() as u64;
@@ -63,12 +65,13 @@ fn with_poles(mut qp: OwnedQp, seed: u64, poles: usize, power: f64) -> OwnedQp {
     qp
 }
 
-/// Draws too rare for the properties below. Each needs one rule of the active-set method, and ended as a contradiction without it.
+/// Draws too rare for the properties below. Each needs one rule of the active-set method, and ended as a contradiction
+/// without it.
 #[test]
 fn rare_draws_are_solved() {
     let shape = |dimension, cuts, rows| Shape { dimension, cuts, rows };
-    // The first two: a flat cut falls by what a steep one rises, however little that is. The others: a steep active cut makes independent
-    // rows look dependent unless its column is scaled up.
+    // The first two: a flat cut falls by what a steep one rises, however little that is. The others: a steep active cut
+    // makes independent rows look dependent unless its column is scaled up.
     for (seed, shape, poles, power) in [
         (17_733, shape(18, 31, 53), 19, 8.911_399_740_239_702),
         (51_001, shape(18, 39, 54), 7, 8.529_784_206_436_382),
@@ -108,8 +111,8 @@ proptest! {
         prop_assert!(solve(&qp).kkt_residual <= KKT);
     }
 
-    /// In one scale of the columns, and with v from the steepest cut, one in a hundred of the programs with cuts of 1e8 and more fails, and one
-    /// in ten needs another method.
+    /// In one scale of the columns, and with v from the steepest cut, one in a hundred of the programs with cuts of 1e8
+    /// and more fails, and one in ten needs another method.
     #[test]
     fn cuts_of_poles_hide_no_others(seed: u64, shape in shapes(), poles in 1usize..20, power in 4.0..10.0f64) {
         let qp = with_poles(random_qp(seed, shape), seed, poles, power);
@@ -119,14 +122,24 @@ proptest! {
 
     /// Cuts of any steepness exclude no point of the set.
     #[test]
-    fn cuts_of_any_steepness_contradict_no_sides(seed: u64, shape in shapes(), poles in 1usize..20, power in 10.0..15.0f64) {
+    fn cuts_of_any_steepness_contradict_no_sides(
+        seed: u64,
+        shape in shapes(),
+        poles in 1usize..20,
+        power in 10.0..15.0f64,
+    ) {
         let qp = with_poles(random_qp(seed, shape), seed, poles, power);
         let result = EpigraphQpSolver::new().solve(&qp.view());
         prop_assert!(!matches!(result, Err(QpError::Infeasible { .. })), "{:?}", result);
     }
 
     #[test]
-    fn units_of_values_and_variables_do_not_matter(seed: u64, shape in shapes(), value in -6i32..=6, length in -6i32..=6) {
+    fn units_of_values_and_variables_do_not_matter(
+        seed: u64,
+        shape in shapes(),
+        value in -6i32..=6,
+        length in -6i32..=6,
+    ) {
         let qp = random_qp(seed, shape);
         let (value, length) = (10f64.powi(value), 10f64.powi(length));
         let mut scaled = qp.clone();
@@ -138,7 +151,8 @@ proptest! {
         }
         let (one, two) = (solve(&qp), solve(&scaled));
         prop_assert!(two.kkt_residual <= KKT, "{:e}", two.kkt_residual);
-        // Strong convexity turns residuals of 1e-14 of the gradients into steps that agree to this part of the free step.
+        // Strong convexity turns residuals of 1e-14 of the gradients into steps that agree to this part of the free
+        // step.
         let free = qp.slopes.iter().map(|g| dual_norm(&qp, g)).fold(0.0, f64::max);
         let gap = metric_norm(&qp, &(&two.step / length - &one.step));
         prop_assert!(gap <= 1e-9 * (free + metric_norm(&qp, &one.step)), "gap {:e} of {:e}", gap, free);
@@ -254,7 +268,7 @@ fn dual_norm(qp: &OwnedQp, slope: &Vector) -> f64 {
     slope.dot(&inverse).sqrt()
 }
 
-/// The same cuts, rows and box seen from the end of the step.
+/// Moves the origin of cuts, rows and box to the end of the step.
 fn recenter(qp: &mut OwnedQp, solution: &QpSolution) {
     for (slope, offset) in qp.slopes.iter().zip(&mut qp.offsets) {
         *offset += solution.epigraph - slope.dot(&solution.step);

@@ -1,4 +1,4 @@
-//! The same QP, straight to the interior-point solver: variables (d, v), no scaling.
+//! A reference solution of the QP by the interior-point solver alone: variables (d, v), no scaling.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};

@@ -1,4 +1,5 @@
-//! The sizes of files and functions. The directions of dependency of docs/architecture.md are those of the package graph.
+//! The sizes of files, functions and lines, and how comments begin. The directions of dependency of
+//! docs/architecture.md are those of the package graph.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,6 +9,25 @@ const LONGEST_FILE: usize = 450;
 
 /// Longest function allowed, lines from `fn` to the closing brace.
 const LONGEST_FUNCTION: usize = 60;
+
+/// Longest line allowed, characters.
+const LONGEST_LINE: usize = 120;
+
+/// Folders in which lines are short and comments stand alone.
+const CHECKED_FOLDERS: [&str; 12] = [
+    "src/",
+    "tests/",
+    "benches/",
+    "examples/",
+    "testset/",
+    "python/src/",
+    "problems/studies/",
+    "problems/figures/",
+    "problems/exchange/",
+    "problems/mpi/",
+    "problems/src/toy/",
+    "problems/src/membrane/",
+];
 
 /// All Rust files below `folder`, without build products.
 fn sources(folder: &Path) -> Vec<PathBuf> {
@@ -81,4 +101,57 @@ fn functions_are_short() {
     }
     assert!(count > 2000, "{count} functions found");
     assert_eq!(long, Vec::<String>::new(), "allowed: {LONGEST_FUNCTION} lines");
+}
+
+/// Lines of a text that are too long, and comments that begin with a reference to their neighbour. Exempt from the
+/// length are string literals, tables, and blocks of text in a comment: their columns are aligned.
+fn badly_written(text: &str) -> Vec<(usize, &'static str)> {
+    let (mut found, mut block) = (Vec::new(), None);
+    for (index, line) in text.lines().enumerate() {
+        let comment = line.trim_start().strip_prefix("//").map(|rest| rest.trim_start_matches(['/', '!']).trim_start());
+        if let Some(fence) = comment.and_then(|comment| comment.strip_prefix("```")) {
+            block = if block.is_none() { Some(fence) } else { None };
+        }
+        let aligned = match comment {
+            Some(comment) => block == Some("text") || comment.starts_with('|'),
+            None => line.contains('"') || line.ends_with('\\'),
+        };
+        if line.chars().count() > LONGEST_LINE && !aligned {
+            found.push((index + 1, "too long"));
+        }
+        if comment.is_some_and(|comment| comment.starts_with("The same")) && begins(text, index) {
+            found.push((index + 1, "a comment that begins with \"The same\""));
+        }
+    }
+    found
+}
+
+/// Whether a comment begins in a line: the line before is none, or an empty one.
+fn begins(text: &str, index: usize) -> bool {
+    let before = index.checked_sub(1).and_then(|before| text.lines().nth(before)).map_or("", str::trim_start);
+    !before.starts_with("//") || before.trim_start_matches(['/', '!']).trim().is_empty()
+}
+
+#[test]
+fn lines_are_short_and_comments_stand_alone() {
+    let mut wrong = Vec::new();
+    for folder in CHECKED_FOLDERS {
+        let texts: Vec<_> = texts().into_iter().filter(|(name, _)| name.starts_with(folder)).collect();
+        assert!(!texts.is_empty(), "no file in {folder}");
+        for (name, text) in texts {
+            wrong.extend(badly_written(&text).iter().map(|(line, fault)| format!("{name}:{line}: {fault}")));
+        }
+    }
+    assert_eq!(wrong, Vec::<String>::new(), "allowed: {LONGEST_LINE} characters");
+}
+
+#[test]
+fn a_long_line_and_a_dependent_comment_are_found() {
+    let (long, table) =
+        (format!("let a = {};", "b".repeat(LONGEST_LINE)), format!("// | {} |", "b".repeat(LONGEST_LINE)));
+    let text = format!(
+        "{long}\n{table}\nlet c = 1;\n/// The same again.\nlet d = 1;\n//! First. This is\n//! The same line.\n"
+    );
+    let lines: Vec<usize> = badly_written(&text).iter().map(|(line, _)| *line).collect();
+    assert_eq!(lines, [1, 4]);
 }

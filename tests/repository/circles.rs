@@ -1,5 +1,5 @@
-//! Files do not use each other in circles. A file uses another one by `use crate::…`, `use super::…` or a path `crate::…`; a name that a
-//! module hands on counts where it is defined.
+//! Files do not use each other in circles. A file uses another one by `use crate::…`, `use super::…` or a path
+//! `crate::…`; a name that a module hands on counts where it is defined.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

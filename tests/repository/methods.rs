@@ -1,6 +1,7 @@
-//! The engine consists of parts: a type whose methods call each other across many files is none. A method of a type that calls a method of the
-//! same type in another file is an arrow between these files; in `src/bundle` no circle of arrows is allowed, and no type with methods in
-//! more than three files. Traits do not count: they are the interfaces between parts.
+//! The engine consists of parts: a type whose methods call each other across many files is none. A method of a type
+//! that calls a method of the same type in another file is an arrow between these files; in `src/bundle` no circle of
+//! arrows is allowed, and no type with methods in more than three files. Traits do not count: they are the interfaces
+//! between parts.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -29,8 +29,8 @@ fn cargo(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// All packages that this machine builds with the default features. Cargo downloads those that only problems-mpi needs, which the
-/// tests do not build.
+/// All packages that this machine builds with the default features. Cargo downloads those that only problems-mpi needs,
+/// which the tests do not build.
 fn metadata() -> Value {
     let version = cargo(&["-vV"]);
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("cargo tells its host");

@@ -1,4 +1,5 @@
-//! What sources and pages refer to exists: equations and sections of `docs/method.md`, entries of `docs/references.bib`.
+//! What sources and pages refer to exists: equations and sections of `docs/method.md`, entries of
+//! `docs/references.bib`.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -95,7 +95,7 @@ impl Composition {
         Self { outer, outputs: Arc::new(outputs) }
     }
 
-    /// h.
+    /// The outer function h.
     pub fn outer(&self) -> &Outer {
         &self.outer
     }

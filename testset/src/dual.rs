@@ -8,9 +8,9 @@
 //! |(u, v)|             value √(u² + v²),                                 kink at |(u, v)| / |(∇u, ∇v)|
 //! ```
 //!
-//! The gradient is a Clarke subgradient wherever every kinked term enters increasingly (regular functions, calculus with
-//! equality), which holds for every problem of the collection but one: negative distances, where two points coincide,
-//! have the subgradient zero that is chosen here.
+//! The gradient is a Clarke subgradient wherever every kinked term enters increasingly (regular functions, calculus
+//! with equality), which holds for every problem of the collection but one: negative distances, where two points
+//! coincide, have the subgradient zero that is chosen here.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

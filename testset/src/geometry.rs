@@ -39,7 +39,8 @@ pub fn steiner_outer(data: &Steiner) -> Outer {
     Outer::Sum(weights.map(|&weight| (weight, Term::Length)).collect())
 }
 
-/// Excess demands of an exchange economy at the prices x, the largest of which counts: consumer i owns wᵢₖ of the good k.
+/// Excess demands of an exchange economy at the prices x, the largest of which counts: consumer i owns wᵢₖ of the good
+/// k.
 ///
 /// ```text
 /// f_k = Σᵢ ( aᵢₖ Σⱼ wᵢⱼ xⱼ / (x_k^bᵢ Σⱼ aᵢⱼ xⱼ^(1−bᵢ)) − wᵢₖ )

@@ -5,9 +5,10 @@
 //! minimise f(x)  over  lower ≤ x ≤ upper,  row_lower ≤ A x ≤ row_upper
 //! ```
 //!
-//! Sources: L. Lukšan, J. Vlček, Test problems for nonsmooth unconstrained and linearly constrained optimization (2000),
-//! and ACM TOMS Algorithm 811; M. Haarala, K. Miettinen, M. Mäkelä, Optim. Methods Softw. 19 (2004); M. Gürbüzbalaban,
-//! M. Overton, Nonlinear Anal. 75 (2012); Yu. Nesterov, Introductory Lectures on Convex Optimization (2004).
+//! Sources: L. Lukšan, J. Vlček, Test problems for nonsmooth unconstrained and linearly constrained optimization
+//! (2000), and ACM TOMS Algorithm 811; M. Haarala, K. Miettinen, M. Mäkelä, Optim. Methods Softw. 19 (2004); M.
+//! Gürbüzbalaban, M. Overton, Nonlinear Anal. 75 (2012); Yu. Nesterov, Introductory Lectures on Convex Optimization
+//! (2004).
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -36,11 +37,11 @@ pub enum Family {
     LinearlyConstrained,
 }
 
-/// One test problem.
+/// A published problem with its start and its optimal value.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct Problem {
-    /// Unique name.
+    /// Name by which the collection finds the problem.
     pub name: String,
     /// Number of variables.
     pub dimension: usize,
@@ -52,9 +53,9 @@ pub struct Problem {
     pub convex: bool,
     /// Lower corner of the orthant on which a convex problem is convex, −∞ nearly always.
     pub convex_lower: Vec<f64>,
-    /// The function in words, indices from one.
+    /// Description of the function, with indices from one.
     pub formula: String,
-    /// Publication.
+    /// Publication that states the problem.
     pub source: String,
     /// Remark on the problem.
     pub note: Option<String>,

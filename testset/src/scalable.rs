@@ -84,8 +84,8 @@ fn total(x: &[Dual]) -> Dual {
     Dual::combination(x.iter().map(|x| (1.0, x)))
 }
 
-/// A function of any number of variables whose value and subgradient take work in proportion to that number; with `Dual`, whose
-/// every operation carries a gradient, the work would grow with its square.
+/// A function of any number of variables whose value and subgradient take work in proportion to that number; with
+/// `Dual`, whose every operation carries a gradient, the work would grow with its square.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Scalable {
@@ -115,7 +115,8 @@ impl Scalable {
         }
     }
 
-    /// MAXQ of n variables, max xᵢ², from ±i. Source: M. Haarala, K. Miettinen, M. Mäkelä, Optim. Methods Softw. 19 (2004).
+    /// MAXQ of n variables, max xᵢ², from ±i. Source: M. Haarala, K. Miettinen, M. Mäkelä, Optim. Methods Softw. 19
+    /// (2004).
     pub fn maxq(n: usize) -> Self {
         let start = (1..=n).map(|i| if i <= n / 2 { i as f64 } else { -(i as f64) }).collect();
         Self { name: "MAXQ", start, optimal_value: 0.0, function: maxq_at }

@@ -7,10 +7,10 @@ use serde::Deserialize;
 /// The file as it is published with this crate.
 const REFERENCE: &str = include_str!("../data/reference.json");
 
-/// One problem's facts.
+/// A line of the table: the published data of a problem.
 #[derive(Debug, Deserialize)]
 pub struct Record {
-    /// Unique name.
+    /// Name by which the collection finds the problem.
     pub name: String,
     /// Part of the collection: unconstrained, minimax, linear, scalable, overton, nesterov.
     #[serde(rename = "family")]
@@ -20,13 +20,13 @@ pub struct Record {
     pub dimension: usize,
     /// Convex where it matters, see [`crate::Problem::convex_lower`].
     pub convex: bool,
-    /// The function in words.
+    /// Description of the function.
     pub formula: String,
     /// Start point.
     pub x0: Vec<f64>,
     /// Optimal value.
     pub fstar: f64,
-    /// Publication.
+    /// Publication that states the problem.
     pub source: String,
     /// Remark on the problem.
     pub note: Option<String>,
@@ -55,7 +55,6 @@ pub struct Record {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(untagged)]
 pub enum Numbers {
-    /// A vector.
     Vector(Vec<f64>),
     /// A matrix by rows.
     Matrix(Vec<Vec<f64>>),

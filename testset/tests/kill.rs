@@ -1,7 +1,7 @@
 //! kill −9 at any moment, resume, and the run ends bit by bit as the uninterrupted one.
 //!
-//! The test runs itself again as a child that keeps a journal; SIGKILL ends it at moments that differ from child to child,
-//! the next child continues from the folder. Run without the usual harness: `main` is both sides.
+//! The test runs itself again as a child that keeps a journal; SIGKILL ends it at moments that differ from child to
+//! child, the next child continues from the folder. Run without the usual harness: `main` is both sides.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use nonsmooth::{BundleTrust, BundleTrustConfig, FnObjective, Journal, Journaled, NonsmoothObjective, Report, Vector};
@@ -100,7 +100,8 @@ fn spawn(name: &str, folder: &PathBuf) -> Child {
     Command::new(executable).arg(CHILD).arg(name).arg(folder).stdout(Stdio::null()).spawn().unwrap()
 }
 
-/// Kills the child; returns the number of evaluations in the journal that it leaves, none if there are none or if it had ended.
+/// Kills the child; returns the number of evaluations in the journal that it leaves, none if there are none or if it
+/// had ended.
 fn kill(child: &mut Child, folder: &Path) -> Option<usize> {
     child.kill().unwrap();
     let status = child.wait().unwrap();

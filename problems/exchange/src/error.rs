@@ -25,7 +25,7 @@ pub enum ExchangeError {
         value: f64,
         /// Triangles that it takes.
         needed: f64,
-        /// Most triangles.
+        /// Largest number of triangles allowed.
         most: f64,
     },
     /// A body without thickness.
@@ -45,19 +45,19 @@ pub enum ExchangeError {
     /// A number that the file cannot hold.
     #[error("{what} {index} is {value}; allowed: {allowed}")]
     Number {
-        /// What it is.
+        /// Name of the quantity.
         what: &'static str,
         /// Its place, counted from 0.
         index: usize,
-        /// The number.
+        /// Value found.
         value: f64,
-        /// What is allowed.
+        /// Description of the allowed values.
         allowed: &'static str,
     },
     /// Two numbers that belong together differ.
     #[error("{found} {what}, expected {expected}")]
     Count {
-        /// What was counted.
+        /// Name of the quantity that was counted.
         what: &'static str,
         /// How many belong there.
         expected: usize,
@@ -73,7 +73,7 @@ pub enum ExchangeError {
         row: usize,
         /// Column, counted from 0.
         column: usize,
-        /// What is allowed.
+        /// Description of the allowed values.
         allowed: String,
     },
     /// The STL file was not written.

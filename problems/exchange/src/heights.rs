@@ -43,11 +43,11 @@ impl Heights {
         places.zip(&self.values).map(|([x1, x2], &height)| [x1, x2, height])
     }
 
-    /// A table `x1,x2,height` (mm) with a line per crossing; `words` stand at its head as a comment.
-    pub fn csv(&self, words: &str) -> String {
+    /// A table `x1,x2,height` (mm) with a line per crossing; `comment` stands at the head of the file.
+    pub fn csv(&self, comment: &str) -> String {
         let [n1, n2] = self.counts();
         let mut text = String::new();
-        for line in words.lines() {
+        for line in comment.lines() {
             // Writing to a string does not fail.
             let _ = writeln!(text, "# {line}");
         }

@@ -5,7 +5,8 @@
 //! B-spline heights ─ step                   exact: x₁, x₂ of the control points are Greville abscissae (step)
 //! entries          ─ matrix_market
 //! ```
-//! The package knows numbers only: no mechanics, no command line. Lengths are in mm. The same input gives the same bytes.
+//! The package knows numbers only: no mechanics, no command line. Lengths are in mm. The same input gives the same
+//! bytes.
 
 mod error;
 mod heights;

@@ -13,36 +13,36 @@ use std::fmt::Write;
 /// An entry: row and column, counted from 0, and value.
 pub type Entry = (usize, usize, f64);
 
-/// A matrix of `rows` × `columns`; `words` stand at the head as a comment.
+/// A matrix of `rows` × `columns`; `comment` stands at the head of the file.
 ///
 /// # Errors
 /// [`ExchangeError::Entry`] for an entry outside the matrix, [`ExchangeError::Number`] for a value that is not finite.
-pub fn general([rows, columns]: [usize; 2], entries: &[Entry], words: &str) -> Result<String, ExchangeError> {
+pub fn general([rows, columns]: [usize; 2], entries: &[Entry], comment: &str) -> Result<String, ExchangeError> {
     let allowed = || format!("rows below {rows}, columns below {columns}");
-    text("general", [rows, columns], entries, words, |row, column| row < rows && column < columns, allowed)
+    text("general", [rows, columns], entries, comment, |row, column| row < rows && column < columns, allowed)
 }
 
-/// A symmetric matrix by the entries of its lower triangle; `words` stand at the head as a comment.
+/// A symmetric matrix by the entries of its lower triangle; `comment` stands at the head of the file.
 ///
 /// # Errors
-/// [`ExchangeError::Entry`] for an entry above the diagonal or outside the matrix, [`ExchangeError::Number`] for a value that is
-/// not finite.
-pub fn symmetric(dimension: usize, lower: &[Entry], words: &str) -> Result<String, ExchangeError> {
+/// [`ExchangeError::Entry`] for an entry above the diagonal or outside the matrix, [`ExchangeError::Number`] for a
+/// value that is not finite.
+pub fn symmetric(dimension: usize, lower: &[Entry], comment: &str) -> Result<String, ExchangeError> {
     let allowed = || format!("column ≤ row < {dimension}");
-    text("symmetric", [dimension; 2], lower, words, |row, column| column <= row && row < dimension, allowed)
+    text("symmetric", [dimension; 2], lower, comment, |row, column| column <= row && row < dimension, allowed)
 }
 
 fn text(
     kind: &str,
     [rows, columns]: [usize; 2],
     entries: &[Entry],
-    words: &str,
+    comment: &str,
     is_allowed: impl Fn(usize, usize) -> bool,
     allowed: impl Fn() -> String,
 ) -> Result<String, ExchangeError> {
     let mut text = format!("%%MatrixMarket matrix coordinate real {kind}\n");
     // Writing to a string does not fail.
-    for line in words.lines() {
+    for line in comment.lines() {
         let _ = writeln!(text, "% {line}");
     }
     let _ = writeln!(text, "{rows} {columns} {}", entries.len());

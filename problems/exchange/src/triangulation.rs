@@ -3,11 +3,11 @@
 //! ```text
 //! |vᵀ∇²F v| ≤ c₁₁ v₁² + 2 c₁₂ |v₁ v₂| + c₂₂ v₂²   ⇒   |F − I F| ≤ (c₁₁ h₁² + 2 c₁₂ h₁h₂ + c₂₂ h₂²)/8
 //! ```
-//! on a right triangle with legs h₁, h₂ along the axes, where I F is linear and equals F at the corners p: with barycentric
-//! coordinates λ of x, F − I F = −½ Σ λ (p − x)ᵀ∇²F (p − x) by Taylor's formula at x, and Σ λ (p − x)₁² = s(1 − s) h₁² ≤ h₁²/4
-//! with the share s of the corners at one end of the leg. The vertical error bounds the distance. Lines stand where F has kinks, so
-//! that F is smooth inside every triangle. Corners are rounded to single precision, which moves them by at most
-//! δ = √3 · 2⁻²⁴ · (largest coordinate); triangles keep within (tolerance − δ) + δ.
+//! on a right triangle with legs h₁, h₂ along the axes, where I F is linear and equals F at the corners p: with
+//! barycentric coordinates λ of x, F − I F = −½ Σ λ (p − x)ᵀ∇²F (p − x) by Taylor's formula at x, and Σ λ (p − x)₁² =
+//! s(1 − s) h₁² ≤ h₁²/4 with the share s of the corners at one end of the leg. The vertical error bounds the distance.
+//! Lines stand where F has kinks, so that F is smooth inside every triangle. Corners are rounded to single precision,
+//! which moves them by at most δ = √3 · 2⁻²⁴ · (largest coordinate); triangles keep within (tolerance − δ) + δ.
 
 use crate::error::{ExchangeError, ascending};
 use crate::heights::Heights;
@@ -21,13 +21,14 @@ const MOST_TRIANGLES: f64 = 4e6;
 /// Least tolerance in roundings δ of a corner.
 const LEAST_ROUNDINGS: f64 = 4.0;
 
-/// Lines on which triangles keep within `tolerance` (mm) of a surface that is smooth between the lines `kinks` (mm; the edges
-/// included), with `curvature` = [c₁₁, c₁₂, c₂₂] (1/mm) there: bounds of its second derivatives are such numbers. `reach` is the
-/// largest coordinate of the surface, mm.
+/// Lines on which triangles keep within `tolerance` (mm) of a surface that is smooth between the lines `kinks` (mm; the
+/// edges included), with `curvature` = [c₁₁, c₁₂, c₂₂] (1/mm) there: bounds of its second derivatives are such numbers.
+/// `reach` is the largest coordinate of the surface, mm.
 ///
 /// # Errors
-/// [`ExchangeError::Tolerance`] for a tolerance that single precision does not reach, [`ExchangeError::TooManyTriangles`],
-/// [`ExchangeError::Number`] for kinks that single precision cannot tell apart, and derivatives that are not finite.
+/// [`ExchangeError::Tolerance`] for a tolerance that single precision does not reach,
+/// [`ExchangeError::TooManyTriangles`], [`ExchangeError::Number`] for kinks that single precision cannot tell apart,
+/// and derivatives that are not finite.
 pub fn lines(
     kinks: [&[f64]; 2],
     curvature: [f64; 3],
@@ -65,7 +66,8 @@ pub fn lines(
 
 /// Largest steps h₁, h₂ within a chord error; infinite along an axis without curvature.
 fn steps([first, mixed, second]: [f64; 3], lengths: [f64; 2], chord: f64) -> [f64; 2] {
-    // Where an axis has no curvature of its own, the mixed derivative limits both steps in the proportion of the lengths.
+    // Where an axis has no curvature of its own, the mixed derivative limits both steps in the proportion of the
+    // lengths.
     let proportion = lengths[1] / lengths[0];
     let weights = [first.max(mixed * proportion), second.max(mixed / proportion)];
     let part = |value: f64, weight: f64| if value > 0.0 { value / weight } else { 0.0 };
@@ -79,7 +81,8 @@ pub fn sheet(heights: &Heights) -> Vec<Triangle> {
     surface(heights.counts()).map(|corners| corners.map(|corner| points[corner])).collect()
 }
 
-/// The closed body between the surface and the horizontal plane at the height `plane`, mm, which lies below or above all of it.
+/// The closed body between the surface and the horizontal plane at the height `plane`, mm, which lies below or above
+/// all of it.
 ///
 /// # Errors
 /// [`ExchangeError::Thickness`] where heights lie on the other side of the plane or on it.

@@ -1,5 +1,5 @@
-//! Files read back: triangles keep their distance and close the body, the B-spline in a STEP file is the one that was given, and
-//! the edges of its solid fit together.
+//! Files read back: triangles keep their distance and close the body, the B-spline in a STEP file is the one that was
+//! given, and the edges of its solid fit together.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
@@ -85,7 +85,8 @@ fn what_cannot_be_triangulated_is_refused() {
     assert!(matches!(Heights::new([vec![0.0, 1.0], vec![0.0, 1.0]], vec![0.0; 3]), Err(ExchangeError::Count { .. })));
 }
 
-/// x₁² + x₁x₂ + 50 over [0, 4] × [0, 2], of degrees 3 and 2 with inner knots: control heights are the polar forms at the knots.
+/// x₁² + x₁x₂ + 50 over [0, 4] × [0, 2], of degrees 3 and 2 with inner knots: control heights are the polar forms at
+/// the knots.
 fn polynomial() -> SplineHeights {
     let knots = [vec![0.0, 0.0, 0.0, 0.0, 0.25, 0.5, 1.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0]];
     let inner = |axis: usize, index: usize, degree: usize| &knots[axis][index + 1..=index + degree];

@@ -14,7 +14,8 @@ pub(super) const LABEL: f64 = 12.0;
 pub(super) const TITLE_ROOM: f64 = 30.0;
 /// Colour of text and frames.
 pub(super) const INK: &str = "#222222";
-/// Average width of a letter relative to its size, of the widest fonts that browsers take for sans-serif; only decides about distances.
+/// Average width of a letter relative to its size, of the widest fonts that browsers take for sans-serif; only decides
+/// about distances.
 const LETTER: f64 = 0.56;
 
 /// A position in points.
@@ -129,7 +130,7 @@ impl Canvas {
         }
     }
 
-    /// A closed outline.
+    /// Draws a closed polygon without filling it.
     pub fn outline(&mut self, places: &[Place], stroke: Stroke) {
         let _ = writeln!(self.body, "<path d=\"{}\" {}/>", path(places, true), stroke.attributes());
     }
@@ -142,8 +143,8 @@ impl Canvas {
         }
     }
 
-    /// Areas one over the other, each with its colour and either lines around it or a rim of its own colour, which hides the
-    /// seams between neighbours. Without lines, areas of one colour that follow each other become one path.
+    /// Areas one over the other, each with its colour and either lines around it or a rim of its own colour, which
+    /// hides the seams between neighbours. Without lines, areas of one colour that follow each other become one path.
     pub fn covering(&mut self, lines: Option<Stroke>, areas: impl IntoIterator<Item = (String, [Place; 4])>) {
         let (colour, width) =
             lines.map_or((String::new(), 0.4), |line| (format!(" stroke=\"{}\"", line.colour), line.width));

@@ -42,7 +42,7 @@ impl Frame {
         [self.left + across * self.width, self.top + (1.0 - up) * self.height]
     }
 
-    /// Draws the axes.
+    /// Draws both axes with their ticks, labels and titles.
     pub fn axes(&self, canvas: &mut Canvas, across: &Axis, up: &Axis, parts: Parts) {
         let (grid, ink) = (Stroke::solid(GRID, 0.7), Stroke::solid(INK, LINE));
         let [middle, foot] = self.place([0.5, 0.0]);

@@ -5,11 +5,11 @@ use super::chart::{Frame, Parts, ROOM_BELOW};
 use super::error::{FigureError, below, cells, count, finite, positive, some};
 use super::figure::Figure;
 use super::nodes::PlaneGrid;
-use super::plan::Plan;
+use super::panel_layout::PanelLayout;
 use super::scale::{Axis, behind, nice_below, number};
 
-/// Every node is in one of a few classes, which have a colour each. Where there are arrows, their middles are at the nodes, all on one scale;
-/// on fine grids only some are drawn.
+/// Every node is in one of a few classes, which have a colour each. Where there are arrows, their middles are at the
+/// nodes, all on one scale; on fine grids only some are drawn.
 ///
 /// ```
 /// use figures::{ClassPanel, Classes};
@@ -37,7 +37,7 @@ use super::scale::{Axis, behind, nice_below, number};
 pub struct Classes {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// Names and units of both axes.
     pub axes: [String; 2],
@@ -77,8 +77,8 @@ impl Classes {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels or classes; unless a panel has at least 2 × 2 nodes, a class per node that exists, an arrow
-    /// per node if there are arrows, sides of positive length, and all numbers are finite.
+    /// [`FigureError`] without panels or classes; unless a panel has at least 2 × 2 nodes, a class per node that
+    /// exists, an arrow per node if there are arrows, sides of positive length, and all numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         some(&self.name, "classes", self.classes.len())?;
@@ -86,30 +86,30 @@ impl Classes {
         let grids: Vec<PlaneGrid> = self.panels.iter().map(ClassPanel::grid).collect();
         let captions: Vec<[String; 2]> =
             self.panels.iter().map(|panel| [panel.caption.clone(), self.counted(panel)]).collect();
-        let plan = Plan::new(&grids, &captions, 0.0);
-        let arrows = self.arrow_scale(&plan);
+        let layout = PanelLayout::new(&grids, &captions, 0.0);
+        let arrows = self.arrow_scale(&layout);
         let names = self.classes.iter().map(|name| text_width(name, LABEL));
-        let words = arrows.iter().map(|(_, _, words)| text_width(words, LABEL));
-        let legend = names.chain(words).fold(0.0, f64::max) + 54.0;
-        let width = (plan.right + legend).max(text_width(&self.title, TITLE) + 32.0);
-        let mut canvas = Canvas::new(width, plan.foot + ROOM_BELOW + 8.0);
+        let label = arrows.iter().map(|(_, _, label)| text_width(label, LABEL));
+        let legend = names.chain(label).fold(0.0, f64::max) + 54.0;
+        let width = (layout.right + legend).max(text_width(&self.title, TITLE) + 32.0);
+        let mut canvas = Canvas::new(width, layout.foot + ROOM_BELOW + 8.0);
         canvas.text([16.0, 22.0], TITLE, &self.title);
-        let end = plan.frames[0].top + 22.0 * self.classes.len() as f64 + 50.0;
-        plan.write(&mut canvas, &captions, end);
+        let end = layout.frames[0].top + 22.0 * self.classes.len() as f64 + 50.0;
+        layout.write(&mut canvas, &captions, end);
         for (index, panel) in self.panels.iter().enumerate() {
             let points = arrows.as_ref().map_or(0.0, |(points, ..)| *points);
-            self.draw(&mut canvas, plan.frames[index], panel, points, plan.labelled[index]);
+            self.draw(&mut canvas, layout.frames[index], panel, points, layout.labelled[index]);
         }
-        let (x, mut y) = (plan.right, plan.frames[0].top + 2.0);
+        let (x, mut y) = (layout.right, layout.frames[0].top + 2.0);
         for (index, name) in self.classes.iter().enumerate() {
             canvas.rectangle([x, y], [16.0, 12.0], colour(index));
             canvas.outline(&[[x, y], [x + 16.0, y], [x + 16.0, y + 12.0], [x, y + 12.0]], Stroke::solid(INK, 0.6));
             canvas.text([x + 24.0, y + 10.0], LABEL, name);
             y += 22.0;
         }
-        if let Some((points, value, words)) = arrows {
+        if let Some((points, value, label)) = arrows {
             canvas.arrow([[x, y + 14.0], [x + points * value, y + 14.0]], Stroke::solid(INK, 1.0));
-            canvas.text([x, y + 34.0], LABEL, &words);
+            canvas.text([x, y + 34.0], LABEL, &label);
         }
         Ok(Figure::new(&self.name, &self.title, canvas))
     }
@@ -132,12 +132,12 @@ impl Classes {
         parts.collect::<Vec<_>>().join(", ")
     }
 
-    /// Points per unit of the arrows, the value of the arrow in the legend and its words; none without arrows.
-    fn arrow_scale(&self, plan: &Plan) -> Option<(f64, f64, String)> {
+    /// Points per unit of the arrows, the value of the arrow in the legend and its label; none without arrows.
+    fn arrow_scale(&self, layout: &PanelLayout) -> Option<(f64, f64, String)> {
         let (quantity, unit) = self.arrows.as_ref()?;
         let lengths = self.panels.iter().flat_map(|panel| &panel.arrows).map(|[a, b]| a.hypot(*b));
         let largest = lengths.fold(0.0, f64::max);
-        let distance = self.panels.iter().zip(&plan.frames).map(|(panel, frame)| {
+        let distance = self.panels.iter().zip(&layout.frames).map(|(panel, frame)| {
             let [n1, n2] = panel.counts.map(|nodes| (nodes - 1) as f64);
             panel.stride() as f64 * (frame.width / n1).min(frame.height / n2)
         });
@@ -194,7 +194,8 @@ impl Classes {
     }
 }
 
-/// The middle of a line of this half length, moved so that the line lies between two ends; the middle between them if it is longer.
+/// The middle of a line of this half length, moved so that the line lies between two ends; the middle between them if
+/// it is longer.
 fn inside(middle: f64, half: f64, [low, high]: [f64; 2]) -> f64 {
     if high - low < 2.0 * half { 0.5 * (low + high) } else { middle.clamp(low + half, high - half) }
 }

@@ -1,8 +1,8 @@
 //! Colours: a scale from dark blue over green to yellow, and a few that are told apart in curves.
 //!
-//! The scale is the curve of largest chroma ≤ 0.17 in OKLab \[Ottosson2020\] whose lightness rises from 0.27 to 0.93 while the
-//! hue turns from 300° to 105°, at places of equal distance along it: equal steps of the value look equally large, and lightness
-//! alone gives the order (also in grey and for colour-blind readers).
+//! The scale is the curve of largest chroma ≤ 0.17 in OKLab \[Ottosson2020\] whose lightness rises from 0.27 to 0.93
+//! while the hue turns from 300° to 105°, at places of equal distance along it: equal steps of the value look equally
+//! large, and lightness alone gives the order (also in grey and for colour-blind readers).
 
 /// sRGB of the scale.
 const SCALE: [[u8; 3]; 17] = [

@@ -31,7 +31,7 @@ use super::scale::{Axis, extent, number as number_text};
 pub struct Convergence {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the values are.
     pub quantity: String,
@@ -43,7 +43,7 @@ pub struct Convergence {
     pub reference: Option<(String, f64)>,
 }
 
-/// One evaluation.
+/// An evaluation of an optimization.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
     /// What it was; every kind gets a mark of its own.
@@ -66,8 +66,8 @@ const SMALL: f64 = 10.0;
 const MAX_ROWS: usize = 3;
 
 impl Convergence {
-    /// Draws it. The axis holds the best values and all values below the first of them: larger ones have a mark at the upper side of the
-    /// frame, and their values are written there as long as there is room.
+    /// Draws it. The axis holds the best values and all values below the first of them: larger ones have a mark at the
+    /// upper side of the frame, and their values are written there as long as there is room.
     ///
     /// # Errors
     /// [`FigureError`] without evaluations, or for numbers that are not finite.
@@ -164,13 +164,13 @@ impl Convergence {
             let x = across(f64::from(number));
             canvas.arrow([[x, frame.top + 14.0], [x, frame.top + 1.0]], Stroke::solid(INK, 0.9));
             self.mark(canvas, (number, step), [x, frame.top + 15.0]);
-            let words = number_text(step.value.unwrap_or(f64::NAN));
-            let room = text_width(&words, SMALL);
+            let label = number_text(step.value.unwrap_or(f64::NAN));
+            let room = text_width(&label, SMALL);
             // Beside the frame's right side, the value stands at the left of its mark.
             let left = if x + 7.0 + room > frame.left + frame.width { x - 7.0 - room } else { x + 7.0 };
             if let Some(row) = (0..MAX_ROWS).find(|row| ends[*row] < left) {
                 ends[row] = left + room + 6.0;
-                canvas.text([left, frame.top + 19.0 + 13.0 * row as f64], SMALL, &words);
+                canvas.text([left, frame.top + 19.0 + 13.0 * row as f64], SMALL, &label);
             }
         }
     }

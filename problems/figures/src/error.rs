@@ -11,7 +11,7 @@ pub enum FigureError {
     Empty {
         /// Name of the figure.
         figure: String,
-        /// What is missing.
+        /// Name of the part that is missing.
         what: &'static str,
     },
     /// Two numbers that belong together differ.
@@ -19,7 +19,7 @@ pub enum FigureError {
     Count {
         /// Name of the figure.
         figure: String,
-        /// What was counted.
+        /// Name of the quantity that was counted.
         what: &'static str,
         /// How many belong there.
         expected: usize,
@@ -31,22 +31,22 @@ pub enum FigureError {
     Number {
         /// Name of the figure.
         figure: String,
-        /// What it is.
+        /// Name of the quantity.
         what: &'static str,
         /// Its place, counted from 0.
         index: usize,
-        /// The number.
+        /// Value found.
         value: f64,
-        /// What is allowed.
+        /// Description of the allowed values.
         allowed: &'static str,
     },
     /// A factor between points and pixels that gives no picture.
     #[cfg(feature = "png")]
     #[error("pixels per point are {value}, allowed are numbers > 0 that give at most {most} pixels in all")]
     Scale {
-        /// The factor.
+        /// Enlargement asked for, pixels per point.
         value: f64,
-        /// Most pixels.
+        /// Largest number of pixels allowed.
         most: u64,
     },
     /// The SVG text was not understood by the renderer, or the picture not written.
@@ -80,7 +80,7 @@ pub(super) fn finite(
     all(figure, what, values, "numbers of modulus up to 1e300", |value| value.abs() <= MAX_MODULUS)
 }
 
-/// Checks a count.
+/// Returns an error if a count differs from the expected one.
 pub(super) fn count(figure: &str, what: &'static str, expected: usize, found: usize) -> Result<(), FigureError> {
     match expected == found {
         true => Ok(()),
@@ -102,7 +102,8 @@ pub(super) fn cells(figure: &str, nodes: &[usize]) -> Result<(), FigureError> {
     all(figure, "number of nodes along axis", nodes, "numbers from 2", |nodes| nodes >= 2.0)
 }
 
-/// Checks a grid over a rectangle: cells along both axes, an area, a finite value per node; `what` names a value and all values.
+/// Checks a grid over a rectangle: cells along both axes, an area, a finite value per node; `what` names a value and
+/// all values.
 pub(super) fn grid(
     figure: &str,
     counts: [usize; 2],

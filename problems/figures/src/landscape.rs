@@ -34,7 +34,7 @@ use super::scale::Axis;
 pub struct Landscape {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the values are.
     pub quantity: String,
@@ -61,7 +61,7 @@ pub struct Landscape {
 pub struct Visit {
     /// What it was; every kind gets a mark of its own.
     pub kind: String,
-    /// Where.
+    /// Coordinates in the units of the axes.
     pub place: [f64; 2],
 }
 
@@ -74,8 +74,8 @@ impl Landscape {
     /// Draws it; what lies outside the rectangle is cut off.
     ///
     /// # Errors
-    /// [`FigureError`] unless there are at least 2 × 2 nodes, a value per node, sides of positive length, and all numbers are
-    /// finite.
+    /// [`FigureError`] unless there are at least 2 × 2 nodes, a value per node, sides of positive length, and all
+    /// numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         self.check()?;
         let scale = ColourScale::new(&self.quantity, "", self.values.iter().copied());

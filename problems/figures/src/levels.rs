@@ -1,7 +1,7 @@
 //! Colour scales in steps, and values on a grid drawn with them.
 //!
-//! Inside a cell the values are linear on the four triangles between its corners and its middle, which has the mean value:
-//! the area above a level is then a polygon per triangle, without ambiguous cases.
+//! Inside a cell the values are linear on the four triangles between its corners and its middle, which has the mean
+//! value: the area above a level is then a polygon per triangle, without ambiguous cases.
 
 use super::canvas::INK;
 use super::canvas::{Canvas, LABEL, Place, Stroke};

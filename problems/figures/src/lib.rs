@@ -3,12 +3,12 @@
 //! ```text
 //! numbers ─┬─ Map, Classes, Lines, LogPlot, Landscape, Convergence ─┬─ Figure ─┬─ svg
 //!          └─ Solids, Surfaces, Sketch ───────────────────────────┘          └─ png (feature `png`: resvg, fonts of its own)
-//! scale (ticks), chart (axes), plan (panels), marks (legends), nodes (texts over nodes), levels (filled areas), oblique (bodies),
-//! canvas (SVG text)
+//! scale (ticks), chart (axes), panel_layout (panels), marks (legends), nodes (texts over nodes), levels (filled areas),
+//! oblique (bodies), canvas (SVG text)
 //! ```
-//! The package knows numbers only: no mechanics, no optimizer, no command line. The same input gives the same bytes.
-//! In titles, captions and units `^{…}` is a superscript. The font of PNG files has Latin and Greek letters, ₀ … ₉, ∂, √, ∞ and
-//! the usual signs; ⟨ ⟩ ‖ ∇ → come from a second one.
+//! The package knows numbers only: no mechanics, no optimizer, no command line. The same input gives the same bytes. In
+//! titles, captions and units `^{…}` is a superscript. The font of PNG files has Latin and Greek letters, ₀ … ₉, ∂, √,
+//! ∞ and the usual signs; ⟨ ⟩ ‖ ∇ → come from a second one.
 
 mod canvas;
 mod chart;
@@ -26,8 +26,8 @@ mod marks;
 mod nodes;
 mod oblique;
 pub mod page;
+mod panel_layout;
 mod panels;
-mod plan;
 #[cfg(feature = "png")]
 mod png;
 mod scale;

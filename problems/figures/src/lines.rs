@@ -32,7 +32,7 @@ use super::scale::Axis;
 pub struct Lines {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the values are.
     pub quantity: String,

@@ -38,13 +38,13 @@ pub struct Series {
 pub struct LogPlot {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// Name and unit of the horizontal axis.
     pub x: String,
     /// Name and unit of the vertical axis.
     pub y: String,
-    /// The data.
+    /// Curves, drawn in this order.
     pub series: Vec<Series>,
     /// Straight lines y = factor·x^slope with their names.
     pub guides: Vec<(String, f64, f64)>,

@@ -6,11 +6,11 @@ use super::error::{FigureError, finite, grid, some};
 use super::figure::Figure;
 use super::levels::{ColourScale, Lattice, contour, fill};
 use super::nodes::PlaneGrid;
-use super::plan::Plan;
+use super::panel_layout::PanelLayout;
 use super::scale::{Axis, behind, number};
 
-/// Values over the plane: one or more panels; the largest value of every panel is marked. Up to 5000 nodes of a panel, a browser
-/// shows number, place and value of the node under the pointer.
+/// Values over the plane: one or more panels; the largest value of every panel is marked. Up to 5000 nodes of a panel,
+/// a browser shows number, place and value of the node under the pointer.
 ///
 /// ```
 /// use figures::{ColourScales, Map, MapPanel};
@@ -40,7 +40,7 @@ use super::scale::{Axis, behind, number};
 pub struct Map {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the values are.
     pub quantity: String,
@@ -87,8 +87,8 @@ impl Map {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels; unless a panel has at least 2 × 2 nodes, a value per node, sides of positive length, and
-    /// all numbers are finite.
+    /// [`FigureError`] without panels; unless a panel has at least 2 × 2 nodes, a value per node, sides of positive
+    /// length, and all numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         for panel in &self.panels {
@@ -108,21 +108,21 @@ impl Map {
             self.panels.iter().map(|panel| [panel.caption.clone(), panel.largest(&self.unit).1]).collect();
         let grids: Vec<PlaneGrid> = self.panels.iter().map(MapPanel::grid).collect();
         let behind = if self.scales == ColourScales::Own { bar } else { 0.0 };
-        let plan = Plan::new(&grids, &captions, behind);
-        let width = (plan.right + if behind > 0.0 { 0.0 } else { bar }).max(text_width(&self.title, TITLE) + 32.0);
-        let mut canvas = Canvas::new(width, plan.foot + ROOM_BELOW + 8.0);
+        let layout = PanelLayout::new(&grids, &captions, behind);
+        let width = (layout.right + if behind > 0.0 { 0.0 } else { bar }).max(text_width(&self.title, TITLE) + 32.0);
+        let mut canvas = Canvas::new(width, layout.foot + ROOM_BELOW + 8.0);
         canvas.text([16.0, 22.0], TITLE, &self.title);
-        plan.write(&mut canvas, &captions, plan.foot + 14.0);
+        layout.write(&mut canvas, &captions, layout.foot + 14.0);
         for (index, panel) in self.panels.iter().enumerate() {
-            let (frame, scale) = (plan.frames[index], &scales[index.min(scales.len() - 1)]);
-            panel.draw(&mut canvas, frame, scale, self, plan.labelled[index]);
+            let (frame, scale) = (layout.frames[index], &scales[index.min(scales.len() - 1)]);
+            panel.draw(&mut canvas, frame, scale, self, layout.labelled[index]);
             if self.scales == ColourScales::Own {
-                scale.bar(&mut canvas, [plan.ends[index] + 16.0, frame.top], frame.height);
+                scale.bar(&mut canvas, [layout.ends[index] + 16.0, frame.top], frame.height);
             }
         }
         if self.scales == ColourScales::Common {
-            let top = plan.frames[0].top;
-            scales[0].bar(&mut canvas, [plan.right, top], plan.foot - top);
+            let top = layout.frames[0].top;
+            scales[0].bar(&mut canvas, [layout.right, top], layout.foot - top);
         }
         Ok(Figure::new(&self.name, &self.title, canvas))
     }

@@ -4,10 +4,11 @@
 //! to the right  r = (cos φ, sin φ, 0),   up  u = (−sin ε sin φ, sin ε cos φ, cos ε),   towards the viewer  w = r × u
 //! place on the drawing = scale · (p·r, −p·u),   depth = p·w,   φ = 35°, ε = 30°
 //! ```
-//! Of a box the faces x₁ = max, x₂ = 0 and x₃ = max are seen. A quad is turned towards the viewer if its corners run round it on
-//! the drawing in the same sense as those of a quad whose outside is seen. If all quads of a sheet are turned towards the viewer,
-//! or none is, no part of the sheet hides another, and the sheet is filled as a whole. Otherwise the quads turned towards the viewer
-//! (all quads, if the sheet is a surface without a body) are drawn one over the other, the furthest first.
+//! Of a box the faces x₁ = max, x₂ = 0 and x₃ = max are seen. A quad is turned towards the viewer if its corners run
+//! round it on the drawing in the same sense as those of a quad whose outside is seen. If all quads of a sheet are
+//! turned towards the viewer, or none is, no part of the sheet hides another, and the sheet is filled as a whole.
+//! Otherwise the quads turned towards the viewer (all quads, if the sheet is a surface without a body) are drawn one
+//! over the other, the furthest first.
 
 use super::canvas::{Canvas, INK, Place, Stroke};
 use super::levels::{ColourScale, Lattice, fill};
@@ -19,7 +20,7 @@ pub(super) const MAX_MESHED_QUADS: usize = 1500;
 const MAX_BANDED_QUADS: usize = 400;
 /// Colour of sheets without values.
 const PLAIN: &str = "#e6e6e6";
-/// Mesh lines.
+/// Colour of mesh lines.
 const MESH: &str = "#4d4d4d";
 const MESH_WIDTH: f64 = 0.35;
 
@@ -75,8 +76,8 @@ pub(super) fn bounds(points: impl Iterator<Item = Point> + Clone) -> [[f64; 2]; 
 
 /// Bodies one after the other, each made of the sheets around it; what is drawn later covers what was drawn before.
 ///
-/// The body whose points lie nearer on average is drawn later, which is right for bodies that do not interlock. If a sheet of
-/// any body hides a part of itself, the quads of all bodies are ordered together.
+/// The body whose points lie nearer on average is drawn later, which is right for bodies that do not interlock. If a
+/// sheet of any body hides a part of itself, the quads of all bodies are ordered together.
 pub(super) fn paint(canvas: &mut Canvas, view: &View, bodies: &[Vec<Sheet>], scale: &ColourScale) {
     let mut bodies: Vec<(f64, Vec<Seen<'_>>)> = bodies
         .iter()

@@ -1,15 +1,17 @@
-//! A self-contained HTML page: text, tables, figures and listings; nothing is loaded from elsewhere, so that it opens offline.
+//! A self-contained HTML page: text, tables, figures and listings; nothing is loaded from elsewhere, so that it opens
+//! offline.
 //!
-//! Figures stand in the page as SVG on a light ground, so that they look the same in a dark page. The page holds everything without its
-//! script, which only repeats the title of what the pointer is on below the figure, where it can be read at once and without a mouse.
+//! Figures stand in the page as SVG on a light ground, so that they look the same in a dark page. The page holds
+//! everything without its script, which only repeats the title of what the pointer is on below the figure, where it can
+//! be read at once and without a mouse.
 
 use crate::figure::Figure;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// A page.
+/// An HTML page that needs no other file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
-    /// Heading.
+    /// Text of the heading.
     pub title: String,
     /// What the page says, in a sentence or two.
     pub lead: String,
@@ -24,7 +26,7 @@ pub struct Page {
 /// A part of a page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Section {
-    /// Heading.
+    /// Text of the heading.
     pub title: String,
     /// What it holds, in order.
     pub blocks: Vec<Block>,
@@ -34,7 +36,7 @@ pub struct Section {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Block {
-    /// A paragraph.
+    /// A paragraph of plain text.
     Text(String),
     /// A list of short statements.
     List(Vec<String>),
@@ -45,9 +47,9 @@ pub enum Block {
         /// As many cells each as there are columns; the last cell of a row that has fewer spans the rest.
         rows: Vec<Vec<String>>,
     },
-    /// A picture.
+    /// A figure with its caption.
     Picture {
-        /// The picture.
+        /// Figure that is embedded as SVG.
         figure: Figure,
         /// What is to be seen in it.
         caption: String,
@@ -63,9 +65,9 @@ pub enum Block {
     Files(Vec<File>),
     /// Text of fixed width behind a line that opens it.
     Listing {
-        /// What it is.
+        /// Line that is always visible.
         title: String,
-        /// The text.
+        /// Preformatted text that is shown on request.
         text: String,
     },
 }
@@ -75,7 +77,7 @@ pub enum Block {
 pub struct File {
     /// Its path from the page on; the parts are joined by `/`.
     pub path: String,
-    /// What it holds.
+    /// Description of the file's content.
     pub what: String,
 }
 
@@ -144,7 +146,9 @@ impl Block {
             Self::Table { head, rows } => html! {
                 div.wide { table class=[(head.len() >= MANY_COLUMNS).then_some("many")] {
                     thead { tr { @for cell in head { th { (cell) } } } }
-                    tbody { @for row in rows { tr { @for (column, cell) in row.iter().enumerate() { (table_cell(cell, column, row.len(), head.len())) } } } }
+                    tbody { @for row in rows { tr { @for (column, cell) in row.iter().enumerate() {
+                        (table_cell(cell, column, row.len(), head.len()))
+                    } } } }
                 } }
             },
             Self::Picture { figure, caption } => html! {

@@ -15,7 +15,7 @@ const MIN_BAR_HEIGHT: f64 = 130.0;
 const MARGIN: f64 = 16.0;
 
 /// All of a figure but the values of its panels.
-pub(super) struct Row<'a> {
+pub(super) struct PanelRow<'a> {
     pub name: &'a str,
     pub title: &'a str,
     /// What is written at the arrows of the axes.
@@ -41,7 +41,7 @@ impl Panel {
     }
 }
 
-impl Row<'_> {
+impl PanelRow<'_> {
     /// All panels show the same part of space, so that equal places in them are equal points.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         let [across, up] = bounds(self.panels.iter().flat_map(Panel::points));

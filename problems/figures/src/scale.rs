@@ -1,6 +1,7 @@
 //! Axes as numbers: ranges, ticks and their labels.
 //!
-//! A power of ten is taken out of the labels when the largest number is ≥ 10⁵ or < 10⁻²: `Θ (10^{18} MPa^{4})`, ticks 0, 1, 2.
+//! A power of ten is taken out of the labels when the largest number is ≥ 10⁵ or < 10⁻²: `Θ (10^{18} MPa^{4})`, ticks
+//! 0, 1, 2.
 
 /// Smallest range of a linear axis relative to the largest number; beyond, labels would differ in rounding errors only.
 const MIN_RELATIVE_RANGE: f64 = 1e-6;
@@ -93,7 +94,8 @@ impl Axis {
         Self { title: titled(name, unit, 0), ticks, logarithmic: true, unit: 1.0, low, high }
     }
 
-    /// Place of a value as a share of the axis; outside 0 … 1 if the value lies outside. None for values without a place.
+    /// Place of a value as a share of the axis; outside 0 … 1 if the value lies outside. None for values without a
+    /// place.
     pub fn share(&self, value: f64) -> Option<f64> {
         let position = if self.logarithmic { value.log10() } else { value / self.unit };
         let share = (position - self.low) / (self.high - self.low);
@@ -121,7 +123,8 @@ pub(super) fn extent(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)
     })
 }
 
-/// A number with four digits, as figures write it: with the minus sign of print, large and small ones with a power of ten.
+/// A number with four digits, as figures write it: with the minus sign of print, large and small ones with a power of
+/// ten.
 ///
 /// ```
 /// assert_eq!([14_809.3, -0.5, 2.1e7].map(figures::number), ["14809", "−0.5", "2.100·10^{7}"]);
@@ -147,8 +150,8 @@ pub(super) fn behind(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
-/// The largest of 1, 2, 5 times a power of ten that is not above a number > 0, such as a magnification; rounding of the number is
-/// allowed for.
+/// The largest of 1, 2, 5 times a power of ten that is not above a number > 0, such as a magnification; rounding of the
+/// number is allowed for.
 ///
 /// ```
 /// assert_eq!([0.07, 1.0, 1.9, 99.0].map(figures::nice_below), [0.05, 1.0, 1.0, 50.0]);

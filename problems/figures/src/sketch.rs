@@ -33,7 +33,7 @@ use super::solid::faces;
 pub struct Sketch {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What is written at the arrows of the three axes: names, lengths.
     pub axes: [String; 3],
@@ -86,7 +86,8 @@ impl Sketch {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without bodies; unless every body has as many points as its nodes say and all numbers are finite.
+    /// [`FigureError`] without bodies; unless every body has as many points as its nodes say and all numbers are
+    /// finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "bodies", self.bodies.len())?;
         for body in &self.bodies {
@@ -101,7 +102,7 @@ impl Sketch {
         let largest = extents[0].max(extents[1]);
         let points = if largest > 0.0 { SIDE / largest } else { 1.0 };
         let size = extents.map(|extent| points * extent);
-        // Letters stand outside.
+        // Letters stand outside the drawing and need room of their own.
         let room = 1.8 * LABEL;
         let view = View { origin: [MARGIN + room - points * across[0], TOP + room - points * up[0]], scale: points };
         let (foot, right) = (TOP + size[1] + 2.0 * room, MARGIN + size[0] + 2.0 * room + 20.0);

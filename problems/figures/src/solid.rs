@@ -4,14 +4,15 @@ use super::error::{FigureError, cells, count, finite, some};
 use super::figure::Figure;
 use super::levels::ColourScale;
 use super::oblique::Sheet;
-use super::panels::{Panel, Row};
+use super::panels::{Panel, PanelRow};
 use super::scale::{behind, number};
 
 /// Blocks seen from the front, the right and above: one or more panels with one colour scale and one scale of lengths.
 ///
 /// ```
 /// use figures::{SolidBlock, SolidPanel, Solids};
-/// let corner = |node: u8| [100.0 * f64::from(node >> 2 & 1), 50.0 * f64::from(node >> 1 & 1), 50.0 * f64::from(node & 1)];
+/// let bit = |node: u8, place: u8| f64::from(node >> place & 1);
+/// let corner = |node| [100.0 * bit(node, 2), 50.0 * bit(node, 1), 50.0 * bit(node, 0)];
 /// let block = |peak: f64| SolidBlock {
 ///     nodes: [2, 2, 2],
 ///     points: (0..8).map(corner).collect(),
@@ -35,7 +36,7 @@ use super::scale::{behind, number};
 pub struct Solids {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the values are.
     pub quantity: String,
@@ -49,7 +50,7 @@ pub struct Solids {
     pub panels: Vec<SolidPanel>,
 }
 
-/// Some blocks.
+/// A panel with its blocks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolidPanel {
     /// What distinguishes it from the other panels.
@@ -73,8 +74,8 @@ impl Solids {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels or blocks; unless a block has at least 2 × 2 × 2 points, a value per point, all numbers
-    /// are finite and the points do not all lie on one spot of the drawing.
+    /// [`FigureError`] without panels or blocks; unless a block has at least 2 × 2 × 2 points, a value per point, all
+    /// numbers are finite and the points do not all lie on one spot of the drawing.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         for panel in &self.panels {
@@ -99,7 +100,7 @@ impl Solids {
                 front: Vec::new(),
             }
         });
-        Row {
+        PanelRow {
             name: &self.name,
             title: &self.title,
             axes: &self.axes,

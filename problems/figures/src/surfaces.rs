@@ -4,7 +4,7 @@ use super::error::{FigureError, grid, some};
 use super::figure::Figure;
 use super::levels::ColourScale;
 use super::oblique::{Point, Sheet};
-use super::panels::{Panel, Row};
+use super::panels::{Panel, PanelRow};
 use super::scale::{behind, extent, nice_below, number};
 
 /// Heights over rectangles, seen from the front, the right and above; magnified so that small differences are seen.
@@ -32,7 +32,7 @@ use super::scale::{behind, extent, nice_below, number};
 pub struct Surfaces {
     /// Name of the figure, for files.
     pub name: String,
-    /// What is seen.
+    /// Title above the figure; it states what is seen.
     pub title: String,
     /// What the heights are.
     pub quantity: String,
@@ -74,8 +74,8 @@ impl Surfaces {
     /// Draws it.
     ///
     /// # Errors
-    /// [`FigureError`] without panels; unless a panel has at least 2 × 2 nodes, a height per node, sides of positive length, and
-    /// all numbers are finite.
+    /// [`FigureError`] without panels; unless a panel has at least 2 × 2 nodes, a height per node, sides of positive
+    /// length, and all numbers are finite.
     pub fn figure(&self) -> Result<Figure, FigureError> {
         some(&self.name, "panels", self.panels.len())?;
         for panel in &self.panels {
@@ -104,7 +104,7 @@ impl Surfaces {
             let same = self.panels.iter().all(|panel| panel.size[index] == side);
             if same { format!("{name} ({}{unit})", number(side)) } else { name.to_owned() }
         };
-        Row {
+        PanelRow {
             name: &self.name,
             title: &self.title,
             axes: &[side(0), side(1), "x₃".to_owned()],
@@ -133,7 +133,8 @@ impl SurfacePanel {
         }
     }
 
-    /// Walls below the surface on the two sides of the rectangle that are turned towards the viewer, x₂ = 0 and x₁ = max.
+    /// Walls below the surface on the two sides of the rectangle that are turned towards the viewer, x₂ = 0 and x₁ =
+    /// max.
     fn walls(&self, magnified: Magnified) -> Vec<Sheet> {
         let [n1, n2] = self.counts;
         let wall = |nodes: Vec<[usize; 2]>| {

@@ -1,4 +1,5 @@
-//! Every kind of figure as SVG and, with the feature `png`, as PNG: titles hold signs that XML reserves, and superscripts.
+//! Every kind of figure as SVG and, with the feature `png`, as PNG: titles hold signs that XML reserves, and
+//! superscripts.
 
 use figures::{
     ClassPanel, Classes, ColourScales, Convergence, Curve, Figure, Landscape, LinePanel, Lines, LogPlot, Map, MapPanel,

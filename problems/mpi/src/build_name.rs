@@ -2,8 +2,8 @@
 
 use std::hash::{DefaultHasher, Hasher};
 
-/// Version of the program, 64 bits that tell its file from those of other builds, where the file can be read, and the vector
-/// instructions of the processor, which the linear algebra is chosen by.
+/// Version of the program, 64 bits that tell its file from those of other builds, where the file can be read, and the
+/// vector instructions of the processor, which the linear algebra is chosen by.
 pub fn build_name() -> String {
     format!("{} with {}", program(), vector_instructions())
 }

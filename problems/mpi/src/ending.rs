@@ -11,7 +11,8 @@ pub const FAILED: i32 = 1;
 /// Exit status of a single process that panics.
 const PANICKED: i32 = 101;
 
-/// Between the messages of two neighbouring processes that fail at once: the first one ends the others before they say the same.
+/// Between the messages of two neighbouring processes that fail at once: the first one ends the others before they say
+/// the same.
 const PATIENCE: Duration = Duration::from_millis(20);
 /// Longest time that a message waits.
 const LONGEST_PATIENCE: Duration = Duration::from_secs(1);
@@ -29,11 +30,11 @@ pub fn end_all(message: &str, status: i32) -> ! {
 pub fn end_with_panics(rank: usize, size: usize) {
     panic::set_hook(Box::new(move |info: &PanicHookInfo<'_>| {
         let payload = info.payload();
-        let words = payload.downcast_ref::<String>().map(String::as_str);
-        let words = words.or_else(|| payload.downcast_ref().copied()).unwrap_or("no words");
+        let message = payload.downcast_ref::<String>().map(String::as_str);
+        let message = message.or_else(|| payload.downcast_ref().copied()).unwrap_or("no message");
         let place = info.location().map_or_else(String::new, |place| format!(" at {place}"));
         let patience = PATIENCE.saturating_mul(u32::try_from(rank).unwrap_or(u32::MAX));
         thread::sleep(patience.min(LONGEST_PATIENCE));
-        end_all(&format!("process {rank} of {size} panicked{place}: {words}"), PANICKED);
+        end_all(&format!("process {rank} of {size} panicked{place}: {message}"), PANICKED);
     }));
 }

@@ -1,8 +1,8 @@
 //! Contact shape optimization in several processes that communicate by MPI.
 //!
-//! `contact3d-mpi` takes the arguments of `contact3d`. Started by `mpirun` or `srun`, its processes share the subdomains of total
-//! FETI; process 0 does everything else ([`problems::commands::processes`]). `docs/several_machines.md` of the repository says how to
-//! build and to run it.
+//! `contact3d-mpi` takes the arguments of `contact3d`. Started by `mpirun` or `srun`, its processes share the
+//! subdomains of total FETI; process 0 does everything else ([`problems::commands::processes`]).
+//! `docs/several_machines.md` of the repository says how to build and to run it.
 
 mod build_name;
 mod ending;
@@ -22,8 +22,8 @@ use std::sync::Arc;
 /// Exit status of a program that cannot begin.
 const NOT_BEGUN: u8 = 1;
 
-/// Runs the program of this name in one of the processes that MPI has started. `connection` may put something between the program
-/// and MPI.
+/// Runs the program of this name in one of the processes that MPI has started. `connection` may put something between
+/// the program and MPI.
 pub fn run(binary: &'static str, connection: impl FnOnce(World) -> Arc<dyn Communication>) -> ExitCode {
     // One thread at a time calls MPI: the one that runs the command, or one that ends all processes.
     let Some((universe, provided)) = mpi::initialize_with_threading(Threading::Serialized) else {

@@ -25,7 +25,7 @@ impl World {
     #[allow(clippy::new_without_default, reason = "it needs an initialized MPI")]
     pub fn new() -> Self {
         let world = SimpleCommunicator::world();
-        // Neither is negative.
+        // MPI states rank and size as signed integers that are not negative.
         Self { rank: world.rank() as usize, size: world.size() as usize, calling: Mutex::new(()) }
     }
 }
@@ -92,8 +92,8 @@ fn running_sum(counts: &[usize]) -> Vec<usize> {
     counts.iter().scan(0, sum).collect()
 }
 
-/// Parts of the values of all processes, round by round, with at most `limit` values in a round (but one of each process); at
-/// least one round.
+/// Parts of the values of all processes, round by round, with at most `limit` values in a round (but one of each
+/// process); at least one round.
 fn rounds(counts: &[usize], limit: usize) -> Vec<Vec<std::ops::Range<usize>>> {
     let each = if counts.iter().sum::<usize>() <= limit { limit } else { (limit / counts.len().max(1)).max(1) };
     let number = counts.iter().map(|count| count.div_ceil(each)).max().unwrap_or(0).max(1);

@@ -53,8 +53,8 @@ impl ReducedMembrane {
     /// Solves A u − b = λ ≥ 0, u ≥ ψ, λ(u − ψ) = 0 from an active set.
     ///
     /// # Errors
-    /// [`OracleError::NotConverged`] with the share of nodes that still changed as residual, [`OracleError::NotFinite`], and
-    /// [`OracleError::Failed`] when the matrix cannot be factored.
+    /// [`OracleError::NotConverged`] with the share of nodes that still changed as residual,
+    /// [`OracleError::NotFinite`], and [`OracleError::Failed`] when the matrix cannot be factored.
     pub fn solve(
         &self,
         grid: &MembraneGrid,

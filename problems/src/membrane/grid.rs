@@ -11,9 +11,9 @@ use contact::error::SceneError;
 pub struct MembraneGrid {
     /// Number N ≥ 2 of cells per edge.
     pub cells: usize,
-    /// Lower left corner.
+    /// Coordinates of the lower left corner.
     pub origin: [f64; 2],
-    /// Edge length.
+    /// Length of an edge of the square.
     pub length: f64,
 }
 
@@ -45,7 +45,7 @@ impl MembraneGrid {
         self.cells - 1
     }
 
-    /// Number of unknowns.
+    /// Number of inner nodes, which carry the unknowns.
     pub fn node_count(&self) -> usize {
         self.inner() * self.inner()
     }

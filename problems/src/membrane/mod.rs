@@ -1,14 +1,15 @@
-//! A membrane over an obstacle, pressed and lifted by controlled loads: a state problem beyond contact mechanics of solids.
+//! A membrane over an obstacle, pressed and lifted by controlled loads: a state problem beyond contact mechanics of
+//! solids.
 //!
 //! ```text
 //! u ≥ ψ,   λ = −Δu − f(α) ≥ 0,   λ (u − ψ) = 0   in Ω = (x₀, x₀ + l)²,     u = g on ∂Ω
 //! f(α) = f₀ + Σ α_k χ_k,   χ_k the patches of a square grid                                           problem.rs
 //! J(α, u, λ) = ½∫(u − u_d)² + (ν/2)∫(f(α) − f₀)² + κ∫λ                                                    cost.rs
 //! ```
-//! The membrane is a scalar variational inequality: S: α ↦ (u, λ) is Lipschitz, piecewise linear after discretisation, with a
-//! kink wherever a node touches the obstacle without pressing on it. Discretised by differences on a square grid (`grid`), solved
-//! by the primal–dual active set method (`active_set`), which for this M-matrix ends after finitely many steps with the exact
-//! state \[HintermuellerItoKunisch2003\].
+//! The membrane is a scalar variational inequality: S: α ↦ (u, λ) is Lipschitz, piecewise linear after discretisation,
+//! with a kink wherever a node touches the obstacle without pressing on it. Discretised by differences on a square grid
+//! (`grid`), solved by the primal–dual active set method (`active_set`), which for this M-matrix ends after finitely
+//! many steps with the exact state \[HintermuellerItoKunisch2003\].
 
 mod active_set;
 mod cost;
@@ -30,8 +31,9 @@ pub const PATCHES: usize = 4;
 /// Largest load of a patch of the example.
 pub const LARGEST_LOAD: f64 = 40.0;
 
-/// The example: a membrane clamped at height 0 sags under the load −8 onto a dome, ψ = 0.1 − |x − (½, ½)|². It shall take the
-/// shape u_d = 0.08 sin πx₁ sin πx₂, which the dome pierces, and press on it as little as possible: κ = 0.02, ν = 10⁻⁶.
+/// The example: a membrane clamped at height 0 sags under the load −8 onto a dome, ψ = 0.1 − |x − (½, ½)|². It shall
+/// take the shape u_d = 0.08 sin πx₁ sin πx₂, which the dome pierces, and press on it as little as possible: κ = 0.02,
+/// ν = 10⁻⁶.
 ///
 /// ```
 /// use nonsmooth::{NonsmoothObjective, Request, Vector};

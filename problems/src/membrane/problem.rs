@@ -4,8 +4,9 @@
 //! A u − λ h² = b(α) = h² f(α) + boundary;     inactive I, active C:   u_C = ψ_C,  λ_I = 0
 //! D*S(α)(u*, λ*) ∋ h² Σ_{I in patch} p − Σ_{C in patch} λ*,    A_II p_I = u*_I + h⁻² A_IC λ*_C
 //! ```
-//! λ is a density (load per area). A node on the kink, u = ψ and λ = 0, counts as inactive: for independent loads at all nodes
-//! this is a limit of Jacobians nearby; for loads by patches it is an element of the set that the chain rule yields.
+//! λ is a density (load per area). A node on the kink, u = ψ and λ = 0, counts as inactive: for independent loads at
+//! all nodes this is a limit of Jacobians nearby; for loads by patches it is an element of the set that the chain rule
+//! yields.
 
 use crate::membrane::active_set::{MembraneState, ReducedMembrane};
 use crate::membrane::grid::MembraneGrid;
@@ -56,8 +57,8 @@ impl MembraneControl {
     /// Evaluates the data on the grid and analyses the pattern.
     ///
     /// # Errors
-    /// [`MembraneError::Data`] without patches and for data that are not numbers, [`MembraneError::Matrix`] when the analysis
-    /// fails.
+    /// [`MembraneError::Data`] without patches and for data that are not numbers, [`MembraneError::Matrix`] when the
+    /// analysis fails.
     pub fn new(grid: MembraneGrid, data: &MembraneData) -> Result<Self, MembraneError> {
         if data.patches == 0 {
             return Err(SceneError::out_of_range("patches per edge", 0, "at least 1").into());
@@ -80,7 +81,7 @@ impl MembraneControl {
         Ok(Self { grid, reduced, constant, obstacle, patch_of_node, patches: data.patches })
     }
 
-    /// The grid.
+    /// The grid on which the membrane is discretized.
     pub fn grid(&self) -> &MembraneGrid {
         &self.grid
     }

@@ -9,11 +9,13 @@
 //! slip    otherwise        n = h,  λ_N = Λ_σ (h − n°),  λ_T = σ𝓕λ_N,  w = (t − κh − λ_T)/k,
 //!                          Λ_σ = (k² − κ²)/(k + σ𝓕κ),  σ = sign w = sign(t − κh)
 //! ```
-//! Derivation: open is K⁻¹; stick puts n = h, w = 0 into both rows; slip takes w from the second row with λ_T = σ𝓕λ_N and puts
-//! it into the first: λ_N (1 + σ𝓕κ/k) = (k − κ²/k) h + P + κt/k. As 𝓕|κ| < k, both Λ_σ are positive, so exactly one case holds
-//! at every h and λ_N is continuous. σw > 0 gives σ(t − κh) = σkw + 𝓕λ_N > 0, which fixes σ before w is known.
+//! Derivation: open is K⁻¹; stick puts n = h, w = 0 into both rows; slip takes w from the second row with λ_T = σ𝓕λ_N
+//! and puts it into the first: λ_N (1 + σ𝓕κ/k) = (k − κ²/k) h + P + κt/k. As 𝓕|κ| < k, both Λ_σ are positive, so
+//! exactly one case holds at every h and λ_N is continuous. σw > 0 gives σ(t − κh) = σkw + 𝓕λ_N > 0, which fixes σ
+//! before w is known.
 //!
-//! Kinks: n°, and the two ends of stick h_σ = (t − σ𝓕P)/(κ + σ𝓕k) as far as they lie above n°. Between kinks S is affine in h:
+//! Kinks: n°, and the two ends of stick h_σ = (t − σ𝓕P)/(κ + σ𝓕k) as far as they lie above n°. Between kinks S is
+//! affine in h:
 //!
 //! ```text
 //! d/dh (λ_N, λ_T, n, w) =   open (0, 0, 0, 0);   stick (k, −κ, 1, 0);   slip (Λ_σ, σ𝓕Λ_σ, 1, −(κ + σ𝓕Λ_σ)/k)
@@ -48,9 +50,9 @@ pub struct Node {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NodeStatus {
-    /// No contact.
+    /// The node does not touch the support.
     Open,
-    /// Closed, no sliding.
+    /// The node touches the support and does not slide.
     Stick,
     /// Closed, sliding with w > 0 (σ = 1).
     SlipForward,
@@ -74,7 +76,8 @@ impl std::fmt::Display for NodeStatus {
 pub struct NodeValues {
     /// λ_N, compression positive.
     pub normal_force: f64,
-    /// λ_T, the tangential force of the node on the support; the node feels −λ_T, see the equilibrium in the module head.
+    /// λ_T, the tangential force of the node on the support; the node feels −λ_T, see the equilibrium in the module
+    /// head.
     pub tangential_force: f64,
     /// n, the height of the node.
     pub height: f64,
@@ -97,9 +100,9 @@ impl NodeValues {
 pub struct Kink {
     /// Height h of the support at the kink.
     pub height: f64,
-    /// Status just below.
+    /// Status for supports slightly below `height`.
     pub below: NodeStatus,
-    /// Status just above.
+    /// Status for supports slightly above `height`.
     pub above: NodeStatus,
 }
 
@@ -193,7 +196,8 @@ impl Node {
             .collect()
     }
 
-    /// Every status that occurs next to the given height, kinks within `width` included: one away from kinks, two on one.
+    /// Every status that occurs next to the given height, kinks within `width` included: one away from kinks, two on
+    /// one.
     pub fn neighbouring_statuses(&self, support: f64, width: f64) -> Vec<NodeStatus> {
         let mut found = Vec::with_capacity(2);
         for kink in self.kinks().iter().filter(|kink| (kink.height - support).abs() <= width) {

@@ -4,9 +4,10 @@
 //! h = B α,   B = ⎡3/4 1/4⎤      y = S(α) = (y¹(h₁), y²(h₂)),   yⁱ = (λ_N, λ_T, n, w) of node i        node.rs
 //!                ⎣1/4 3/4⎦      D*S(α)(y*) ∋ Bᵀ (⟨y¹*, dy¹/dh⟩, ⟨y²*, dy²/dh⟩)
 //! ```
-//! The surface of the support is the linear spline with the two control heights α over [0, 1]; the nodes stand at 1/4 and 3/4. On
-//! a kink `coderivative` uses the derivative of the status that `solve` reports; B is regular and the nodes are independent, so
-//! any pair of one-sided derivatives is a limit of Jacobians and the result an element of D*S(α)(y*) and of the Clarke set.
+//! The surface of the support is the linear spline with the two control heights α over [0, 1]; the nodes stand at 1/4
+//! and 3/4. On a kink `coderivative` uses the derivative of the status that `solve` reports; B is regular and the nodes
+//! are independent, so any pair of one-sided derivatives is a limit of Jacobians and the result an element of
+//! D*S(α)(y*) and of the Clarke set.
 
 use super::node::{Kink, Node, NodeStatus, NodeValues};
 use nonsmooth::{Accuracy, Coderivative, InputError, OracleError, Sensitivity, StateSolver, Vector};
@@ -34,7 +35,7 @@ pub struct NodeState {
 /// State of the toy: both nodes. The dual has 8 entries, (λ_N, λ_T, n, w) of the first node, then of the second.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToyState {
-    /// The two nodes.
+    /// States of the two nodes.
     pub nodes: [NodeState; 2],
 }
 
@@ -54,7 +55,7 @@ impl ToyContact {
         Self { nodes }
     }
 
-    /// The two nodes.
+    /// The data of the two nodes.
     pub fn nodes(&self) -> &[Node; 2] {
         &self.nodes
     }

@@ -1,4 +1,5 @@
-//! One run of the engine on the toy with every point that it evaluated; values and kinks over the admissible box for pictures.
+//! One run of the engine on the toy with every point that it evaluated; values and kinks over the admissible box for
+//! pictures.
 
 use super::{LOWER, SURFACE, UPPER, admissible_set, toy_objective};
 use nonsmooth::{
@@ -38,7 +39,8 @@ pub fn trace(start: [f64; 2]) -> Result<ToyTrace, OptimizeError> {
     Ok(ToyTrace { report, points: points.into_inner() })
 }
 
-/// Controls at equal distances in the admissible box, `cells` + 1 along each axis, with Θ there; the second control runs fastest.
+/// Controls at equal distances in the admissible box, `cells` + 1 along each axis, with Θ there; the second control
+/// runs fastest.
 ///
 /// # Errors
 /// An [`OracleError`] without cells.

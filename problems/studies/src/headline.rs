@@ -86,7 +86,8 @@ pub fn optimization_line(example: usize) -> Result<String, Failure> {
     Ok(line(&report, name, paper, &format!("{reached}, {} in all, {end}", report["evaluations"])))
 }
 
-/// A line of the table of states in README.md: Example 5.1 at its flat start. Peak memory is that of the process so far.
+/// A line of the table of states in README.md: Example 5.1 at its flat start. Peak memory is that of the process so
+/// far.
 ///
 /// # Errors
 /// [`Failure`] of the command.

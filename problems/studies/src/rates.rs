@@ -10,7 +10,7 @@ use serde::Serialize;
 /// A limit and the rate of approach.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Extrapolation {
-    /// Q*.
+    /// Q*, the value extrapolated to n = ∞.
     pub limit: f64,
     /// p of the best fit.
     pub rate: f64,

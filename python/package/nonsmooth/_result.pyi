@@ -5,7 +5,7 @@ from numpy import float64
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult
 
-from ._engine import Certificate, Outcome
+from ._engine import Certificate, RunOutcome
 
 STATUS: dict[str, int]
 
@@ -44,4 +44,4 @@ class Result(OptimizeResult):
     def recheck(self) -> Recheck: ...
     def __dir__(self) -> list[str]: ...
 
-def build(outcome: Outcome, outer: dict[str, Any] | None = None) -> Result: ...
+def build(outcome: RunOutcome, outer: dict[str, Any] | None = None) -> Result: ...

@@ -4,8 +4,9 @@
 //! min over (d, t)   Σ t + u‖d‖²/2 + dᵀBd/2 − u⟨W o, d⟩,   (t, c + G d) in the cones of h,   x + d ∈ U
 //! scaled:           d = D d̂,  c = σ ĉ,  t = σ^p t̂,   σ = max|c_i|,  D_kk = min(σ/max_i|G_ik|, (σ^p/(B + u W)_kk)^(1/2))
 //! ```
-//! The multipliers of c + G d are the weights w of the outputs. By weak duality, the answer lies above the optimum by at most the following
-//! sum, with the multipliers μ of the sides of U and the residual ρ = Gᵀw + u W (d − o) + B d + Aᵀμ:
+//! The multipliers of c + G d are the weights w of the outputs. By weak duality, the answer lies above the optimum by
+//! at most the following sum, with the multipliers μ of the sides of U and the residual ρ = Gᵀw + u W (d − o) + B d +
+//! Aᵀμ:
 //!
 //! ```text
 //! h(c + G d) − ⟨w, c + G d⟩ + h*(w) + Σ |μ_i| slack_i + ‖ρ‖* max(‖d‖, ‖ρ‖*/2u)
@@ -22,7 +23,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, PowerConeT, SecondOrderConeT, SupportedConeT, ZeroConeT,
 };
 
-/// The last iterate of the method, of any quality: the caller judges it by weak duality.
+/// The last iterate of the method, of any quality: the caller checks it by weak duality.
 pub(super) struct ConeAnswer {
     pub step: Vector,
     /// The weights w of the outputs.

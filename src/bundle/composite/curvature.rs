@@ -4,8 +4,9 @@
 //! L(x) = ⟨w, c(x)⟩,   w the weights of the outputs at the subproblem's solution
 //! s_j = x_j − x,   y_j = (G_j − G)ᵀ w,   B = argmin Σ |B s_j − y_j|²/|s_j|⁴ over symmetric B,   its positive part
 //! ```
-//! Where outputs bend, a model that linearizes them ends in short steps, unless kinks of h determine the point. The curvature
-//! that matters is that of L, which changes with w: as every Jacobian is kept whole, B follows the present w at once.
+//! Where outputs have curvature, a model that linearizes them ends in short steps, unless kinks of h determine the
+//! point. The curvature that matters is that of L, which changes with w: as every Jacobian is kept whole, B follows the
+//! present w at once.
 
 use crate::bundle::norm::ScaledNorm;
 use crate::{Matrix, Vector};

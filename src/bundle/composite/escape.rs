@@ -3,9 +3,9 @@
 //! ```text
 //! s_i + S_i d ≤ −s_i/2 for the inactive constraints next to the point      one composite step with these rows, then go on
 //! ```
-//! The linearization at a stationary point sees one piece of c alone. Where a constraint inside c (an open contact node) is all
-//! but active, the neighbouring piece may lead lower. The steps may rise above the center. They end when a trial point is
-//! serious, when the model promises no value below the center any more, or after two evaluations.
+//! The linearization at a stationary point sees one piece of c alone. Where a constraint inside c (an open contact
+//! node) is all but active, the neighbouring piece may lead lower. The steps may rise above the center. They end when a
+//! trial point is serious, when the model promises no value below the center any more, or after two evaluations.
 
 use super::base::Base;
 use super::steps::{Changes, Steps};
@@ -24,12 +24,13 @@ pub(super) struct Escape {
     /// Where the model of the next step is built; none before the first evaluation.
     base: Option<Base>,
     pub weight: f64,
-    /// Evaluations left.
+    /// Number of evaluations that the escape steps may still spend.
     left: usize,
 }
 
 impl Escape {
-    /// The first step beyond the constraints next to the point, or the end of the run with the proof where there are none.
+    /// The first step beyond the constraints next to the point, or the end of the run with the proof where there are
+    /// none.
     pub(super) fn begin(
         at: &mut Position<'_>,
         steps: &mut Steps,
@@ -77,14 +78,14 @@ impl Escape {
         }
     }
 
-    /// No further evaluation.
+    /// Ends the escape steps: no evaluation is spent on them any more.
     pub(super) fn give_up(&mut self) {
         self.left = 0;
     }
 }
 
-/// The admissible points at which, by the linearization, the constraints within a first step are violated by half of their slacks;
-/// none if no constraint is so near.
+/// The admissible points at which, by the linearization, the constraints within a first step are violated by half of
+/// their slacks; none if no constraint is so near.
 fn closing_set(at: &Position<'_>, base: &Base, inactive: &InactiveConstraints) -> Option<Polyhedron> {
     let distance = |i: usize| inactive.slacks[i] / at.state.norm.dual_length(&inactive.jacobian.row(i).transpose());
     let close: Vec<usize> = (0..inactive.slacks.len()).filter(|&i| distance(i) <= at.state.first_step).collect();

@@ -3,10 +3,11 @@
 //! ```text
 //! G, G' the Jacobians at x and x + d:    share = Σ ω_i |c'_i − c_i − (½(G + G')d)_i| / Σ ω_i |c'_i − c_i − (G d)_i|,   ω = |w| + |w'|
 //! ```
-//! Where c is smooth, the trapezoidal rule leaves a departure of third order in d only; it does not remove that of a kink. A step that
-//! does not pay and leaves a share has met kinks. From here the model would go on in steps so short that they stay within a piece, each
-//! of them serious and none of them worth its evaluation, so that the model falls silent at once. The evaluations that the cuts
-//! then ask for tell, at no cost, when the outputs follow their linearization again.
+//! Where c is smooth, the trapezoidal rule leaves a departure of third order in d only; it does not remove that of a
+//! kink. A step that does not pay and leaves a share has met kinks. From here the model would go on in steps so short
+//! that they stay within a piece, each of them serious and none of them worth its evaluation, so that the model falls
+//! silent at once. The evaluations that the cuts then ask for tell, at no cost, when the outputs follow their
+//! linearization again.
 
 use super::base::Base;
 use crate::Vector;
@@ -70,8 +71,8 @@ impl Seen<'_> {
 }
 
 impl Kinks {
-    /// Learns from a step of the model itself that promised a decrease; it pays if it brings half of the largest decrease promised since a
-    /// step last paid. Returns whether the model should fall silent because of kinks.
+    /// Learns from a step of the model itself that promised a decrease; it pays if it brings half of the largest
+    /// decrease promised since a step last paid. Returns whether the model should fall silent because of kinks.
     pub(super) fn met(&mut self, seen: &Seen<'_>, promised: f64, serious: bool) -> bool {
         let promised = promised.max(self.promised);
         if serious && -seen.change >= 0.5 * promised {

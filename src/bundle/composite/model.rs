@@ -3,7 +3,8 @@
 //! ```text
 //! h(c + G d) + dᵀBd/2 + u‖d − o‖²/2,   x + d ∈ U
 //! ```
-//! B is the curvature of the outputs, u the weight, and o leads from the base x to the point that lengths are measured from.
+//! B is the curvature of the outputs, u the weight, and o leads from the base x to the point that lengths are measured
+//! from.
 
 use crate::bundle::norm::{ScaledNorm, WeightedMetric};
 use crate::bundle::proposers::proposal::SubproblemError;
@@ -41,8 +42,8 @@ impl OuterCut {
         Ok(Self { value, subgradient, outputs, multiplier: 0.0 })
     }
 
-    /// The same cut of a positively homogeneous h, taken at outputs that are no larger than a size: the error of the cut at outputs of this
-    /// size then carries no rounding of larger numbers.
+    /// Moves a cut of a positively homogeneous h to outputs that are no larger than a size: the error of the cut at
+    /// outputs of this size then carries no rounding of larger numbers.
     pub(super) fn shrunk(self, outer: &dyn OuterFunction, size: f64) -> Self {
         let own = self.outputs.amax();
         if !(outer.is_homogeneous() && own > size && size > 0.0) {
@@ -81,7 +82,7 @@ pub(crate) struct CompositeModel<'a> {
     pub origin: Option<&'a Vector>,
 }
 
-/// A solved subproblem.
+/// A solution of the subproblem of the composite model.
 #[derive(Debug, Clone)]
 pub(crate) struct CompositeStep {
     pub step: Vector,
@@ -129,7 +130,7 @@ impl CompositeModel<'_> {
 
     /// h(c + G d) − h(c) + dᵀBd/2 + u(‖d − o‖² − ‖o‖²)/2 with the origin o.
     pub(super) fn merit(&self, step: &Vector) -> f64 {
-        let quadratic = self.bend(step) + self.weight * self.norm.squared(step);
+        let quadratic = self.curvature_term(step) + self.weight * self.norm.squared(step);
         self.outer.value(&self.outputs(step)) - self.value + 0.5 * quadratic + self.pull_to_origin().dot(step)
     }
 
@@ -140,7 +141,7 @@ impl CompositeModel<'_> {
     }
 
     /// dᵀBd.
-    fn bend(&self, step: &Vector) -> f64 {
+    fn curvature_term(&self, step: &Vector) -> f64 {
         self.curvature.map_or(0.0, |curvature| step.dot(&(curvature * step)))
     }
 
@@ -150,7 +151,8 @@ impl CompositeModel<'_> {
         self.curvature.map_or(pull.clone(), |curvature| pull + curvature * step)
     }
 
-    /// The linearization error of a cut of h at the base. Fails if the cut lies above h at the base by more than rounding.
+    /// The linearization error of a cut of h at the base. Fails if the cut lies above h at the base by more than
+    /// rounding.
     pub(super) fn error(&self, cut: &OuterCut) -> Result<f64, SubproblemError> {
         let outputs = &self.linearization.outputs;
         let error = cut.error(outputs, self.value);
@@ -165,7 +167,7 @@ impl CompositeModel<'_> {
     /// The solution at a step; `sides` are the multipliers of the rows and of the bounds.
     pub(super) fn solved(&self, step: Vector, cuts: Vec<OuterCut>, sides: (Vector, Vector)) -> CompositeStep {
         let outer_decrease = self.value - self.outer.value(&self.outputs(&step));
-        let decrease = outer_decrease - 0.5 * self.bend(&step);
+        let decrease = outer_decrease - 0.5 * self.curvature_term(&step);
         CompositeStep { decrease, outer_decrease, step, cuts, row_multipliers: sides.0, bound_multipliers: sides.1 }
     }
 }

@@ -48,10 +48,11 @@ impl Composite {
         }
     }
 
-    /// A step on from a rejected trial point, if it is short beside the rejected step and promises a value below the center's.
+    /// A step on from a rejected trial point, if it is short beside the rejected step and promises a value below the
+    /// center's.
     ///
-    /// A step along a curved kink of h leaves the kink by second order in its length, and loses by first order in this distance
-    /// (Maratos effect): the model at the end of the step leads back to the kink.
+    /// A step along a curved kink of h leaves the kink by second order in its length, and loses by first order in this
+    /// distance (Maratos effect): the model at the end of the step leads back to the kink.
     fn correction(
         &mut self,
         at: &mut Position<'_>,
@@ -72,7 +73,8 @@ impl Composite {
         Ok(Some(Proposal { predicted_decrease, ..proposal }))
     }
 
-    /// A step from the base that is worth an evaluation, or the proof that the base is stationary; silent where there is neither.
+    /// A step from the base that is worth an evaluation, or the proof that the base is stationary; silent where there
+    /// is neither.
     fn step(&mut self, at: &mut Position<'_>, base: &Base) -> Result<Answer, Termination> {
         let small = at.resolution().small();
         let mut weight = self.trust.weight.max(LEAST_WEIGHT);
@@ -105,7 +107,8 @@ impl Composite {
             weight /= 10.0;
             let decided = evidence.undecided(allowed(&at.resolution(), false)).is_none();
             if raised || decided && promised <= last {
-                // No step that has not been rejected promises more. What is small already may be proved to be all that is left.
+                // No step that has not been rejected promises more. What is small already may be proved to be all that
+                // is left.
                 return Ok(match self.lighter_proof(at, base, weight)? {
                     Some(ending) => self.leave(at, ending, base),
                     None if raised => Answer::Silent,
@@ -117,8 +120,8 @@ impl Composite {
         Ok(Answer::Silent)
     }
 
-    /// A step that promises little: the model may prove the point at its end stationary. Silent within a limit of length, where a longer step
-    /// has been rejected: the cuts go on.
+    /// A step that promises little: the model may prove the point at its end stationary. Silent within a limit of
+    /// length, where a longer step has been rejected: the cuts go on.
     fn small_step(&mut self, at: &Position<'_>, proposal: Proposal) -> Answer {
         if self.trust.longest < f64::INFINITY {
             self.trust.pause();
@@ -130,10 +133,11 @@ impl Composite {
         }
     }
 
-    /// The proof that a center is stationary from a subproblem with a lower weight and without the curvature of the outputs, if there is one.
+    /// The proof that a center is stationary from a subproblem with a lower weight and without the curvature of the
+    /// outputs, if there is one.
     ///
-    /// Gᵀw = −(u W + B) d − Aᵀμ − ν: where weight and curvature hold the step, a lower weight lets the multipliers balance. The bound
-    /// of the decrease within reach is the same, whatever subproblem the multipliers come from.
+    /// Gᵀw = −(u W + B) d − Aᵀμ − ν: where weight and curvature hold the step, a lower weight lets the multipliers
+    /// balance. The bound of the decrease within reach is the same, whatever subproblem the multipliers come from.
     fn lighter_proof(
         &mut self,
         at: &mut Position<'_>,
@@ -193,7 +197,8 @@ impl Composite {
         self.step(at, &base)
     }
 
-    /// Builds the model at the center from now on. Without a Jacobian there, the model is silent until the center moves again.
+    /// Builds the model at the center from now on. Without a Jacobian there, the model is silent until the center moves
+    /// again.
     fn rebase(&mut self, at: &mut Position<'_>, linearization: Option<&Linearization>) {
         let (point, value) = (at.state.center.clone(), at.state.center_value);
         let known = at.outer.zip(linearization);
@@ -207,7 +212,8 @@ impl Composite {
     fn watch_kinks(&mut self, outer: &dyn OuterFunction, trial: &Trial<'_>) {
         let Some(base) = &self.base else { return };
         let Trial { proposal, comparison, linearization, .. } = trial;
-        let seen = Seen { outer, base, point: &proposal.trial, change: comparison.objective_change, end: *linearization };
+        let seen =
+            Seen { outer, base, point: &proposal.trial, change: comparison.objective_change, end: *linearization };
         if proposal.origin != Origin::CompositeModel {
             if self.kinks.remain(&seen) {
                 self.trust.prolong();

@@ -10,10 +10,11 @@ use crate::bundle::proposers::proposer::Position;
 use crate::composite::{Linearization, OuterFunction};
 use crate::panics::without_panic;
 use crate::report::{Origin, Termination};
-use std::rc::Rc;
 use crate::{ConstraintEvaluation, Matrix, Polyhedron, Vector};
+use std::rc::Rc;
 
-/// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h overflows along the step.
+/// A solved subproblem and the trial point that it leads to; none where the subproblem cannot be solved, or where h
+/// overflows along the step.
 pub(super) type Found = Option<(Proposal, CompositeStep)>;
 
 /// Where a subproblem differs from that of the run.
@@ -58,14 +59,20 @@ impl Steps {
     }
 
     /// Remembers a Jacobian, unless h has a curvature of its own: the model then uses no curvature of the outputs.
-    pub(super) fn remember(&mut self, outer: &dyn OuterFunction, point: &Vector, (known, constraints): (&Linearization, Option<&ConstraintEvaluation>)) {
+    pub(super) fn remember(
+        &mut self,
+        outer: &dyn OuterFunction,
+        point: &Vector,
+        (known, constraints): (&Linearization, Option<&ConstraintEvaluation>),
+    ) {
         let Linearization { outputs, jacobian, .. } = known;
         if without_panic(|| outer.curvature(outputs, jacobian).is_none()).unwrap_or_default() {
             self.memory.remember(point, &stacked(jacobian, constraints.map(|found| &found.jacobian)));
         }
     }
 
-    /// Solves the subproblem. Once steps have failed without it, the curvature of the outputs is added, for the weights of the solution.
+    /// Solves the subproblem. Once steps have failed without it, the curvature of the outputs is added, for the weights
+    /// of the solution.
     fn solve(
         &mut self,
         at: &mut Position<'_>,

@@ -3,7 +3,7 @@
 //! ```text
 //! min over d   h(c + G d) + u‖d‖²/2,   x + d ∈ U
 //! h smooth:    Newton's method, each step a quadratic program with Gᵀ∇²h G + u W, and a line search
-//! of cones:    an interior-point method (cones.rs), judged by weak duality
+//! of cones:    an interior-point method (cones.rs), checked by weak duality
 //! else:        max_j h(c_j) + ⟨w_j, c + G d − c_j⟩ in place of h, cuts added until they meet h
 //! w = Σ λ_j w_j:   Gᵀw + Aᵀμ + ν = −u W d,   error of w at c:  Σ λ_j (h(c) − h(c_j) − ⟨w_j, c − c_j⟩) ≥ 0
 //! ```
@@ -33,11 +33,12 @@ const MAX_CUTS: usize = 1000;
 const SOLVED: f64 = 1e-9;
 /// The cuts of h meet h where the gap is at most this share of the promised decrease.
 const MET: f64 = 1e-6;
-/// Share of the promised decrease that the interior-point method may miss: a trial point needs no more accuracy, and a proof has a test
-/// of its own.
+/// Share of the promised decrease that the interior-point method may miss: a trial point needs no more accuracy, and a
+/// proof has a test of its own.
 #[cfg(feature = "interior-point")]
 const MET_BY_CONES: f64 = 0.1;
-/// Share of |h| that the method may miss besides: double precision does not take the method further where G is ill-conditioned.
+/// Share of |h| that the method may miss besides: double precision does not take the method further where G is
+/// ill-conditioned.
 #[cfg(feature = "interior-point")]
 const LEFT_BY_CONES: f64 = 1e-10;
 /// Rounding of h as a share of |h|.
@@ -63,8 +64,8 @@ impl CompositeModel<'_> {
         }
     }
 
-    /// The answer of the interior-point method where weak duality calls it good enough; otherwise the answer by cuts, beginning with
-    /// those that the interior-point method has found.
+    /// The answer of the interior-point method where weak duality calls it good enough; otherwise the answer by cuts,
+    /// beginning with those that the interior-point method has found.
     #[cfg(feature = "interior-point")]
     fn solve_by_cones(
         &self,
@@ -82,7 +83,8 @@ impl CompositeModel<'_> {
         let step = &point - self.base;
         let (here, there) = (self.linearization.outputs.clone(), self.outputs(&step));
         let conjugate = epigraph.conjugate(&weights);
-        // By the conjugate, w is a cut of h at any outputs; at those of the base, its error carries no rounding of larger numbers.
+        // By the conjugate, w is a cut of h at any outputs; at those of the base, its error carries no rounding of
+        // larger numbers.
         let value = weights.dot(&here) - conjugate;
         let missed = self.outer.value(&there) - (weights.dot(&there) - conjugate);
         let cut = OuterCut { value, subgradient: weights, outputs: here, multiplier: 1.0 };
@@ -128,7 +130,8 @@ impl CompositeModel<'_> {
         Err(SubproblemError::Unusable)
     }
 
-    /// `from` plus `step`, which is halved until the merit falls enough, with the merit there; none where rounding hides any decrease.
+    /// `from` plus `step`, which is halved until the merit falls enough, with the merit there; none where rounding
+    /// hides any decrease.
     fn search(&self, from: &Vector, step: &Vector, merit: f64, promised: f64) -> Option<(Vector, f64)> {
         let mut length = 1.0;
         for _ in 0..MAX_HALVINGS {
@@ -158,7 +161,8 @@ impl CompositeModel<'_> {
             for newest in &cuts[slopes.len()..] {
                 let slope = linearization.jacobian.tr_mul(&newest.subgradient) + &pull;
                 let length = slope.norm();
-                // Such a cut of h says no more than an evaluation with such a subgradient: the step that led there was too long.
+                // Such a cut of h says no more than an evaluation with such a subgradient: the step that led there was
+                // too long.
                 if longest > 0.0 && length > MAX_RELATIVE_SLOPE * longest {
                     return Err(SubproblemError::Unusable);
                 }

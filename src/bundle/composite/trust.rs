@@ -3,7 +3,8 @@
 use crate::bundle::proposers::pause::Pause;
 use crate::bundle::proposers::proposal::Proposal;
 
-/// The first weight, relative to the first weight of the cuts: h is exact, so that first steps ten times as long as those of the cuts pay.
+/// The first weight, relative to the first weight of the cuts: h is exact, so that first steps ten times as long as
+/// those of the cuts pay.
 const FIRST_WEIGHT: f64 = 1e-2;
 /// Largest length of the step after a rejected one, in lengths of the rejected step.
 const SHORTER: f64 = 0.3;
@@ -28,7 +29,6 @@ impl Trust {
         self.pause.pass()
     }
 
-    /// Begins a pause.
     pub(super) fn pause(&mut self) {
         self.pause.fail();
     }

@@ -90,7 +90,13 @@ impl WorkingSet {
         });
         let own_rows = set.rows().nrows();
         if std::env::var("DBG").is_ok() {
-            eprintln!("v {violation:.3e} s {relaxation:.3e} excess {excess:.1e} caution {} rows {} penalty {:.2e} forced {forced_length:.2e} nonconvex {:?}", constraints.caution, rows.nrows(), constraints.penalty, constraints.nonconvex());
+            eprintln!(
+                "v {violation:.3e} s {relaxation:.3e} excess {excess:.1e} caution {} rows {} penalty {:.2e} forced {forced_length:.2e} nonconvex {:?}",
+                constraints.caution,
+                rows.nrows(),
+                constraints.penalty,
+                constraints.nonconvex()
+            );
         }
         let extended = set.clone().with_tangents(&rows, &lower, &upper);
         Self {

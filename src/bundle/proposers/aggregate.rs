@@ -1,5 +1,5 @@
-//! The slack part of the aggregate error, summed from the multipliers themselves rather than taken from the step, so that it holds however
-//! inaccurately the subproblem was solved.
+//! The slack part of the aggregate error, summed from the multipliers themselves rather than taken from the step, so
+//! that it holds however inaccurately the subproblem was solved.
 
 use crate::{Polyhedron, Vector};
 

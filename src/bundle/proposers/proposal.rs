@@ -2,14 +2,14 @@
 
 use crate::bundle::constrained::Tangent;
 use crate::bundle::cut::LEAST_ACTIVE_MULTIPLIER;
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::qp::{QpError, project};
 use crate::report::Origin;
 use crate::{Polyhedron, Vector};
 use std::rc::Rc;
 
-/// Share m_S of the predicted decrease that makes a step serious (\[SchrammZowe1992\], test SS). A share of 0.1 takes 6 % more evaluations in
-/// the mean over moved starts.
+/// Share m_S of the predicted decrease that makes a step serious (\[SchrammZowe1992\], test SS). A share of 0.1 takes 6
+/// % more evaluations in the mean over moved starts.
 pub(crate) const SERIOUS_FRACTION: f64 = 0.02;
 /// A trial point and what the model says about it.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ pub(crate) struct Proposal {
     pub weight: f64,
     /// Relative violation of the set at the trial point.
     pub violation: f64,
-    /// Who proposes it.
+    /// Model that proposes the trial point.
     pub origin: Origin,
     /// Whether most of the predicted decrease is that of the violation: it says nothing about the weight.
     pub restores: bool,
@@ -85,7 +85,7 @@ pub(crate) enum SubproblemError {
 }
 
 impl SubproblemError {
-    /// The same error, where h was asked for at the base of the model: a shorter step cannot help.
+    /// Marks an error of h as one at the base of the model, where a shorter step cannot help.
     pub(crate) fn at_base(self) -> Self {
         match self {
             Self::OuterNotFinite { .. } => Self::OuterNotFinite { at_base: true },
@@ -107,12 +107,12 @@ impl SubproblemError {
 }
 
 impl Proposal {
-    /// Another step with its weight, made admissible. Multipliers and certificate quantities stay those of the plain cuts; the
-    /// predicted decrease is `−change(step)` and must be positive.
+    /// Another step with its weight, made admissible. Multipliers and certificate quantities stay those of the plain
+    /// cuts; the predicted decrease is `−change(step)` and must be positive.
     pub(crate) fn replaced(
         &self,
         (step, weight, origin): (Vector, f64, Origin),
-        (set, state): (&Polyhedron, &State),
+        (set, state): (&Polyhedron, &BundleState),
         change: impl Fn(&Vector) -> f64,
     ) -> Result<Self, SubproblemError> {
         let trial = &state.center + &step;
@@ -148,15 +148,20 @@ impl Proposal {
         self.trial.iter().zip(center.iter()).all(|(y, x)| (y - x).abs() <= SHORTEST_MOVE * x.abs())
     }
 
-    /// The same multipliers at another trial point, which promises nothing by itself.
-    pub(crate) fn moved_to(&self, trial: Vector, set: &Polyhedron, state: &State) -> Result<Self, SubproblemError> {
+    /// A proposal with these multipliers at another trial point; it predicts no decrease.
+    pub(crate) fn moved_to(
+        &self,
+        trial: Vector,
+        set: &Polyhedron,
+        state: &BundleState,
+    ) -> Result<Self, SubproblemError> {
         let step = &trial - &state.center;
         Self { trial, step, violation: 0.0, ..self.clone() }.admissible(set, state)
     }
 
-    /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the center, which is
-    /// admissible: a little where the violation is small, by a factor of 0.7 at a time otherwise.
-    pub(crate) fn admissible(mut self, set: &Polyhedron, state: &State) -> Result<Self, SubproblemError> {
+    /// Clips the trial point to the box. Where a row is still violated, projects it, or moves it back towards the
+    /// center, which is admissible: a little where the violation is small, by a factor of 0.7 at a time otherwise.
+    pub(crate) fn admissible(mut self, set: &Polyhedron, state: &BundleState) -> Result<Self, SubproblemError> {
         let violation = |x: &Vector| set.violation_near(x, &state.center);
         self.trial = set.clamp_to_box(&self.trial);
         self.violation = violation(&self.trial);

@@ -13,7 +13,7 @@ use crate::bundle::config::BundleTrustConfig;
 use crate::bundle::constrained::WorkingSet;
 use crate::bundle::proof::Ending;
 use crate::bundle::resolution::Resolution;
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::bundle::trial::Trial;
 use crate::composite::{Linearization, OuterFunction};
 use crate::qp::EpigraphQpSolver;
@@ -40,7 +40,7 @@ impl Answer {
 
 /// What a proposer sees of the run, and may change.
 pub(crate) struct Position<'a> {
-    pub state: &'a mut State,
+    pub state: &'a mut BundleState,
     pub set: &'a Polyhedron,
     /// The set with its linearized constraints, where there are nonlinear constraints.
     pub working: Option<&'a WorkingSet>,
@@ -73,8 +73,8 @@ pub(crate) trait Proposer {
     /// Takes note of the same trial point once bundle and center have been updated.
     fn update(&mut self, _at: &mut Position<'_>, _trial: &Trial<'_>) {}
 
-    /// Takes note that the oracle failed at a trial point of any proposer. Where the point was its own, a proposer takes a shorter step
-    /// next, or pauses.
+    /// Takes note that the oracle failed at a trial point of any proposer. Where the point was its own, a proposer
+    /// takes a shorter step next, or pauses.
     fn shorten(&mut self, at: &mut Position<'_>, proposal: &Proposal);
 
     /// Takes note that a trial point of any proposer is known, so that its evaluation would tell nothing new.
@@ -82,7 +82,8 @@ pub(crate) trait Proposer {
         self.shorten(at, proposal);
     }
 
-    /// Takes note that the center has been evaluated, for the first time or anew, with its linearization if there is one.
+    /// Takes note that the center has been evaluated, for the first time or anew, with its linearization if there is
+    /// one.
     fn recenter(&mut self, _at: &mut Position<'_>, _linearization: Option<&Linearization>) {}
 
     /// The proof of the present center that has been found before, where the run goes on to look for something lower.

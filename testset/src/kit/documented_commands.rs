@@ -46,9 +46,9 @@ fn run(command: &Command, program: &str, folder: &Path) {
     }
 }
 
-/// Runs the commands of all pages of the repository at `root` that start a binary of `package`, the commands of a page in a
-/// folder that holds nothing but the example scenes. `binary` knows where a binary lies. Returns how many commands ran, and of
-/// how many only the options were parsed.
+/// Runs the commands of all pages of the repository at `root` that start a binary of `package`, the commands of a page
+/// in a folder that holds nothing but the example scenes. `binary` knows where a binary lies. Returns how many commands
+/// ran, and of how many only the options were parsed.
 ///
 /// # Panics
 /// When a command fails, prints nothing, or names no binary of the package.

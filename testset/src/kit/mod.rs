@@ -1,5 +1,5 @@
-//! What the tests of all packages share: reproducible numbers, scratch folders, programs run to their end, the commands of
-//! the pages, and ranks that are threads.
+//! What the tests of all packages share: reproducible numbers, scratch folders, programs run to their end, the commands
+//! of the pages, and ranks that are threads.
 //!
 //! Nothing here knows the packages under test, so that every one of them can use it.
 

@@ -32,8 +32,9 @@ impl Random {
     }
 }
 
-/// Deterministic noise: as many numbers in [−1, 1) as the point has entries. They jump from point to point and are always the
-/// same at one point (a hash of the Fowler–Noll–Vo kind over the bits of the entries so far). Another `salt` gives other noise.
+/// Deterministic noise: as many numbers in [−1, 1) as the point has entries. They jump from point to point and are
+/// always the same at one point (a hash of the Fowler–Noll–Vo kind over the bits of the entries so far). Another `salt`
+/// gives other noise.
 pub fn jitters(x: &[f64], salt: u64) -> impl Iterator<Item = f64> {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64 ^ salt.wrapping_mul(0x9e37_79b9_7f4a_7c15);
     x.iter().map(move |entry| {

@@ -1,8 +1,8 @@
 //! The commands of the pages: README.md, problems/README.md and docs/*.md.
 //!
-//! A fenced block with the info `sh` holds commands that the tests run, one with `sh slow` commands that take too long for
-//! that: the tests have their options parsed. `#` begins a comment. Blocks of another kind hold no command that begins with
-//! `cargo` or `git`, except those marked `text`: output, or usage.
+//! A fenced block with the info `sh` holds commands that the tests run, one with `sh slow` commands that take too long
+//! for that: the tests have their options parsed. `#` begins a comment. Blocks of another kind hold no command that
+//! begins with `cargo` or `git`, except those marked `text`: output, or usage.
 
 use std::path::{Path, PathBuf};
 

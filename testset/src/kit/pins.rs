@@ -1,7 +1,8 @@
 //! Numbers pinned to the last bit: Θ and ξ of states, histories of optimizations.
 //!
-//! The dense kernels choose their instructions by the processor: where it lacks those of the processor that wrote the pins
-//! (AVX-512), numbers are compared to 1e-8, and of a history only the first 15, which rounding cannot yet have led apart.
+//! The dense kernels choose their instructions by the processor: where it lacks those of the processor that wrote the
+//! pins (AVX-512), numbers are compared to 1e-8, and of a history only the first 15, which rounding cannot yet have led
+//! apart.
 
 use crate::kit::numbers;
 use serde_json::Value;
@@ -28,8 +29,8 @@ fn text<'a>(pin: &'a Value, key: &str) -> &'a str {
     pin[key].as_str().unwrap_or_else(|| panic!("{key} is no text"))
 }
 
-/// Compares the pins of `file` that are `wanted` with what `run` finds now: the JSON of the binary of this name with these
-/// arguments and `--json`.
+/// Compares the pins of `file` that are `wanted` with what `run` finds now: the JSON of the binary of this name with
+/// these arguments and `--json`.
 ///
 /// # Panics
 /// When a number differs, when the file is no list of pins, or when no pin is wanted.

@@ -21,7 +21,8 @@ pub fn text(path: &Path) -> &str {
     path.to_str().expect("a path in Unicode")
 }
 
-/// A program with arguments, its output kept for the test, without the logging and the locale that the environment may ask for.
+/// A program with arguments, its output kept for the test, without the logging and the locale that the environment may
+/// ask for.
 pub fn command(program: &str, arguments: &[&str]) -> Command {
     let mut command = Command::new(program);
     command

@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 pub enum Parameter {
     /// The number of another entity.
     Reference(usize),
-    /// A number.
+    /// An integer or real parameter.
     Number(f64),
-    /// A list.
+    /// A parenthesised list of parameters.
     List(Vec<Parameter>),
     /// A text with its quotes, a name, `$` or `*`.
     Word(String),
@@ -107,7 +107,7 @@ fn parameter(text: &str) -> (Parameter, &str) {
 /// A B-spline surface as it stands in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// Degrees.
+    /// Polynomial degrees in both parameters.
     pub degrees: [usize; 2],
     /// Knots, repetitions listed.
     pub knots: [Vec<f64>; 2],

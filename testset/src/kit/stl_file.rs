@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-/// Three corners.
+/// Corners of a triangle with their coordinates.
 pub type Corners = [[f32; 3]; 3];
 
 /// The triangles of a binary STL file.
@@ -34,8 +34,8 @@ fn twice_the_area(corners: &Corners) -> [f64; 3] {
     [cross(1, 2), cross(2, 0), cross(0, 1)]
 }
 
-/// Number of edges of a triangulation, and of those that are not shared by exactly two triangles which pass them in opposite
-/// directions. Corners are the same where their coordinates are, bit by bit.
+/// Number of edges of a triangulation, and of those that are not shared by exactly two triangles which pass them in
+/// opposite directions. Corners are the same where their coordinates are, bit by bit.
 pub fn edges(triangles: &[Corners]) -> (usize, usize) {
     let mut passes: HashMap<[[u32; 3]; 2], [usize; 2]> = HashMap::new();
     for corners in triangles {

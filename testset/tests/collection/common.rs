@@ -84,7 +84,6 @@ fn update(inverse: &mut [Vec<f64>], s: &[f64], y: &[f64]) {
     }
 }
 
-/// Inner product.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

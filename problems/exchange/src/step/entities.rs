@@ -20,7 +20,7 @@ pub struct Entities {
 }
 
 impl Entities {
-    /// Adds an entity.
+    /// Adds an entity and returns its number in the file.
     pub fn add(&mut self, entity: impl std::fmt::Display) -> Id {
         self.count += 1;
         // Writing to a string does not fail.
@@ -34,7 +34,7 @@ impl Entities {
         self.add(format_args!("CARTESIAN_POINT('',{coordinates})"))
     }
 
-    /// Adds a direction.
+    /// Adds a DIRECTION entity; the components need no normalization.
     pub fn direction(&mut self, direction: [f64; 3]) -> Id {
         let ratios = list(direction.map(real));
         self.add(format_args!("DIRECTION('',{ratios})"))
@@ -46,7 +46,7 @@ impl Entities {
         self.add(format_args!("AXIS2_PLACEMENT_3D('',{origin},{third},{first})"))
     }
 
-    /// The whole file.
+    /// The text of the STEP file, header included.
     pub fn file(self, name: &str) -> String {
         let (name, program) = (text(name), text(concat!("nonsmooth ", env!("CARGO_PKG_VERSION"))));
         format!(

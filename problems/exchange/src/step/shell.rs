@@ -80,7 +80,8 @@ impl Corner {
     }
 }
 
-/// The four corners (0, 0), (a, 0), (a, b), (0, b) of a face and the edges from each to the next: counterclockwise from above.
+/// The four corners (0, 0), (a, 0), (a, b), (0, b) of a face and the edges from each to the next: counterclockwise from
+/// above.
 struct Rim {
     corners: [Corner; 4],
     edges: [Id; 4],

@@ -12,12 +12,12 @@ pub struct SplineHeights {
 }
 
 impl SplineHeights {
-    /// B-splines of these degrees on these knots (ascending, all repetitions listed), over a rectangle of `size` mm; the control
-    /// heights (mm) are row major, index i·n₂ + j with i along x₁.
+    /// B-splines of these degrees on these knots (ascending, all repetitions listed), over a rectangle of `size` mm;
+    /// the control heights (mm) are row major, index i·n₂ + j with i along x₁.
     ///
     /// # Errors
-    /// [`ExchangeError::Count`] unless there is a height for every pair of basis functions, [`ExchangeError::Number`] for numbers
-    /// that are not finite, degrees of 0, and knots that descend or are not clamped.
+    /// [`ExchangeError::Count`] unless there is a height for every pair of basis functions, [`ExchangeError::Number`]
+    /// for numbers that are not finite, degrees of 0, and knots that descend or are not clamped.
     pub fn new(
         degrees: [usize; 2],
         knots: [Vec<f64>; 2],

@@ -1,10 +1,11 @@
-//! `contact3d-mpi` for the tests of failures: one of its processes fails where the environment variable `FAILING_PROCESS` says so.
+//! `contact3d-mpi` for the tests of failures: one of its processes fails where the environment variable
+//! `FAILING_PROCESS` says so.
 //!
 //! `RANK CALL KIND`: process RANK fails in its call number CALL of the connection, by
 //!
 //! * `panic`, a panic;
 //! * `kill`, the signal 9;
-//! * `exit`, an end without a word to MPI;
+//! * `exit`, an exit without notice to MPI;
 //! * `memory`, an allocation that no machine can serve;
 //! * `flat`, bodies so flat that they cannot be factored: from that call on, it hears another height than 100 mm.
 
@@ -101,7 +102,8 @@ fn wanted() -> Option<(usize, usize, String)> {
     Some((words.next()?.parse().ok()?, words.next()?.parse().ok()?, words.next()?.to_owned()))
 }
 
-/// Exchanges values with every other process before the command begins: as many as the two ranks decide, and none with some.
+/// Exchanges values with every other process before the command begins: as many as the two ranks decide, and none with
+/// some.
 fn exchange_with_all(world: &World) {
     let number = |from: usize, to: usize| if from > to { 0 } else { 20_000 * from + to };
     let value = |from: usize, to: usize, index: usize| (1000 * from + to) as f64 + 1e-6 * index as f64;

@@ -27,7 +27,7 @@ fn bad_input_is_refused_once() {
     refused(started(PROGRAM, 3, &[scene, "--mesh", "none"]), &["--mesh"]);
     refused(started(PROGRAM, 3, &["no_such.toml", "evaluate"]), &["no_such.toml"]);
     refused(started(PROGRAM, 2, &[scene, "--resume", scene]), &["--resume"]);
-    // The same load in the other direction pulls the body off the obstacle.
+    // A load in the opposite direction pulls the body off the obstacle.
     let reversed = [&evaluate[..], &["--solver", "newton", "--load-factor", "-1"]].concat();
     let output = ended(started(PROGRAM, 2, &reversed));
     assert_eq!(errors(&output).matches("error:").count(), 1, "{}", errors(&output));

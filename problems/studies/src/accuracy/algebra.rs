@@ -1,4 +1,5 @@
-//! Error of the contact solvers against tolerance and seconds, with the estimate that they report beside the true error.
+//! Error of the contact solvers against tolerance and seconds, with the estimate that they report beside the true
+//! error.
 
 use crate::accuracy::extent::case;
 use crate::accuracy::objective::{METHODS, norm, objective_by};
@@ -36,7 +37,6 @@ pub struct AlgebraRow {
 /// All solvers and tolerances on one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AlgebraStudy {
-    /// The scene.
     pub scene: SceneName,
     /// Bricks per edge.
     pub bricks: usize,
@@ -44,9 +44,9 @@ pub struct AlgebraStudy {
     pub rows: Vec<AlgebraRow>,
     /// Rows whose bound lies below the true error, rounding of the reference apart.
     pub violations: usize,
-    /// Rows whose error lies above rounding, and the median of bound over error among them.
-    pub judged: usize,
-    /// See `judged`.
+    /// Number of rows whose error lies above rounding.
+    pub compared: usize,
+    /// Median of bound over error among the rows whose error lies above rounding.
     pub median_ratio: f64,
 }
 
@@ -66,7 +66,7 @@ struct Exact {
 pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<AlgebraStudy, Failure> {
     let objective = |variant| objective_by(variant, scene.scene(case(bricks))?, norm());
     let reference = objective(Variant::Direct)?;
-    let control = bent(&reference);
+    let control = perturbed(&reference);
     let state = reference.solver().solve(&control, None, Accuracy::TIGHTEST)?;
     let evaluation = reference.differentiate(&control, &state)?;
     let exact =
@@ -87,17 +87,19 @@ pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<Algeb
         scene,
         bricks,
         violations: rows.iter().filter(|row| row.value > row.bound + ROUNDING).count(),
-        judged: ratios.len(),
+        compared: ratios.len(),
         median_ratio: ratios.get(ratios.len() / 2).copied().unwrap_or(f64::NAN),
         rows,
     })
 }
 
-/// A shape that is nothing special.
-pub fn bent(objective: &ContactObjective) -> Vector {
+/// Controls of the start, each lowered at random by 1 to 3 %, so that the shape has no symmetry.
+pub fn perturbed(objective: &ContactObjective) -> Vector {
     const SEED: u64 = 5;
     let start = objective.solver().start();
-    start.zip_map(&nonsmooth::verify::seeded_direction(start.len(), SEED), |height, bend| height * (0.98 + 0.01 * bend))
+    start.zip_map(&nonsmooth::verify::seeded_direction(start.len(), SEED), |height, change| {
+        height * (0.98 + 0.01 * change)
+    })
 }
 
 fn row(

@@ -2,7 +2,7 @@
 
 use crate::accuracy::extent::{Extent, Part, SCENES};
 use crate::accuracy::manufactured::manufactured_errors;
-use crate::accuracy::report::Report;
+use crate::accuracy::report::AccuracyReport;
 use crate::accuracy::{algebra, discretisation, optimization, pictures, subgradient, tables};
 use crate::scaling::SceneName;
 use clap::Parser;
@@ -14,7 +14,7 @@ use std::time::Instant;
 /// Error against run time: discretisation, contact solvers, subgradient, optimization.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "accuracy", version)]
-pub struct Arguments {
+pub struct AccuracyArguments {
     /// Meshes up to 35 bricks per edge, optimization up to 24, instead of a study of about two minutes.
     #[arg(long, conflicts_with = "smoke")]
     pub full: bool,
@@ -32,7 +32,7 @@ pub struct Arguments {
     pub out: Option<PathBuf>,
 }
 
-impl Arguments {
+impl AccuracyArguments {
     fn extent(&self) -> Extent {
         match (self.smoke, self.full) {
             (true, _) => Extent::SMOKE,
@@ -46,14 +46,14 @@ impl Arguments {
     }
 }
 
-/// Runs the binary.
+/// Runs the binary with the arguments of the process and returns its exit status.
 pub fn run() -> ExitCode {
-    let arguments: Arguments = arguments();
+    let arguments: AccuracyArguments = arguments();
     finish(execute(&arguments), arguments.out.as_deref())
 }
 
 /// Measures, writes the folder, and returns what belongs on stdout.
-fn execute(arguments: &Arguments) -> Result<String, Failure> {
+fn execute(arguments: &AccuracyArguments) -> Result<String, Failure> {
     let folder = arguments.out.as_deref().map(|path| Folder::create(path, 1 << 20, false)).transpose()?;
     let report = measure(arguments)?;
     let (object, page) = (json(&report)?, tables::markdown(&report));
@@ -67,10 +67,10 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
     Ok(if arguments.json { object } else { page })
 }
 
-fn measure(arguments: &Arguments) -> Result<Report, Failure> {
+fn measure(arguments: &AccuracyArguments) -> Result<AccuracyReport, Failure> {
     let (clock, extent) = (Instant::now(), arguments.extent());
     let machine_threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut report = Report { machine_threads, ..Report::default() };
+    let mut report = AccuracyReport { machine_threads, ..AccuracyReport::default() };
     let progress = |what: &str| notice(&format!("{:>7.1} s  {what}", clock.elapsed().as_secs_f64()));
     if arguments.wants(Part::Discretisation) {
         for &bricks in extent.meshes.iter().filter(|bricks| **bricks <= LARGEST_SMOOTH) {

@@ -14,7 +14,7 @@ use std::time::Instant;
 /// What is measured on every mesh, in order.
 pub const QUANTITIES: [&str; 5] = ["∫σ⁴", "peak pressure", "Σλ_N x₁", "Σλ_N r²", "strain energy"];
 
-/// One mesh.
+/// Errors on a mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshRow {
     /// Bricks per edge.
@@ -34,11 +34,10 @@ pub struct MeshRow {
 /// One scene on all meshes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshStudy {
-    /// The scene.
     pub scene: SceneName,
     /// Limits; the finest mesh takes the place of one that cannot be extrapolated.
     pub limits: [Extrapolation; QUANTITIES.len()],
-    /// The meshes.
+    /// Errors per mesh, coarse to fine.
     pub rows: Vec<MeshRow>,
 }
 

@@ -1,4 +1,5 @@
-//! Points where Θ is not differentiable, constructed by bisection along a line, and what the returned element does there.
+//! Points where Θ is not differentiable, constructed by bisection along a line, and what the returned element does
+//! there.
 //!
 //! ```text
 //! t* : the contact status changes,   Θ′(t*−) and Θ′(t*+) by one-sided differences of second order
@@ -21,7 +22,7 @@ use serde::Serialize;
 pub struct KinkRow {
     /// Where: a scene or the toy.
     pub scene: String,
-    /// What changes there.
+    /// Statuses that change at the kink, and how.
     pub change: String,
     /// t*, mm.
     pub position: f64,
@@ -121,13 +122,13 @@ struct Change {
     above: Vec<ContactStatus>,
 }
 
-/// `count` kinks of a scene, on lines from a bent shape in random directions.
+/// `count` kinks of a scene, on lines from a perturbed shape in random directions.
 ///
 /// # Errors
 /// [`Failure`] from the scene or a solver.
 pub fn of_scene(scene: SceneName, count: usize) -> Result<Vec<KinkRow>, Failure> {
     let objective = objective_of(scene, MESH, norm())?;
-    let start = crate::accuracy::algebra::bent(&objective);
+    let start = crate::accuracy::algebra::perturbed(&objective);
     let height = start.mean();
     let mut rows = Vec::new();
     for seed in 0..4 * count as u64 {
@@ -144,8 +145,8 @@ pub fn of_scene(scene: SceneName, count: usize) -> Result<Vec<KinkRow>, Failure>
         let state = line.state(t)?;
         let product = objective.differentiate(&line.at(t), &state)?.subgradient.dot(&line.direction);
         rows.push(KinkRow {
-            scene: crate::scaling::word(&scene),
-            change: words(&change),
+            scene: crate::scaling::option_name(&scene),
+            change: change_text(&change),
             position: t,
             before,
             after,
@@ -157,7 +158,7 @@ pub fn of_scene(scene: SceneName, count: usize) -> Result<Vec<KinkRow>, Failure>
     Ok(rows)
 }
 
-fn words(change: &Change) -> String {
+fn change_text(change: &Change) -> String {
     let changed = change.below.iter().zip(&change.above).enumerate().filter(|(_, (below, above))| below != above);
     let changes: Vec<String> =
         changed.map(|(node, (below, above))| format!("node {node}: {below:?} to {above:?}").to_lowercase()).collect();

@@ -4,9 +4,9 @@
 //! u = A sin(k·x + φ),   −div σ(u) = [(λ + μ)(k·A) k + μ |k|² A] sin(k·x + φ)
 //! |u − u_h|_L² = O(h²),   |u − u_h|_energy = O(h),   |u|²_energy = ∫ σ(u):∇u
 //! ```
-//! The block has a curved upper surface; u is prescribed on all of its boundary. Integrals by 3 × 3 × 3 Gauss points, where
-//! the gradients are not better than elsewhere (at 2 × 2 × 2 they are). The stress recovered for pictures is compared where it
-//! is taken: at the centres of the bricks, and as a mean at the nodes.
+//! The block has a curved upper surface; u is prescribed on all of its boundary. Integrals by 3 × 3 × 3 Gauss points,
+//! where the gradients are not better than elsewhere (at 2 × 2 × 2 they are). The stress recovered for pictures is
+//! compared where it is taken: at the centres of the bricks, and as a mean at the nodes.
 
 use crate::held_block::{THREE_POINTS, samples, solution};
 use contact::body::elasticity::brick::{self, DOFS};
@@ -39,7 +39,6 @@ pub struct ManufacturedErrors {
 const AMPLITUDE: [f64; 3] = [1.0, -0.6, 0.8];
 const WAVE: [f64; 3] = [1.7, 2.3, -1.1];
 const PHASE: f64 = 0.4;
-/// The smooth solution.
 struct Wave {
     force: [f64; 3],
 }

@@ -5,10 +5,10 @@
 //!      ├─ algebra                                   error against tolerance, seconds; the solver's estimate beside it
 //!      ├─ subgradient ─ kink                        Taylor tables, one-sided slopes at constructed kinks
 //!      └─ optimization                              Θ(best) − Θ* against evaluations, seconds
-//! Report ─ tables (Markdown), pictures (SVG, PNG) or JSON
+//! AccuracyReport ─ tables (Markdown), pictures (SVG, PNG) or JSON
 //! ```
-//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
-//! stdout and nothing else there.
+//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object
+//! on stdout and nothing else there.
 
 mod algebra;
 mod cli;

@@ -1,8 +1,8 @@
-//! Θ(best) − Θ* against evaluations and seconds: always tight, accuracy on demand, coarse to fine; pressure norms against the
-//! true peak pressure.
+//! Θ(best) − Θ* against evaluations and seconds: always tight, accuracy on demand, coarse to fine; pressure norms
+//! against the true peak pressure.
 //!
-//! Work is counted in products with the dual operator of the finest mesh: one on a coarser mesh counts as its share of dofs. It
-//! leaves out factorisations, one set per evaluation.
+//! Work is counted in products with the dual operator of the finest mesh: one on a coarser mesh counts as its share of
+//! dofs. It leaves out factorisations, one set per evaluation.
 
 use crate::accuracy::extent::{Extent, case};
 use crate::accuracy::objective::{norm, objective_of};
@@ -30,7 +30,6 @@ pub struct Milestone {
 /// The course of one strategy on the finest mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Course {
-    /// The strategy.
     pub strategy: &'static str,
     /// One milestone per evaluation on the finest mesh.
     pub points: Vec<Milestone>,
@@ -49,11 +48,11 @@ pub struct Course {
 /// One measure of pressure as the objective.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PeakRow {
-    /// The measure.
+    /// Name of the measure that is minimised.
     pub measure: String,
-    /// Evaluations.
+    /// Number of evaluations of Θ.
     pub evaluations: usize,
-    /// Seconds.
+    /// Wall-clock seconds of the optimization.
     pub seconds: f64,
     /// Peak pressure at the end, MPa.
     pub peak: f64,
@@ -64,7 +63,6 @@ pub struct PeakRow {
 /// All courses on one scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OptimizationStudy {
-    /// The scene.
     pub scene: SceneName,
     /// The meshes, coarse to fine.
     pub levels: Vec<usize>,
@@ -72,7 +70,7 @@ pub struct OptimizationStudy {
     pub start: f64,
     /// Lowest Σσ⁴ of all strategies, Θ*.
     pub lowest: f64,
-    /// The strategies.
+    /// Course of each strategy.
     pub courses: Vec<Course>,
     /// Mesh of the measures of pressure.
     pub peak_mesh: usize,
@@ -84,7 +82,7 @@ pub struct OptimizationStudy {
 pub const TARGETS: [f64; 3] = [1.0, 0.1, 0.02];
 
 /// One run on one mesh.
-struct Run {
+struct StrategyRun {
     controls: Vector,
     /// One milestone per evaluation of this run.
     history: Vec<Milestone>,
@@ -149,7 +147,7 @@ fn minimize(
     start: Vector,
     accuracy: AccuracyPolicy,
     max_evaluations: usize,
-) -> Result<Run, Failure> {
+) -> Result<StrategyRun, Failure> {
     let clock = Instant::now();
     let first_step = objective.first_step(&start);
     let config = BundleTrustConfig {
@@ -168,13 +166,13 @@ fn minimize(
         work += record.work as f64;
         Milestone { evaluations: index + 1, work, seconds: record.seconds, best }
     });
-    Ok(Run { controls: report.solution, history: milestones.collect(), seconds: clock.elapsed().as_secs_f64() })
+    Ok(StrategyRun { controls: report.solution, history: milestones.collect(), seconds: clock.elapsed().as_secs_f64() })
 }
 
 fn course(
     strategy: &'static str,
     objective: &ContactObjective,
-    run: &Run,
+    run: &StrategyRun,
     passed: Milestone,
 ) -> Result<Course, Failure> {
     let points = run.history.iter().map(|point| Milestone {
@@ -196,13 +194,13 @@ fn course(
 
 /// Norms of several exponents and the peak pressure itself, each with the same number of evaluations.
 fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRow>, Failure> {
-    let judge = objective_of(scene, mesh, norm())?;
+    let reference = objective_of(scene, mesh, norm())?;
     let row = |measure: String, evaluations: usize, seconds: f64, controls: &Vector| -> Result<PeakRow, Failure> {
-        let SolvedShape { value: norm, peak_pressure: peak, .. } = SolvedShape::at(&judge, controls)?;
+        let SolvedShape { value: norm, peak_pressure: peak, .. } = SolvedShape::at(&reference, controls)?;
         Ok(PeakRow { measure, evaluations, seconds, peak, norm })
     };
     let norms = [4.0, 8.0, 16.0].map(|exponent| (format!("Σσ^{exponent}"), PressureMeasure::Norm { exponent }));
-    let mut rows = vec![row("nothing (start)".into(), 0, 0.0, &judge.solver().start())?];
+    let mut rows = vec![row("nothing (start)".into(), 0, 0.0, &reference.solver().start())?];
     for (measure, kind) in norms.into_iter().chain([("max σ".to_owned(), PressureMeasure::Peak)]) {
         let objective = objective_of(scene, mesh, kind)?;
         let run = minimize(&objective, objective.solver().start(), AccuracyPolicy::Tightest, evaluations)?;

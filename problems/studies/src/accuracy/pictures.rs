@@ -3,16 +3,16 @@
 use crate::accuracy::algebra::{AlgebraRow, AlgebraStudy};
 use crate::accuracy::discretisation::{MeshStudy, QUANTITIES};
 use crate::accuracy::optimization::{Course, Milestone, OptimizationStudy};
-use crate::accuracy::report::Report;
+use crate::accuracy::report::AccuracyReport;
 use crate::accuracy::subgradient::{SubgradientStudy, TaylorStudy};
-use crate::scaling::word;
+use crate::scaling::option_name;
 use figures::{Figure, FigureError, LogPlot, Series};
 
 /// All pictures of a report.
 ///
 /// # Errors
 /// [`FigureError`] for numbers that are not finite.
-pub fn all(report: &Report) -> Result<Vec<Figure>, FigureError> {
+pub fn all(report: &AccuracyReport) -> Result<Vec<Figure>, FigureError> {
     let mut plots = Vec::new();
     plots.extend(report.discretisation.iter().map(mesh));
     for study in &report.algebra {
@@ -37,8 +37,8 @@ fn mesh(study: &MeshStudy) -> LogPlot {
         joined: true,
     };
     LogPlot {
-        name: format!("accuracy_mesh_{}", word(&study.scene)),
-        title: format!("{}: error of the discretisation", word(&study.scene)),
+        name: format!("accuracy_mesh_{}", option_name(&study.scene)),
+        title: format!("{}: error of the discretisation", option_name(&study.scene)),
         x: "bricks per edge of each body".into(),
         y: "error relative to the extrapolated limit".into(),
         series: QUANTITIES.iter().enumerate().map(of).collect(),
@@ -59,8 +59,8 @@ fn by_method(study: &AlgebraStudy, joined: bool, point: impl Fn(&AlgebraRow) -> 
 
 fn solvers(study: &AlgebraStudy) -> LogPlot {
     LogPlot {
-        name: format!("accuracy_solvers_{}", word(&study.scene)),
-        title: format!("{}, {}³ bricks: what a smaller error of Θ costs", word(&study.scene), study.bricks),
+        name: format!("accuracy_solvers_{}", option_name(&study.scene)),
+        title: format!("{}, {}³ bricks: what a smaller error of Θ costs", option_name(&study.scene), study.bricks),
         x: "seconds of state and subgradient".into(),
         y: "relative error of Θ by the solver".into(),
         series: by_method(study, true, |row| (row.seconds, row.value)),
@@ -70,8 +70,8 @@ fn solvers(study: &AlgebraStudy) -> LogPlot {
 
 fn estimate(study: &AlgebraStudy) -> LogPlot {
     LogPlot {
-        name: format!("accuracy_estimate_{}", word(&study.scene)),
-        title: format!("{}: the bound reported against the true error of Θ", word(&study.scene)),
+        name: format!("accuracy_estimate_{}", option_name(&study.scene)),
+        title: format!("{}: the bound reported against the true error of Θ", option_name(&study.scene)),
         x: "true relative error of Θ".into(),
         y: "relative bound reported by the solver".into(),
         series: by_method(study, false, |row| (row.value, row.bound)),
@@ -81,8 +81,8 @@ fn estimate(study: &AlgebraStudy) -> LogPlot {
 
 fn slopes(study: &AlgebraStudy) -> LogPlot {
     LogPlot {
-        name: format!("accuracy_subgradient_{}", word(&study.scene)),
-        title: format!("{}, {}³ bricks: error of the subgradient", word(&study.scene), study.bricks),
+        name: format!("accuracy_subgradient_{}", option_name(&study.scene)),
+        title: format!("{}, {}³ bricks: error of the subgradient", option_name(&study.scene), study.bricks),
         x: "relative accuracy asked for".into(),
         y: "|ξ − ξ*|/|ξ*|".into(),
         series: by_method(study, true, |row| (row.tolerance, row.subgradient)),
@@ -111,8 +111,8 @@ fn taylor(study: &SubgradientStudy) -> LogPlot {
     }
 }
 
-/// Distance from the lowest Θ over a measure of the price: its word, its name and its value.
-fn optimization(study: &OptimizationStudy, word_of_axis: &str, axis: &str, price: fn(&Milestone) -> f64) -> LogPlot {
+/// Distance from the lowest Θ over a measure of the price: the name of the axis in the file, its title, and the value.
+fn optimization(study: &OptimizationStudy, axis_name: &str, axis: &str, price: fn(&Milestone) -> f64) -> LogPlot {
     let of = |course: &Course| Series {
         name: course.strategy.to_owned(),
         points: course.points.iter().map(|point| (price(point), point.best / study.lowest - 1.0)).collect(),
@@ -120,8 +120,8 @@ fn optimization(study: &OptimizationStudy, word_of_axis: &str, axis: &str, price
     };
     let fine = study.levels[study.levels.len() - 1];
     LogPlot {
-        name: format!("accuracy_optimization_{word_of_axis}_{}", word(&study.scene)),
-        title: format!("{}, {fine}³ bricks: distance from the lowest Θ found", word(&study.scene)),
+        name: format!("accuracy_optimization_{axis_name}_{}", option_name(&study.scene)),
+        title: format!("{}, {fine}³ bricks: distance from the lowest Θ found", option_name(&study.scene)),
         x: axis.into(),
         y: "(Θ(best) − Θ*)/Θ*".into(),
         series: study.courses.iter().map(of).collect(),

@@ -9,19 +9,19 @@ use serde::Serialize;
 
 /// The study; parts that were not asked for are empty.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Report {
+pub struct AccuracyReport {
     /// Threads of the machine.
     pub machine_threads: usize,
     /// Seconds of the whole study.
     pub seconds: f64,
-    /// Smooth solution.
+    /// Errors for a manufactured smooth solution.
     pub smooth: Vec<ManufacturedErrors>,
-    /// Meshes.
+    /// Errors of the discretisation per scene.
     pub discretisation: Vec<MeshStudy>,
-    /// Contact solvers.
+    /// Errors of the contact solvers per scene.
     pub algebra: Vec<AlgebraStudy>,
     /// Taylor tables and kinks.
     pub subgradient: Option<SubgradientStudy>,
-    /// Optimizations.
+    /// Effect of mesh and tolerance on optimizations.
     pub optimization: Vec<OptimizationStudy>,
 }

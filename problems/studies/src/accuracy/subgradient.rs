@@ -1,6 +1,6 @@
 //! Taylor tables of the subgradient, and its behaviour at kinks.
 
-use crate::accuracy::algebra::bent;
+use crate::accuracy::algebra::perturbed;
 use crate::accuracy::extent::{Extent, SCENES};
 use crate::accuracy::kink::{self, KinkRow};
 use crate::accuracy::objective::{norm, objective_of};
@@ -10,12 +10,12 @@ use problems::commands::{DIRECTION_SEED, Failure, smooth_taylor_test, taylor_ste
 use problems::toy;
 use serde::Serialize;
 
-/// A Taylor table.
+/// A Taylor test of a scene's objective.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TaylorStudy {
     /// Where: a scene or the toy.
     pub scene: String,
-    /// The table.
+    /// Remainders of the test per step.
     pub test: TaylorTest,
 }
 
@@ -36,9 +36,9 @@ pub fn study(extent: Extent) -> Result<SubgradientStudy, Failure> {
     let (mut taylor, mut kinks) = (Vec::new(), kink::of_toy()?);
     for scene in SCENES {
         let objective = objective_of(scene, extent.taylor_mesh, norm())?;
-        let control = bent(&objective);
+        let control = perturbed(&objective);
         let (_, _, test) = smooth_taylor_test(&objective, &control)?;
-        taylor.push(TaylorStudy { scene: crate::scaling::word(&scene), test });
+        taylor.push(TaylorStudy { scene: crate::scaling::option_name(&scene), test });
         kinks.extend(kink::of_scene(scene, extent.kinks)?);
     }
     let smooth = Vector::from_row_slice(&[1.0, -0.5]);

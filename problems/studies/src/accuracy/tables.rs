@@ -6,14 +6,14 @@ use crate::accuracy::discretisation::QUANTITIES;
 use crate::accuracy::manufactured::ManufacturedErrors;
 use crate::accuracy::optimization::OptimizationStudy;
 use crate::accuracy::optimization::TARGETS;
-use crate::accuracy::report::Report;
+use crate::accuracy::report::AccuracyReport;
 use crate::accuracy::subgradient::SubgradientStudy;
 use crate::markdown::{or_dash, seconds, section, yes_or_no};
 use crate::rates::observed;
-use crate::scaling::word;
+use crate::scaling::option_name;
 
-/// All tables.
-pub fn markdown(report: &Report) -> String {
+/// The tables of the report as Markdown.
+pub fn markdown(report: &AccuracyReport) -> String {
     let mut text = format!(
         "{} threads run at once on this machine; the study took {:.0} s.\n",
         report.machine_threads, report.seconds
@@ -66,7 +66,7 @@ fn discretisation(study: &MeshStudy) -> String {
         format!("{name} {:.6e} (rate {:.2}, misfit {:.0e})", limit.limit, limit.rate, limit.misfit)
     });
     let limits: Vec<String> = limits.collect();
-    let table = section(&format!("{}: error of the discretisation", word(&study.scene)), &head, rows);
+    let table = section(&format!("{}: error of the discretisation", option_name(&study.scene)), &head, rows);
     format!("{table}\nExtrapolated: {}.\n", limits.join("; "))
 }
 
@@ -80,13 +80,13 @@ fn algebra(study: &AlgebraStudy) -> String {
     });
     let head =
         "solver | tolerance | seconds | products | pressure error | Θ error | bound reported | Θ corrected | ξ error";
-    let title = format!("{}, {}³ bricks: error of the contact solvers", word(&study.scene), study.bricks);
+    let title = format!("{}, {}³ bricks: error of the contact solvers", option_name(&study.scene), study.bricks);
     section(&title, head, rows)
         + &format!(
             "\nBound below the true error: {} of {} rows; bound over error among the {} rows above rounding: median {:.1}.\n",
             study.violations,
             study.rows.len(),
-            study.judged,
+            study.compared,
             study.median_ratio
         )
 }
@@ -134,7 +134,7 @@ fn optimization(study: &OptimizationStudy) -> String {
     });
     let targets = TARGETS.map(|target| format!("to {:.0} % above Θ*: evaluations, products, s", 100.0 * target));
     let head = format!("strategy | evaluations fine + coarse | seconds | Θ at the end | {}", targets.join(" | "));
-    let (scene, fine) = (word(&study.scene), study.levels[study.levels.len() - 1]);
+    let (scene, fine) = (option_name(&study.scene), study.levels[study.levels.len() - 1]);
     let ends =
         format!("\nΘ at the start {:.5e}; Θ* = {:.5e} is the lowest of these runs.\n", study.start, study.lowest);
     let title = format!("{scene}, {}³ bricks: norms of the pressure against its peak", study.peak_mesh);

@@ -72,7 +72,7 @@ impl Case {
     /// N bricks, S subdomains per edge.
     ///
     /// # Errors
-    /// In words, when S does not divide N or N is out of range.
+    /// Returns a message when S does not divide N or N is out of range.
     pub fn parse(text: &str) -> Result<Self, String> {
         let allowed = || {
             format!(
@@ -190,8 +190,8 @@ impl Variant {
     }
 }
 
-/// The word of the command line for a value of an enumeration.
-pub fn word(value: &impl ValueEnum) -> String {
+/// The name of a value of an enumeration on the command line.
+pub fn option_name(value: &impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 

@@ -2,7 +2,7 @@
 
 use crate::scaling::cases::{Case, Extent, SceneName, Variant};
 use crate::scaling::model::{self, Network, Options};
-use crate::scaling::report::Report;
+use crate::scaling::report::ScalingReport;
 use crate::scaling::{measure, table};
 use clap::Parser;
 use problems::commands::{Failure, arguments, finish, json, notice};
@@ -11,7 +11,7 @@ use std::process::ExitCode;
 /// Work, time and memory of the contact solvers over growing meshes.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "scaling", version)]
-pub struct Arguments {
+pub struct ScalingArguments {
     /// s = 2 and 3 only.
     #[arg(long, conflicts_with_all = ["full", "case"])]
     pub quick: bool,
@@ -30,11 +30,12 @@ pub struct Arguments {
     /// One solver only.
     #[arg(long, value_enum)]
     pub variant: Option<Variant>,
-    /// Clusters of C³ subdomains, which share six rigid motions; several numbers, with commas, are measured one after the other.
+    /// Clusters of C³ subdomains, which share six rigid motions; several numbers, with commas, are measured one after
+    /// the other.
     #[arg(long, value_name = "C", value_delimiter = ',', default_value = "1")]
     pub clusters: Vec<usize>,
-    /// Measure one core and predict time and memory of many ranks (Signorini, 7 bricks per edge of a subdomain); with --case, of that
-    /// case on 1, 2 and 4 ranks.
+    /// Measure one core and predict time and memory of many ranks (Signorini, 7 bricks per edge of a subdomain); with
+    /// --case, of that case on 1, 2 and 4 ranks.
     #[arg(long, conflicts_with_all = ["quick", "full", "variant", "clusters"])]
     pub model: bool,
     /// Latency of the network of the model, microseconds.
@@ -60,7 +61,7 @@ fn positive(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "a positive number is allowed".into())
 }
 
-impl Arguments {
+impl ScalingArguments {
     fn extent(&self) -> Extent {
         match (self.quick, self.full) {
             (true, _) => Extent::Quick,
@@ -88,13 +89,13 @@ impl Arguments {
     }
 }
 
-/// Runs the binary.
+/// Runs the binary with the arguments of the process and returns its exit status.
 pub fn run() -> ExitCode {
     finish(execute(&arguments()), None)
 }
 
 /// Measures what the arguments ask for; cases that fail are listed in the report.
-fn execute(arguments: &Arguments) -> Result<String, Failure> {
+fn execute(arguments: &ScalingArguments) -> Result<String, Failure> {
     if arguments.model {
         return predict(arguments);
     }
@@ -112,10 +113,10 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
                 rows.push(row);
             }
             Err(Failure::Input(reason)) => return Err(Failure::Input(reason)),
-            Err(failure) => failures.push(format!("{case} {}: {failure}", super::word(&variant))),
+            Err(failure) => failures.push(format!("{case} {}: {failure}", super::option_name(&variant))),
         }
     }
-    let report = Report::new(rows, failures);
+    let report = ScalingReport::new(rows, failures);
     let text = if arguments.json { json(&report)? } else { table::markdown(&report) };
     if report.failures.is_empty() {
         return Ok(text);
@@ -124,7 +125,7 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
 }
 
 /// What the model says.
-fn predict(arguments: &Arguments) -> Result<String, Failure> {
+fn predict(arguments: &ScalingArguments) -> Result<String, Failure> {
     let options = Options {
         network: Network { latency: 1e-6 * arguments.latency, bandwidth: 1e9 * arguments.bandwidth },
         per_rank: arguments.per_rank.into(),

@@ -2,22 +2,22 @@
 
 use crate::rates::exponent;
 use crate::scaling::cases::{RATIO, SceneName, Variant};
-use crate::scaling::rows::{Row, Start};
+use crate::scaling::rows::{ScalingRow, Start};
 use clap::ValueEnum;
 use serde::Serialize;
 
 /// Growth of one solver at H/h = 7, without clusters.
 #[derive(Debug, Clone, Serialize)]
 pub struct Growth {
-    /// The scene.
+    /// Scene whose rows are compared.
     pub scene: SceneName,
-    /// The solver.
+    /// Contact solver whose rows are compared.
     pub variant: Variant,
     /// Least-squares slope of log(seconds of cold state and subgradient) over log(dofs).
     pub cold_exponent: Option<f64>,
-    /// The same from s = 3 on, where the fixed costs weigh less.
+    /// `cold_exponent` over the cases from s = 3 on, where fixed costs are a smaller share.
     pub cold_exponent_large: Option<f64>,
-    /// The same for warm states, all s.
+    /// Least-squares slope of log(seconds of warm state and subgradient) over log(dofs), all s.
     pub warm_exponent: Option<f64>,
     /// Cold counts per tolerance and their growth.
     pub counts: Vec<CountGrowth>,
@@ -39,19 +39,19 @@ const REFERENCE: usize = 3;
 
 impl Growth {
     /// Growth per variant, where at least two rows have H/h = 7.
-    pub fn of(rows: &[Row]) -> Vec<Self> {
-        let series = |variant: &Variant| -> Vec<&Row> {
-            let alike = |row: &&Row| row.variant == *variant && row.case.ratio() == RATIO && row.clusters == 1;
+    pub fn of(rows: &[ScalingRow]) -> Vec<Self> {
+        let series = |variant: &Variant| -> Vec<&ScalingRow> {
+            let alike = |row: &&ScalingRow| row.variant == *variant && row.case.ratio() == RATIO && row.clusters == 1;
             rows.iter().filter(alike).collect()
         };
         let all = Variant::value_variants().iter().map(series);
         all.filter(|series| series.len() > 1).map(|series| Self::of_series(&series)).collect()
     }
 
-    fn of_series(series: &[&Row]) -> Self {
-        let cold = |row: &&Row| Some([row.dofs as f64, row.cold.seconds()]);
-        let warm = |row: &&Row| row.warm.as_ref().map(|warm| [row.dofs as f64, warm.seconds()]);
-        let large = |row: &&&Row| row.case.subdomains >= REFERENCE;
+    fn of_series(series: &[&ScalingRow]) -> Self {
+        let cold = |row: &&ScalingRow| Some([row.dofs as f64, row.cold.seconds()]);
+        let warm = |row: &&ScalingRow| row.warm.as_ref().map(|warm| [row.dofs as f64, warm.seconds()]);
+        let large = |row: &&&ScalingRow| row.case.subdomains >= REFERENCE;
         Self {
             scene: series[0].scene,
             variant: series[0].variant,
@@ -63,7 +63,7 @@ impl Growth {
     }
 }
 
-fn count_growth(series: &[&Row], tolerance: f64) -> CountGrowth {
+fn count_growth(series: &[&ScalingRow], tolerance: f64) -> CountGrowth {
     let counts: Vec<(usize, f64)> = series
         .iter()
         .filter_map(|row| Some((row.case.subdomains, row.solve(Start::Cold, tolerance)?.applications() as f64)))

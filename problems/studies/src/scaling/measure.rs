@@ -2,7 +2,7 @@
 
 use crate::scaling::cases::{Case, SceneName, Variant};
 use crate::scaling::memory;
-use crate::scaling::rows::{Adjoint, Row, Sample, Solve, Start};
+use crate::scaling::rows::{Adjoint, Sample, ScalingRow, Solve, Start};
 use contact::contact_shape::{AnySolver, ContactState, ContactWarmStart};
 use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver, SolverState};
 use contact::error::ContactError;
@@ -15,7 +15,7 @@ use std::time::Instant;
 pub const TIMED: f64 = 1e-8;
 /// Tolerances of the states that are only counted, cold.
 pub const COLD: [f64; 2] = [1e-6, 1e-10];
-/// The same for warm states.
+/// Tolerances of the warm states that are only counted.
 const WARM: [f64; 1] = [1e-10];
 /// Repetitions of what takes less than [`LONG_RUN`].
 const REPETITIONS: usize = 3;
@@ -32,7 +32,7 @@ const CHANGE: f64 = 1e-3;
 ///
 /// # Errors
 /// [`Failure`] when the timed cold state cannot be found; other failures are listed in the row.
-pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> Result<Row, Failure> {
+pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> Result<ScalingRow, Failure> {
     memory::reset_peak();
     let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
     let [first, second] = problem.scene.control_points;
@@ -59,7 +59,7 @@ pub fn row(scene: SceneName, case: Case, variant: Variant, clusters: usize) -> R
     let warm = warm.map_err(|error| failures.push(format!("warm to {TIMED:e}: {error}"))).ok();
     let others =
         if variant == Variant::Direct { Vec::new() } else { counted(&solver, [&controls, &nearby], &mut failures) };
-    Ok(Row {
+    Ok(ScalingRow {
         scene,
         case,
         variant,
@@ -114,7 +114,8 @@ fn sample(
     Ok((Sample { state, adjoint }, found))
 }
 
-/// States to the other tolerances: cold at the first controls, warm at the second from the cold state of that tolerance.
+/// States to the other tolerances: cold at the first controls, warm at the second from the cold state of that
+/// tolerance.
 fn counted(solver: &AnySolver, [controls, nearby]: [&[f64]; 2], failures: &mut Vec<String>) -> Vec<Solve> {
     let mut solves = Vec::new();
     let mut record = |controls: &[f64], restart: Option<&ContactWarmStart>, tolerance: f64| {
@@ -134,7 +135,7 @@ fn counted(solver: &AnySolver, [controls, nearby]: [&[f64]; 2], failures: &mut V
     solves
 }
 
-/// One state, timed.
+/// Solves a state and measures its time.
 fn solve(
     solver: &AnySolver,
     controls: &[f64],

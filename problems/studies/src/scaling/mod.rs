@@ -1,12 +1,12 @@
 //! How work, time and memory grow with the mesh: the study behind `docs/scaling.md`.
 //!
 //! ```text
-//! cli ─ cases ─ measure, memory ─ Row
-//! Rows ─ growth ─ Report ─ table (Markdown) or JSON
+//! cli ─ cases ─ measure, memory ─ ScalingRow
+//! rows ─ growth ─ ScalingReport ─ table (Markdown) or JSON
 //! model: figures of one core ─ predictions for many machines
 //! ```
-//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object on
-//! stdout and nothing else there.
+//! Contract (kept stable): exit status 0 success, 1 a computation failed, 2 bad input; `--json` prints one JSON object
+//! on stdout and nothing else there.
 
 mod cases;
 mod cli;
@@ -18,10 +18,10 @@ mod report;
 mod rows;
 mod table;
 
-pub use cases::{Case, Extent, SceneName, Variant, word};
-pub use cli::{Arguments, run};
+pub use cases::{Case, Extent, SceneName, Variant, option_name};
+pub use cli::{ScalingArguments, run};
 pub use growth::{CountGrowth, Growth};
 pub use memory::peak as peak_memory;
-pub use model::{Machine, ModelReport, Network, Prediction, Run};
-pub use report::Report;
-pub use rows::{Adjoint, Row, Sample, Solve, Start};
+pub use model::{Machine, ModelReport, Network, Prediction, Workload};
+pub use report::ScalingReport;
+pub use rows::{Adjoint, Sample, ScalingRow, Solve, Start};

@@ -8,16 +8,16 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
-    /// From nothing.
+    /// Without a warm start.
     Cold,
     /// From the state of slightly different controls.
     Warm,
 }
 
-/// One state.
+/// Work and time of a state.
 #[derive(Debug, Clone, Serialize)]
 pub struct Solve {
-    /// Where it started.
+    /// Kind of the start.
     pub start: Start,
     /// Relative Newton residual asked for.
     pub tolerance: f64,
@@ -33,7 +33,7 @@ pub struct Solve {
     pub stages: Option<StageSeconds>,
 }
 
-/// One subgradient.
+/// Work and time of a subgradient.
 #[derive(Debug, Clone, Serialize)]
 pub struct Adjoint {
     /// Relative residual asked for.
@@ -49,9 +49,9 @@ pub struct Adjoint {
 /// A state and its subgradient, both timed.
 #[derive(Debug, Clone, Serialize)]
 pub struct Sample {
-    /// The state.
+    /// Work and time of the state.
     pub state: Solve,
-    /// The subgradient.
+    /// Work and time of the subgradient.
     pub adjoint: Adjoint,
 }
 
@@ -71,13 +71,13 @@ impl Sample {
 
 /// One case with one solver.
 #[derive(Debug, Clone, Serialize)]
-pub struct Row {
-    /// The scene.
+pub struct ScalingRow {
+    /// Scene that was measured.
     pub scene: SceneName,
-    /// The mesh.
+    /// Bricks and subdomains per edge.
     #[serde(flatten)]
     pub case: Case,
-    /// The solver.
+    /// Contact solver that was measured.
     pub variant: Variant,
     /// Subdomains per edge of a cluster.
     pub clusters: usize,
@@ -87,23 +87,23 @@ pub struct Row {
     pub dofs: usize,
     /// Rows of B; contact rows for direct condensation.
     pub multipliers: usize,
-    /// Contact nodes.
+    /// Number of nodes on the contact boundary.
     pub contact_nodes: usize,
     /// Seconds of what is done once per run: patterns, symbolic analysis, rows.
     pub setup_seconds: f64,
     /// State to 1e-8 and subgradient to 1e-8 from nothing: the repetition of median time.
     pub cold: Sample,
-    /// The same after a small change of the controls, from the old multipliers.
+    /// State and subgradient to 1e-8 after a small change of the controls, started from the old multipliers.
     pub warm: Option<Sample>,
     /// States to other tolerances.
     pub others: Vec<Solve>,
     /// Peak resident memory of the process in this case, GiB; none where the system does not tell.
     pub peak_memory: Option<f64>,
-    /// Solves that did not reach their tolerance, in words.
+    /// Messages about solves that did not reach their tolerance.
     pub failures: Vec<String>,
 }
 
-impl Row {
+impl ScalingRow {
     /// The state solved from `start` to `tolerance`.
     pub fn solve(&self, start: Start, tolerance: f64) -> Option<&Solve> {
         let timed = std::iter::once(&self.cold).chain(&self.warm).map(|sample| &sample.state);

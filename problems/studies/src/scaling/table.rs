@@ -1,27 +1,27 @@
 //! The report as Markdown tables.
 
 use crate::markdown::{or_dash, seconds as short, section};
-use crate::scaling::cases::{Variant, word};
+use crate::scaling::cases::{Variant, option_name};
 use crate::scaling::measure::{COLD, TIMED};
-use crate::scaling::report::Report;
-use crate::scaling::rows::{Row, Start};
+use crate::scaling::report::ScalingReport;
+use crate::scaling::rows::{ScalingRow, Start};
 use contact::equilibrium::StageSeconds;
 
 /// One line for the terminal.
-pub fn progress(row: &Row) -> String {
+pub fn progress(row: &ScalingRow) -> String {
     format!(
         "{} {} {}: {} dofs, cold {:.2} s, {} products",
-        word(&row.scene),
+        option_name(&row.scene),
         name(row)[0],
-        word(&row.variant),
+        option_name(&row.variant),
         row.dofs,
         row.cold.seconds(),
         row.cold.state.applications()
     )
 }
 
-/// All tables.
-pub fn markdown(report: &Report) -> String {
+/// The tables of the report as Markdown.
+pub fn markdown(report: &ScalingReport) -> String {
     let machine = format!("{} threads run at once on this machine.\n", report.machine_threads);
     [
         machine,
@@ -36,12 +36,12 @@ pub fn markdown(report: &Report) -> String {
     .concat()
 }
 
-fn name(row: &Row) -> Vec<String> {
+fn name(row: &ScalingRow) -> Vec<String> {
     let clusters = if row.clusters == 1 { String::new() } else { format!(", clusters of {}³", row.clusters) };
-    vec![format!("{}{clusters}", row.case), row.case.ratio().to_string(), word(&row.variant)]
+    vec![format!("{}{clusters}", row.case), row.case.ratio().to_string(), option_name(&row.variant)]
 }
 
-fn counts(report: &Report) -> String {
+fn counts(report: &ScalingReport) -> String {
     let rows = report.rows.iter().filter(|row| row.variant != Variant::Direct).map(|row| {
         let count = |start, tolerance| or_dash(row.solve(start, tolerance), |solve| solve.applications().to_string());
         let mut cells = name(row);
@@ -58,7 +58,7 @@ fn counts(report: &Report) -> String {
     section("Counts (products with the dual operator)", head, rows)
 }
 
-fn paper(report: &Report) -> String {
+fn paper(report: &ScalingReport) -> String {
     let rows = report.rows.iter().filter(|row| row.variant == Variant::AugmentedLagrangian).map(|row| {
         let newton = alike(report, row, Variant::Dirichlet).and_then(|row| row.solve(Start::Cold, COLD[1]));
         let coarse = row.solve(Start::Cold, COLD[0]);
@@ -77,13 +77,13 @@ fn paper(report: &Report) -> String {
 }
 
 /// The row of the same case with another solver.
-fn alike<'a>(report: &'a Report, row: &Row, variant: Variant) -> Option<&'a Row> {
+fn alike<'a>(report: &'a ScalingReport, row: &ScalingRow, variant: Variant) -> Option<&'a ScalingRow> {
     report.rows.iter().find(|other| {
         other.case == row.case && other.clusters == row.clusters && other.scene == row.scene && other.variant == variant
     })
 }
 
-fn seconds(report: &Report) -> String {
+fn seconds(report: &ScalingReport) -> String {
     let rows = report.rows.iter().map(|row| {
         let stages = row.cold.state.stages;
         let stage = |value: fn(&StageSeconds) -> f64| or_dash(stages.as_ref(), |stages| short(value(stages)));
@@ -105,14 +105,14 @@ fn seconds(report: &Report) -> String {
 }
 
 /// What clusters cost and save, where there are any.
-fn clusters(report: &Report) -> String {
+fn clusters(report: &ScalingReport) -> String {
     if report.rows.iter().all(|row| row.clusters == 1) {
         return String::new();
     }
     let rows = report.rows.iter().filter_map(|row| {
         let (unknowns, stages) = (row.coarse_unknowns?, row.cold.state.stages?);
         let products = |tolerance| or_dash(row.solve(Start::Cold, tolerance), |solve| solve.applications().to_string());
-        let mut cells = vec![row.case.to_string(), row.case.ratio().to_string(), word(&row.variant)];
+        let mut cells = vec![row.case.to_string(), row.case.ratio().to_string(), option_name(&row.variant)];
         cells.extend(
             [row.clusters.pow(3), row.case.subdomains.pow(3) / row.clusters.pow(3), unknowns].map(|n| n.to_string()),
         );
@@ -127,10 +127,10 @@ fn clusters(report: &Report) -> String {
     section("Clusters", head, rows)
 }
 
-fn direct(report: &Report) -> String {
+fn direct(report: &ScalingReport) -> String {
     let rows = report.rows.iter().filter(|row| row.variant == Variant::Direct).filter_map(|direct| {
         let torn = alike(report, direct, Variant::Dirichlet)?;
-        let warm = |row: &Row| row.warm.as_ref().map(|warm| warm.seconds());
+        let warm = |row: &ScalingRow| row.warm.as_ref().map(|warm| warm.seconds());
         let times = [Some(direct.cold.seconds()), warm(direct), Some(torn.cold.seconds()), warm(torn)];
         let mut cells = vec![direct.case.to_string()];
         cells.extend(times.map(|time| or_dash(time, short)));
@@ -143,7 +143,7 @@ fn direct(report: &Report) -> String {
     section("Against direct condensation", head, rows)
 }
 
-fn growth(report: &Report) -> String {
+fn growth(report: &ScalingReport) -> String {
     let rows = report.growth.iter().map(|growth| {
         let exponents = [growth.cold_exponent, growth.cold_exponent_large, growth.warm_exponent];
         let relative = |(s, growth): &(usize, f64)| format!("s = {s}: {:+.0} %", 100.0 * growth);
@@ -151,7 +151,7 @@ fn growth(report: &Report) -> String {
             let entries: Vec<String> = count.growth.iter().map(relative).collect();
             format!("{:e}: {}", count.tolerance, entries.join(", "))
         });
-        let mut cells = vec![word(&growth.variant)];
+        let mut cells = vec![option_name(&growth.variant)];
         cells.extend(exponents.map(|exponent| or_dash(exponent, |exponent| format!("{exponent:.2}"))));
         cells.push(counts.collect::<Vec<String>>().join("; "));
         cells
@@ -160,8 +160,8 @@ fn growth(report: &Report) -> String {
     section("Growth at H/h = 7", head, rows)
 }
 
-fn failures(report: &Report) -> String {
-    let failed = |row: &Row, failure: &String| [name(row), vec![failure.clone()]].concat();
+fn failures(report: &ScalingReport) -> String {
+    let failed = |row: &ScalingRow, failure: &String| [name(row), vec![failure.clone()]].concat();
     let rows = report.rows.iter().flat_map(|row| row.failures.iter().map(move |failure| failed(row, failure)));
     section("Not reached", "N/S | H/h | solver | what", rows)
 }

@@ -26,13 +26,13 @@ impl Case {
         Self { group, name: name.into(), quick: true, run: Box::new(run) }
     }
 
-    /// The same case outside the fast subset.
+    /// Takes the case out of the fast subset.
     #[must_use]
     pub fn slow(self) -> Self {
         Self { quick: false, ..self }
     }
 
-    /// Runs it.
+    /// Runs the case.
     pub fn run(&self) -> Record {
         let clock = Instant::now();
         let record = (self.run)();

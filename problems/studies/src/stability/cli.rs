@@ -1,7 +1,7 @@
 //! The command line of the study.
 
 use crate::stability::optimizer_page::{self, Listed, Part};
-use crate::stability::record::{Outcome, Record, Report};
+use crate::stability::record::{CaseOutcome, Record, StabilityReport};
 use crate::stability::{matrix, random, table};
 use clap::Parser;
 use problems::commands::{Failure, Folder, arguments, finish, json, notice};
@@ -11,7 +11,7 @@ use std::process::ExitCode;
 /// What the solvers and the optimizer do with stiff and extreme cases.
 #[derive(Debug, Clone, Parser)]
 #[command(name = "stability", version)]
-pub struct Arguments {
+pub struct StabilityArguments {
     /// The fast subset only.
     #[arg(long)]
     pub quick: bool,
@@ -38,22 +38,23 @@ pub struct Arguments {
     pub json: bool,
 }
 
-/// Runs the binary.
+/// Runs the binary with the arguments of the process and returns its exit status.
 pub fn run() -> ExitCode {
     finish(execute(&arguments()), None)
 }
 
 /// Runs the cases that the arguments select; the text belongs on stdout, also when cases are broken.
-fn execute(arguments: &Arguments) -> Result<String, Failure> {
+fn execute(arguments: &StabilityArguments) -> Result<String, Failure> {
     if let Some(part) = arguments.optimizer {
         return optimizer_page::page(part, arguments.only.as_deref(), arguments.list, arguments.json);
     }
     if let Some(count) = arguments.random {
         return at_random(arguments, count as usize);
     }
-    let report = Report::new(select(arguments)?);
+    let report = StabilityReport::new(select(arguments)?);
     let text = if arguments.json { json(&report)? } else { table::markdown(&report) };
-    let broken: Vec<&str> = report.records.iter().filter(|r| r.outcome == Outcome::Broken).map(|r| &*r.name).collect();
+    let broken: Vec<&str> =
+        report.records.iter().filter(|r| r.outcome == CaseOutcome::Broken).map(|r| &*r.name).collect();
     if broken.is_empty() {
         return Ok(text);
     }
@@ -61,7 +62,7 @@ fn execute(arguments: &Arguments) -> Result<String, Failure> {
 }
 
 /// The study of random scenes.
-fn at_random(arguments: &Arguments, count: usize) -> Result<String, Failure> {
+fn at_random(arguments: &StabilityArguments, count: usize) -> Result<String, Failure> {
     let report = random::run(arguments.seed, count);
     if let Some(path) = &arguments.out {
         let folder = Folder::create(path, 1 << 20, false)?;
@@ -72,7 +73,7 @@ fn at_random(arguments: &Arguments, count: usize) -> Result<String, Failure> {
     if arguments.json { json(&report) } else { Ok(report.markdown()) }
 }
 
-fn select(arguments: &Arguments) -> Result<Vec<Record>, Failure> {
+fn select(arguments: &StabilityArguments) -> Result<Vec<Record>, Failure> {
     let wanted = |text: &str| arguments.only.as_deref().is_none_or(|only| text.contains(only));
     let mut records = Vec::new();
     for case in matrix::all() {

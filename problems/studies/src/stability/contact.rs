@@ -16,8 +16,8 @@ pub enum Expected {
     Solved,
     /// All paths refuse with an error of this kind.
     Refused(&'static str),
-    /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause. A case that both
-    /// solve is as good, since rounding decides at the edge.
+    /// What TFETI and direct condensation do (the kind of a refusal, or none for a state), and the cause. A case that
+    /// both solve is as good, since rounding decides at the edge.
     Limit(LimitKinds, &'static str),
 }
 
@@ -49,7 +49,7 @@ impl ContactCase {
         Self { scene, controls: None, expected: Expected::Solved, check: None, paper: false }
     }
 
-    /// At other controls.
+    /// Replaces the controls.
     #[must_use]
     pub fn at(mut self, controls: Vec<f64>) -> Self {
         self.controls = Some(controls);
@@ -146,7 +146,7 @@ fn heights<S: ContactSolver>(solver: &S, state: &ContactState<S::State>) -> Resu
     sensitivities.map(|sensitivities| sensitivities.heights).map_err(|error| error.to_string())
 }
 
-/// Newton on TFETI.
+/// Solves a state by total FETI and the semismooth Newton method.
 pub fn by_tfeti(problem: &Arc<ContactProblem>, controls: &[f64]) -> Attempt {
     let solver = TotalFeti::new(Arc::clone(problem), TornOptions::default());
     attempt("tfeti", solver, controls, TOLERANCE, |solver, state, _| {

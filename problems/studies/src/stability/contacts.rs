@@ -1,5 +1,5 @@
-//! No contact, one node, all nodes; stick and slip everywhere; onset of sliding; gaps of every size; nodes exactly on a kink,
-//! where the state is unique, the derivative is a selection, and the report says so.
+//! No contact, one node, all nodes; stick and slip everywhere; onset of sliding; gaps of every size; nodes exactly on a
+//! kink, where the state is unique, the derivative is a selection, and the report says so.
 
 use crate::stability::case::Case;
 use crate::stability::contact::ContactCase;

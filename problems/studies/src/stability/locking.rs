@@ -3,11 +3,12 @@
 //! ```text
 //! u = (sin²πx₁ sin 2πx₂, −sin 2πx₁ sin²πx₂, 0)·sin πx₃,   u = 0 on the boundary,   div u = 0,   f = −μ Δu
 //! ```
-//! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, bricks of mean dilatation keep it.
+//! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, bricks of mean dilatation keep
+//! it.
 
 use crate::held_block::{TWO_POINTS, solution};
 use crate::stability::case::Case;
-use crate::stability::record::{Outcome, Record};
+use crate::stability::record::{CaseOutcome, Record};
 use contact::body::elasticity::{Formulation, Material};
 use contact::body::local_pattern::LocalPattern;
 use contact::body::mesh::{Block, Grid};
@@ -57,16 +58,16 @@ fn record(poisson_ratio: f64, formulation: Formulation) -> Record {
         MESHES.iter().map(|&cells| field_error(cells, poisson_ratio, formulation)).collect();
     let errors = match errors {
         Ok(errors) => errors,
-        Err(error) => return Record::plain(Outcome::Broken, error.to_string()),
+        Err(error) => return Record::plain(CaseOutcome::Broken, error.to_string()),
     };
     let rate = (errors[1] / errors[2]).log2();
     let listed: Vec<String> = errors.iter().map(|error| format!("{error:.2e}")).collect();
     let text = format!("relative error for n = 4, 8, 16: {}; last rate {rate:.2}", listed.join(", "));
     if rate > LOCKED {
-        return Record::plain(Outcome::Solved, text);
+        return Record::plain(CaseOutcome::Solved, text);
     }
     let known = formulation == Formulation::Standard && poisson_ratio > 0.49;
-    let outcome = if known { Outcome::Limit } else { Outcome::Broken };
+    let outcome = if known { CaseOutcome::Limit } else { CaseOutcome::Broken };
     let cause = "eight volume constraints per brick leave too few deformations; choose mean dilatation";
     Record::plain(outcome, format!("{text}; locks: {cause}"))
 }

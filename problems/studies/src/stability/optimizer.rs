@@ -2,7 +2,7 @@
 
 use crate::stability::case::Case;
 use crate::stability::oracle::{Exact, Hostile, centre, crescent, largest_square, nearly_parallel, polyhedral};
-use crate::stability::record::{Outcome, Record};
+use crate::stability::record::{CaseOutcome, Record};
 use nonsmooth::{BundleTrust, BundleTrustConfig, InputError, Matrix, Polyhedron, VariableScaling, Vector};
 
 const GROUP: &str = "optimizer";
@@ -14,7 +14,7 @@ const GAP: f64 = 1e-5;
 const NOISE_GAP: f64 = 50.0;
 
 /// A run with a known minimum.
-struct Run {
+struct OptimizerRun {
     objective: Hostile,
     scaling: VariableScaling,
     set: Option<Polyhedron>,
@@ -23,7 +23,7 @@ struct Run {
     gap: f64,
 }
 
-impl Run {
+impl OptimizerRun {
     fn new(exact: Exact, start: Vector) -> Self {
         let objective = Hostile::new(exact, start.len());
         Self { objective, scaling: VariableScaling::FromBox, set: None, start, minimum: 1.0, gap: GAP }
@@ -52,20 +52,20 @@ impl Run {
         record.evaluations = Some(report.counts.evaluations);
         record.remark = format!("{excess:.1e} above the minimum; {}", report.termination);
         if excess.abs() <= self.gap && feasible && report.largest_violation <= 1e-9 {
-            record.outcome = Outcome::Solved;
+            record.outcome = CaseOutcome::Solved;
         }
         record
     }
 }
 
-fn case(name: impl Into<String>, run: Run) -> Case {
+fn case(name: impl Into<String>, run: OptimizerRun) -> Case {
     Case::new(GROUP, name, move || run.run())
 }
 
 fn refused(name: &'static str, error: impl Fn() -> Result<String, String> + Send + Sync + 'static) -> Case {
     Case::new(GROUP, name, move || match error() {
-        Ok(reason) => Record::plain(Outcome::Refused, reason),
-        Err(finding) => Record::plain(Outcome::Broken, finding),
+        Ok(reason) => Record::plain(CaseOutcome::Refused, reason),
+        Err(finding) => Record::plain(CaseOutcome::Broken, finding),
     })
 }
 
@@ -89,12 +89,16 @@ fn constrained() -> Result<Vec<Case>, InputError> {
     for (name, start) in
         [("start in a corner of U", corner), ("start on the boundary of U", edge), ("start outside U", ones(10, 100.0))]
     {
-        cases.push(case(name, Run { set: Some(set.clone()), minimum, ..Run::new(polyhedral, start) }));
+        cases
+            .push(case(name, OptimizerRun { set: Some(set.clone()), minimum, ..OptimizerRun::new(polyhedral, start) }));
     }
     let point = Vector::from_fn(10, |i, _| centre(i) + 0.5);
     let fixed = Polyhedron::boxed(point.clone(), point.clone())?;
     let minimum = polyhedral(&point).0;
-    cases.push(case("U is one point", Run { set: Some(fixed), minimum, ..Run::new(polyhedral, ones(10, 0.0)) }));
+    cases.push(case(
+        "U is one point",
+        OptimizerRun { set: Some(fixed), minimum, ..OptimizerRun::new(polyhedral, ones(10, 0.0)) },
+    ));
     Ok(cases)
 }
 
@@ -105,28 +109,28 @@ fn empty_rows() -> Result<Polyhedron, InputError> {
 
 pub fn cases() -> Vec<Case> {
     let mut cases = vec![
-        case("nearly parallel cuts", Run::new(nearly_parallel, ones(5, 2.0))),
-        case("nonconvex crescent", Run::new(crescent, Vector::from_vec(vec![-1.0, 2.0]))),
+        case("nearly parallel cuts", OptimizerRun::new(nearly_parallel, ones(5, 2.0))),
+        case("nonconvex crescent", OptimizerRun::new(crescent, Vector::from_vec(vec![-1.0, 2.0]))),
     ];
     for (label, exact) in [("polyhedral", polyhedral as Exact), ("largest square", largest_square)] {
         for (size, scale) in [("1e6", 1e6), ("1e-6", 1e-6)] {
-            let mut run = Run::new(exact, ones(10, 2.0 / scale));
+            let mut run = OptimizerRun::new(exact, ones(10, 2.0 / scale));
             run.objective.scales = ones(10, scale);
             cases.push(case(format!("variables × {size}, {label}"), run));
         }
         let scales = Vector::from_fn(10, |i, _| if i % 2 == 0 { 1e6 } else { 1e-6 });
-        let mut run = Run::new(exact, scales.map(|scale| 2.0 / scale));
+        let mut run = OptimizerRun::new(exact, scales.map(|scale| 2.0 / scale));
         run.scaling = VariableScaling::Typical(scales.map(|scale| 1.0 / scale));
         run.objective.scales = scales;
         cases.push(case(format!("variables scaled 1e6 and 1e-6 in turn, typical sizes given, {label}"), run));
         for exponent in [3, 4, 6, 8, 10] {
             let noise = 10.0_f64.powi(-exponent);
-            let mut run = Run::new(exact, ones(10, 2.0));
+            let mut run = OptimizerRun::new(exact, ones(10, 2.0));
             run.objective.noise = noise;
             run.gap = (NOISE_GAP * noise).max(GAP);
             cases.push(case(format!("noise 1e-{exponent} in value and subgradient, {label}"), run));
         }
-        let mut run = Run::new(exact, ones(10, 2.0));
+        let mut run = OptimizerRun::new(exact, ones(10, 2.0));
         run.objective.failing = Some(10);
         cases.push(case(format!("oracle fails on a tenth of the calls, {label}"), run));
     }

@@ -1,7 +1,7 @@
 //! The page of the optimizer's study: the parts that are asked for, as text or as one JSON object.
 
 use crate::stability::mixed_units::{UnitReport, mixed_units};
-use crate::stability::optimizer_words::{WordReport, markdown, words};
+use crate::stability::optimizer_terminations::{TerminationReport, markdown, terminations};
 use clap::ValueEnum;
 use problems::commands::{Failure, json};
 use serde::Serialize;
@@ -9,7 +9,7 @@ use serde::Serialize;
 /// A part of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Part {
-    /// Both.
+    /// The collection and the runs in mixed units.
     All,
     /// The collection of test problems in all its variants.
     Collection,
@@ -20,9 +20,9 @@ pub enum Part {
 /// Runs that are listed one by one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Listed {
-    /// Those with a false word, those that do not reach the minimum, and those that do not say so.
+    /// Those with a false termination, those that do not reach the minimum, and those that do not say so.
     Short,
-    /// All.
+    /// All runs.
     All,
 }
 
@@ -30,15 +30,15 @@ pub enum Listed {
 #[derive(Debug, Serialize)]
 struct Reports {
     #[serde(flatten)]
-    collection: Option<WordReport>,
+    collection: Option<TerminationReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     units: Option<UnitReport>,
 }
 
 impl Reports {
-    fn false_words(&self) -> usize {
+    fn false_terminations(&self) -> usize {
         let collection = self.collection.as_ref().map_or(0, |report| report.offenders.len());
-        collection + self.units.as_ref().map_or(0, |report| report.false_words)
+        collection + self.units.as_ref().map_or(0, |report| report.false_terminations)
     }
 
     fn text(&self, listed: Option<Listed>) -> String {
@@ -51,7 +51,7 @@ impl Reports {
     }
 }
 
-/// The page; `only` selects runs in mixed units by their names. A false word is a failure that keeps the text.
+/// The page; `only` selects runs in mixed units by their names. A false termination is a failure that keeps the text.
 ///
 /// # Errors
 /// [`Failure::Incomplete`] with the text, and [`Failure::Input`] for options of another part.
@@ -59,7 +59,7 @@ pub fn page(part: Part, only: Option<&str>, listed: Option<Listed>, as_json: boo
     if part != Part::Units && (only.is_some() || listed.is_some()) {
         return Err(Failure::Input("--only and --list need --optimizer units".to_owned()));
     }
-    let collection = (part != Part::Units).then(|| words(|_| true)).transpose().map_err(Failure::computation)?;
+    let collection = (part != Part::Units).then(|| terminations(|_| true)).transpose().map_err(Failure::computation)?;
     let wanted = |name: &str| only.is_none_or(|only| name.contains(only));
     let units = (part != Part::Collection).then(|| mixed_units(wanted)).transpose().map_err(Failure::Computation)?;
     if units.as_ref().is_some_and(|report| report.runs == 0) {
@@ -67,8 +67,8 @@ pub fn page(part: Part, only: Option<&str>, listed: Option<Listed>, as_json: boo
     }
     let reports = Reports { collection, units };
     let text = if as_json { json(&reports)? } else { reports.text(listed) };
-    match reports.false_words() {
+    match reports.false_terminations() {
         0 => Ok(text),
-        count => Err(Failure::Incomplete { text, reason: format!("{count} false words"), status: 1 }),
+        count => Err(Failure::Incomplete { text, reason: format!("{count} false terminations"), status: 1 }),
     }
 }

@@ -4,10 +4,10 @@
 //! r = |D (Σ λ_j g_j + Aᵀμ + ν)| / Σ λ_j |D g_j|       over gradients at x + D d, |d|∞ ≤ ρ,  λ ≥ 0, Σ λ = 1
 //! D = diag max(|x_i|, 1e-3 (c + |x|∞))
 //! ```
-//! λ, μ and ν make the numerator least; c is the unit of the variables. r compares with what cancels: beside the longest gradient, a slope
-//! along a steep wall would count as nothing. The gradients are those at random points, and then, as long as r is large, one more along the
-//! step that they propose: where a piece is the largest one in a narrow part of the ball only, random points miss it. A step along which f
-//! does fall shows that x is not stationary at ρ.
+//! λ, μ and ν make the numerator least; c is the unit of the variables. r compares with what cancels: beside the
+//! longest gradient, a slope along a steep wall would count as nothing. The gradients are those at random points, and
+//! then, as long as r is large, one more along the step that they propose: where a piece is the largest one in a narrow
+//! part of the ball only, random points miss it. A step along which f does fall shows that x is not stationary at ρ.
 
 use crate::stability::optimizer_variants::Changed;
 use nonsmooth::qp::{EpigraphQp, EpigraphQpSolver, Metric};
@@ -20,7 +20,8 @@ const RADII: [f64; 4] = [1e-8, 1e-7, 1e-6, 1e-5];
 const LARGEST_RESIDUAL: f64 = 1e-3;
 /// A side within this relative distance is active.
 const ACTIVE_SIDE: f64 = 1e-6;
-/// Length that a step has where the combination is as long as the longest gradient: short beside the sides that are not active.
+/// Length that a step has where the combination is as long as the longest gradient: short beside the sides that are not
+/// active.
 const SHORT: f64 = 1e-3 * ACTIVE_SIDE;
 /// Least size of a variable relative to c + |x|∞.
 const LEAST_SIZE: f64 = 1e-3;
@@ -62,8 +63,8 @@ impl<'a> Around<'a> {
         gradients.filter(|gradient| gradient.iter().all(|entry| entry.is_finite())).collect()
     }
 
-    /// A gradient on the way along a step of which the gradients so far say that f changes by `promised`: one that falls by less than half
-    /// of it. None if f itself falls by half of it: then no gradient is missing.
+    /// A gradient on the way along a step of which the gradients so far say that f changes by `promised`: one that
+    /// falls by less than half of it. None if f itself falls by half of it: then no gradient is missing.
     fn missing_gradient(&self, step: &Vector, promised: f64) -> Option<Vector> {
         let enough = 0.5 * promised;
         let (mut near, mut far) = ((0.0, self.at(&Vector::zeros(step.len())).0), (1.0, self.at(step).0));
@@ -104,8 +105,8 @@ fn relative_set(around: &Around<'_>) -> Result<Polyhedron, InputError> {
     Polyhedron::boxed(lower, upper)?.with_rows(&rows, &row_lower, &row_upper)
 }
 
-/// Minus the shortest combination of gradients and active sides, and Σ λ_j |D g_j|, both relative to the longest gradient; none where they
-/// cannot be found.
+/// Minus the shortest combination of gradients and active sides, and Σ λ_j |D g_j|, both relative to the longest
+/// gradient; none where they cannot be found.
 fn steepest_step(gradients: &[Vector], largest: f64, set: &Polyhedron) -> Option<(Vector, f64)> {
     let slopes: Vec<Vector> = gradients.iter().map(|g| g / largest).collect();
     let ids: Vec<u64> = (0..slopes.len() as u64).collect();
@@ -133,7 +134,7 @@ pub fn is_clarke_stationary(changed: &Changed<'_>, x: &Vector) -> Result<bool, I
     Ok(RADII.into_iter().any(|radius| balance_within(radius, &around, &set)))
 }
 
-/// The same for the gradients within one radius.
+/// Whether gradients within one radius prove Clarke stationarity.
 fn balance_within(radius: f64, around: &Around<'_>, set: &Polyhedron) -> bool {
     let mut gradients = around.random_gradients(radius);
     for _ in 0..=ROUNDS_PER_VARIABLE * around.x.len() {
@@ -160,8 +161,8 @@ mod tests {
     use super::*;
     use crate::stability::optimizer_variants::Variant;
 
-    /// A local minimum of PBC1 at 0.390 by five of its 60 pieces, one of them nearly flat. A linear program in all pieces finds a descent of
-    /// 1.2e-9 at most within a relative distance of 1e-5.
+    /// A local minimum of PBC1 at 0.390 by five of its 60 pieces, one of them nearly flat. A linear program in all
+    /// pieces finds a descent of 1.2e-9 at most within a relative distance of 1e-5.
     const LOCAL_MINIMUM: [f64; 5] = [
         -8.650_753_089_488_213e3,
         8.027_759_719_025_914e5,
@@ -170,7 +171,7 @@ mod tests {
         1.050_599_379_970_918e7,
     ];
 
-    fn judged(name: &str, variant: Variant, x: &[f64]) -> bool {
+    fn is_stationary_at(name: &str, variant: Variant, x: &[f64]) -> bool {
         let problem = testset::find(name).expect("a problem of the collection");
         is_clarke_stationary(&Changed::new(&problem, variant), &Vector::from_column_slice(x)).expect("a set")
     }
@@ -191,7 +192,7 @@ mod tests {
     #[test]
     fn stationarity_does_not_depend_on_the_unit() {
         let scaled = LOCAL_MINIMUM.map(|x| 100.0 * x);
-        assert!(judged("PBC1", Variant { unit: 100.0, ..Variant::PLAIN }, &scaled));
+        assert!(is_stationary_at("PBC1", Variant { unit: 100.0, ..Variant::PLAIN }, &scaled));
     }
 
     /// f = max(−x₁, 1e4 x₁) − x₂ falls along the foot of a steep wall.
@@ -208,10 +209,10 @@ mod tests {
         for (entry, share) in (0..5).flat_map(|entry| [(entry, 1.0 + 1e-3), (entry, 1.0 - 1e-3)]) {
             let mut x = LOCAL_MINIMUM;
             x[entry] *= share;
-            assert!(!judged("PBC1", Variant::PLAIN, &x), "entry {entry}, factor {share}");
+            assert!(!is_stationary_at("PBC1", Variant::PLAIN, &x), "entry {entry}, factor {share}");
         }
         // On the kink of a curved valley, away from its lowest point (1, 1).
-        assert!(judged("ChebRosenN1_2", Variant::PLAIN, &[1.0, 1.0]));
-        assert!(!judged("ChebRosenN1_2", Variant::PLAIN, &[0.5, -0.5]));
+        assert!(is_stationary_at("ChebRosenN1_2", Variant::PLAIN, &[1.0, 1.0]));
+        assert!(!is_stationary_at("ChebRosenN1_2", Variant::PLAIN, &[0.5, -0.5]));
     }
 }

@@ -1,4 +1,4 @@
-//! The problems of the collection, changed in ways that must not change the optimizer's words.
+//! The problems of the collection, changed in ways that must not change the optimizer's terminations.
 //!
 //! ```text
 //! Θ(x) = a·(f(x/c) + η (1 + |f*|) noise) + s,   start σ c x₀,   one variable with a wide side, one call in ten failing
@@ -16,7 +16,7 @@ const WIDE_SIDE: f64 = 1e8;
 /// Every how many calls one fails.
 const FAILING: usize = 10;
 
-/// What is changed.
+/// Changes of start, function, variables, bounds and noise of a problem.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Variant {
     /// Factor σ of the start.
@@ -55,8 +55,8 @@ impl Variant {
     }
 }
 
-/// All variants: starts and shifts combined with each other, the other changes with three starts and two shifts each, noise with
-/// all starts.
+/// All variants: starts and shifts combined with each other, the other changes with three starts and two shifts each,
+/// noise with all starts.
 pub fn variants() -> Vec<Variant> {
     let plain = Variant::PLAIN;
     let starts = [1.0, 1e-12, 1e-8, 1e-4, 1e-2, 1e3, 1e6];

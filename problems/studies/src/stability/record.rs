@@ -6,7 +6,7 @@ use serde::Serialize;
 /// How a case ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Outcome {
+pub enum CaseOutcome {
     /// Solved to its certificate; the independent paths agree.
     Solved,
     /// Refused with a typed error that names the cause.
@@ -35,7 +35,7 @@ pub struct Path {
     pub kink: Option<Kink>,
     /// Kind of the error, if the case was refused.
     pub refusal: Option<String>,
-    /// Its text.
+    /// Text of the error.
     pub reason: Option<String>,
 }
 
@@ -46,8 +46,7 @@ pub struct Record {
     pub group: &'static str,
     /// Name of the case.
     pub name: String,
-    /// How it ended.
-    pub outcome: Outcome,
+    pub outcome: CaseOutcome,
     /// Cause of a refusal or limit, what broke, or a finding.
     pub remark: String,
     /// What the solvers did.
@@ -68,7 +67,7 @@ pub struct Record {
 
 impl Record {
     /// A record without solver paths.
-    pub fn plain(outcome: Outcome, remark: String) -> Self {
+    pub fn plain(outcome: CaseOutcome, remark: String) -> Self {
         Self { outcome, remark, ..Self::default() }
     }
 
@@ -83,32 +82,32 @@ impl Record {
 pub struct Counts {
     /// Solved to the certificate.
     pub solved: usize,
-    /// Refused with reason.
+    /// Number of cases refused with a correct reason.
     pub refused: usize,
-    /// Known limits.
+    /// Number of cases beyond a documented limit.
     pub limits: usize,
-    /// Not as expected.
+    /// Number of cases whose result is not as expected.
     pub broken: usize,
 }
 
-/// All records.
+/// Records of all cases with their counts.
 #[derive(Debug, Clone, Serialize)]
-pub struct Report {
+pub struct StabilityReport {
     /// Numbers of cases per outcome.
     pub counts: Counts,
-    /// The cases.
+    /// Records in the order of the cases.
     pub records: Vec<Record>,
 }
 
-impl Report {
-    /// Counts the records.
+impl StabilityReport {
+    /// Counts the outcomes of the records.
     pub fn new(records: Vec<Record>) -> Self {
         let count = |outcome| records.iter().filter(|record| record.outcome == outcome).count();
         let counts = Counts {
-            solved: count(Outcome::Solved),
-            refused: count(Outcome::Refused),
-            limits: count(Outcome::Limit),
-            broken: count(Outcome::Broken),
+            solved: count(CaseOutcome::Solved),
+            refused: count(CaseOutcome::Refused),
+            limits: count(CaseOutcome::Limit),
+            broken: count(CaseOutcome::Broken),
         };
         Self { counts, records }
     }

@@ -19,9 +19,10 @@ pub fn pair() -> Result<Scene, SceneError> {
     Ok(Scene { mesh: [4; 3], subdomains: [2; 3], ..hertz()? })
 }
 
-/// Two flat blocks of 10 × 10 × 10 mm on each other in uniform stress: pressure `pressure`, shear `shear` along x₁ (MPa),
-/// carried by tractions on the top and on the sides; the lower block stands on its held base, the upper one is held by
-/// contact only. E = 1000 MPa, ν = 0. The exact state is λ_N = pressure·A, λ_T = −shear·A along x₁ at every node.
+/// Two flat blocks of 10 × 10 × 10 mm on each other in uniform stress: pressure `pressure`, shear `shear` along x₁
+/// (MPa), carried by tractions on the top and on the sides; the lower block stands on its held base, the upper one is
+/// held by contact only. E = 1000 MPa, ν = 0. The exact state is λ_N = pressure·A, λ_T = −shear·A along x₁ at every
+/// node.
 pub fn stacked(friction: f64, pressure: f64, shear: f64) -> Result<Scene, SceneError> {
     let material = Material::new(1000.0, 0.0)?;
     let sides = || {
@@ -48,8 +49,8 @@ pub fn stacked(friction: f64, pressure: f64, shear: f64) -> Result<Scene, SceneE
     })
 }
 
-/// A block of 10 × 10 × 10 mm on a held base, sheared by a traction along x₁ on its sides and pressed from its sides, below
-/// a rigid plane at a distance `gap`.
+/// A block of 10 × 10 × 10 mm on a held base, sheared by a traction along x₁ on its sides and pressed from its sides,
+/// below a rigid plane at a distance `gap`.
 pub fn footed(gap: f64) -> Result<Scene, SceneError> {
     let stacked = stacked(0.3, 1.0, 0.0)?;
     let mut lower = stacked.lower;

@@ -1,24 +1,24 @@
 //! Records as a page.
 
 use crate::markdown::{or_dash, section};
-use crate::stability::record::{Outcome, Path, Record, Report};
+use crate::stability::record::{CaseOutcome, Path, Record, StabilityReport};
 
 /// One line per finished case.
 pub fn progress(record: &Record) -> String {
-    format!("{:9} {}: {} {}", word(record.outcome), record.group, record.name, record.remark)
+    format!("{:9} {}: {} {}", outcome_name(record.outcome), record.group, record.name, record.remark)
 }
 
-fn word(outcome: Outcome) -> &'static str {
+fn outcome_name(outcome: CaseOutcome) -> &'static str {
     match outcome {
-        Outcome::Solved => "solved",
-        Outcome::Refused => "refused",
-        Outcome::Limit => "limit",
-        Outcome::Broken => "**broken**",
+        CaseOutcome::Solved => "solved",
+        CaseOutcome::Refused => "refused",
+        CaseOutcome::Limit => "limit",
+        CaseOutcome::Broken => "**broken**",
     }
 }
 
 /// All records as Markdown tables, one per group.
-pub fn markdown(report: &Report) -> String {
+pub fn markdown(report: &StabilityReport) -> String {
     let counts = &report.counts;
     let mut text = format!(
         "{} cases: {} solved to their certificates, {} refused with reason, {} known limits, {} broken.\n",
@@ -41,7 +41,7 @@ fn line(record: &Record) -> Vec<String> {
     let evaluations = || or_dash(record.evaluations, |count| format!("{count} evaluations"));
     vec![
         escaped(&record.name),
-        word(record.outcome).into(),
+        outcome_name(record.outcome).into(),
         if work.is_empty() { evaluations() } else { work.join("; ") },
         number(record.largest_residual()),
         number(record.force_difference),

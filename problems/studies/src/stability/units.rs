@@ -1,13 +1,13 @@
-//! The same scene in N–mm and in N–m gives the same dimensionless results: no tolerance knows a unit.
+//! Dimensionless results of a scene in N–mm and in N–m are equal: no tolerance depends on a unit.
 //!
 //! ```text
 //! lengths × s, moduli and tractions / s²:   forces stay, displacements × s, pressures / s²
 //! ```
 
 use crate::stability::case::Case;
+use crate::stability::checked_run::{difference_over, force_difference};
 use crate::stability::contact::{Attempt, by_condensation, by_tfeti, wavy_controls};
-use crate::stability::judge::{difference_over, force_difference};
-use crate::stability::record::{Outcome, Record};
+use crate::stability::record::{CaseOutcome, Record};
 use crate::stability::scenes::{block, footed, pair, stacked, with_loads};
 use contact::body::elasticity::Material;
 use contact::equilibrium::{ContactForces, ContactProblem};
@@ -77,7 +77,7 @@ fn strain(scene: &Scene, forces: &ContactForces) -> f64 {
     forces.total_normal_force() / (scene.lower.material.young_modulus() * scene.size[0] * scene.size[1])
 }
 
-fn compare(record: &mut Record, scene: &Scene, s: f64, heights: Heights) -> Result<(Outcome, String), SceneError> {
+fn compare(record: &mut Record, scene: &Scene, s: f64, heights: Heights) -> Result<(CaseOutcome, String), SceneError> {
     let mut worst = 0.0_f64;
     for direct in [false, true] {
         let ((path, first), length) = solve(scene.clone(), heights, direct)?;
@@ -85,7 +85,7 @@ fn compare(record: &mut Record, scene: &Scene, s: f64, heights: Heights) -> Resu
         let (Some(first), Some(second)) = (first, second) else {
             let alike = path.refusal == other_path.refusal;
             let text = format!("refused in both units: {}", path.reason.unwrap_or_default());
-            return Ok((if alike { Outcome::Refused } else { Outcome::Broken }, text));
+            return Ok((if alike { CaseOutcome::Refused } else { CaseOutcome::Broken }, text));
         };
         let forces = force_difference(&first.forces, &second.forces);
         let (openings, floor) =
@@ -97,7 +97,7 @@ fn compare(record: &mut Record, scene: &Scene, s: f64, heights: Heights) -> Resu
         };
         let slopes = difference_over(&times(&first.heights, length), &times(&second.heights, other_length), 0.0);
         if first.forces.status != second.forces.status {
-            return Ok((Outcome::Broken, "statuses differ".into()));
+            return Ok((CaseOutcome::Broken, "statuses differ".into()));
         }
         record.paths.push(path);
         record.force_difference = Some(record.force_difference.unwrap_or(0.0).max(forces));
@@ -107,7 +107,7 @@ fn compare(record: &mut Record, scene: &Scene, s: f64, heights: Heights) -> Resu
             worst = f64::NAN;
         }
     }
-    let outcome = if worst <= EQUAL { Outcome::Solved } else { Outcome::Broken };
+    let outcome = if worst <= EQUAL { CaseOutcome::Solved } else { CaseOutcome::Broken };
     Ok((outcome, format!("largest difference of dimensionless results {worst:.1e}")))
 }
 
@@ -118,7 +118,7 @@ fn case(name: &'static str, scene: Result<Scene, SceneError>, s: f64, heights: H
             Ok(scene) => compare(&mut record, scene, s, heights).map_err(|error| error.to_string()),
             Err(error) => Err(error.to_string()),
         };
-        (record.outcome, record.remark) = result.unwrap_or_else(|reason| (Outcome::Broken, reason));
+        (record.outcome, record.remark) = result.unwrap_or_else(|reason| (CaseOutcome::Broken, reason));
         record
     })
 }

@@ -7,9 +7,9 @@ use testset::kit::rounds_alike;
 
 /// Relative difference allowed for printed values and pressures on processors that round alike.
 const VALUES: f64 = 2e-3;
-/// The same on others: the runs end stationary, to 1e-7 of Θ.
+/// Relative difference allowed for printed values on other processors: the runs end stationary, to 1e-7 of Θ.
 const VALUES_ELSEWHERE: f64 = 2e-3;
-/// The same for peak pressures, which Σσ⁴ determines less well.
+/// Relative difference allowed for peak pressures on other processors: Σσ⁴ determines them less well than Θ.
 const PEAKS_ELSEWHERE: f64 = 0.02;
 /// Difference allowed for evaluations until a value is reached, for the same reason.
 const COUNTS: f64 = 3.0;

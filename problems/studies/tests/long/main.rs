@@ -1,4 +1,5 @@
-//! Studies of minutes, in a release build: `cargo test --release --locked -p studies --features long-tests --test long`.
+//! Studies of minutes, in a release build: `cargo test --release --locked -p studies --features long-tests --test
+//! long`.
 
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 

@@ -1,11 +1,11 @@
 //! The whole matrix of stiff and extreme cases.
 
-use studies::stability::{Case, Counts, Outcome, Report, all, mixed_units, random_scenes, words};
+use studies::stability::{Case, CaseOutcome, Counts, StabilityReport, all, mixed_units, random_scenes, terminations};
 
 #[test]
 fn every_case_is_solved_refused_or_a_known_limit_as_expected() {
-    let report = Report::new(all().iter().map(Case::run).collect());
-    let broken = report.records.iter().filter(|record| record.outcome == Outcome::Broken);
+    let report = StabilityReport::new(all().iter().map(Case::run).collect());
+    let broken = report.records.iter().filter(|record| record.outcome == CaseOutcome::Broken);
     let broken: Vec<String> =
         broken.map(|record| format!("{}: {}: {}", record.group, record.name, record.remark)).collect();
     assert!(broken.is_empty(), "{broken:#?}");
@@ -29,8 +29,8 @@ fn random_scenes_have_states_that_the_default_finds() {
 }
 
 #[test]
-fn the_optimizers_words_are_true() {
-    let report = words(|_| true).unwrap();
+fn the_terminations_are_true() {
+    let report = terminations(|_| true).unwrap();
     assert!(report.runs >= 3000, "{}", report.runs);
     assert!(report.offenders.is_empty(), "{:#?}", report.offenders);
     // 30 of 32 and 34 of 44, as shares of what the collection holds.
@@ -45,8 +45,8 @@ fn the_optimizers_words_are_true() {
 
 /// Convex problems in units of 1 to 1e±8, whose minima cone programs give.
 #[test]
-fn the_optimizers_words_are_true_in_mixed_units() {
+fn the_terminations_are_true_in_mixed_units() {
     let report = mixed_units(|_| true).unwrap();
     assert!(report.runs >= 3000, "{}", report.runs);
-    assert!(report.false_words == 0, "{:#?}", report.offenders());
+    assert!(report.false_terminations == 0, "{:#?}", report.offenders());
 }

@@ -1,5 +1,5 @@
-//! A smooth solution: rate 2 of the displacements in L², rate 1 in the energy norm, rate 2 of the stress at the centres of the
-//! bricks, where it is one order better than elsewhere.
+//! A smooth solution: rate 2 of the displacements in L², rate 1 in the energy norm, rate 2 of the stress at the centres
+//! of the bricks, where it is one order better than elsewhere.
 
 use contact::body::elasticity::Formulation;
 use studies::accuracy::{manufactured_errors, manufactured_stress_errors};

@@ -5,9 +5,9 @@ use testset::kit;
 
 /// Products with the dual operator of the cold states to 1e-6, 1e-8, 1e-10 (measured: 15, 19, 22).
 const COLD_BOUNDS: [u64; 3] = [19, 24, 28];
-/// The same for a warm state to 1e-8 (measured: 13).
+/// Products with the dual operator of a warm state to 1e-8 (measured: 13).
 const WARM_BOUND: u64 = 17;
-/// The same for an adjoint to 1e-8 (measured: 12).
+/// Products with the dual operator of an adjoint to 1e-8 (measured: 12).
 const ADJOINT_BOUND: u64 = 16;
 
 const SCALING: &str = env!("CARGO_BIN_EXE_scaling");

@@ -12,17 +12,20 @@ use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 use std::cell::Cell;
 use std::sync::Arc;
-use studies::stability::{Counts, Outcome, Report, all, field_error, mixed_units, random_scenes, words};
+use studies::stability::{
+    CaseOutcome, Counts, StabilityReport, all, field_error, mixed_units, random_scenes, terminations,
+};
 
 fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
     TotalFeti::new(Arc::clone(problem), TornOptions::default()).unwrap()
 }
 
-/// Numbers of cases that are solved, refused, limited and broken, of the groups with these names; all must be as expected.
+/// Numbers of cases that are solved, refused, limited and broken, of the groups with these names; all must be as
+/// expected.
 fn outcomes(groups: &[&str]) -> [usize; 4] {
     let cases = all().into_iter().filter(|case| case.quick && groups.contains(&case.group));
-    let report = Report::new(cases.map(|case| case.run()).collect());
-    for record in report.records.iter().filter(|record| record.outcome == Outcome::Broken) {
+    let report = StabilityReport::new(cases.map(|case| case.run()).collect());
+    for record in report.records.iter().filter(|record| record.outcome == CaseOutcome::Broken) {
         println!("{}: {}: {}", record.group, record.name, record.remark);
     }
     let Counts { solved, refused, limits, broken } = report.counts;
@@ -37,18 +40,18 @@ fn supports_kinks_units_and_hostile_oracles_are_as_expected() {
 
 /// Every 97th run; all of them are in the test `long`.
 #[test]
-fn the_optimizers_words_are_true_on_a_sample() {
-    let report = words(|number| number % 97 == 0).unwrap();
+fn the_terminations_are_true_on_a_sample() {
+    let report = terminations(|number| number % 97 == 0).unwrap();
     assert!(report.runs > 30, "{}", report.runs);
     assert!(report.offenders.is_empty(), "{:#?}", report.offenders);
 }
 
 /// The problems of users and one kind of start of each family; all runs are in the test `long`.
 #[test]
-fn the_optimizers_words_are_true_in_mixed_units_on_a_sample() {
+fn the_terminations_are_true_in_mixed_units_on_a_sample() {
     let report = mixed_units(|name| name.starts_with("problems of users") || name.ends_with("#4.0")).unwrap();
     assert!(report.runs > 400, "{}", report.runs);
-    assert!(report.false_words == 0, "{:#?}", report.offenders());
+    assert!(report.false_terminations == 0, "{:#?}", report.offenders());
 }
 
 #[test]

@@ -1,23 +1,22 @@
-//! The curved model proposes while its record of predictions is clearly better than that of the plain cuts, so that kinks switch the
-//! model off.
+//! The curved model proposes while its record of predictions is clearly better than that of the plain cuts, so that
+//! kinks switch the model off.
 
 mod model;
 mod pieces;
 mod step;
-#[cfg(test)]
-mod step_tests;
 
 use super::cuts::model::Model;
 use super::proposal::{Proposal, SubproblemError};
 use super::proposer::Position;
 use crate::Vector;
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::bundle::trial::{Comparison, Trial};
 use crate::report::Origin;
 use model::CurvedModel;
 use step::Penalised;
 
-/// Number of variables above which a run does without the curved model, because its dense matrices become too dear.
+/// Number of variables above which a run does without the curved model, because its dense matrices become too
+/// expensive.
 pub(crate) const MAX_DIMENSION: usize = 200;
 /// Prediction errors below this share of the changes that are compared count as equally good.
 const ERROR_FLOOR: f64 = 1e-2;
@@ -48,7 +47,7 @@ impl Curved {
         Ok(penalised.minimum(model.multipliers_of(state.center_id), at.solver)?)
     }
 
-    /// Judges both predictions by the actual change.
+    /// Compares both predictions with the actual change.
     fn compare(&mut self, change: f64, plain: f64, curved: f64) {
         let size = change.abs() + plain.abs();
         let floor = ERROR_FLOOR * size;
@@ -60,22 +59,22 @@ impl Curved {
     }
 
     /// Lowers the weight to what the observed change asks for.
-    fn after_serious(&mut self, state: &State, trial: &Trial<'_>) {
+    fn after_serious(&mut self, state: &BundleState, trial: &Trial<'_>) {
         let u = self.weight;
         let next = missing_weight(&trial.comparison, trial.proposal.step_length).max(u / 10.0);
         self.weight = next.min(u).max(state.weight_limits().0);
     }
 
     /// Raises the weight after the first null step already: the next matrix B knows the new point.
-    fn after_null(&mut self, state: &State, trial: &Trial<'_>) {
+    fn after_null(&mut self, state: &BundleState, trial: &Trial<'_>) {
         let u = self.weight;
         let next = missing_weight(&trial.comparison, trial.proposal.step_length).clamp(2.0 * u, 10.0 * u);
         self.weight = next.min(state.weight_limits().1);
     }
 }
 
-/// How far the curvatures of the pieces are trusted: up to the farthest cut, where pieces may bend down.
-fn longest_step(state: &State) -> f64 {
+/// How far the curvatures of the pieces are trusted: up to the farthest cut, where pieces may be concave.
+fn longest_step(state: &BundleState) -> f64 {
     if !state.nonconvex {
         return f64::INFINITY;
     }
@@ -89,8 +88,8 @@ fn missing_weight(comparison: &Comparison, step_length: f64) -> f64 {
 }
 
 impl Curved {
-    /// A trial point that should replace that of the plain cuts; none if theirs should stay. A predicted decrease up to `small` is not worth
-    /// an evaluation.
+    /// A trial point that should replace that of the plain cuts; none if theirs should stay. A predicted decrease up to
+    /// `small` is not worth an evaluation.
     ///
     /// # Errors
     /// [`SubproblemError`]: the model proposes nothing.
@@ -112,7 +111,7 @@ impl Curved {
     }
 
     /// Takes note that the oracle failed at a trial point of any proposer.
-    pub(crate) fn shorten(&mut self, state: &mut State, proposal: &Proposal) {
+    pub(crate) fn shorten(&mut self, state: &mut BundleState, proposal: &Proposal) {
         if proposal.origin == Origin::CurvedModel {
             self.failed = true;
             self.weight = (10.0 * self.weight).min(state.weight_limits().1);
@@ -120,7 +119,7 @@ impl Curved {
     }
 
     /// Takes note of an evaluated trial point of any proposer; the center has not moved yet.
-    pub(crate) fn learn(&mut self, state: &mut State, trial: &Trial<'_>) {
+    pub(crate) fn learn(&mut self, state: &mut BundleState, trial: &Trial<'_>) {
         if trial.accurate {
             let curved = self.model.change(&trial.proposal.step);
             self.compare(trial.comparison.objective_change, trial.proposal.cut_change, curved);

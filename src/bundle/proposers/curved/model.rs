@@ -4,14 +4,15 @@
 //! q(d) = max_i { ⟨h_i + B_i p_i, d⟩ − (a_i − ½ p_iᵀB_i p_i)₊ + ½ dᵀB_i d },   p_i = x̂ − y_i
 //! over the cut of the center, the cuts whose value the quadratic of the center explains to less than half, and all certified cuts
 //! ```
-//! Every piece has its own curvature B_i (pieces.rs); step.rs minimises the model with its penalty.
-//! Once Θ is known to be nonconvex, pieces may bend down: a piece of known curvature then keeps its subgradient, without the tilt of the
-//! plain cuts, and its offset is |e_i − ½ p_iᵀB_i p_i|. Reference: \[LuksanVlcek1998\] (cuts transported by their own curvature).
+//! Every piece has its own curvature B_i (pieces.rs); step.rs minimises the model with its penalty. Once Θ is known to
+//! be nonconvex, pieces may be concave: a piece of known curvature then keeps its subgradient, without the tilt of the
+//! plain cuts, and its offset is |e_i − ½ p_iᵀB_i p_i|. Reference: \[LuksanVlcek1998\] (cuts transported by their own
+//! curvature).
 
 use super::pieces::{Curvature, SAME_PIECE};
 use crate::bundle::cut;
 use crate::bundle::proposers::cuts::model::Model;
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::{Matrix, Vector};
 
 /// Slopes, offsets and curvatures of the pieces.
@@ -25,7 +26,7 @@ pub(super) struct CurvedModel {
 
 impl CurvedModel {
     /// The model q at the center, from the bundle and its plain model.
-    pub(super) fn new(state: &State, plain: &Model) -> Self {
+    pub(super) fn new(state: &BundleState, plain: &Model) -> Self {
         let mut model = Self::default();
         let Some(center) = state.bundle.position(state.center_id) else { return model };
         let around = Curvature::around(center, state, 0.5);

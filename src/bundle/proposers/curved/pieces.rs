@@ -5,19 +5,20 @@
 //!       same piece:   cut B down to sᵀBs ≤ sᵀz, then B += r rᵀ/⟨r, s⟩, r = z − B s
 //!       other piece:  cut B down to sᵀBs ≤ 2 min(E_ij, E_ji)₊, so that the piece stays below Θ at y_j where it can
 //! ```
-//! B_i starts from zero; on a quadratic it is the multisecant matrix. A pair lies on one piece if its two linearization errors agree: on
-//! a quadratic both are ½ sᵀBs, and a kink between the points drives them apart. As long as Θ looks convex, B_i stays positive
-//! semidefinite. Afterwards ⟨r, s⟩ may have either sign, and pairs of one piece whose errors are both negative cut nothing down: a curved
-//! valley between two pieces bends one of them down, and a model without that bend sees the valley rise on both sides of every step along
-//! it.
+//! B_i starts from zero; on a quadratic it is the multisecant matrix. A pair lies on one piece if its two linearization
+//! errors agree: on a quadratic both are ½ sᵀBs, and a kink between the points drives them apart. As long as Θ looks
+//! convex, B_i stays positive semidefinite. Afterwards ⟨r, s⟩ may have either sign, and pairs of one piece whose errors
+//! are both negative cut nothing down: a curved valley between two pieces makes one of them concave, and a model
+//! without this curvature sees the valley rise on both sides of every step along it.
 
 use crate::bundle::cut::Cut;
 use crate::bundle::kept_cuts::allowance;
-use crate::bundle::state::{NOISE_MARGIN, State};
+use crate::bundle::state::{BundleState, NOISE_MARGIN};
 use crate::{Matrix, Vector};
 
-/// Ratio of the smaller to the larger linearization error of a pair from which on both points count as lying on one smooth piece; for pairs
-/// with the center, whose curvature does not bend the model from afar, and for pairs whose errors are both negative, one half does.
+/// Ratio of the smaller to the larger linearization error of a pair from which on both points count as lying on one
+/// smooth piece; for pairs with the center, whose curvature does not change the model from afar, and for pairs whose
+/// errors are both negative, one half does.
 pub(super) const SAME_PIECE: f64 = 0.995;
 /// Least cosine between s and r for a rank-one update, and between s and B s where B is cut down.
 const LEAST_COSINE: f64 = 1e-3;
@@ -29,11 +30,11 @@ pub(super) struct Curvature {
 }
 
 impl Curvature {
-    /// The curvature around the cut at a position. Errors of a pair agree if the smaller is at least `same_piece` times the larger; where
-    /// both are negative, which a convex kink cannot cause, one half does.
-    pub(super) fn around(base: usize, state: &State, same_piece: f64) -> Self {
+    /// The curvature around the cut at a position. Errors of a pair agree if the smaller is at least `same_piece` times
+    /// the larger; where both are negative, which a convex kink cannot cause, one half does.
+    pub(super) fn around(base: usize, state: &BundleState, same_piece: f64) -> Self {
         let mut curvature = Self::default();
-        let may_bend_down = state.nonconvex;
+        let may_be_concave = state.nonconvex;
         let (bundle, own) = (&state.bundle, base);
         let base = &bundle.cuts()[own];
         // The value of a certified cut says nothing about curvature.
@@ -50,23 +51,23 @@ impl Curvature {
             // What the oracle leaves open must not pass for curvature.
             let open = base.error_bound + cut.error_bound;
             let proven = NOISE_MARGIN * state.noise + allowance(base, cut);
-            let bends_down = may_bend_down && -high > proven && high <= 0.5 * low;
-            let bends_up = low >= same_piece * high && high > 0.0 && open <= (1.0 - same_piece) * high;
-            let one_piece = bends_down || bends_up;
+            let concave = may_be_concave && -high > proven && high <= 0.5 * low;
+            let convex = low >= same_piece * high && high > 0.0 && open <= (1.0 - same_piece) * high;
+            let one_piece = concave || convex;
             if !one_piece && curvature.terms.is_empty() {
                 continue;
             }
             let s = &cut.point - &base.point;
             let z = &cut.subgradient - &base.subgradient;
-            if !bends_down {
+            if !concave {
                 let limit = if one_piece { z.dot(&s) } else { 2.0 * (low + open).max(0.0) };
                 // Where B is indefinite, the terms of sᵀBs may nearly cancel, and a multiple of B s sᵀB would be huge.
                 let least = LEAST_COSINE * state.norm.length(&s);
-                curvature.cut_down(&s, limit, |bent| least * state.norm.dual_length(bent));
+                curvature.cut_down(&s, limit, |image| least * state.norm.dual_length(image));
             }
             let r = &z - curvature.apply(&s);
             let along = r.dot(&s);
-            let size = if may_bend_down { along.abs() } else { along };
+            let size = if may_be_concave { along.abs() } else { along };
             if one_piece && size > LEAST_COSINE * state.norm.dual_length(&r) * state.norm.length(&s) {
                 curvature.terms.push((1.0 / along, r));
             }
@@ -107,10 +108,10 @@ impl Curvature {
 
     /// Lowers sᵀB s to the limit, if it is larger.
     fn cut_down(&mut self, s: &Vector, limit: f64, least: impl Fn(&Vector) -> f64) {
-        let bent = self.apply(s);
-        let along = s.dot(&bent);
-        if along > limit && along > least(&bent) {
-            self.terms.push(((limit / along - 1.0) / along, bent));
+        let image = self.apply(s);
+        let along = s.dot(&image);
+        if along > limit && along > least(&image) {
+            self.terms.push(((limit / along - 1.0) / along, image));
         }
     }
 }
@@ -132,13 +133,13 @@ mod tests {
         let across = Vector::from_vec(vec![1.0, 1.0 - 1e-6]);
         let cosine = 1e-3;
         let mut kept = indefinite();
-        kept.cut_down(&across, 0.0, |bent| cosine * bent.norm() * across.norm());
+        kept.cut_down(&across, 0.0, |image| cosine * image.norm() * across.norm());
         assert_eq!(largest(&kept), 1.0);
         let mut unguarded = indefinite();
         unguarded.cut_down(&across, 0.0, |_| 0.0);
         assert!(largest(&unguarded) > 1e5);
         let mut cut = indefinite();
-        cut.cut_down(&axis(0), 0.25, |bent| cosine * bent.norm());
+        cut.cut_down(&axis(0), 0.25, |image| cosine * image.norm());
         assert!((cut.along(&axis(0)) - 0.25).abs() < 1e-15 && (cut.along(&axis(1)) + 1.0).abs() < 1e-15);
     }
 }

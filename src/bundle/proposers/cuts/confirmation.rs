@@ -4,9 +4,9 @@
 //! points of the active cuts, drawn towards the center on the straight line
 //! x̂ + d for the step d of the cuts next to the center alone, shortened          until they prove the center stationary, or Θ falls
 //! ```
-//! Where Θ need not be convex, active cuts away from the center prove nothing, although their pieces may meet at the center. At most one
-//! evaluation more than there are variables is spent on pieces next to it. A point that is clearly lower becomes the center and ends the
-//! confirmation.
+//! Where Θ need not be convex, active cuts away from the center prove nothing, although their pieces may meet at the
+//! center. At most one evaluation more than there are variables is spent on pieces next to it. A point that is clearly
+//! lower becomes the center and ends the confirmation.
 
 use super::planes::{CuttingPlanes, MAX_DECREASES};
 use crate::Vector;
@@ -35,13 +35,13 @@ pub(super) struct Confirmation {
     unconfirmed: Termination,
     /// The weight at which they are asked.
     weight: f64,
-    /// Evaluations left.
+    /// Number of evaluations that the confirmation may still spend.
     left: usize,
     /// Whether a step has been evaluated that promises more than may be left.
     probed: bool,
 }
 
-/// What comes next.
+/// What follows in a confirmation: a trial point, or the end of the run.
 pub(super) enum Confirmed {
     Trial(Box<Proposal>),
     End(Box<Ending>),
@@ -54,7 +54,8 @@ impl Confirmation {
         let resolution = at.resolution();
         let (distances, near) = (Distances::new(state), near(&resolution));
         let cuts = active_cuts(state, &of).map(|cut| (distances.of(cut), cut));
-        // A trial point often lies on a kink, where the last bit chooses the subgradient: a share of the way leads along the subgradient itself.
+        // A trial point often lies on a kink, where the last bit chooses the subgradient: a share of the way leads
+        // along the subgradient itself.
         let toward = |(_, cut): (f64, &Cut)| {
             let (line, aside) = (&cut.point - &state.center, distances.raise(&cut.subgradient));
             let share = |step: &Vector, part: f64| part * near / distances.length(step);
@@ -106,8 +107,8 @@ impl Confirmation {
         }
     }
 
-    /// What the cuts next to the center say at the largest weight that confirms, or at which their promise is not small. A large weight asks for
-    /// small errors, a small one for subgradients that cancel.
+    /// What the cuts next to the center say at the largest weight that confirms, or at which their promise is not
+    /// small. A large weight asks for small errors, a small one for subgradients that cancel.
     fn ask_near(&self, at: &mut Position<'_>) -> Option<(Near, Evidence, Proposal)> {
         let mut planes = CuttingPlanes::default();
         let mut proposal = planes.try_solve(at).ok()?;

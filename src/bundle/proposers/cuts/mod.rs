@@ -1,4 +1,5 @@
-//! The plain cuts: every run has this proposer, and its certificate rests on them unless the composite model has a proof.
+//! The plain cuts: every run has this proposer, and its certificate rests on them unless the composite model has a
+//! proof.
 
 mod confirmation;
 pub(crate) mod model;
@@ -48,8 +49,8 @@ impl PlainCuts {
         }
     }
 
-    /// The proposal itself, or its step shortened to the length that a failed evaluation has left. A larger weight alone leaves the step as
-    /// it is where cuts meet in a point.
+    /// The proposal itself, or its step shortened to the length that a failed evaluation has left. A larger weight
+    /// alone leaves the step as it is where cuts meet in a point.
     fn shortened(&mut self, at: &mut Position<'_>, proposal: Proposal) -> Proposal {
         let Some(longest) = at.state.longest_step.filter(|longest| proposal.step_length > *longest) else {
             return proposal;

@@ -4,16 +4,16 @@
 //! m(d) = max_i { ⟨h_i, d⟩ − a_i },   h_i = g_i − 2c W p_i,   a_i = max(e_i + c‖p_i‖², |e_i|),   p_i = x̂ − y_i
 //! c = max( quantile of −E_ij/‖y_i − y_j‖² over concave pairs,  −e_i/‖p_i‖² )
 //! ```
-//! c = 0 as long as no pair of cuts proves Θ nonconvex: m is then the plain cutting-plane model. The errors p that the oracle promised are
-//! added to a_i; for Θ declared convex, a_i = |e_i + p|.
-//! References: \[SchrammZowe1992\] (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
+//! c = 0 as long as no pair of cuts proves Θ nonconvex: m is then the plain cutting-plane model. The errors p that the
+//! oracle promised are added to a_i; for Θ declared convex, a_i = |e_i + p|. References: \[SchrammZowe1992\]
+//! (bundle-trust), \[HareSagastizabal2010\] (tilted cuts).
 
 use crate::Vector;
 use crate::bundle::config::{BundleTrustConfig, Convexity};
 use crate::bundle::cut::offset;
 use crate::bundle::kept_cuts::VALUE_ROUNDING;
 use crate::bundle::proposers::subproblem::Cuts;
-use crate::bundle::state::{NOISE_MARGIN, State};
+use crate::bundle::state::{BundleState, NOISE_MARGIN};
 use crate::linalg::upper_median;
 use crate::qp::Gram;
 
@@ -33,18 +33,19 @@ pub(crate) struct Model {
     tilted: Option<Vec<Vec<f64>>>,
 }
 
-/// A cut this much steeper than the median and the center's cut drowns the others in rounding, and is mixed with the center's cut.
+/// A cut this much steeper than the median and the center's cut drowns the others in rounding, and is mixed with the
+/// center's cut.
 const MAX_RELATIVE_SLOPE: f64 = 1e7;
-/// Quantile of the curvatures that pairs of cuts prove: at ½, runs of PBC3 hang on the last bit; at 1, the mean over the collection rises
-/// by 5 %.
+/// Quantile of the curvatures that pairs of cuts prove: at ½, runs of PBC3 hang on the last bit; at 1, the mean over
+/// the collection rises by 5 %.
 const QUANTILE: f64 = 0.8;
-/// Number of variables from which subproblems are solved with the inner products of the slopes: with fewer, orthogonal factors of the
-/// slopes cost little.
+/// Number of variables from which subproblems are solved with the inner products of the slopes: with fewer, orthogonal
+/// factors of the slopes cost little.
 pub(super) const MANY_VARIABLES: usize = 100;
 
 impl Model {
     /// Builds the model at the center. Slopes that stay are taken over from the `former` model.
-    pub(crate) fn new(state: &mut State, config: &BundleTrustConfig, former: Option<Self>) -> Self {
+    pub(crate) fn new(state: &mut BundleState, config: &BundleTrustConfig, former: Option<Self>) -> Self {
         let center = state.bundle.position(state.center_id);
         let (errors, distances) = state.errors_at_center(center.unwrap_or(0));
         let rounding = state.rounding();
@@ -93,9 +94,9 @@ impl Model {
         slopes.filter(move |(_, share)| plain && *share == 1.0).map(|(slope, _)| slope)
     }
 
-    /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut. The mixture lies below the model, and meets the center's cut
-    /// where the cut itself does.
-    fn soften(&mut self, state: &State) {
+    /// Replaces cuts of extreme slope by θ·cut + (1 − θ)·center's cut. The mixture lies below the model, and meets the
+    /// center's cut where the cut itself does.
+    fn soften(&mut self, state: &BundleState) {
         self.shares = vec![1.0; self.slopes.len()];
         let Some(center) = self.center else { return };
         let norms: Vec<f64> = if self.convexification > 0.0 {
@@ -119,9 +120,9 @@ impl Model {
         self.shares[position] == 1.0
     }
 
-    /// The inner products of the slopes with the weight of the run, formed from those of the bundle; none where a cut was mixed, or tilted
-    /// without a table of its own.
-    pub(crate) fn products<'s>(&'s self, state: &'s State) -> Option<Gram<'s>> {
+    /// The inner products of the slopes with the weight of the run, formed from those of the bundle; none where a cut
+    /// was mixed, or tilted without a table of its own.
+    pub(crate) fn products<'s>(&'s self, state: &'s BundleState) -> Option<Gram<'s>> {
         let rows = match &self.tilted {
             Some(tilted) => tilted,
             None if self.convexification > 0.0 || self.shares.iter().any(|share| *share < 1.0) => return None,
@@ -136,7 +137,7 @@ impl Model {
     /// ```text
     /// ⟨h_i, W⁻¹h_j⟩ = ⟨g_i, W⁻¹g_j⟩ − 2c (⟨g_i, p_j⟩ + ⟨g_j, p_i⟩) + 4c² p_iᵀW p_j
     /// ```
-    fn tilted_products(&self, state: &State) -> Option<Vec<Vec<f64>>> {
+    fn tilted_products(&self, state: &BundleState) -> Option<Vec<Vec<f64>>> {
         let (pairs, c, center) = (state.bundle.pairs(), self.convexification, self.center?);
         let mut rows = pairs.products().to_vec();
         for (i, &row) in pairs.slots().iter().enumerate() {
@@ -167,7 +168,7 @@ impl Model {
 }
 
 /// The curvature c that the bundle proves to be necessary.
-fn convexification(state: &State, config: &BundleTrustConfig, errors: &[f64], distances: &[f64]) -> f64 {
+fn convexification(state: &BundleState, config: &BundleTrustConfig, errors: &[f64], distances: &[f64]) -> f64 {
     let resolution = VALUE_ROUNDING * state.value_scale(config) + NOISE_MARGIN * state.noise;
     let pairs = quantile(&state.bundle.proven_curvatures(resolution), QUANTILE);
     let cuts = state.bundle.cuts().iter().zip(errors.iter().zip(distances));

@@ -12,15 +12,15 @@ use crate::bundle::proposers::aggregate::slack_error;
 use crate::bundle::proposers::proposal::{Proposal, SubproblemError};
 use crate::bundle::proposers::proposer::Position;
 use crate::bundle::proposers::subproblem::{self, Cuts};
-use crate::bundle::state::State;
+use crate::bundle::state::BundleState;
 use crate::interruption::interrupted;
 use crate::qp::QpSolution;
 use crate::report::{Origin, Termination};
 use crate::{Polyhedron, Vector};
 use std::rc::Rc;
 
-/// Tenfold decreases of the weight, without evaluations, where the predicted decrease is small: a restart may raise the weight by 1e12, and
-/// units of variables may differ by as much.
+/// Tenfold decreases of the weight, without evaluations, where the predicted decrease is small: a restart may raise the
+/// weight by 1e12, and units of variables may differ by as much.
 pub(super) const MAX_DECREASES: usize = 16;
 /// Weights tried, each ten times the one before, until a subproblem counts as unsolvable.
 const MAX_TRIALS: usize = 4;
@@ -36,7 +36,7 @@ pub(crate) struct CuttingPlanes {
 /// Center and revision of the bundle that a model or an answer belongs to.
 type Key = (u64, u64);
 
-fn key(state: &State) -> Key {
+fn key(state: &BundleState) -> Key {
     (state.center_id, state.bundle.revision())
 }
 
@@ -52,7 +52,7 @@ impl CuttingPlanes {
     }
 
     /// The answer of the last subproblem, where center and bundle are still those it was solved for.
-    pub(crate) fn answer(&self, state: &State) -> Option<&Proposal> {
+    pub(crate) fn answer(&self, state: &BundleState) -> Option<&Proposal> {
         self.proposal.as_ref().filter(|(known, _)| *known == key(state)).map(|(_, proposal)| proposal)
     }
 
@@ -121,7 +121,7 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     proposal.admissible(at.set, state)
 }
 
-fn interpret(mut solution: QpSolution, (state, set): (&State, &Polyhedron), model: &Model) -> Proposal {
+fn interpret(mut solution: QpSolution, (state, set): (&BundleState, &Polyhedron), model: &Model) -> Proposal {
     let step = std::mem::take(&mut solution.step);
     let squared = state.norm.squared(&step);
     let predicted_decrease = -solution.epigraph;

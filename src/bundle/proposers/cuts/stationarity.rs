@@ -4,9 +4,9 @@
 //! lower the weight, without evaluations, until the evidence suffices or the predicted decrease is not small
 //! active cuts away from the center:   restart from the cuts next to the center, then evaluate next to it (confirmation.rs)
 //! ```
-//! A small predicted decrease at a large weight is not stationarity (a flat valley, a variable whose unit hides it), and one that rests on
-//! cuts far from the center is none either where Θ is not convex: both are checked before a run ends. For a function declared convex the
-//! cuts bound Θ(x̂) − Θ(y) within reach, wherever they lie.
+//! A small predicted decrease at a large weight is not stationarity (a flat valley, a variable whose unit hides it),
+//! and one that rests on cuts far from the center is none either where Θ is not convex: both are checked before a run
+//! ends. For a function declared convex the cuts bound Θ(x̂) − Θ(y) within reach, wherever they lie.
 
 use super::confirmation::{Confirmation, Confirmed};
 use super::planes::{CuttingPlanes, MAX_DECREASES};
@@ -21,7 +21,8 @@ use crate::bundle::verdict::{Verdict, allowed, unconfirmed, verdict};
 use crate::report::Origin;
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// The weight is lowered until the step has this relative length. Ten times as short steps leave ten times as much within reach.
+/// The weight is lowered until the step has this relative length. Ten times as short steps leave ten times as much
+/// within reach.
 const LEAST_STEP_LENGTH: f64 = 1e-2;
 /// Restarts without progress between them once Θ is known to be nonconvex; one before.
 const MAX_RESTARTS: usize = 5;
@@ -116,7 +117,8 @@ impl StationarityTest {
         self.restarts < if at.state.nonconvex { MAX_RESTARTS } else { 1 }
     }
 
-    /// Forgets the cuts beyond a tenth of the radius of the active ones and raises the weight for a short next step; false if there was nothing to forget.
+    /// Forgets the cuts beyond a tenth of the radius of the active ones and raises the weight for a short next step;
+    /// false if there was nothing to forget.
     fn restart(&mut self, at: &mut Position<'_>, proposal: &Proposal) -> bool {
         self.restarts += 1;
         at.state.counts.restarts += 1;
@@ -138,8 +140,9 @@ impl StationarityTest {
     }
 }
 
-/// Lowers the weight, without evaluations, until the evidence suffices, the predicted decrease is not small, or the step is long enough to
-/// tell. Breaks with a trial point or the end; goes on with the last evidence where the cuts do not suffice.
+/// Lowers the weight, without evaluations, until the evidence suffices, the predicted decrease is not small, or the
+/// step is long enough to tell. Breaks with a trial point or the end; goes on with the last evidence where the cuts do
+/// not suffice.
 fn look_closer(
     at: &mut Position<'_>,
     planes: &mut CuttingPlanes,
@@ -157,11 +160,11 @@ fn look_closer(
             worthwhile = worthwhile.or(Some(proposal.weight));
         }
         let evidence = Evidence::new(at.state, at.set, &proposal);
-        let judged = verdict(at, &evidence);
+        let found = verdict(at, &evidence);
         let undecided = evidence.undecided(allowed(&at.resolution(), convex)).is_some();
         let long = !undecided && proposal.step_length >= LEAST_STEP_LENGTH * at.state.length_scale();
         let next = if long && !convex || decreases == MAX_DECREASES { None } else { planes.lower_weight(at) };
-        match judged {
+        match found {
             Verdict::End(termination)
                 if next.is_none() || convex && termination.is_confirmed() || evidence.is_exact(0.0) =>
             {

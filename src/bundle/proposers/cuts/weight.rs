@@ -12,12 +12,12 @@
 
 use super::model::MANY_VARIABLES;
 use crate::bundle::proposers::proposal::Proposal;
-use crate::bundle::state::{NOISE_MARGIN, State};
+use crate::bundle::state::{BundleState, NOISE_MARGIN};
 use crate::bundle::trial::{Comparison, Trial};
 use crate::report::Origin;
 
 /// Takes note that the oracle failed at a trial point of any proposer.
-pub(super) fn shorten(state: &mut State, proposal: &Proposal) {
+pub(super) fn shorten(state: &mut BundleState, proposal: &Proposal) {
     if proposal.origin == Origin::Cuts {
         state.streak = -1;
         state.set_weight(10.0 * proposal.weight);
@@ -25,7 +25,7 @@ pub(super) fn shorten(state: &mut State, proposal: &Proposal) {
 }
 
 /// Sets the next weight, after trial points of the plain cuts only; the center has not moved yet.
-pub(super) fn learn(state: &mut State, trial: &Trial<'_>) {
+pub(super) fn learn(state: &mut BundleState, trial: &Trial<'_>) {
     if trial.proposal.origin != Origin::Cuts || trial.proposal.restores {
         return;
     }
@@ -37,7 +37,7 @@ pub(super) fn learn(state: &mut State, trial: &Trial<'_>) {
 }
 
 /// Sets the weight after a serious step, before the center moves.
-fn after_serious(state: &mut State, comparison: &Comparison) {
+fn after_serious(state: &mut BundleState, comparison: &Comparison) {
     let u = state.weight;
     let mut changed = false;
     if state.streak > 0 && comparison.is_good() {
@@ -54,7 +54,7 @@ fn after_serious(state: &mut State, comparison: &Comparison) {
 }
 
 /// Sets the weight after a null step.
-fn after_null(state: &mut State, trial: &Trial<'_>) {
+fn after_null(state: &mut BundleState, trial: &Trial<'_>) {
     let comparison = &trial.comparison;
     let u = state.weight;
     let seen = trial.proposal.aggregate_norm + trial.proposal.cut_error;
@@ -73,18 +73,18 @@ fn after_null(state: &mut State, trial: &Trial<'_>) {
 }
 
 /// For few variables the cuts around the center are complete before their errors matter.
-fn may_rest_on_errors(state: &State) -> bool {
+fn may_rest_on_errors(state: &BundleState) -> bool {
     !state.nonconvex && state.streak < -2 && state.center.len() >= MANY_VARIABLES
 }
 
-/// Whether the predicted decrease −v = u‖d‖² + ẽ is nearly all error: the cuts were then taken too far away to describe Θ around the
-/// center, where a larger weight looks. Cuts that were made convex carry errors of another kind.
+/// Whether the predicted decrease −v = u‖d‖² + ẽ is nearly all error: the cuts were then taken too far away to describe
+/// Θ around the center, where a larger weight looks. Cuts that were made convex carry errors of another kind.
 fn rests_on_errors(proposal: &Proposal) -> bool {
     proposal.aggregate_error > 10.0 * proposal.aggregate_norm * proposal.step_length
 }
 
-/// The weight at which the parabola through both values with the predicted slope has its minimum at the trial point; the weight itself
-/// where neither Θ nor the model has changed.
+/// The weight at which the parabola through both values with the predicted slope has its minimum at the trial point;
+/// the weight itself where neither Θ nor the model has changed.
 fn interpolated_weight(comparison: &Comparison, weight: f64) -> f64 {
     let ratio = comparison.change / comparison.model_change;
     if ratio.is_nan() { weight } else { 2.0 * weight * (1.0 - ratio) }

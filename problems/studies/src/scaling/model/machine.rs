@@ -1,11 +1,11 @@
 //! What one core of this machine does: the figures that the model scales.
 //!
-//! Everything is measured on one thread: two tearings of one scene for seconds and bytes per subdomain, a dense factorisation for the
-//! coarse matrices.
+//! Everything is measured on one thread: two tearings of one scene for seconds and bytes per subdomain, a dense
+//! factorisation for the coarse matrices.
 
 use crate::scaling::cases::{Case, SceneName, Variant};
 use crate::scaling::measure;
-use crate::scaling::rows::{Row, Start};
+use crate::scaling::rows::{ScalingRow, Start};
 use contact::WorkEstimate;
 use faer::Mat;
 use problems::commands::Failure;
@@ -22,10 +22,10 @@ const DENSE_ROWS: usize = 1200;
 pub struct Machine {
     /// Seconds to assemble and factor a subdomain.
     pub factor: f64,
-    /// Seconds of a product with F and with the preconditioner, with all vector work, per subdomain, in a state to 1e-10, which takes
-    /// more of its products in double precision than one to 1e-8.
+    /// Seconds of a product with F and with the preconditioner, with all vector work, per subdomain, in a state to
+    /// 1e-10, which takes more of its products in double precision than one to 1e-8.
     pub product: f64,
-    /// The same in an adjoint.
+    /// Seconds of a product with F and with the preconditioner, with all vector work, per subdomain, in an adjoint.
     pub adjoint_product: f64,
     /// Seconds of the shape derivative and of the recovery of displacements, per subdomain.
     pub derivative: f64,
@@ -73,7 +73,7 @@ impl Machine {
         let tight_seconds = tight_stages.newton + tight_stages.coarse_space;
         let factor = (stages.equilibrium + stages.factorization) / pieces;
         let untold = || Failure::Computation("this system does not tell the memory of a process".into());
-        let bytes_of = |row: &Row| row.peak_memory.map(|peak| peak * 1024.0_f64.powi(3)).ok_or_else(untold);
+        let bytes_of = |row: &ScalingRow| row.peak_memory.map(|peak| peak * 1024.0_f64.powi(3)).ok_or_else(untold);
         let (small, large) = (bytes_of(&small)?, bytes_of(&large)?);
         let bytes = (large - small) / (pieces - count(CASES[0]));
         Ok(Self {

@@ -12,5 +12,5 @@ mod prediction;
 mod report;
 
 pub use machine::Machine;
-pub use prediction::{Network, Prediction, Run};
+pub use prediction::{Network, Prediction, Workload};
 pub use report::{ModelReport, Options, report};

@@ -5,8 +5,9 @@
 //!   + coarse: factor of all coarse units, dense matrices of those at the contact boundary, solves            on every rank
 //!   + P (2 exchanges with neighbours)  + P (gathers of contact rows, resultants and sums)
 //! ```
-//! A cube of bodies is torn into ranks that are cubes of n subdomains; for a given case the interfaces are counted on its tearing. A coarse unit has six unknowns: a subdomain, or with clusters
-//! all subdomains of a rank. Every rank waits for the slowest; an imbalance is not modelled.
+//! A cube of bodies is torn into ranks that are cubes of n subdomains; for a given case the interfaces are counted on
+//! its tearing. A coarse unit has six unknowns: a subdomain, or with clusters all subdomains of a rank. Every rank
+//! waits for the slowest; an imbalance is not modelled.
 
 use crate::scaling::model::machine::Machine;
 use serde::Serialize;
@@ -20,24 +21,25 @@ pub struct Network {
     pub bandwidth: f64,
 }
 
-/// What runs.
+/// Number and size of the parts into which the bodies are divided.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Run {
-    /// Number of ranks.
+pub struct Workload {
+    /// Number of MPI processes.
     pub ranks: f64,
     /// Subdomains per rank.
     pub subdomains: f64,
     /// Products with clusters over those without; none for plain total FETI.
     pub clusters: Option<f64>,
-    /// Dofs of other ranks that a rank needs in the mean, where they are counted on the tearing; none for cubes among cubes.
+    /// Dofs of other ranks that a rank needs in the mean, where they are counted on the tearing; none for cubes among
+    /// cubes.
     pub ghosts: Option<f64>,
 }
 
 /// Seconds, bytes and messages of one rank, for a state to 1e-8 and its subgradient.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Prediction {
-    /// What runs.
-    pub run: Run,
+    /// Division of the bodies that is predicted.
+    pub run: Workload,
     /// Torn degrees of freedom of all ranks.
     pub dofs: f64,
     /// Work on own subdomains, s.
@@ -78,7 +80,8 @@ const DUAL_VECTORS: f64 = 140.0;
 const DENSE_MATRICES: f64 = 6.0;
 /// Entries of the coarse matrix per subdomain: six columns of some fourteen neighbours.
 const COARSE_COLUMNS: f64 = 525.0;
-/// Bytes that the MPI library takes in every process: Open MPI 4.1, 37 MB resident where the same run without it has 16 MB.
+/// Bytes that the MPI library takes in every process: Open MPI 4.1, 37 MB resident where the same run without it has 16
+/// MB.
 const LIBRARY_BYTES: f64 = 2.1e7;
 /// Bytes of a number.
 const NUMBER: f64 = 8.0;
@@ -97,8 +100,8 @@ fn cube_ghosts(ranks: f64, subdomains: f64) -> f64 {
 
 impl Prediction {
     /// The prediction for a run.
-    pub fn new(machine: &Machine, network: &Network, run: Run) -> Self {
-        let Run { ranks, subdomains, clusters, ghosts } = run;
+    pub fn new(machine: &Machine, network: &Network, run: Workload) -> Self {
+        let Workload { ranks, subdomains, clusters, ghosts } = run;
         let all = ranks * subdomains;
         let factor = clusters.unwrap_or(1.0);
         let (products, adjoint) = (factor * machine.products, factor * machine.adjoint_products);
@@ -146,12 +149,12 @@ impl Prediction {
         }
     }
 
-    /// Seconds in all.
+    /// Seconds of state and subgradient: the sum of all parts.
     pub fn seconds(&self) -> f64 {
         self.own + self.coarse_factors + self.coarse_solves + self.neighbours + self.gathers
     }
 
-    /// The part beside the own work that takes most of the time, in words.
+    /// The part beside the own work that takes most of the time, as text.
     pub fn limit(&self) -> &'static str {
         let parts = [
             (self.coarse_factors, "coarse factors"),
@@ -163,12 +166,14 @@ impl Prediction {
     }
 }
 
-/// Seconds of the factors and of the solves of so many coarse units, of which `contact` unknowns lie at the contact boundary.
+/// Seconds of the factors and of the solves of so many coarse units, of which `contact` unknowns lie at the contact
+/// boundary.
 fn coarse_seconds(machine: &Machine, units: f64, contact: f64, products: f64) -> [f64; 2] {
     let values = coarse_values(units);
     let factor = 2.0 * values * values / (AMPLITUDES * units) / machine.sparse_rate;
     let dense = ACTIVE_SETS * 2.0 / 3.0 * contact.powi(3) / machine.dense_rate;
-    // Solves read their factor once; so does a product, whose two factors hold one and a half times the values of a subdomain.
+    // Solves read their factor once; so does a product, whose two factors hold one and a half times the values of a
+    // subdomain.
     let read = 1.5 * 268_000.0 * (machine.subdomain_dofs / 1536.0).powf(1.48) / machine.product;
     [factor + dense, products * COARSE_SOLVES * (values + contact * contact) / read]
 }
@@ -193,7 +198,7 @@ mod tests {
     const NETWORK: Network = Network { latency: 2e-6, bandwidth: 1e10 };
 
     fn predicted(ranks: f64, subdomains: f64, clusters: Option<f64>) -> Prediction {
-        Prediction::new(&MACHINE, &NETWORK, Run { ranks, subdomains, clusters, ghosts: None })
+        Prediction::new(&MACHINE, &NETWORK, Workload { ranks, subdomains, clusters, ghosts: None })
     }
 
     #[test]

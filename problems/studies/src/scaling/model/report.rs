@@ -4,16 +4,16 @@ use crate::markdown::section;
 use crate::scaling::cases::{Case, SceneName};
 use crate::scaling::model::interface::mean_ghosts;
 use crate::scaling::model::prediction::RATIO;
-use crate::scaling::model::{Machine, Network, Prediction, Run};
+use crate::scaling::model::{Machine, Network, Prediction, Workload};
 use contact::equilibrium::ContactProblem;
 use problems::commands::Failure;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// What to predict.
+/// Options of the prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// The network.
+    /// Network that the prediction assumes.
     pub network: Network,
     /// Subdomains per rank.
     pub per_rank: usize,
@@ -30,7 +30,7 @@ pub struct Options {
 pub struct ModelReport {
     /// Figures of one core of this machine.
     pub machine: Machine,
-    /// The network.
+    /// Network that the prediction assumes.
     pub network: Network,
     /// One entry per number of ranks, without and with clusters.
     pub predictions: Vec<Prediction>,
@@ -44,8 +44,8 @@ const CASE_RANKS: [usize; 3] = [1, 2, 4];
 /// Measures this machine and predicts.
 ///
 /// # Errors
-/// [`Failure`] for another scene or another number of bricks per subdomain than it knows, and if a state of the measurement cannot be
-/// found.
+/// [`Failure`] for another scene or another number of bricks per subdomain than it knows, and if a state of the
+/// measurement cannot be found.
 pub fn report(scene: SceneName, options: &Options) -> Result<ModelReport, Failure> {
     if scene != SceneName::Signorini {
         return Err(Failure::Input("the model knows one body only: --scene signorini".into()));
@@ -60,20 +60,20 @@ pub fn report(scene: SceneName, options: &Options) -> Result<ModelReport, Failur
     let factor = options.products.map_or(1.0, |products| products / (measured.products + measured.adjoint_products));
     let (products, adjoint_products) = (factor * measured.products, factor * measured.adjoint_products);
     let machine = Machine { products, adjoint_products, ..measured };
-    let runs: Vec<Run> = match options.case {
+    let runs: Vec<Workload> = match options.case {
         Some(case) => {
             let pieces = (case.subdomains as f64).powi(3);
             let problem = Arc::new(ContactProblem::new(scene.scene(case)?)?);
             let run = |&ranks: &usize| {
                 let ghosts = Some(mean_ghosts(&problem, ranks)?);
-                Ok(Run { ranks: ranks as f64, subdomains: pieces / ranks as f64, clusters: None, ghosts })
+                Ok(Workload { ranks: ranks as f64, subdomains: pieces / ranks as f64, clusters: None, ghosts })
             };
             CASE_RANKS.iter().map(run).collect::<Result<_, Failure>>()?
         }
         None => {
             let subdomains = options.per_rank as f64;
             let of = |clusters| {
-                RANKS.iter().map(move |&ranks| Run { ranks: ranks as f64, subdomains, clusters, ghosts: None })
+                RANKS.iter().map(move |&ranks| Workload { ranks: ranks as f64, subdomains, clusters, ghosts: None })
             };
             of(None).chain(of(Some(options.cluster_products))).collect()
         }
@@ -99,7 +99,7 @@ impl ModelReport {
             1e-9 * self.network.bandwidth,
         );
         let rows = self.predictions.iter().map(|prediction| {
-            let Run { ranks, subdomains, clusters, .. } = prediction.run;
+            let Workload { ranks, subdomains, clusters, .. } = prediction.run;
             let seconds = prediction.seconds();
             vec![
                 if clusters.is_some() { "clusters" } else { "plain" }.into(),

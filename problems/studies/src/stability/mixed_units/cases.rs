@@ -25,7 +25,7 @@ const AFAR: f64 = 8.0;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Given {
-    /// Nothing.
+    /// Neither convexity nor outputs are declared.
     Nothing,
     /// That Θ is convex.
     Convexity,
@@ -34,10 +34,10 @@ pub enum Given {
 }
 
 impl Given {
-    /// All of them.
+    /// Everything that may be declared.
     pub const ALL: [Self; 3] = [Self::Nothing, Self::Convexity, Self::Outputs];
 
-    /// The word for it in names.
+    /// The declaration in names of cases.
     pub fn name(self) -> &'static str {
         match self {
             Self::Nothing => "plain",

@@ -27,7 +27,7 @@ pub struct ConeProgram {
     pub cones: Vec<(Matrix, Vector)>,
 }
 
-/// A solution.
+/// A primal-dual solution of the cone program.
 #[derive(Debug, Clone)]
 pub struct Optimum {
     /// z.

@@ -63,7 +63,7 @@ impl Function {
         self.rows.ncols()
     }
 
-    /// The same function of D x, where D holds the units of the variables.
+    /// The function x ↦ f(D x), where D holds the units of the variables.
     #[must_use]
     pub fn in_units(&self, units: &Vector) -> Self {
         let quadratic = self.quadratic.as_ref();
@@ -75,7 +75,7 @@ impl Function {
         }
     }
 
-    /// The same function with another offset.
+    /// Replaces the constant that is added to the function.
     #[must_use]
     pub fn with_offset(&self, offset: f64) -> Self {
         Self { offset, ..self.clone() }

@@ -3,14 +3,14 @@
 //! ```text
 //! fits, vertices, reported → problem (function, set, starts) → cases: units, offsets
 //! cases ─┬─ truth: cone program in variables of unit 1 → minimum, minimiser
-//!        └─ judge: the engine in the units of the user → record → report
+//!        └─ checked_run: the engine in the units of the user → record → report
 //! ```
 
 mod cases;
+mod checked_run;
 mod cone_program;
 mod fits;
 mod function;
-mod judge;
 mod problem;
 mod report;
 mod reported;

@@ -19,7 +19,7 @@ pub enum Start {
 }
 
 impl Start {
-    /// The word for it in names.
+    /// The kind of start in names of cases.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Zero => "from zero",
@@ -65,13 +65,13 @@ impl Problem {
         }
     }
 
-    /// The same problem in a box.
+    /// Restricts the variables to a box.
     #[must_use]
     pub fn boxed(self, (lower, upper): (Vector, Vector)) -> Self {
         Self { lower, upper, ..self }
     }
 
-    /// The same problem with these starts.
+    /// Replaces the starts of the runs.
     #[must_use]
     pub fn with_starts(self, starts: Vec<Start>) -> Self {
         Self { starts, ..self }

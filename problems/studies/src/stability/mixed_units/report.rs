@@ -2,7 +2,7 @@
 
 use crate::markdown::{section, table};
 use crate::stability::mixed_units::cases::{Given, UnitCase, cases};
-use crate::stability::mixed_units::judge::{UnitRecord, judged};
+use crate::stability::mixed_units::checked_run::{UnitRecord, checked};
 use crate::stability::mixed_units::truth::Truth;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -15,7 +15,7 @@ const USUAL_SPREAD: usize = 3;
 pub struct Share {
     /// Those that are so.
     pub part: usize,
-    /// All.
+    /// Number of runs considered.
     pub of: usize,
 }
 
@@ -38,15 +38,15 @@ impl std::fmt::Display for Share {
 /// All runs and what they came to.
 #[derive(Debug, Clone, Serialize)]
 pub struct UnitReport {
-    /// Number of runs.
+    /// Number of runs of all problems, starts and declarations.
     pub runs: usize,
-    /// Runs with a false word.
-    pub false_words: usize,
+    /// Runs with a false termination.
+    pub false_terminations: usize,
     /// Minima reached with units of 1e±3 at most, where a box or outputs are given.
     pub reached_in_usual_units: Share,
     /// Reached minima that are confirmed, where convexity is declared or outputs are given.
     pub said_informed: Share,
-    /// The same where neither is.
+    /// Reached minima that are confirmed, where neither convexity is declared nor outputs are given.
     pub said_plain: Share,
     /// All runs, in the order of the problems.
     pub records: Vec<UnitRecord>,
@@ -58,7 +58,7 @@ impl UnitReport {
         let usual = records.iter().filter(|r| r.spread <= USUAL_SPREAD && (r.boxed || r.given == Given::Outputs));
         Self {
             runs: records.len(),
-            false_words: records.iter().filter(|record| record.false_word.is_some()).count(),
+            false_terminations: records.iter().filter(|record| record.false_termination.is_some()).count(),
             reached_in_usual_units: Share::count(usual, |record| record.reached),
             said_informed: Share::count(reached(true), |record| record.said),
             said_plain: Share::count(reached(false), |record| record.said),
@@ -66,17 +66,17 @@ impl UnitReport {
         }
     }
 
-    /// Runs with a false word.
+    /// Runs with a false termination.
     pub fn offenders(&self) -> Vec<&UnitRecord> {
-        self.records.iter().filter(|record| record.false_word.is_some()).collect()
+        self.records.iter().filter(|record| record.false_termination.is_some()).collect()
     }
 
     /// Totals and tables.
     pub fn markdown(&self) -> String {
         let mut text = format!(
-            "{} runs, {} false words. Reached with units of 1e±{USUAL_SPREAD} at most and a box or outputs: {}. \
+            "{} runs, {} false terminations. Reached with units of 1e±{USUAL_SPREAD} at most and a box or outputs: {}. \
              Confirmed among the reached: {} where convexity is declared or outputs are given, {} where neither is.\n",
-            self.runs, self.false_words, self.reached_in_usual_units, self.said_informed, self.said_plain
+            self.runs, self.false_terminations, self.reached_in_usual_units, self.said_informed, self.said_plain
         );
         let given = |record: &UnitRecord| {
             let set = if record.boxed { "box" } else { "no box" };
@@ -102,15 +102,16 @@ impl UnitReport {
             let of = || self.records.iter().filter(|record| key(record) == wanted);
             let reached = Share::count(of(), |record| record.reached);
             let said = Share::count(of().filter(|record| record.reached), |record| record.said);
-            let wrong = of().filter(|record| record.false_word.is_some()).count();
+            let wrong = of().filter(|record| record.false_termination.is_some()).count();
             let mut evaluations: Vec<usize> = of().map(|record| record.evaluations).collect();
             evaluations.sort_unstable();
             let median = evaluations[evaluations.len() / 2];
             let numbers = [reached.of, reached.part, said.part, wrong, median];
             std::iter::once(wanted).chain(numbers.iter().map(usize::to_string)).collect()
         });
-        let head =
-            format!("{title} | runs | reached | confirmed among the reached | false words | median of evaluations");
+        let head = format!(
+            "{title} | runs | reached | confirmed among the reached | false terminations | median of evaluations"
+        );
         section(&format!("by {title}"), &head, rows)
     }
 
@@ -118,7 +119,7 @@ impl UnitReport {
     pub fn list(&self, all: bool) -> String {
         let number = |value: f64| format!("{value:.10e}");
         let rows = self.records.iter().filter(|record| all || record.is_bad()).map(|record| {
-            let verdict = match (record.false_word, record.reached, record.said) {
+            let verdict = match (record.false_termination, record.reached, record.said) {
                 (Some(reason), _, _) => format!("FALSE: {reason}"),
                 (None, false, _) => "not reached".to_owned(),
                 (None, true, false) => "reached, unsaid".to_owned(),
@@ -148,8 +149,8 @@ fn runs_of(case: &UnitCase, wanted: &(impl Fn(&str) -> bool + Sync)) -> Result<V
     }
     let truth =
         Truth::of(&case.problem).map_err(|error| format!("{}: {error}", case.name(chosen[0].0, chosen[0].1)))?;
-    let judged = |(given, index)| judged(case, &truth, given, index).map_err(|error| error.to_string());
-    chosen.into_iter().map(judged).collect()
+    let checked = |(given, index)| checked(case, &truth, given, index).map_err(|error| error.to_string());
+    chosen.into_iter().map(checked).collect()
 }
 
 /// Runs those that `wanted` selects by their names, on all processors; the records are in the order of the problems.

@@ -8,7 +8,7 @@ use nonsmooth::{Matrix, Vector};
 pub const REPORTED: &str = "problems of users";
 /// Abscissas of a fit.
 const AT: [f64; 9] = [0.05, 0.15, 0.3, 0.35, 0.5, 0.6, 0.75, 0.9, 1.0];
-/// Its data.
+/// Measured values of the reported fit.
 const DATA: [f64; 9] = [2.1, 3.4, 2.9, 4.2, 4.0, 5.6, 5.2, 7.3, 6.4];
 
 fn vector(entries: &[f64]) -> Vector {

@@ -19,7 +19,7 @@ const ON_BOUND: f64 = 1e-8;
 /// What is known about a problem.
 #[derive(Debug, Clone)]
 pub struct Truth {
-    /// A minimiser.
+    /// A point at which the minimum is attained.
     pub minimiser: Vector,
     /// The minimum, without an offset.
     pub minimum: f64,

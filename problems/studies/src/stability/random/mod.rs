@@ -1,11 +1,12 @@
-//! Random scenes: whether the default finds an equilibrium wherever any path does, never a wrong one, at a bounded cost.
+//! Random scenes: whether the default finds an equilibrium wherever any path does, never a wrong one, at a bounded
+//! cost.
 
 mod paths;
 mod scenes;
 
 use crate::markdown;
 use contact::contact_shape::SolverKind;
-use paths::{Examined, Found, Outcome};
+use paths::{Examined, Found, PathResult};
 use rayon::prelude::*;
 use scene_file::{Case, SceneFile};
 use scenes::Family;
@@ -25,7 +26,7 @@ const MAX_COST: f64 = 3.0;
 /// Of so many scenes, one has its cone programs solved although the default has found a state.
 const CONE_EVERY: usize = 10;
 
-/// What is counted.
+/// Numbers of scenes by result.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Counts {
     /// Scenes drawn.
@@ -54,7 +55,7 @@ pub struct Counts {
 
 /// The report of a study.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct RandomReport {
     /// Counts of all scenes.
     #[serde(flatten)]
     pub counts: Counts,
@@ -67,17 +68,17 @@ pub struct Report {
 /// A scene that fell short.
 #[derive(Debug, Clone, Serialize)]
 pub struct Short {
-    /// Its number.
+    /// Number of the scene in the sequence of its seed.
     pub index: usize,
-    /// In words.
+    /// Message about the shortcoming.
     pub reason: String,
-    /// The scene file.
+    /// Text of the scene file.
     #[serde(skip)]
     pub text: String,
 }
 
-impl Report {
-    /// What fell short.
+impl RandomReport {
+    /// Scenes with a shortcoming, each with its reason.
     pub fn short(&self) -> &[Short] {
         &self.short
     }
@@ -107,7 +108,6 @@ impl Report {
     }
 }
 
-/// One scene, examined.
 struct Examination {
     family: Family,
     frictionless: bool,
@@ -117,8 +117,8 @@ struct Examination {
 
 /// The paths of one scene.
 struct Paths {
-    default: Outcome,
-    others: Vec<Outcome>,
+    default: PathResult,
+    others: Vec<PathResult>,
     cost_bound: f64,
     has_statics: bool,
     rounding: f64,
@@ -126,7 +126,7 @@ struct Paths {
 }
 
 /// Examines scenes 0 … count − 1 of a seed on all threads; the counts do not depend on their number.
-pub fn run(seed: u64, count: usize) -> Report {
+pub fn run(seed: u64, count: usize) -> RandomReport {
     let clock = Instant::now();
     let done: Vec<(usize, Examination)> =
         (0..count).into_par_iter().map(|index| (index, examine(seed, index))).collect();
@@ -177,7 +177,7 @@ fn difference(a: &Found, b: &Found, smallest: f64) -> f64 {
     (a.objective - b.objective).abs() / a.objective.abs().max(b.objective.abs()).max(smallest).max(f64::MIN_POSITIVE)
 }
 
-fn collect(done: &[(usize, Examination)], seconds: f64) -> Report {
+fn collect(done: &[(usize, Examination)], seconds: f64) -> RandomReport {
     let mut short = Vec::new();
     let mut counts = Counts::default();
     let mut families = Family::ALL.map(|family| (format!("{family:?}"), Counts::default()));
@@ -188,7 +188,7 @@ fn collect(done: &[(usize, Examination)], seconds: f64) -> Report {
         counts.add(&one);
         families[position].1.add(&one);
     }
-    Report { counts, seconds, families: families.into(), short }
+    RandomReport { counts, seconds, families: families.into(), short }
 }
 
 /// The counts of one scene; `short` hears what fell short.

@@ -23,7 +23,7 @@ const TOLERANCE: f64 = 1e-12;
 /// A state that a path found.
 #[derive(Debug, Clone)]
 pub struct Found {
-    /// Who found it.
+    /// Name of the solver.
     pub path: String,
     /// Θ.
     pub objective: f64,
@@ -36,7 +36,7 @@ pub struct Found {
 }
 
 /// A path's state, or why it found none.
-pub type Outcome = Result<Found, String>;
+pub type PathResult = Result<Found, String>;
 
 /// The problem of a random scene with all that its paths share.
 pub struct Examined {
@@ -53,10 +53,10 @@ impl Examined {
     /// Prepares a case.
     ///
     /// # Errors
-    /// In words, when the scene describes no problem.
+    /// Returns a message when the scene describes no problem.
     pub fn new(case: &Case) -> Result<Self, String> {
-        let words = |error: contact::error::SceneError| error.to_string();
-        let problem = Arc::new(ContactProblem::new(case.scene.clone()).map_err(words)?);
+        let message = |error: contact::error::SceneError| error.to_string();
+        let problem = Arc::new(ContactProblem::new(case.scene.clone()).map_err(message)?);
         let points: usize = case.scene.control_points.iter().product();
         let controls = case.start.clone().unwrap_or_else(|| vec![case.scene.start_height; points]);
         let contact = DirectSolver::new(Arc::clone(&problem)).and_then(|solver| solver.contact(&controls));
@@ -82,11 +82,11 @@ impl Examined {
     }
 
     /// The state by a contact solver.
-    pub fn by(&self, kind: SolverKind) -> Outcome {
+    pub fn by(&self, kind: SolverKind) -> PathResult {
         self.at(kind, &self.controls)
     }
 
-    fn at(&self, kind: SolverKind, controls: &[f64]) -> Outcome {
+    fn at(&self, kind: SolverKind, controls: &[f64]) -> PathResult {
         let solver = AnySolver::new(
             Arc::clone(&self.problem),
             kind,
@@ -116,9 +116,10 @@ impl Examined {
         })
     }
 
-    /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without its limit
-    /// on work, and so is its residual; the residuals of the other paths are computed by a routine of the study.
-    pub fn by_cone_programs(&self) -> Outcome {
+    /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without
+    /// its limit on work, and so is its residual; the residuals of the other paths are computed by a routine of the
+    /// study.
+    pub fn by_cone_programs(&self) -> PathResult {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));
         let contact = solver.and_then(|solver| solver.contact(&self.controls));
@@ -144,7 +145,8 @@ impl Examined {
         points.zip(normal).map(|(point, force)| (force.max(0.0) / point.area).powi(EXPONENT)).sum()
     }
 
-    /// The residual of given forces in the problem condensed anew: equilibrium of the bodies, contact law at every node.
+    /// The residual of given forces in the problem condensed anew: equilibrium of the bodies, contact law at every
+    /// node.
     fn residual(&self, forces: &ContactForces) -> f64 {
         let Ok(contact) = &self.contact else { return f64::NAN };
         let (boundary, length) = (&self.problem.boundary, contact.unit * contact.load);

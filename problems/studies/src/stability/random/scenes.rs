@@ -4,7 +4,8 @@
 //! log₁₀(stiffness × gap range / load) ∈ [−1, 7],   𝓕 = 0 in a third of the scenes, else ∈ [0, 3],   ν ∈ [−0.9, 0.4999],
 //! longest over shortest edge of a brick ≤ 1000,   3 … 8 bricks per edge
 //! ```
-//! Stiffness is E times the mean edge of the base, the gap range that of the obstacle over the start, the load the largest force.
+//! Stiffness is E times the mean edge of the base, the gap range that of the obstacle over the start, the load the
+//! largest force.
 
 use std::fmt::Write;
 use testset::kit::Random;
@@ -151,7 +152,8 @@ fn obstacle(text: &mut String, family: Family, sizes: &Sizes, random: &mut Rando
     let (kind, height) = (random.below(4), top + gap);
     let _ = match (family, kind) {
         (_, 0) => {
-            // A sphere over the corner (0, 0) whose height over the base varies by the range; it must reach over the base.
+            // A sphere over the corner (0, 0) whose height over the base varies by the range; it must reach over the
+            // base.
             let radius = ((a * a + b * b) / (2.0 * range)).max(1.01 * a.hypot(b));
             write!(text, "[counter_surface]\nform = \"sphere\"\napex = {height:e}\nradius = {radius:e}\n\n")
         }

@@ -1,8 +1,8 @@
-//! Closed forms against enumeration, differences, grids and the definition of the Clarke set.
+//! The toy: closed forms against enumeration, differences, grids and the definition of the Clarke set.
 
-use super::*;
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
-use nonsmooth::{Accuracy, Coderivative, Cost, NonsmoothObjective, Request, StateSolver};
+use nonsmooth::{Accuracy, Coderivative, Cost, NonsmoothObjective, Request, StateSolver, Vector};
+use problems::toy::*;
 use proptest::prelude::*;
 
 const STATUSES: [NodeStatus; 4] =
@@ -191,8 +191,8 @@ proptest! {
         prop_assert!((&vertices[0] - subgradient).norm() < 1e-12);
     }
 
-    /// On a kink line, or where two cross: the returned element lies in the hull, the corners are the limits of gradients
-    /// from all sides, and every gradient nearby is close to a corner.
+    /// On a kink line, or where two cross: the returned element lies in the hull, the corners are the limits of
+    /// gradients from all sides, and every gradient nearby is close to a corner.
     #[test]
     fn subgradient_on_a_kink_lies_in_the_clarke_set(
         first in 0..3_usize, second in 0..4_usize, free in -3.5..5.5_f64,
@@ -219,8 +219,8 @@ proptest! {
         prop_assert!(seen.iter().all(|seen| *seen));
     }
 
-    /// The proof of the module head: every limiting gradient points away from the minimiser, so no other point of the box is
-    /// stationary.
+    /// The proof of the module head: every limiting gradient points away from the minimiser, so no other point of the
+    /// box is stationary.
     #[test]
     fn gradients_point_away_from_the_minimiser(control in any_control()) {
         points_away(&control)?;

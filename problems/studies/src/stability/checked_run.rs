@@ -4,15 +4,15 @@ use crate::stability::case::Case;
 use crate::stability::contact::{
     Attempt, ContactCase, Expected, Found, LimitKinds, by_condensation, by_successive_approximations, by_tfeti,
 };
-use crate::stability::record::{Outcome, Path, Record};
+use crate::stability::record::{CaseOutcome, Path, Record};
 use contact::equilibrium::{ContactForces, ContactProblem};
 use std::sync::Arc;
 
-/// Largest relative residual of a solved state. A Newton residual of 1e-9 is accepted where rounding stops a solver; residuals in
-/// other norms may be four times as large. The solvers themselves refuse a state only above 1e-8.
+/// Largest relative residual of a solved state. A Newton residual of 1e-9 is accepted where rounding stops a solver;
+/// residuals in other norms may be four times as large. The solvers themselves refuse a state only above 1e-8.
 const CERTIFICATE: f64 = 4e-9;
-/// Largest difference of forces between independent paths, over the largest force. Forces are less accurate than residuals
-/// by the condition of the problem.
+/// Largest difference of forces between independent paths, over the largest force. Forces are less accurate than
+/// residuals by the condition of the problem.
 const AGREEMENT: f64 = 1e-6;
 /// Largest difference of shape sensitivities.
 const SUBGRADIENT_AGREEMENT: f64 = 1e-4;
@@ -27,7 +27,7 @@ impl ContactCase {
     }
 }
 
-/// Runs a contact case by all its paths and judges what they did.
+/// Runs a contact case by all its paths and checks their results.
 fn record(case: &ContactCase) -> Record {
     let mut record = Record::default();
     let scene = case.scene.as_ref().map_err(ToString::to_string);
@@ -62,7 +62,7 @@ fn verdict(
     case: &ContactCase,
     record: &mut Record,
     [torn, direct]: [Option<&Found>; 2],
-) -> (Outcome, String) {
+) -> (CaseOutcome, String) {
     match &case.expected {
         Expected::Refused(kind) => refused(kind, &record.paths),
         Expected::Limit(kinds, cause) if torn.is_none() || direct.is_none() => {
@@ -70,8 +70,8 @@ fn verdict(
         }
         // At the edge of double precision a known limit may be solved after all: then it is.
         Expected::Solved | Expected::Limit(..) => match solved(problem, case, record, torn, direct) {
-            Ok(remark) => (Outcome::Solved, remark),
-            Err(remark) => (Outcome::Broken, remark),
+            Ok(remark) => (CaseOutcome::Solved, remark),
+            Err(remark) => (CaseOutcome::Broken, remark),
         },
     }
 }
@@ -82,10 +82,11 @@ fn compare_with_paper(record: &mut Record, (path, found): Attempt, torn: Option<
     let text = match (&found, torn) {
         (Some(found), Some(torn)) => {
             let difference = force_difference(&found.forces, &torn.forces);
-            // An accurate pressure costs accuracy of the residual; where Φ does not contract, another equilibrium is one.
+            // An accurate pressure costs accuracy of the residual; where Φ does not contract, another equilibrium is
+            // one.
             let contracts = record.contraction.is_none_or(|factor| factor < 1.0);
             if contracts && difference > 100.0 * AGREEMENT {
-                record.outcome = Outcome::Broken;
+                record.outcome = CaseOutcome::Broken;
             }
             format!("{reason}, forces differ by {difference:.1e}")
         }
@@ -102,7 +103,7 @@ fn join(first: &str, second: &str) -> String {
 /// A scene that is refused before any solver sees it.
 fn refused_scene(mut record: Record, case: &ContactCase, reason: String) -> Record {
     let expected = matches!(case.expected, Expected::Refused("Scene"));
-    record.outcome = if expected { Outcome::Refused } else { Outcome::Broken };
+    record.outcome = if expected { CaseOutcome::Refused } else { CaseOutcome::Broken };
     record.remark = reason;
     record
 }
@@ -118,15 +119,20 @@ fn reasons(paths: &[Path]) -> String {
     texts.join("; ")
 }
 
-fn refused(kind: &str, paths: &[Path]) -> (Outcome, String) {
+fn refused(kind: &str, paths: &[Path]) -> (CaseOutcome, String) {
     if paths.iter().all(|path| path.refusal.as_deref() == Some(kind)) {
         let reason = paths[0].reason.clone().unwrap_or_default();
-        return (Outcome::Refused, format!("{kind}: {reason}"));
+        return (CaseOutcome::Refused, format!("{kind}: {reason}"));
     }
-    (Outcome::Broken, reasons(paths))
+    (CaseOutcome::Broken, reasons(paths))
 }
 
-fn limit(kinds: &LimitKinds, cause: &str, record: &Record, found: Option<Result<String, String>>) -> (Outcome, String) {
+fn limit(
+    kinds: &LimitKinds,
+    cause: &str,
+    record: &Record,
+    found: Option<Result<String, String>>,
+) -> (CaseOutcome, String) {
     let paths = &record.paths;
     let certified = record.largest_residual().is_none_or(|residual| residual <= CERTIFICATE);
     if !certified
@@ -135,15 +141,15 @@ fn limit(kinds: &LimitKinds, cause: &str, record: &Record, found: Option<Result<
             .zip(kinds)
             .any(|(path, kinds)| !path.refusal.as_deref().map_or(kinds.is_empty(), |kind| kinds.contains(&kind)))
     {
-        return (Outcome::Broken, reasons(paths));
+        return (CaseOutcome::Broken, reasons(paths));
     }
     match found.transpose() {
         Ok(finding) => {
             let did = |path: &Path| format!("{}: {}", path.solver, path.refusal.as_deref().unwrap_or("a state"));
             let did: Vec<String> = paths.iter().map(did).collect();
-            (Outcome::Limit, join(&format!("{}; {cause}", did.join(", ")), &finding.unwrap_or_default()))
+            (CaseOutcome::Limit, join(&format!("{}; {cause}", did.join(", ")), &finding.unwrap_or_default()))
         }
-        Err(wrong) => (Outcome::Broken, join(&wrong, &reasons(paths))),
+        Err(wrong) => (CaseOutcome::Broken, join(&wrong, &reasons(paths))),
     }
 }
 

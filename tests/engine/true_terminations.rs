@@ -1,4 +1,4 @@
-//! The last word of a run is true, whatever the start, a shift, units, a wide side, failures and huge answers.
+//! The termination of a run is true, whatever the start, a shift, units, a wide side, failures and huge answers.
 use crate::common::{Inaccurate, maximum, median, nearby_starts, v};
 use nonsmooth::{
     Answer, BundleTrust, BundleTrustConfig, Convexity, Evaluation, FnObjective, NonsmoothObjective, OracleError,
@@ -37,7 +37,8 @@ fn convex() -> Vec<Problem> {
     testset::all().into_iter().filter(|problem| problem.convex && problem.family == Family::Unconstrained).collect()
 }
 
-/// Evaluations are medians over starts that differ by 1e-13; the words are those of the start of the collection.
+/// Evaluations are medians over starts that differ by 1e-13; the terminations are those from the start of the
+/// collection.
 #[test]
 fn a_convex_function_is_confirmed_by_its_bound_without_restarts() {
     let (mut evaluations, mut needed) = (0.0, 0.0);
@@ -186,7 +187,8 @@ fn a_report_prints_its_solution() {
 
 #[test]
 fn a_valley_is_not_confirmed_because_its_start_lay_far_away() {
-    // Slopes across are two hundred times those along; the starts lie 1e6 times as far away as the minimum, 1 at (0.5, 0.125, …).
+    // Slopes across are two hundred times those along; the starts lie 1e6 times as far away as the minimum, 1 at (0.5,
+    // 0.125, …).
     let valley = FnObjective::new(4, |x: &Vector| {
         let (mut value, mut slope) = (1.0 + (x[0] - 0.5).abs(), Vector::zeros(4));
         slope[0] = (x[0] - 0.5).signum();
@@ -208,7 +210,8 @@ fn a_valley_is_not_confirmed_because_its_start_lay_far_away() {
 
 #[test]
 fn a_convex_bound_is_small_beside_more_than_a_far_start() {
-    // The largest of n + 1 quadratics whose slopes at their common zero cancel: the minimum is 0. Starts lie 1e6 times as far away as it.
+    // The largest of n + 1 quadratics whose slopes at their common zero cancel: the minimum is 0. Starts lie 1e6 times
+    // as far away as it.
     let above = (0..80).filter(|seed| {
         let n = 2 + seed % 3;
         let number = |index: usize| ((131 * seed + 17 * index + 1) as f64 * 0.618).sin();
@@ -236,7 +239,8 @@ fn a_convex_bound_is_small_beside_more_than_a_far_start() {
     assert!(above.count() <= 1);
 }
 
-/// exp(x) − 2x + |x − ½| from zero, scaled and shifted: the first step follows from Θ(0) and is 5e13, where the function overflows.
+/// exp(x) − 2x + |x − ½| from zero, scaled and shifted: the first step follows from Θ(0) and is 5e13, where the
+/// function overflows.
 #[test]
 fn a_shift_does_not_end_a_run_from_zero_by_failures() {
     for shift in [1e8, -1e8] {
@@ -248,13 +252,14 @@ fn a_shift_does_not_end_a_run_from_zero_by_failures() {
         let config = BundleTrustConfig { convexity: Convexity::Convex, max_evaluations: 1000, ..Default::default() };
         let report = BundleTrust::new(config).unwrap().minimize(&theta, v(&[0.0])).unwrap();
         let gap = (report.value - shift) / 1e-6 - (0.5_f64.exp() - 1.0);
-        // Values are told to 1.5e-8, which is 0.015 of the unscaled function; the run may end where twelve such steps are left.
+        // Values are told to 1.5e-8, which is 0.015 of the unscaled function; the run may end where twelve such steps
+        // are left.
         assert!(gap <= 0.18 && !matches!(report.termination, Termination::OracleFailing { .. }), "{gap:e} {report}");
     }
 }
 
-/// Σ w_i |x_i − m_i| + 1 with slopes and distances of very different size, from starts near zero: what a variable that has hardly moved can
-/// still gain, its own value does not tell.
+/// Σ w_i |x_i − m_i| + 1 with slopes and distances of very different size, from starts near zero: what a variable that
+/// has hardly moved can still gain, its own value does not tell.
 #[test]
 fn a_variable_that_has_hardly_moved_is_not_at_its_minimum() {
     let ends = |weights: &[f64], minimiser: &[f64], start: Vector, side: f64| {
@@ -328,7 +333,8 @@ fn a_point_that_fails_is_not_proposed_again() {
     }
 }
 
-/// Beside a shift of 1e8, values have eight digits. They hide decreases, but a noise limit is said only where the gap is as small.
+/// Beside a shift of 1e8, values have eight digits. They hide decreases, but a noise limit is said only where the gap
+/// is as small.
 #[test]
 fn a_shift_makes_no_noise_limit_far_from_the_minimum() {
     const SHIFT: f64 = 1e8;
@@ -337,10 +343,10 @@ fn a_shift_makes_no_noise_limit_far_from_the_minimum() {
         for start in 0..12 {
             let start = v(&[3.0 * (1.1 * f64::from(start)).sin(), 3.0 * (2.3 * f64::from(start)).cos()]);
             let valley = |x: &Vector| {
-                let bend = x[0] * x[0] - x[1];
-                let slope = steepness * bend.signum();
+                let residual = x[0] * x[0] - x[1];
+                let slope = steepness * residual.signum();
                 let slopes = v(&[2.0 * slope * x[0] - 2.0 * (1.0 - x[0]), -slope]);
-                (steepness * bend.abs() + (1.0 - x[0]).powi(2), slopes)
+                (steepness * residual.abs() + (1.0 - x[0]).powi(2), slopes)
             };
             let shifted = FnObjective::new(2, |x: &Vector| {
                 let (value, slope) = valley(x);
@@ -359,8 +365,8 @@ fn a_shift_makes_no_noise_limit_far_from_the_minimum() {
     assert!(solved >= 28, "{noise_limits} noise limits, {solved} solved");
 }
 
-/// 10 max x_i + ‖x‖²/2 has its minimum −2.5 for 20 variables. At the start 0 its value is a rounding, an error or noise, from which no
-/// length of a first step can be told.
+/// 10 max x_i + ‖x‖²/2 has its minimum −2.5 for 20 variables. At the start 0 its value is a rounding, an error or
+/// noise, from which no length of a first step can be told.
 #[test]
 fn a_start_at_zero_with_hardly_a_value_is_left() {
     let problem = testset::all().into_iter().find(|problem| problem.name == "NesterovWorst_20").unwrap();

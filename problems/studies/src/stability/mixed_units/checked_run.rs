@@ -22,7 +22,8 @@ use std::time::{Duration, Instant};
 
 /// Evaluations of a run.
 const MAX_EVALUATIONS: usize = 1000;
-/// Time of a run, which usually takes a hundredth of a second: no run may hang, and steps without evaluations have no limit.
+/// Time of a run, which usually takes a hundredth of a second: no run may hang, and steps without evaluations have no
+/// limit.
 const LONGEST_RUN: Duration = Duration::from_secs(30);
 /// Largest excess of a confirmed end, relative to the size of Θ.
 const GAP: f64 = 1e-5;
@@ -33,7 +34,7 @@ const ROUNDING: f64 = 1e-13;
 /// Relative violation of the set that counts as rounding.
 const VIOLATION: f64 = 1e-9;
 
-/// One run and its judgement.
+/// One run and what it claims.
 #[derive(Debug, Clone, Serialize)]
 pub struct UnitRecord {
     /// Name of the run; `--only` with it takes this run alone.
@@ -63,10 +64,10 @@ pub struct UnitRecord {
     /// Whether the minimum is reached.
     pub reached: bool,
     /// What is false about a confirmed end.
-    pub false_word: Option<&'static str>,
+    pub false_termination: Option<&'static str>,
     /// Evaluations of the run.
     pub evaluations: usize,
-    /// The end in words.
+    /// The text of the termination.
     pub termination: String,
 }
 
@@ -76,9 +77,9 @@ impl UnitRecord {
         self.given != Given::Nothing
     }
 
-    /// Whether the word is false, the minimum is not reached, or nothing is said about it.
+    /// Whether the termination is false, or the minimum is not reached, or the run does not state that it is reached.
     pub fn is_bad(&self) -> bool {
-        self.false_word.is_some() || !self.reached || !self.said
+        self.false_termination.is_some() || !self.reached || !self.said
     }
 }
 
@@ -106,7 +107,7 @@ fn start_point(case: &UnitCase, truth: &Truth, index: usize) -> Vector {
 }
 
 /// A run of which nothing is known yet.
-fn unjudged(case: &UnitCase, truth: &Truth, given: Given, index: usize) -> UnitRecord {
+fn unchecked(case: &UnitCase, truth: &Truth, given: Given, index: usize) -> UnitRecord {
     UnitRecord {
         name: case.name(given, index),
         family: case.problem.family,
@@ -121,7 +122,7 @@ fn unjudged(case: &UnitCase, truth: &Truth, given: Given, index: usize) -> UnitR
         gap: None,
         said: false,
         reached: false,
-        false_word: None,
+        false_termination: None,
         evaluations: 0,
         termination: String::new(),
     }
@@ -131,8 +132,8 @@ fn unjudged(case: &UnitCase, truth: &Truth, given: Given, index: usize) -> UnitR
 ///
 /// # Errors
 /// [`InputError`] if the problem cannot be posed.
-pub fn judged(case: &UnitCase, truth: &Truth, given: Given, index: usize) -> Result<UnitRecord, InputError> {
-    let mut record = unjudged(case, truth, given, index);
+pub fn checked(case: &UnitCase, truth: &Truth, given: Given, index: usize) -> Result<UnitRecord, InputError> {
+    let mut record = unchecked(case, truth, given, index);
     let function = case.problem.function.in_units(&case.units);
     let set = case.problem.set(&case.units)?;
     let start = start_point(case, truth, index).component_mul(&case.units);
@@ -140,14 +141,14 @@ pub fn judged(case: &UnitCase, truth: &Truth, given: Given, index: usize) -> Res
     let begin = Instant::now();
     let late = move || begin.elapsed() > LONGEST_RUN;
     match watched(late, || minimise(&shifted, set.clone(), start, given)) {
-        Ok(report) => judge(&mut record, truth, &function, &set, &report),
+        Ok(report) => check(&mut record, truth, &function, &set, &report),
         Err(error) => record.termination = format!("refused: {error}"),
     }
     Ok(record)
 }
 
 /// Compares the end of a run with the truth.
-fn judge(record: &mut UnitRecord, truth: &Truth, function: &Function, set: &Polyhedron, report: &Report) {
+fn check(record: &mut UnitRecord, truth: &Truth, function: &Function, set: &Polyhedron, report: &Report) {
     record.value = function.value(&report.solution);
     let above = record.value - truth.minimum;
     let size = (report.start_value - record.offset - truth.minimum).max(truth.rise);
@@ -161,7 +162,7 @@ fn judge(record: &mut UnitRecord, truth: &Truth, function: &Function, set: &Poly
     record.excess = above / size;
     record.said = report.termination.is_confirmed();
     record.reached = above <= REACHED * size + rounding;
-    record.false_word = match () {
+    record.false_termination = match () {
         () if !record.said => None,
         () if above.is_nan() || above > GAP * size + rounding => Some("value above the minimum"),
         () if bound.is_some_and(|gap| above > gap + rounding) => Some("gap too small"),

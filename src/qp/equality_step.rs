@@ -5,9 +5,9 @@
 //! residuals   r = −(H d + Nᵀ λ),  ρ = b − N d + s v,  σ = 1 − sᵀ λ
 //! correction  q = H⁻¹ r,  (ÃᵀÃ) δλ + s δ = N q − ρ,  sᵀ δλ = σ,  δv = δ + c² σ,  δd = q − H⁻¹ Nᵀ δλ
 //! ```
-//! The residuals are formed from the data of the QP at the current (d, v, λ), so every pass refines the one before. The step
-//! d is a variable of its own, not a function of λ: with a small H the rounding of λ alone would move it by eps |g| / H.
-//! The ratio test makes each pass an ascent of the dual objective: multipliers that are dual feasible stay so.
+//! The residuals are formed from the data of the QP at the current (d, v, λ), so every pass refines the one before. The
+//! step d is a variable of its own, not a function of λ: with a small H the rounding of λ alone would move it by eps
+//! |g| / H. The ratio test makes each pass an ascent of the dual objective: multipliers that are dual feasible stay so.
 
 use crate::Vector;
 
@@ -43,7 +43,7 @@ const ROUNDING: f64 = 2e-15;
 
 impl WorkingSet<'_> {
     /// Moves to the equality solution; on return all multipliers have their right sign.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn solve_equalities(&mut self) {
         let mut full_passes = 0;
         let mut previous = f64::INFINITY;
         loop {
@@ -173,8 +173,9 @@ impl WorkingSet<'_> {
         Correction { general, fixed, step, epigraph: shift + self.cut_entry * self.cut_entry * deficit }
     }
 
-    /// The only cut held does not leave: its multiplier is one. Where v is large beside the square of its column, rounding may change that
-    /// multiplier by more than one. What the other changes owe to that rounding, later passes repair.
+    /// The only cut held does not leave: its multiplier is one. Where v is large beside the square of its column,
+    /// rounding may change that multiplier by more than one. What the other changes owe to that rounding, later passes
+    /// repair.
     fn keep_only_cut(&self, changes: &mut [f64], deficit: f64) {
         let mut cuts = self.general.iter().zip(changes).filter(|(active, _)| matches!(active.member, Member::Cut(_)));
         if let (Some((active, change)), None) = (cuts.next(), cuts.next())

@@ -1,9 +1,11 @@
-//! What the optimizer says at the end of a run, held against what is true: the collection in all its variants.
+//! Terminations of the optimizer on the collection in all its variants, compared with known minima and stationary
+//! points.
 //!
-//! A termination is false if it is *confirmed* above the gap, unless the function is not convex and true gradients prove Clarke
-//! stationarity, or it is convex and the bound stated for a finite box holds; if it is *confirmed* where the oracle is noisy and says
-//! so; or if it is a *noise limit* of a convex function above ten times the noise. A failure is false if a run ends by a failure of
-//! the oracle or of the subproblem above the gap although the oracle answers at the best point.
+//! A termination is false if it is *confirmed* above the gap, unless the function is not convex and true gradients
+//! prove Clarke stationarity, or it is convex and the bound stated for a finite box holds; if it is *confirmed* where
+//! the oracle is noisy and says so; or if it is a *noise limit* of a convex function above ten times the noise. A
+//! failure is false if a run ends by a failure of the oracle or of the subproblem above the gap although the oracle
+//! answers at the best point.
 
 use crate::markdown::table;
 use crate::stability::optimizer_stationarity::is_clarke_stationary;
@@ -27,7 +29,7 @@ const NOISE_GAP: f64 = 10.0;
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Word {
+pub enum TerminationKind {
     /// Stationary, confirmed.
     Confirmed,
     /// Stationary, unconfirmed.
@@ -44,37 +46,36 @@ pub enum Word {
     NoStart,
 }
 
-/// One run and its judgement.
+/// One run and what it claims.
 #[derive(Debug, Clone, Serialize)]
-pub struct WordRecord {
+pub struct TerminationRecord {
     /// Name of the problem.
     pub problem: String,
-    /// What was changed.
     pub variant: Variant,
     /// Whether it is convex, and declared so.
     pub convex: bool,
-    /// The word at the end.
-    pub word: Word,
+    /// The kind of the termination.
+    pub kind: TerminationKind,
     /// (value − a f* − s)/a, relative to 1 + |f*|.
     pub gap: f64,
     /// Evaluations of the run.
     pub evaluations: usize,
     /// Evaluations to a gap of 1e-6.
     pub evaluations_to_gap: Option<usize>,
-    /// Whether the word claims what is not so.
+    /// Whether the termination claims something false.
     pub false_confirmed: bool,
     /// Whether it failed where the oracle answers.
     pub false_failure: bool,
-    /// The end in words.
+    /// The text of the termination.
     pub termination: String,
 }
 
 /// What all runs came to.
 #[derive(Debug, Clone, Serialize)]
-pub struct WordReport {
+pub struct TerminationReport {
     /// Runs whose start has a value.
     pub runs: usize,
-    /// Words that claim what is not so.
+    /// Terminations that claim something false.
     pub false_confirmed: usize,
     /// Failures where the oracle answers.
     pub false_failures: usize,
@@ -84,23 +85,23 @@ pub struct WordReport {
     pub all_confirmed: (usize, usize),
     /// Evaluations of the convex problems as they are, over those to a gap of 1e-6.
     pub convex_cost: f64,
-    /// Runs with a false word.
-    pub offenders: Vec<WordRecord>,
+    /// Runs with a false termination.
+    pub offenders: Vec<TerminationRecord>,
     /// All runs, in the order of the problems.
     #[serde(skip)]
-    pub records: Vec<WordRecord>,
+    pub records: Vec<TerminationRecord>,
 }
 
-fn run_one(problem: &Problem, variant: Variant) -> Result<WordRecord, InputError> {
+fn run_one(problem: &Problem, variant: Variant) -> Result<TerminationRecord, InputError> {
     let changed = Changed::new(problem, variant);
     let convex = problem.convex;
     let convexity = if convex { Convexity::Convex } else { Convexity::Unknown };
     let config = BundleTrustConfig { max_evaluations: MAX_EVALUATIONS, convexity, ..BundleTrustConfig::default() };
-    let mut record = WordRecord {
+    let mut record = TerminationRecord {
         problem: problem.name.clone(),
         variant,
         convex: problem.convex,
-        word: Word::NoStart,
+        kind: TerminationKind::NoStart,
         gap: f64::INFINITY,
         evaluations: 0,
         evaluations_to_gap: None,
@@ -110,13 +111,13 @@ fn run_one(problem: &Problem, variant: Variant) -> Result<WordRecord, InputError
     };
     let mut method = BundleTrust::new(config)?.constraints(changed.set()?);
     match method.minimize(&changed, changed.start()) {
-        Ok(report) => judge(&mut record, &changed, &report)?,
+        Ok(report) => check(&mut record, &changed, &report)?,
         Err(error) => record.termination = error.to_string(),
     }
     Ok(record)
 }
 
-fn judge(record: &mut WordRecord, changed: &Changed<'_>, report: &Report) -> Result<(), InputError> {
+fn check(record: &mut TerminationRecord, changed: &Changed<'_>, report: &Report) -> Result<(), InputError> {
     let (problem, variant) = (changed.problem, changed.variant);
     let size = 1.0 + problem.optimal_value.abs();
     let rounding = 4.0 * f64::EPSILON * variant.shift.abs() / variant.factor / size;
@@ -131,15 +132,15 @@ fn judge(record: &mut WordRecord, changed: &Changed<'_>, report: &Report) -> Res
     record.evaluations_to_gap =
         report.history.iter().find(|step| reached(step.center_value)).map(|step| step.evaluation);
     record.termination = report.termination.to_string();
-    record.word = match report.termination {
-        Termination::Stationary { .. } => Word::Confirmed,
-        Termination::StationaryUnconfirmed { .. } => Word::Unconfirmed,
-        Termination::NoiseLimit { .. } => Word::Noise,
-        Termination::StepTooShort { .. } => Word::Short,
+    record.kind = match report.termination {
+        Termination::Stationary { .. } => TerminationKind::Confirmed,
+        Termination::StationaryUnconfirmed { .. } => TerminationKind::Unconfirmed,
+        Termination::NoiseLimit { .. } => TerminationKind::Noise,
+        Termination::StepTooShort { .. } => TerminationKind::Short,
         Termination::OracleFailing { .. }
         | Termination::OracleContradiction { .. }
-        | Termination::SubproblemFailed { .. } => Word::Failed,
-        _ => Word::Limit,
+        | Termination::SubproblemFailed { .. } => TerminationKind::Failed,
+        _ => TerminationKind::Limit,
     };
     let above = record.gap > GAP + rounding;
     // In a finite box the bound is a proof; it is relative to the values as they are, shift included.
@@ -150,24 +151,25 @@ fn judge(record: &mut WordRecord, changed: &Changed<'_>, report: &Report) -> Res
         }
         _ => false,
     };
-    record.false_confirmed = match record.word {
-        Word::Confirmed if !noisy => {
+    record.false_confirmed = match record.kind {
+        TerminationKind::Confirmed if !noisy => {
             above && !proved && (record.convex || !is_clarke_stationary(changed, &report.solution)?)
         }
-        Word::Confirmed => noisy,
-        Word::Noise => noisy && record.convex && record.gap > NOISE_GAP * variant.noise,
+        TerminationKind::Confirmed => noisy,
+        TerminationKind::Noise => noisy && record.convex && record.gap > NOISE_GAP * variant.noise,
         _ => false,
     };
     let answers = || (0..2).any(|_| changed.evaluate(&Request::tight(&report.solution)).is_ok());
-    record.false_failure = record.word == Word::Failed && above && answers();
+    record.false_failure = record.kind == TerminationKind::Failed && above && answers();
     Ok(())
 }
 
-/// Runs the variants that `take` selects by their number, on all processors; the records are in the order of the problems.
+/// Runs the variants that `take` selects by their number, on all processors; the records are in the order of the
+/// problems.
 ///
 /// # Errors
 /// [`InputError`] if a problem of the collection cannot be posed.
-pub fn words(take: impl Fn(usize) -> bool) -> Result<WordReport, InputError> {
+pub fn terminations(take: impl Fn(usize) -> bool) -> Result<TerminationReport, InputError> {
     let problems = testset::all();
     let jobs: Vec<(&Problem, Variant)> =
         problems.iter().flat_map(|problem| variants().into_iter().map(move |variant| (problem, variant))).collect();
@@ -176,19 +178,19 @@ pub fn words(take: impl Fn(usize) -> bool) -> Result<WordReport, InputError> {
     Ok(summarize(records.collect::<Result<_, _>>()?))
 }
 
-fn summarize(records: Vec<WordRecord>) -> WordReport {
-    let started = || records.iter().filter(|record| record.word != Word::NoStart);
+fn summarize(records: Vec<TerminationRecord>) -> TerminationReport {
+    let started = || records.iter().filter(|record| record.kind != TerminationKind::NoStart);
     let plain = || records.iter().filter(|record| record.variant == Variant::PLAIN);
     let confirmed = |convex: bool| {
         let of = || plain().filter(move |record| record.convex || !convex);
-        (of().filter(|record| record.word == Word::Confirmed).count(), of().count())
+        (of().filter(|record| record.kind == TerminationKind::Confirmed).count(), of().count())
     };
     let solved: Vec<(usize, usize)> = plain()
         .filter(|record| record.convex)
         .filter_map(|record| Some((record.evaluations, record.evaluations_to_gap?)))
         .collect();
     let total = |of: fn(&(usize, usize)) -> usize| solved.iter().map(of).sum::<usize>() as f64;
-    WordReport {
+    TerminationReport {
         runs: started().count(),
         false_confirmed: started().filter(|record| record.false_confirmed).count(),
         false_failures: started().filter(|record| record.false_failure).count(),
@@ -201,7 +203,7 @@ fn summarize(records: Vec<WordRecord>) -> WordReport {
 }
 
 /// Totals, and how the runs of each kind of change ended.
-pub fn markdown(report: &WordReport) -> String {
+pub fn markdown(report: &TerminationReport) -> String {
     let text = format!(
         "{} runs, {} false confirmed, {} false failures. As they are: {} of {} convex problems confirmed, {} of {} of all; \
          evaluations of the convex ones {:.3} × those to 1e-6.\n\n",
@@ -220,10 +222,17 @@ pub fn markdown(report: &WordReport) -> String {
             groups.push(record.variant.group());
         }
     }
-    let words = [Word::Confirmed, Word::Unconfirmed, Word::Noise, Word::Short, Word::Failed, Word::Limit];
+    let kinds = [
+        TerminationKind::Confirmed,
+        TerminationKind::Unconfirmed,
+        TerminationKind::Noise,
+        TerminationKind::Short,
+        TerminationKind::Failed,
+        TerminationKind::Limit,
+    ];
     let rows = groups.into_iter().map(|group| {
-        let of = || report.records.iter().filter(|r| r.variant.group() == group && r.word != Word::NoStart);
-        let counts = words.map(|word| of().filter(|record| record.word == word).count());
+        let of = || report.records.iter().filter(|r| r.variant.group() == group && r.kind != TerminationKind::NoStart);
+        let counts = kinds.map(|kind| of().filter(|record| record.kind == kind).count());
         let wrong = of().filter(|record| record.false_confirmed || record.false_failure).count();
         let numbers = [&[of().count()], &counts[..], &[wrong]].concat();
         std::iter::once(group.to_owned()).chain(numbers.iter().map(usize::to_string)).collect()

@@ -15,7 +15,7 @@ const TOP: f64 = 72.0;
 
 /// Panels side by side.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Plan {
+pub(super) struct PanelLayout {
     pub frames: Vec<Frame>,
     /// Room for the labels of the vertical axis; none where the panel before has the same axis.
     pub labelled: Vec<Option<f64>>,
@@ -27,7 +27,7 @@ pub(super) struct Plan {
     pub foot: f64,
 }
 
-impl Plan {
+impl PanelLayout {
     /// Panels over some grids, each with room for its captions and for something behind it.
     pub fn new(grids: &[PlaneGrid], captions: &[[String; 2]], behind: f64) -> Self {
         let same =
@@ -73,7 +73,7 @@ impl Plan {
     }
 }
 
-/// Sides in points.
+/// Width and height of a panel, points.
 fn sides([first, second]: [f64; 2]) -> [f64; 2] {
     let ratio = (second / first).clamp(MIN_SIDE_RATIO, 1.0 / MIN_SIDE_RATIO);
     if ratio > 1.0 { [SIDE / ratio, SIDE] } else { [SIDE, SIDE * ratio] }
