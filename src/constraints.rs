@@ -116,6 +116,19 @@ impl Polyhedron {
         self
     }
 
+    /// The set with some of its linearizations only, given by their positions among them.
+    pub(crate) fn with_tangents_kept(&self, kept: &[usize]) -> Self {
+        let own = self.rows.nrows() - self.tangents;
+        let rows: Vec<usize> = (0..own).chain(kept.iter().map(|i| own + i)).collect();
+        Self {
+            rows: self.rows.select_rows(&rows),
+            row_lower: self.row_lower.select_rows(&rows),
+            row_upper: self.row_upper.select_rows(&rows),
+            tangents: kept.len(),
+            ..self.clone()
+        }
+    }
+
     /// Number of the last rows that are linearizations at a center.
     pub(crate) fn tangents(&self) -> usize {
         self.tangents

@@ -24,6 +24,13 @@ pub enum ConstraintKind {
     SmoothEquality,
 }
 
+impl ConstraintKind {
+    /// By how much a value violates the constraint: c⁺, or |c| for an equality.
+    pub fn violation(self, value: f64) -> f64 {
+        if self == Self::SmoothEquality { value.abs() } else { value.max(0.0) }
+    }
+}
+
 /// A further linearization of a constraint at the point of an evaluation: c_j(y) ≥ value + ⟨gradient, y − x⟩ up to second order for one of
 /// the pieces of which c_j is the maximum.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

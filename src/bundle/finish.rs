@@ -18,13 +18,20 @@ impl Run<'_, '_> {
         };
         let certificate = proof.map(|proof| self.certificate(&proof));
         let seconds = self.clock.elapsed().as_secs_f64();
+        let multipliers =
+            certificate.as_ref().and_then(|proof: &Certificate| Some(proof.constraints.as_ref()?.multipliers()));
         let state = self.state;
+        let known = state.constraints.as_deref();
+        let constraints = known.map(|known| known.report(known.at_center(), multipliers.as_ref())).unwrap_or_default();
+        let penalty = known.map(|known| known.penalty);
         Report {
             solution: state.center,
             value: state.center_value,
             start_value: state.start_value,
             termination: self.termination.unwrap_or(Termination::Unfinished),
             certificate,
+            constraints,
+            penalty,
             counts: state.counts,
             largest_violation: state.history.iter().map(|record| record.violation).fold(0.0, f64::max),
             history: state.history,
@@ -44,7 +51,16 @@ impl Run<'_, '_> {
                     | Termination::NoiseLimit { .. }
             )
         );
-        if !about_center && self.state.move_to_lowest() {
+        let resolution = self.ask(|_, at| at.resolution().tolerance());
+        let confirmed = self.termination.as_ref().is_some_and(Termination::is_confirmed);
+        let moved = match &mut self.state.constraints {
+            Some(constraints) => !confirmed && constraints.best_is_better(if about_center { resolution } else { 0.0 }),
+            None => !about_center && self.state.move_to_lowest(),
+        };
+        if moved && self.state.constraints.is_some() {
+            self.state.move_to_best();
+        }
+        if moved {
             self.proof = None;
             self.ask(|proposers, at| proposers.recenter(at, None));
         }
@@ -64,6 +80,10 @@ impl Run<'_, '_> {
         let noise = self.ask(|_, at| at.resolution().noise_level);
         let state = &self.state;
         let radius = active_cuts(state, proposal).map(|cut| cut.farthest_from(&state.center, &state.norm));
+        let constraints = state.constraints.as_deref().map(|known| known.proof(proposal));
+        let of_constraints = constraints.iter().flat_map(|proof| &proof.cuts);
+        let of_constraints = of_constraints.map(|cut| cut.distance(&state.center, &state.norm)).fold(0.0, f64::max);
+        let own_rows = proposal.row_multipliers.len() - proposal.tangents.as_ref().map_or(0, |tangents| tangents.len());
         Certificate {
             point: state.center.clone(),
             value: state.center_value,
@@ -76,9 +96,10 @@ impl Run<'_, '_> {
             convex: self.method.config.convexity == Convexity::Convex,
             norm: state.norm.clone(),
             cuts: state.bundle.cuts().to_vec(),
-            row_multipliers: proposal.row_multipliers.clone(),
+            row_multipliers: proposal.row_multipliers.rows(0, own_rows).into_owned(),
+            constraints,
             bound_multipliers: proposal.bound_multipliers.clone(),
-            active_radius: radius.fold(0.0, f64::max),
+            active_radius: radius.fold(of_constraints, f64::max),
             noise,
             composite: None,
         }

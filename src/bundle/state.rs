@@ -225,6 +225,14 @@ impl BundleState {
         }
     }
 
+    /// Moves the center to the best point that the constraints know.
+    pub(crate) fn move_to_best(&mut self) {
+        let Some(constraints) = &mut self.constraints else { return };
+        constraints.move_to_best();
+        (self.center, self.center_value) = (constraints.best().point.clone(), constraints.best().objective);
+        (self.center_id, self.next_id) = (self.next_id, self.next_id + 1);
+    }
+
     /// The decrease of the run: from the highest value at the start or in the bundle, of the merit where there are constraints.
     pub(crate) fn drop(&self) -> f64 {
         match &self.constraints {

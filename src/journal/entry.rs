@@ -1,8 +1,8 @@
 //! One line of a journal: an evaluation as it was asked for and answered.
 
 use super::exact;
-use crate::Request;
 use crate::composite::LinearizationRequest;
+use crate::{ConstraintEvaluation, ConstraintPiece, Matrix, Request, Vector};
 use serde::{Deserialize, Serialize};
 
 /// The record of an evaluation.
@@ -59,6 +59,50 @@ pub enum RecordedLinearization {
     Failed(String),
 }
 
+/// A [`ConstraintEvaluation`] as it is written down.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordedConstraints {
+    /// The values.
+    #[serde(with = "exact")]
+    pub values: Vec<f64>,
+    /// The rows of the Jacobian, one after the other.
+    #[serde(with = "exact")]
+    pub rows: Vec<f64>,
+    /// Constraint, value and gradient of every piece.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pieces: Vec<(usize, f64, Vec<f64>)>,
+}
+
+impl From<&ConstraintEvaluation> for RecordedConstraints {
+    fn from(found: &ConstraintEvaluation) -> Self {
+        let pieces = found.pieces.iter();
+        Self {
+            values: found.values.as_slice().to_vec(),
+            rows: found.jacobian.transpose().as_slice().to_vec(),
+            pieces: pieces.map(|p| (p.constraint, p.value, p.gradient.as_slice().to_vec())).collect(),
+        }
+    }
+}
+
+impl RecordedConstraints {
+    /// The constraints of `dimension` variables.
+    pub(super) fn read(self, dimension: usize) -> ConstraintEvaluation {
+        let pieces = self.pieces.into_iter();
+        ConstraintEvaluation {
+            jacobian: Matrix::from_row_slice(self.values.len(), dimension, &self.rows),
+            values: Vector::from_vec(self.values),
+            pieces: pieces
+                .map(|(constraint, value, gradient)| ConstraintPiece {
+                    constraint,
+                    value,
+                    gradient: Vector::from_vec(gradient),
+                })
+                .collect(),
+        }
+    }
+}
+
 /// What came of an evaluation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -81,6 +125,9 @@ pub enum RecordedAnswer {
         restart_data: bool,
         /// Outputs and Jacobian, if the oracle was asked for them and had an answer to that.
         linearization: Option<RecordedLinearization>,
+        /// The nonlinear constraints, if the objective has any.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        constraints: Option<RecordedConstraints>,
         /// Work that the evaluation took, in the oracle's unit.
         work: usize,
     },

@@ -1,11 +1,11 @@
 //! An objective that is answered from its journal as long as that lasts, and keeps what it computes after that.
 
-use super::entry::{Entry, RecordedAnswer, RecordedLinearization, RecordedRequest};
+use super::entry::{Entry, RecordedAnswer, RecordedConstraints, RecordedLinearization, RecordedRequest};
 use super::error::JournalError;
 use super::writer::Writer;
 use crate::composite::{Linearization, Linearized, OuterFunction};
 use crate::panics::evaluate_without_panic;
-use crate::{Answer, Evaluation, NonsmoothObjective, OracleError, Report, Request, Vector};
+use crate::{Answer, ConstraintKind, Evaluation, NonsmoothObjective, OracleError, Report, Request, Vector};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::cell::RefCell;
@@ -183,7 +183,8 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
 
     /// An answer of the oracle as it is written down, with the text of its restart data.
     fn record(&self, evaluation: usize, answer: &Answer<O::WarmStart>) -> (RecordedAnswer, Option<String>) {
-        let Evaluation { value, subgradient, error_bound, warm_start, linearization, work, .. } = answer.evaluation();
+        let Evaluation { value, subgradient, error_bound, warm_start, linearization, constraints, work } =
+            answer.evaluation();
         let (restart_data, text) = self.text(evaluation, warm_start);
         let recorded = RecordedAnswer::Evaluated {
             value: *value,
@@ -196,6 +197,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
                 Linearized::Known(_) => Some(RecordedLinearization::Stored),
                 Linearized::Unavailable(reason) => Some(RecordedLinearization::Failed(reason.clone())),
             },
+            constraints: constraints.as_ref().map(RecordedConstraints::from),
             work: *work,
         };
         (recorded, text)
@@ -216,6 +218,7 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
                 no_descent,
                 restart_data,
                 linearization,
+                constraints,
                 work,
             } => {
                 let data = if restart_data { None } else { serde_json::from_str("null").ok() };
@@ -226,8 +229,9 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> Journaled<O
                     Some(RecordedLinearization::Stored) => self.linearization(entry.evaluation, request),
                     Some(RecordedLinearization::Failed(reason)) => Linearized::Unavailable(reason),
                 };
+                let constraints = constraints.map(|recorded| recorded.read(subgradient.len()));
                 let exact = Evaluation::exact(value, subgradient, warm_start);
-                let evaluation = Evaluation { error_bound, linearization, work, ..exact };
+                let evaluation = Evaluation { error_bound, linearization, constraints, work, ..exact };
                 Ok(if no_descent { Answer::NoDescent(evaluation) } else { Answer::Accurate(evaluation) })
             }
         }
@@ -318,6 +322,10 @@ impl<O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>> NonsmoothOb
 
     fn dimension(&self) -> usize {
         self.inner.dimension()
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        self.inner.constraint_kinds()
     }
 
     fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {

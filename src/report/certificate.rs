@@ -5,10 +5,10 @@
 //! Θ(y) ≥ Θ(x̂) − ‖z̃‖*‖y − x̂‖ − ẽ   for all y ∈ U     (Θ convex; otherwise for the convexified model)
 //! ```
 
-use super::CompositeProof;
+use super::{CompositeProof, ConstraintProof};
 use crate::bundle::cut::{Cut, offset};
 use crate::bundle::norm::ScaledNorm;
-use crate::{Polyhedron, Vector};
+use crate::{ConstraintKind, Polyhedron, Vector};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -47,6 +47,9 @@ pub struct Certificate {
     pub active_radius: f64,
     /// Noise promised by the oracle or seen in its values, in units of Θ.
     pub noise: f64,
+    /// Nonlinear constraints with the linearizations that have a multiplier, where there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub constraints: Option<ConstraintProof>,
     /// Outputs and Jacobian behind the cuts, where the composite model proved the point stationary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub composite: Option<CompositeProof>,
@@ -62,7 +65,7 @@ pub struct CertificateCheck {
     pub aggregate_error: f64,
     /// The larger of |Σ λ − 1| and the largest −λ_i.
     pub multiplier_defect: f64,
-    /// Relative violation of the set at the point.
+    /// Relative violation of the set and of the nonlinear constraints at the point.
     pub violation: f64,
     /// Largest multiplier of an open (infinite) side; 0 in a valid certificate.
     pub open_side_multiplier: f64,
@@ -113,6 +116,22 @@ impl Certificate {
             total += cut.multiplier;
             negative = negative.max(-cut.multiplier);
         }
+        let mut violation = set.violation_near(&self.point, &self.point);
+        if let Some(constraints) = &self.constraints {
+            for cut in &constraints.cuts {
+                if cut.constraint >= constraints.values.len() {
+                    let (expected, found) = (constraints.values.len(), cut.constraint + 1);
+                    return Err(crate::InputError::Dimension { what: "constraints", expected, found });
+                }
+                let slack = cut.slack(&self.point, constraints.values[cut.constraint]);
+                error += cut.multiplier.abs() * slack.abs();
+                aggregate += &cut.subgradient * cut.multiplier;
+                if constraints.kinds[cut.constraint] != ConstraintKind::SmoothEquality {
+                    negative = negative.max(-cut.multiplier);
+                }
+            }
+            violation = violation.max(constraints.violation());
+        }
         let mut open = 0.0_f64;
         let at_point = set.rows() * &self.point;
         let sides =
@@ -131,7 +150,7 @@ impl Certificate {
             aggregate_norm: self.norm.dual_length(&aggregate),
             aggregate_error: error,
             multiplier_defect: (total - 1.0_f64).abs().max(negative),
-            violation: set.violation_near(&self.point, &self.point),
+            violation,
             open_side_multiplier: open,
         })
     }

@@ -2,6 +2,7 @@
 
 mod certificate;
 mod composite_proof;
+mod constraints;
 mod observer;
 mod proof_check;
 mod record;
@@ -10,6 +11,7 @@ mod termination;
 
 pub use certificate::{Certificate, CertificateCheck};
 pub use composite_proof::CompositeProof;
+pub use constraints::{ConstraintCut, ConstraintProof, ConstraintReport};
 pub use observer::{Observer, TablePrinter};
 pub use proof_check::ProofCheck;
 pub(crate) use record::Noted;
@@ -36,6 +38,13 @@ pub struct Report {
     pub termination: Termination,
     /// How stationary the solution is, with everything needed to check it; none if no subproblem was solved.
     pub certificate: Option<Certificate>,
+    /// The nonlinear constraints at the solution.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub constraints: Vec<ConstraintReport>,
+    /// The weight ρ of the violation in the merit that the run has ended with, in units of Θ per length; none without
+    /// nonlinear constraints.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub penalty: Option<f64>,
     /// Numbers of evaluations, steps and subproblems.
     pub counts: Counts,
     /// One record per evaluation.
@@ -65,6 +74,31 @@ fn shortened(x: &Vector) -> String {
     format!("[{}]", entries.join(", "))
 }
 
+/// Constraints printed of a report: the active ones first.
+const MAX_PRINTED_CONSTRAINTS: usize = 8;
+
+impl Report {
+    /// Whether the solution satisfies all nonlinear constraints to their tolerance.
+    pub fn is_feasible(&self) -> bool {
+        self.constraints.iter().all(|constraint| constraint.satisfied)
+    }
+
+    fn write_constraints(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(penalty) = self.penalty else { return Ok(()) };
+        let mut order: Vec<usize> = (0..self.constraints.len()).collect();
+        let key = |j: usize| (self.constraints[j].violation, self.constraints[j].multiplier.abs());
+        order.sort_by(|&a, &b| key(b).partial_cmp(&key(a)).unwrap_or(std::cmp::Ordering::Equal));
+        let state = if self.is_feasible() { "satisfied" } else { "VIOLATED" };
+        writeln!(f, "nonlinear:   {} constraints, {state}; penalty weight {penalty:.2e}", self.constraints.len())?;
+        for &j in order.iter().take(MAX_PRINTED_CONSTRAINTS) {
+            let ConstraintReport { value, violation, multiplier, .. } = &self.constraints[j];
+            let violation = format!("relative violation {violation:.1e}");
+            writeln!(f, "             c[{j}] = {value:.3e}, {violation}, multiplier {multiplier:.6e}")?;
+        }
+        Ok(())
+    }
+}
+
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "stopped:     {}", self.termination)?;
@@ -81,6 +115,7 @@ impl fmt::Display for Report {
             writeln!(f, "certificate: {certificate}")?;
         }
         writeln!(f, "constraints: largest relative violation of a point evaluated {:.1e}", self.largest_violation)?;
+        self.write_constraints(f)?;
         let counts = &self.counts;
         writeln!(
             f,

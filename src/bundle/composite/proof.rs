@@ -3,7 +3,7 @@
 use super::base::Base;
 use super::model::{CompositeStep, OuterCut};
 use crate::bundle::cut::Cut;
-use crate::report::{Certificate, CompositeProof};
+use crate::report::{Certificate, CompositeProof, ConstraintProof};
 
 /// Outputs, Jacobian and cuts of the outer function that prove a point stationary.
 #[derive(Debug, Clone)]
@@ -34,6 +34,10 @@ impl PointProof {
             cuts: self.step.cuts.clone(),
         };
         let cuts = self.step.cuts.iter().enumerate().map(cut).collect();
-        Certificate { cuts, composite: Some(proof), active_radius: 0.0, ..of_bundle }
+        let radius = |proof: &ConstraintProof| {
+            proof.cuts.iter().map(|cut| cut.distance(&of_bundle.point, &of_bundle.norm)).fold(0.0, f64::max)
+        };
+        let active_radius = of_bundle.constraints.as_ref().map_or(0.0, radius);
+        Certificate { cuts, composite: Some(proof), active_radius, ..of_bundle }
     }
 }

@@ -2,6 +2,8 @@
 
 use super::tangent::Tangent;
 use crate::bundle::norm::ScaledNorm;
+use crate::bundle::proposers::proposal::Proposal;
+use crate::report::{ConstraintCut, ConstraintProof, ConstraintReport};
 use crate::{ConstraintEvaluation, ConstraintKind, Matrix, Vector};
 use std::rc::Rc;
 
@@ -208,15 +210,6 @@ impl Constraints {
         }
     }
 
-    /// Forgets the linearizations at other points than the center, as a restart does; false if there are none.
-    pub(crate) fn forget_far(&mut self, radius: f64, norm: &ScaledNorm) -> bool {
-        let before = self.others.len();
-        let center = Rc::clone(&self.center.point);
-        self.others.retain(|t| norm.length(&(&*t.point - &*center)) <= radius);
-        self.revision += 1;
-        self.others.len() < before
-    }
-
     pub(crate) fn nonconvex(&self) -> &[bool] {
         &self.nonconvex
     }
@@ -239,6 +232,43 @@ impl Constraints {
         (&self.center.tangents, &self.others)
     }
 
+    /// The largest |c_j| at the centers.
+    pub(crate) fn sizes(&self) -> Vector {
+        Vector::from_column_slice(&self.largest)
+    }
+
+    /// The constraints in the certificate that rests on a proposal.
+    pub(crate) fn proof(&self, proposal: &Proposal) -> ConstraintProof {
+        let cut = |(tangent, multiplier): (&Tangent, f64)| ConstraintCut {
+            constraint: tangent.constraint,
+            point: (*tangent.point).clone(),
+            value: tangent.value,
+            subgradient: (*tangent.slope).clone(),
+            multiplier: multiplier / self.unit(tangent.constraint),
+        };
+        ConstraintProof {
+            kinds: self.kinds.clone(),
+            values: self.center.evaluation.values.clone(),
+            sizes: self.sizes(),
+            cuts: proposal.active_tangents().map(cut).collect(),
+        }
+    }
+
+    /// What a report says of the constraints at a point, with the multipliers of its certificate.
+    pub(crate) fn report(&self, values: &Vector, multipliers: Option<&Vector>) -> Vec<ConstraintReport> {
+        let report = |j: usize| {
+            let violation = self.violated_by(j, values[j]);
+            ConstraintReport {
+                kind: self.kinds[j],
+                value: values[j],
+                violation: if violation > 0.0 { violation / self.largest[j].max(violation) } else { 0.0 },
+                satisfied: violation <= self.tolerance(j, &self.center.evaluation, &self.center.point),
+                multiplier: multipliers.map_or(0.0, |multipliers| multipliers[j]),
+            }
+        };
+        (0..self.kinds.len()).map(report).collect()
+    }
+
     /// c_j at the center.
     pub(crate) fn at_center(&self) -> &Vector {
         &self.center.evaluation.values
@@ -252,12 +282,22 @@ impl Constraints {
         &self.best
     }
 
+    /// Whether the best point is better than the center: feasible where the center is not, or feasible and lower by more than `small`.
+    pub(crate) fn best_is_better(&self, small: f64) -> bool {
+        let (own, best) = (self.center_excess(), self.excess(&self.best.evaluation, &self.best.point));
+        if own <= 1.0 { best <= 1.0 && self.best.objective < self.center.objective - small } else { best < own }
+    }
+
+    /// Makes the best point the center.
+    pub(crate) fn move_to_best(&mut self) {
+        let Best { point, objective, evaluation } = &self.best;
+        self.center = known(point, *objective, evaluation);
+        self.revision += 1;
+    }
+
     /// By how much a value violates constraint j.
     pub(crate) fn violated_by(&self, j: usize, value: f64) -> f64 {
-        match self.kinds[j] {
-            ConstraintKind::SmoothEquality => value.abs(),
-            _ => value.max(0.0),
-        }
+        self.kinds[j].violation(value)
     }
 
     /// v for values of the constraints.

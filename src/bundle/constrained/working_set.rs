@@ -28,8 +28,6 @@ pub(crate) struct WorkingSet {
     pub tangents: Rc<Vec<Tangent>>,
     /// σ_j of every constraint.
     pub units: Vec<f64>,
-    /// v(x̂).
-    pub violation: f64,
     /// v(x̂) − s ≥ 0.
     pub reduction: f64,
     /// Length of the step that the relaxation takes.
@@ -54,6 +52,17 @@ impl WorkingSet {
     /// Whether the violation, rather than the objective, determines a step of this length.
     pub(crate) fn forces(&self, step_length: f64) -> bool {
         step_length <= 2.0 * self.forced_length
+    }
+
+    /// The set without the linearizations that are not wanted.
+    pub(crate) fn filtered(&self, keep: impl Fn(&Tangent) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.tangents.len()).filter(|&i| keep(&self.tangents[i])).collect();
+        Self {
+            set: self.set.with_tangents_kept(&kept),
+            tangents: Rc::new(kept.iter().map(|&i| self.tangents[i].clone()).collect()),
+            units: self.units.clone(),
+            ..*self
+        }
     }
 
     /// Whether the next step has to reduce the violation.
@@ -89,22 +98,12 @@ impl WorkingSet {
             if seen[i].two_sided { at_center[i] - seen[i].level - relaxation } else { f64::NEG_INFINITY }
         });
         let own_rows = set.rows().nrows();
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "v {violation:.3e} s {relaxation:.3e} excess {excess:.1e} caution {} rows {} penalty {:.2e} forced {forced_length:.2e} nonconvex {:?}",
-                constraints.caution,
-                rows.nrows(),
-                constraints.penalty,
-                constraints.nonconvex()
-            );
-        }
         let extended = set.clone().with_tangents(&rows, &lower, &upper);
         Self {
             set: extended,
             own_rows,
             tangents: Rc::new(seen.iter().map(|seen| seen.tangent.clone()).collect()),
             units: (0..constraints.kinds().len()).map(|j| constraints.unit(j)).collect(),
-            violation,
             forced_length,
             reduction: (violation - relaxation).max(0.0),
             feasible: excess <= 1.0 && !costly,

@@ -56,6 +56,18 @@ impl Position<'_> {
         Resolution::new(self.state, self.config)
     }
 
+    /// The same run with another set.
+    pub(crate) fn within<'b>(&'b mut self, working: &'b WorkingSet) -> Position<'b> {
+        Position {
+            state: &mut *self.state,
+            set: &working.set,
+            working: Some(working),
+            config: self.config,
+            solver: &mut *self.solver,
+            outer: self.outer,
+        }
+    }
+
     /// Whether the center violates nonlinear constraints.
     pub(crate) fn restoring(&self) -> bool {
         self.working.is_some_and(WorkingSet::restoring)

@@ -10,6 +10,7 @@
 
 use super::planes::{CuttingPlanes, MAX_DECREASES};
 use crate::Vector;
+use crate::bundle::constrained::Tangent;
 use crate::bundle::cut::Cut;
 use crate::bundle::evidence::{Distances, Evidence, active_cuts};
 use crate::bundle::kept_cuts::Bundle;
@@ -56,12 +57,16 @@ impl Confirmation {
         let cuts = active_cuts(state, &of).map(|cut| (distances.of(cut), cut));
         // A trial point often lies on a kink, where the last bit chooses the subgradient: a share of the way leads
         // along the subgradient itself.
-        let toward = |(_, cut): (f64, &Cut)| {
-            let (line, aside) = (&cut.point - &state.center, distances.raise(&cut.subgradient));
+        let toward = |point: &Vector, subgradient: &Vector| {
+            let (line, aside) = (point - &state.center, distances.raise(subgradient));
             let share = |step: &Vector, part: f64| part * near / distances.length(step);
             &state.center + &line * share(&line, 0.5) + &aside * share(&aside, 0.05)
         };
-        let points = cuts.filter(|(distance, _)| *distance > near).map(toward).collect();
+        let of_cuts =
+            cuts.filter(|(distance, _)| *distance > near).map(|(_, cut)| toward(&cut.point, &cut.subgradient));
+        let far = |tangent: &&Tangent| distances.length(&(&*tangent.point - &state.center)) > near;
+        let tangents = of.active_tangents().map(|(tangent, _)| tangent).filter(far);
+        let points = of_cuts.chain(tangents.map(|tangent| toward(&tangent.point, &tangent.slope))).collect();
         let kept = state.bundle.cuts().iter().filter(|cut| cut.id == state.center_id || distances.of(cut) <= near);
         let left = state.center.len() + 1;
         Self {
@@ -110,6 +115,15 @@ impl Confirmation {
     /// What the cuts next to the center say at the largest weight that confirms, or at which their promise is not
     /// small. A large weight asks for small errors, a small one for subgradients that cancel.
     fn ask_near(&self, at: &mut Position<'_>) -> Option<(Near, Evidence, Proposal)> {
+        let Some(working) = at.working else { return self.ask_within(at) };
+        let (distances, near) = (Distances::new(at.state), near(&self.resolution));
+        let center = &at.state.center;
+        let working = working.filtered(|tangent| distances.length(&(&*tangent.point - center)) <= near);
+        self.ask_within(&mut at.within(&working))
+    }
+
+    /// The answer of the cuts next to the center in the set given.
+    fn ask_within(&self, at: &mut Position<'_>) -> Option<(Near, Evidence, Proposal)> {
         let mut planes = CuttingPlanes::default();
         let mut proposal = planes.try_solve(at).ok()?;
         let mut decreases = 0;

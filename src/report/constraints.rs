@@ -1,0 +1,87 @@
+//! Nonlinear constraints in reports and certificates.
+
+use crate::bundle::norm::ScaledNorm;
+use crate::qp::kernels::difference_dot;
+use crate::{ConstraintKind, Vector};
+use serde::{Deserialize, Serialize};
+
+/// What a run has found of one nonlinear constraint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ConstraintReport {
+    /// What the constraint asks for.
+    pub kind: ConstraintKind,
+    /// c_j at the solution, in its own unit.
+    pub value: f64,
+    /// The violation there (c_j⁺, or |c_j| of an equality) relative to the largest |c_j| at the centers of the run; 0 where there is none.
+    pub violation: f64,
+    /// Whether the violation is within the tolerance: 1e-10 of that size, and rounding.
+    pub satisfied: bool,
+    /// The multiplier μ_j in the certificate: by how much the objective would fall per unit of c_j that is granted, to first order. At least
+    /// 0 for an inequality; of either sign for an equality.
+    pub multiplier: f64,
+}
+
+/// A linearization of a nonlinear constraint in a certificate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ConstraintCut {
+    /// The constraint j, counted from 0.
+    pub constraint: usize,
+    /// Where it was taken, y.
+    pub point: Vector,
+    /// The value of the constraint, or of one of its pieces, at y.
+    pub value: f64,
+    /// The subgradient h there.
+    pub subgradient: Vector,
+    /// The multiplier of the linearization, ≥ 0 for an inequality.
+    pub multiplier: f64,
+}
+
+impl ConstraintCut {
+    /// −t(x̂) ≥ 0: how far the linearization lies below zero at a point where the constraint has the value given. A linearization above the
+    /// constraint shows that the constraint is not convex, and counts as far below.
+    pub(crate) fn slack(&self, point: &Vector, value: f64) -> f64 {
+        let linear = self.value + difference_dot(self.subgradient.as_slice(), point.as_slice(), self.point.as_slice());
+        (value - linear).abs() - value
+    }
+
+    /// The distance of its point from another one.
+    pub(crate) fn distance(&self, point: &Vector, norm: &ScaledNorm) -> f64 {
+        norm.length(&(&self.point - point))
+    }
+}
+
+/// The nonlinear constraints in a certificate.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct ConstraintProof {
+    /// What each constraint asks for.
+    pub kinds: Vec<ConstraintKind>,
+    /// c at the point, m entries.
+    pub values: Vector,
+    /// The largest |c_j| at the centers of the run, which violations are compared with.
+    pub sizes: Vector,
+    /// The linearizations with a multiplier.
+    pub cuts: Vec<ConstraintCut>,
+}
+
+impl ConstraintProof {
+    /// The multiplier of every constraint.
+    pub fn multipliers(&self) -> Vector {
+        let mut sums = Vector::zeros(self.kinds.len());
+        for cut in &self.cuts {
+            sums[cut.constraint] += cut.multiplier;
+        }
+        sums
+    }
+
+    /// The largest violation relative to the size of its constraint.
+    pub(crate) fn violation(&self) -> f64 {
+        let relative = |j: usize| match self.kinds[j].violation(self.values[j]) {
+            0.0 => 0.0,
+            violation => violation / self.sizes[j],
+        };
+        (0..self.kinds.len()).map(relative).fold(0.0, f64::max)
+    }
+}
