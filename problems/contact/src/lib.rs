@@ -44,7 +44,7 @@
 //! | [`tfeti`] | total FETI: torn bodies, dual problem, Newton, the paper's method, derivative |
 //! | [`direct`] | direct condensation: an independent path |
 //! | [`qp`], [`linear`] | dual QPs over half-lines and discs; factorisations |
-//! | [`fields`], [`vtk`] | displacements, stresses and contact fields of a solved shape; their files |
+//! | [`fields`] | displacements, stresses and contact fields of a solved shape |
 //! | [`friction_problem`] | the matrices of a shape, for other solvers |
 //! | [`communication`] | what passes between the processes of a run |
 //! | [`memory`] | memory estimated before any work |
@@ -78,7 +78,6 @@ mod schema;
 pub mod shape;
 mod solver_kind;
 pub mod tfeti;
-pub mod vtk;
 mod work_estimate;
 
 pub use work_estimate::WorkEstimate;

@@ -11,7 +11,7 @@ use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::memory;
 use contact::plausibility::Warning;
-use contact::vtk::{Note, NoteValue};
+use exchange::vtk::{Note, NoteValue};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName};
 
@@ -62,13 +62,9 @@ pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result
     ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
 }
 
-/// What a file of fields says of the objective: its value, and the units of all that it holds.
-pub fn objective_notes(objective: &ContactObjective, value: f64) -> [Note; 2] {
-    let unit = objective.unit().replace(['{', '}'], "");
-    [
-        Note::new("objective", NoteValue::Number(value)),
-        Note::new("units", NoteValue::Text(format!("objective {unit}; lengths mm; stresses MPa"))),
-    ]
+/// What a file of fields says of the objective.
+pub fn objective_note(objective: &ContactObjective, value: f64) -> Note {
+    Note::new("objective", objective.unit().replace(['{', '}'], ""), NoteValue::Number(value))
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.
