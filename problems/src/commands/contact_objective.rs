@@ -2,21 +2,20 @@
 
 use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
-use crate::commands::processes::{Processes, SharedSolver, SharedState};
 use contact::communication::InProcess;
-use contact::contact_objective::{self, ContactCost};
-use contact::contact_shape::{ContactState, SolverKind, Wanted};
+use contact::contact_objective::ContactCost;
+use contact::contact_shape::{ContactShape, ContactState};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::memory;
 use contact::plausibility::Warning;
+use contact::solvers::{Processes, SolverKind, Wanted};
 use exchange::vtk::{Note, NoteValue};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName};
 
-/// Θ of a scene, by all processes together.
-pub type ContactObjective = contact_objective::ContactObjective<SharedSolver>;
+pub use contact::contact_objective::ContactObjective;
 
 /// Θ of a case, for single shapes.
 ///
@@ -43,7 +42,7 @@ pub fn wanted(case: &Case) -> Wanted {
 }
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
-    let shape = processes.shape(case, wanted)?;
+    let shape = ContactShape::by(processes.solver(case.plan(wanted))?);
     let measure = case.objective.measure(shape.problem())?;
     Ok(ContactObjective::new(shape, measure)?)
 }
@@ -55,8 +54,7 @@ fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<C
 /// [`SceneError`] naming the field.
 pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result<(), SceneError> {
     if processes.is_alone() {
-        let columns = if wanted == Wanted::Jacobians { case.scene.control_points.iter().product() } else { 0 };
-        memory::check(&case.scene, case.solver, case.preconditioner, columns, &InProcess)?;
+        memory::check(&case.plan(wanted), &InProcess)?;
     }
     let problem = ContactProblem::new(case.scene.clone())?;
     ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
@@ -73,7 +71,7 @@ pub struct SolvedShape {
     /// Control heights, mm.
     pub controls: Vector,
     /// The contact state.
-    pub state: ContactState<SharedState>,
+    pub state: ContactState,
     /// Θ.
     pub value: f64,
     /// Largest contact pressure, MPa.

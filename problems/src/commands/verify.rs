@@ -5,9 +5,9 @@ use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::Session;
-use crate::commands::processes::{SharedState, Usage};
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactStatus, Residuals};
+use contact::solvers::Usage;
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::Case;
@@ -81,7 +81,7 @@ pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,
-) -> Result<(ContactState<SharedState>, f64, TaylorTest), Failure> {
+) -> Result<(ContactState, f64, TaylorTest), Failure> {
     let direction = nonsmooth::verify::seeded_direction(control.len(), DIRECTION_SEED);
     let here = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
     let step = smooth_step(objective, control, &direction, &here.forces.status)?;

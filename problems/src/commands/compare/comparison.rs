@@ -3,7 +3,7 @@
 use crate::commands::contact_objective::SolvedShape;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::{Ending, ending};
-use crate::commands::processes::Usage;
+use contact::solvers::Usage;
 use serde::Serialize;
 use std::fmt;
 
