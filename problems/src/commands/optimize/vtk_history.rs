@@ -1,10 +1,10 @@
 //! `--vtk-history`: the shapes that an optimization came through, as a series for ParaView.
 
-use crate::commands::contact_objective::{SolvedShape, objective_note};
 use crate::commands::failure::Failure;
 use crate::commands::folder::Folder;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::report::VTK;
+use crate::commands::solved_shape::{SolvedShape, objective_note};
 use crate::vtk_files::{FieldState, list, state_files};
 use exchange::vtk::{Note, NoteValue};
 use nonsmooth::{Journal, StepKind, Vector};

@@ -1,6 +1,5 @@
 //! The folder of a report while it is filled: its files with what they hold, and the parts of the page so far.
 
-use crate::commands::contact_objective::{ContactObjective, SolvedShape, objective_note};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, json};
 use crate::commands::loaded_scene::LoadedScene;
@@ -11,6 +10,7 @@ use crate::commands::report::key_numbers::KeyNumbers;
 use crate::commands::report::stamp::stamp;
 use crate::commands::report::{bodies, captions, gallery, sections, setup, tables};
 use crate::commands::run_kind::RUN;
+use crate::commands::solved_shape::{ContactObjective, SolvedShape, objective_note};
 use crate::vtk_files::{FieldState, vtk_files};
 use contact::plausibility::Warning;
 use exchange::vtk::Note;

@@ -1,6 +1,6 @@
 //! Tables of comma-separated values.
 
-use crate::commands::contact_objective::ContactObjective;
+use crate::commands::solved_shape::ContactObjective;
 use contact::contact_shape::ContactState;
 use nonsmooth::Report;
 
