@@ -5,9 +5,10 @@
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
-use contact::fields::{FieldState, Fields, vtk_files};
+use contact::fields::Fields;
 use contact::scene::hertz;
 use nonsmooth::{Accuracy, CompositeObjective, OutputJacobian, StateSolver, Vector};
+use problems::vtk_files::{FieldState, vtk_files};
 use std::error::Error;
 use std::path::PathBuf;
 

@@ -6,11 +6,11 @@ use crate::outcome::RunOutcome;
 use crate::run::{RunError, RunInput, drive, journaled, signal};
 use crate::setup::Setup;
 use crate::watched::Watched;
-use contact::communication::InProcess;
 use contact::contact_objective::{ContactObjective, mean_height_coordinates};
-use contact::contact_shape::{ContactShape, Wanted};
+use contact::contact_shape::ContactShape;
 use contact::equilibrium::ContactStatus;
 use contact::error::SceneError;
+use contact::solvers::{Processes, Wanted};
 use nonsmooth::interruption::watched;
 use nonsmooth::{Accuracy, Matrix, OracleError, StateSolver, VariableScaling};
 use numpy::{PyArray2, PyArrayMethods};
@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use scene_file::{AccuracyName, Case, MethodName, SceneFile, read_text};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
@@ -239,8 +239,7 @@ impl ContactScene {
 
     fn objective_for(&self, wanted: Wanted) -> Result<ContactObjective, SceneError> {
         let case = &self.case;
-        let shape =
-            ContactShape::for_use(case.scene.clone(), case.solver, case.preconditioner, wanted, Arc::new(InProcess))?;
+        let shape = ContactShape::by(Processes::alone().solver(case.plan(wanted))?);
         let measure = case.objective.measure(shape.problem())?;
         ContactObjective::new(shape, measure)
     }

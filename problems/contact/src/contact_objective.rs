@@ -1,10 +1,10 @@
 //! The objective Θ of a contact problem: a measure of the states that control heights lead to, and how far its first step goes.
 
-use crate::any_solver::AnySolver;
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 use crate::cost::{ContactAreas, FieldCost, Measure, PressureCost};
 use crate::equilibrium::{ContactProblem, ContactSolver};
 use crate::error::SceneError;
+use crate::solvers::AnySolver;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
     Answer, CompositeObjective, Cost, Evaluation, Matrix, NonsmoothObjective, OracleError, OutputJacobian,

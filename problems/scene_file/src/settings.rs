@@ -32,6 +32,10 @@ pub struct SolverSection {
     pub kind: SolverKind,
     /// Preconditioner of the dual operator of total FETI.
     pub preconditioner: PreconditionerKind,
+    /// Clusters into which the subdomains of all bodies are joined, equal boxes with six unknowns each in the coarse problem of total FETI; at least as many as processes. Default none: every subdomain by itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
+    pub clusters: Option<usize>,
 }
 
 /// The optimizer.

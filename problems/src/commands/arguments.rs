@@ -3,7 +3,6 @@
 use crate::commands::ascii::shown;
 use crate::commands::export::options::ExportOptions;
 use crate::commands::failure::{Failure, refused};
-use crate::commands::processes::SharedSolver;
 use crate::commands::run_kind::RunKind;
 use crate::commands::study::varied::Varied;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -180,7 +179,7 @@ impl Arguments {
     }
 
     /// What was left out because the scene does not need it or an option says so, in words.
-    pub fn left_out(&self, shape: &ContactShape<SharedSolver>) -> Vec<&'static str> {
+    pub fn left_out(&self, shape: &ContactShape) -> Vec<&'static str> {
         let mut left_out = shape.left_out();
         left_out.extend(self.no_checks.then_some("checks of uniqueness and plausibility (--no-checks)"));
         left_out

@@ -1,16 +1,16 @@
 //! `evaluate`: objective, subgradient and certificates at one shape.
 
-use crate::commands::contact_objective::{self, SolvedShape, checks, solver_in_words};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::{LoadedScene, Session};
-use crate::commands::processes::Usage;
 use crate::commands::report::files;
+use crate::commands::solved_shape::{self, SolvedShape, checks, solver_in_words};
 use contact::contact_shape::SolverKind;
 use contact::cost::ContactAreas;
 use contact::equilibrium::{Diagnosis, Kink, Residuals, StatusCounts};
 use contact::plausibility::Warning;
+use contact::solvers::Usage;
 use serde::Serialize;
 use std::fmt;
 use std::time::Instant;
@@ -57,7 +57,7 @@ struct Seconds {
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
-    let (objective, arguments) = (&contact_objective::objective(&loaded.case, &session.processes)?, session.arguments);
+    let (objective, arguments) = (&solved_shape::objective(&loaded.case, &session.processes)?, session.arguments);
     let solver = objective.solver();
     let controls = controls::load(solver.problem(), &loaded.case, ("--controls", arguments.controls.as_deref()))?;
     let controls = controls::as_made(controls, arguments);

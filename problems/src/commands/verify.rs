@@ -1,13 +1,13 @@
 //! `verify`: Taylor test of the subgradient on the smooth piece around one shape.
 
-use crate::commands::contact_objective::{self, ContactObjective};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::Session;
-use crate::commands::processes::{SharedState, Usage};
+use crate::commands::solved_shape::{self, ContactObjective};
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactStatus, Residuals};
+use contact::solvers::Usage;
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::Case;
@@ -41,7 +41,7 @@ struct VerificationJson {
 
 /// The command.
 pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
-    let (objective, arguments) = (&contact_objective::objective(case, &session.processes)?, session.arguments);
+    let (objective, arguments) = (&solved_shape::objective(case, &session.processes)?, session.arguments);
     let shape = objective.solver();
     let control = controls::load(shape.problem(), case, ("--controls", arguments.controls.as_deref()))?;
     let folder = Folder::of_command(case, arguments)?;
@@ -81,7 +81,7 @@ pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,
-) -> Result<(ContactState<SharedState>, f64, TaylorTest), Failure> {
+) -> Result<(ContactState, f64, TaylorTest), Failure> {
     let direction = nonsmooth::verify::seeded_direction(control.len(), DIRECTION_SEED);
     let here = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
     let step = smooth_step(objective, control, &direction, &here.forces.status)?;

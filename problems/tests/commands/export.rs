@@ -383,7 +383,6 @@ fn the_history_has_every_serious_step() {
         let (objective, expected): (f64, f64) =
             (note("objective").parse().unwrap(), step["objective"].as_f64().unwrap());
         assert!((objective / expected - 1.0).abs() < 1e-8, "{objective} {expected}");
-        assert!(note("units").ends_with(" 0"));
     }
     assert!(out.join("vtk/view.py").exists() && out.join("vtk/fields.pvd").exists());
 }

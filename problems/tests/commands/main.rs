@@ -40,6 +40,7 @@ mod study;
 mod tall_columns;
 mod terminal;
 mod toy2d;
+mod vtk_files;
 
 #[path = "../../examples/own_objective.rs"]
 mod own_objective;

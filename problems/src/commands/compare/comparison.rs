@@ -1,9 +1,9 @@
 //! The comparison of optimizations with and without friction: table, conclusion, JSON.
 
-use crate::commands::contact_objective::SolvedShape;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::{Ending, ending};
-use crate::commands::processes::Usage;
+use crate::commands::solved_shape::SolvedShape;
+use contact::solvers::Usage;
 use serde::Serialize;
 use std::fmt;
 

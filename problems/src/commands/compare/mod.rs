@@ -4,7 +4,6 @@
 pub mod comparison;
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::contact_objective::{SolvedShape, optimized_objective};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::STATUS;
@@ -15,6 +14,7 @@ use crate::commands::optimize::{interruption, report};
 use crate::commands::register::REGISTER;
 use crate::commands::report::files;
 use crate::commands::run_kind::RunKind;
+use crate::commands::solved_shape::{SolvedShape, optimized_objective};
 use contact::error::SceneError;
 use std::path::Path;
 

@@ -1,10 +1,10 @@
 //! One optimization on one mesh, kept in a journal if asked for.
 
-use crate::commands::contact_objective::ContactObjective;
 use crate::commands::failure::Failure;
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
 use crate::commands::optimize::stages::{MeshStage, Part};
 use crate::commands::output::notice;
+use crate::commands::solved_shape::ContactObjective;
 use contact::contact_objective::mean_height_coordinates;
 use nonsmooth::{
     AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Observer, Report, VariableScaling,

@@ -7,7 +7,6 @@ pub mod standstill;
 pub mod summary;
 mod vtk_history;
 
-use crate::commands::contact_objective::{SolvedShape, checks};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::{STATUS, interrupted};
@@ -17,6 +16,7 @@ use crate::commands::optimize::run::{OptimizationRun, optimize};
 use crate::commands::optimize::standstill::standstill;
 use crate::commands::optimize::summary::{page, stages_page, summary};
 use crate::commands::report::files;
+use crate::commands::solved_shape::{SolvedShape, checks};
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {

@@ -1,6 +1,5 @@
 //! An optimization from its beginning to its end: on one mesh or on growing ones, kept on disk if asked for.
 
-use crate::commands::contact_objective::{ContactObjective, check_ahead, optimized_objective, wanted};
 use crate::commands::controls;
 use crate::commands::failure::{Failure, failed};
 use crate::commands::folder::Folder;
@@ -10,6 +9,7 @@ use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
 use crate::commands::optimize::stages::{MeshStage, Part, stages};
 use crate::commands::run_kind::RunKind;
+use crate::commands::solved_shape::{ContactObjective, check_ahead, optimized_objective, wanted};
 use contact::error::SceneError;
 use nonsmooth::qp::project;
 use nonsmooth::verify::seeded_direction;

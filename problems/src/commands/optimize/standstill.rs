@@ -1,8 +1,8 @@
 //! Why an optimization ended where it began.
 
-use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::failure::Failure;
 use crate::commands::optimize::mesh_run::MeshRun;
+use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::plausibility::Warning;
 use nonsmooth::Termination;
 

@@ -1,15 +1,15 @@
 //! The report of an optimization as text and as JSON.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::{SolvedShape, solver_in_words};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
 use crate::commands::output::pressure;
-use crate::commands::processes::Usage;
+use crate::commands::solved_shape::{SolvedShape, solver_in_words};
 use contact::contact_shape::SolverKind;
 use contact::cost::ContactAreas;
 use contact::equilibrium::{Kink, Residuals};
 use contact::plausibility::Warning;
+use contact::solvers::Usage;
 use nonsmooth::{IterationRecord, Origin, Report, StepKind, Termination, Vector};
 use serde::Serialize;
 

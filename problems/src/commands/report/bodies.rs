@@ -1,7 +1,7 @@
 //! The figures of the bodies: stresses on the deformed bodies, heights of the contact surface.
 
-use crate::commands::contact_objective::ContactObjective;
 use crate::commands::report::gallery::ShownShape;
+use crate::commands::solved_shape::ContactObjective;
 use contact::body::mesh::Block;
 use contact::fields::{BodyFields, Fields};
 use figures::{

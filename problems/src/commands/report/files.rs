@@ -1,7 +1,6 @@
 //! The files of each command. None of them is computed unless a folder is asked for.
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, json};
@@ -11,6 +10,7 @@ use crate::commands::optimize::summary::all_warnings;
 use crate::commands::report::folder::ReportFolder;
 use crate::commands::report::sections::found_label;
 use crate::commands::report::{captions, gallery, pages, tables};
+use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::plausibility::Warning;
 
 /// The files of an optimization; `last` is the run that it is reported by: the last mesh, or the best start.

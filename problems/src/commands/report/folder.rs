@@ -1,6 +1,5 @@
 //! The folder of a report while it is filled: its files with what they hold, and the parts of the page so far.
 
-use crate::commands::contact_objective::{ContactObjective, SolvedShape, objective_notes};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, json};
 use crate::commands::loaded_scene::LoadedScene;
@@ -11,9 +10,10 @@ use crate::commands::report::key_numbers::KeyNumbers;
 use crate::commands::report::stamp::stamp;
 use crate::commands::report::{bodies, captions, gallery, sections, setup, tables};
 use crate::commands::run_kind::RUN;
-use contact::fields::{FieldState, vtk_files};
+use crate::commands::solved_shape::{ContactObjective, SolvedShape, objective_note};
+use crate::vtk_files::{FieldState, vtk_files};
 use contact::plausibility::Warning;
-use contact::vtk::Note;
+use exchange::vtk::Note;
 use figures::page::{Block, File, Page, Section};
 use figures::{ColourScales, Figure};
 use scene_file::OutputSection;
@@ -150,8 +150,8 @@ impl<'a> ReportFolder<'a> {
 
     /// Fields of shapes for ParaView.
     fn write_fields(&mut self, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
-        let notes: Vec<[Note; 2]> =
-            shapes.iter().map(|shape| objective_notes(self.objective, shape.solved.value)).collect();
+        let notes: Vec<[Note; 1]> =
+            shapes.iter().map(|shape| [objective_note(self.objective, shape.solved.value)]).collect();
         let mut states = Vec::new();
         for (index, (shape, notes)) in shapes.iter().zip(&notes).enumerate() {
             let fields = shape.fields.iter();

@@ -1,7 +1,7 @@
 //! The figures of contact and of a run; solved shapes as figures and files show them.
 
-use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::failure::Failure;
+use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::ContactStatus;
 use contact::fields::Fields;
 use figures::{

@@ -1,7 +1,7 @@
 //! The numbers by which shapes are judged, side by side with their change: as a table of the page and as JSON.
 
-use crate::commands::contact_objective::ContactObjective;
 use crate::commands::report::gallery::ShownShape;
+use crate::commands::solved_shape::ContactObjective;
 use contact::deformation::Deformation;
 use contact::fields::Fields;
 use figures::page::{Block, Section};

@@ -1,13 +1,13 @@
 //! The HTML report of each command, without the sections on its scene and its files.
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
 use crate::commands::optimize::summary::reduction;
 use crate::commands::output::pressure;
 use crate::commands::report::folder::Parts;
 use crate::commands::report::sections::{certificate, course, found_label, pictures, states};
+use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::StageSeconds;
 use figures::page::{Block, Page, Section};
 

@@ -1,6 +1,6 @@
 //! Sections that the report pages of several commands share.
 
-use crate::commands::contact_objective::{ContactObjective, SolvedShape};
+use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use figures::page::{Block, Section};
 use nonsmooth::{Certificate, Report};
 

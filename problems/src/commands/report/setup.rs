@@ -1,7 +1,7 @@
 //! The sketch of a scene: bodies at a shape, supports and loads with their values.
 
-use crate::commands::contact_objective::ContactObjective;
 use crate::commands::failure::Failure;
+use crate::commands::solved_shape::ContactObjective;
 use contact::body::mesh::{Block, Face};
 use contact::scene::{BodyScene, Load, Support};
 use figures::{Figure, Sign, Sketch, SketchBody, SketchMark, nice_below, number};

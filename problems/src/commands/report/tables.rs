@@ -1,13 +1,12 @@
 //! Tables of comma-separated values.
 
-use crate::commands::contact_objective::ContactObjective;
-use crate::commands::processes::SharedState;
+use crate::commands::solved_shape::ContactObjective;
 use contact::contact_shape::ContactState;
 use nonsmooth::Report;
 
 /// One line per contact node: place (mm), pressure and traction (MPa), remaining gap (mm, ≥ 0 up to the accuracy of the state),
 /// status.
-pub fn contact_nodes(objective: &ContactObjective, state: &ContactState<SharedState>) -> String {
+pub fn contact_nodes(objective: &ContactObjective, state: &ContactState) -> String {
     let problem = objective.solver().problem();
     let mut table = String::from("x1,x2,pressure,traction_1,traction_2,remaining_gap,status\n");
     let pressures = objective.pressures(state);

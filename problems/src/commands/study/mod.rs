@@ -11,7 +11,6 @@ pub mod row;
 pub mod table;
 pub mod varied;
 
-use crate::commands::contact_objective;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, STUDY, continuation, file_error, json, printed_with_files};
@@ -23,6 +22,7 @@ use crate::commands::output::notice;
 use crate::commands::register::REGISTER;
 use crate::commands::report::study::write_study;
 use crate::commands::run_kind::RunKind;
+use crate::commands::solved_shape;
 use contact::error::SceneError;
 use nonsmooth::Vector;
 use plan::Plan;
@@ -91,7 +91,7 @@ fn started(
 ) -> Result<(Option<RunFolder>, Vector), Failure> {
     let rows = (1..=if plan.optimize { count } else { 0 }).map(|number| format!("{}/{REGISTER}", row_folder(number)));
     let claimed: Vec<String> = std::iter::once(STUDY.to_owned()).chain(rows).collect();
-    let objective = contact_objective::objective(&loaded.case, &session.processes)?;
+    let objective = solved_shape::objective(&loaded.case, &session.processes)?;
     let load = |file| controls::load(objective.solver().problem(), &loaded.case, ("--controls", Some(file)));
     let given = session.arguments.controls.as_deref().map(load).transpose()?;
     let (folder, controls) = begin(&objective, loaded, given.as_ref(), (RunKind::Study, &claimed), session)?;

@@ -1,16 +1,16 @@
 //! One row of a study.
 
 use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
 use crate::commands::optimize::standstill::standstill;
+use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
 use crate::commands::study::plan::options;
-use contact::contact_shape::Wanted;
 use contact::equilibrium::StatusCounts;
+use contact::solvers::Wanted;
 use nonsmooth::Vector;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -177,7 +177,7 @@ fn evaluated(
     options: &Arguments,
     session: &Session<'_>,
 ) -> Result<Solved, Failure> {
-    let objective = contact_objective::objective(&part.case, &session.processes)?;
+    let objective = solved_shape::objective(&part.case, &session.processes)?;
     let controls = match start {
         Some(start) => {
             objective.solver().problem().admissible.check_shape(start)?;

@@ -2,7 +2,7 @@
 
 use contact::body::elasticity::Material;
 use contact::body::mesh::Face;
-use contact::contact_shape::{AnyState, ContactShape, ContactWarmStart, SolverKind};
+use contact::contact_shape::{ContactShape, ContactWarmStart, SolverKind};
 use contact::cost::{PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
 use contact::scene::{Load, Scene, hertz, signorini};
@@ -22,10 +22,7 @@ fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
     let objective = CompositeObjective::new(shape, cost);
     let state = objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
     let evaluation = objective.differentiate(control, &state).unwrap();
-    let displacement = match &state.solution {
-        AnyState::Torn(state) => state.displacement().to_vec(),
-        AnyState::Direct(_) => Vec::new(),
-    };
+    let displacement = state.solution.torn().map_or_else(Vec::new, |state| state.displacement().to_vec());
     Outcome { evaluation, status: state.forces.status.clone(), opening: state.forces.opening.clone(), displacement }
 }
 

@@ -2,21 +2,20 @@
 
 use crate::commands::arguments::Arguments;
 use crate::commands::failure::Failure;
-use crate::commands::processes::{Processes, SharedSolver, SharedState};
 use contact::communication::InProcess;
-use contact::contact_objective::{self, ContactCost};
-use contact::contact_shape::{ContactState, SolverKind, Wanted};
+use contact::contact_objective::ContactCost;
+use contact::contact_shape::{ContactShape, ContactState};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::memory;
 use contact::plausibility::Warning;
-use contact::vtk::{Note, NoteValue};
+use contact::solvers::{Processes, SolverKind, Wanted};
+use exchange::vtk::{Note, NoteValue};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName};
 
-/// Θ of a scene, by all processes together.
-pub type ContactObjective = contact_objective::ContactObjective<SharedSolver>;
+pub use contact::contact_objective::ContactObjective;
 
 /// Θ of a case, for single shapes.
 ///
@@ -43,7 +42,7 @@ pub fn wanted(case: &Case) -> Wanted {
 }
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
-    let shape = processes.shape(case, wanted)?;
+    let shape = ContactShape::by(processes.solver(case.plan(wanted))?);
     let measure = case.objective.measure(shape.problem())?;
     Ok(ContactObjective::new(shape, measure)?)
 }
@@ -55,20 +54,15 @@ fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<C
 /// [`SceneError`] naming the field.
 pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result<(), SceneError> {
     if processes.is_alone() {
-        let columns = if wanted == Wanted::Jacobians { case.scene.control_points.iter().product() } else { 0 };
-        memory::check(&case.scene, case.solver, case.preconditioner, columns, &InProcess)?;
+        memory::check(&case.plan(wanted), &InProcess)?;
     }
     let problem = ContactProblem::new(case.scene.clone())?;
     ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
 }
 
-/// What a file of fields says of the objective: its value, and the units of all that it holds.
-pub fn objective_notes(objective: &ContactObjective, value: f64) -> [Note; 2] {
-    let unit = objective.unit().replace(['{', '}'], "");
-    [
-        Note::new("objective", NoteValue::Number(value)),
-        Note::new("units", NoteValue::Text(format!("objective {unit}; lengths mm; stresses MPa"))),
-    ]
+/// What a file of fields says of the objective.
+pub fn objective_note(objective: &ContactObjective, value: f64) -> Note {
+    Note::new("objective", objective.unit().replace(['{', '}'], ""), NoteValue::Number(value))
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.
@@ -77,7 +71,7 @@ pub struct SolvedShape {
     /// Control heights, mm.
     pub controls: Vector,
     /// The contact state.
-    pub state: ContactState<SharedState>,
+    pub state: ContactState,
     /// Θ.
     pub value: f64,
     /// Largest contact pressure, MPa.
