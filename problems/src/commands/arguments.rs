@@ -244,14 +244,14 @@ impl Command {
 impl Arguments {
     /// The parser: the options of `optimize`, and all commands with theirs.
     pub fn parser() -> clap::Command {
-        let root = clap::Command::new("contact").version(env!("CARGO_PKG_VERSION")).about(ABOUT);
+        let root = clap::Command::new("contact").version(env!("CARGO_PKG_VERSION"));
         let root = Command::augment_subcommands(Self::augmented(Command::Optimize, root));
         let root = root.subcommand_required(false).arg_required_else_help(false).disable_help_subcommand(true);
         let with_options = |parser: clap::Command| match Command::from_str(parser.get_name(), false) {
             Ok(command) => Self::augmented(command, parser).allow_negative_numbers(true),
             Err(_) => parser,
         };
-        root.allow_negative_numbers(true).mut_subcommands(with_options)
+        root.about(ABOUT).allow_negative_numbers(true).mut_subcommands(with_options)
     }
 
     /// What the parser found, of the options of a command.

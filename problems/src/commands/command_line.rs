@@ -25,7 +25,9 @@ use tracing_subscriber::util::SubscriberInitExt;
 /// Runs the binary of this name on its own scene, the text of a scene file.
 pub fn run(binary: &'static str, scene: &str) -> ExitCode {
     let scene = SceneFile::parse(scene, binary);
-    let parser = help_with_defaults(Arguments::parser(), scene.as_ref().ok()).after_help(examples(binary, ""));
+    let parser = help_with_defaults(Arguments::parser(), scene.as_ref().ok())
+        .override_usage(format!("{binary} [COMMAND] [OPTIONS]"))
+        .after_help(examples(binary, ""));
     run_parsed(binary, parser, |_| Ok((scene?, None)), &Processes::alone())
 }
 
@@ -34,7 +36,7 @@ pub fn run_any_among(binary: &'static str, processes: &Processes) -> ExitCode {
     let scene = Arg::new(SCENE).value_name("SCENE.toml").value_parser(value_parser!(PathBuf));
     let parser = help_with_defaults(Arguments::parser(), None)
         .arg(scene.help("Scene file (docs/scenes.md; examples in problems/scenes)"))
-        .override_usage(format!("{binary} SCENE.toml [OPTIONS]\n       {binary} SCENE.toml <COMMAND> [OPTIONS]"))
+        .override_usage(format!("{binary} SCENE.toml [COMMAND] [OPTIONS]"))
         .after_help(examples(binary, "SCENE.toml "));
     let missing = || Failure::Input("SCENE.toml is missing; examples are in problems/scenes".into());
     let open = |scene: Option<PathBuf>| {

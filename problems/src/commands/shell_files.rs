@@ -55,8 +55,8 @@ fn manual(command: &clap::Command) -> Result<String, Failure> {
             argument.hide(is_known)
         });
         Man::new(own).render_options_section(&mut section).map_err(Failure::computation)?;
-        let heading = format!(".SH \"OPTIONS OF {}\"", part.get_name().to_uppercase());
-        bytes.extend(text(section)?.replacen(".SH OPTIONS", &heading, 1).into_bytes());
+        let heading = format!(".SH \"OPTIONS OF {}\"\n", part.get_name().to_uppercase());
+        bytes.extend((heading + &text(section)?.replace(".SH ", ".SS ")).into_bytes());
     }
     text(bytes)
 }

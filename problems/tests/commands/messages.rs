@@ -74,7 +74,7 @@ fn any_field_can_be_set() {
         ("counter_surface.form=cone", &["counter_surface.form = cone", "form = \"plane\""]),
         ("friction.x=1", &["there is no field `friction.x`", "a finite number ≥ 0"]),
         ("friction", &["FIELD=VALUE"]),
-        ("mesh.subdomains=5", &["--set mesh.subdomains = 5", "a divisor of the 12 bricks"]),
+        ("mesh.subdomains=5", &["--set mesh.subdomains[0] = 5", "a divisor of the 12 bricks"]),
     ] {
         kit::refused(HERTZ, &["evaluate", "--set", setting], words);
     }
