@@ -395,13 +395,18 @@ impl Arguments {
 
 /// An error about an option that the command does not take, with the commands that do, or about a command that there is not.
 fn with_takers(error: Error, parser: &mut clap::Command) -> Error {
-    let word = [ContextKind::InvalidArg, ContextKind::InvalidSubcommand].iter().find_map(|kind| error.get(*kind));
-    let Some(ContextValue::String(word)) = word else { return error };
-    let takes = |command: &&clap::Command| match error.kind() {
-        ErrorKind::UnknownArgument => {
-            command.get_arguments().any(|argument| argument.get_long() == word.strip_prefix("--"))
-        }
-        kind => kind == ErrorKind::InvalidSubcommand,
+    let context = match error.kind() {
+        ErrorKind::UnknownArgument => ContextKind::InvalidArg,
+        ErrorKind::InvalidSubcommand => ContextKind::InvalidSubcommand,
+        _ => return error,
+    };
+    let Some(ContextValue::String(word)) = error.get(context) else { return error };
+    let is_meant = |argument: &clap::Arg| match word.strip_prefix("--") {
+        Some(option) => argument.get_long() == Some(option),
+        None => argument.is_positional() && !word.starts_with('-'),
+    };
+    let takes = |command: &&clap::Command| {
+        error.kind() == ErrorKind::InvalidSubcommand || command.get_arguments().any(is_meant)
     };
     let takers: Vec<&str> = parser.get_subcommands().filter(takes).map(clap::Command::get_name).collect();
     let Some((last, others)) = takers.split_last() else { return error };

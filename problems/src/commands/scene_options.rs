@@ -10,6 +10,9 @@ use scene_file::{MeasureName, MethodName, SceneFile, Setting, choices};
 /// Largest traction of a scene, MPa.
 const LARGEST_TRACTION: f64 = 1e15;
 
+/// Fields with their values, or what no scene may have.
+type Settings = Result<Vec<Setting>, SceneError>;
+
 /// An option and what it changes.
 pub struct SceneOption {
     /// Its name without the two dashes.
@@ -20,9 +23,9 @@ pub struct SceneOption {
     value_name: &'static str,
     help: &'static str,
     /// The fields with the values that a text gives them.
-    read: fn(&'static [&'static str], &str) -> Result<Vec<Setting>, SceneError>,
+    read: fn(&'static [&'static str], &str) -> Settings,
     /// What the text changes in a scene, beginning with what was read.
-    adapt: fn(&SceneFile, &str, Vec<Setting>) -> Result<Vec<Setting>, SceneError>,
+    adapt: fn(&SceneFile, &str, Vec<Setting>) -> Settings,
 }
 
 const BODIES: &str = "Scene";
@@ -128,7 +131,7 @@ const fn option(
 }
 
 /// Subdomains of the file that do not fit the new mesh give way to those that do.
-fn fitting(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Result<Vec<Setting>, SceneError> {
+fn fitting(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
     let mesh = file.with(&settings)?.mesh;
     let fits = |counts: [usize; 3]| mesh.bricks.iter().zip(counts).all(|(n, count)| count > 0 && n % count == 0);
     settings.extend((!mesh.subdomains.is_some_and(fits)).then(|| Setting::removal("mesh.subdomains")));
@@ -136,13 +139,13 @@ fn fitting(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Result<Vec<
 }
 
 /// The fields of a body that is not there are left out.
-fn of_bodies(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Result<Vec<Setting>, SceneError> {
+fn of_bodies(file: &SceneFile, _: &str, mut settings: Vec<Setting>) -> Settings {
     settings.retain(|setting| file.upper.is_some() || !setting.path().starts_with("upper."));
     Ok(settings)
 }
 
 /// A factor on loads.
-fn factor(_: &'static [&'static str], text: &str) -> Result<Vec<Setting>, SceneError> {
+fn factor(_: &'static [&'static str], text: &str) -> Settings {
     let finite = |factor: &f64| factor.is_finite();
     match text.parse().ok().filter(finite) {
         Some(_) => Ok(vec![]),
@@ -151,7 +154,7 @@ fn factor(_: &'static [&'static str], text: &str) -> Result<Vec<Setting>, SceneE
 }
 
 /// All loads times the factor in the text.
-fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Result<Vec<Setting>, SceneError> {
+fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Settings {
     let factor: f64 = text.parse().unwrap_or(f64::NAN);
     let upper = file.upper.iter().map(|upper| ("upper", &upper.loads));
     for (body, loads) in std::iter::once(("lower", &file.lower.loads)).chain(upper) {
@@ -169,7 +172,7 @@ fn loaded(file: &SceneFile, text: &str, mut settings: Vec<Setting>) -> Result<Ve
 }
 
 /// A spline with its degree, which a Bézier surface has not.
-fn surface(fields: &'static [&'static str], text: &str) -> Result<Vec<Setting>, SceneError> {
+fn surface(fields: &'static [&'static str], text: &str) -> Settings {
     let [spline, degree] = fields else { return Ok(vec![]) };
     let (name, degree) = match text.split_once(':') {
         None if text == "bezier" => (text, Setting::removal(degree)),
@@ -180,7 +183,7 @@ fn surface(fields: &'static [&'static str], text: &str) -> Result<Vec<Setting>, 
 }
 
 /// Exponent, wanted pressure and region of the file belong to the file's measure, as its method does.
-fn measured(file: &SceneFile, _: &str, settings: Vec<Setting>) -> Result<Vec<Setting>, SceneError> {
+fn measured(file: &SceneFile, _: &str, settings: Vec<Setting>) -> Settings {
     let measure = file.with(&settings)?.objective.measure;
     let has_model = !matches!(measure, MeasureName::StressNorm | MeasureName::Compliance);
     let other_method = !has_model && file.optimizer.method == Some(MethodName::Composite);
@@ -217,7 +220,7 @@ impl SceneOption {
     }
 
     /// Its fields with the values that a text gives them in any scene.
-    fn settings(&self, text: &str) -> Result<Vec<Setting>, SceneError> {
+    fn settings(&self, text: &str) -> Settings {
         (self.read)(self.fields, text)
     }
 }

@@ -91,7 +91,9 @@ fn options_of_other_commands_are_refused_with_the_commands_that_take_them() {
         (&["--controls", "x"], "--controls is allowed with study, evaluate, verify and export only"),
         (&["--mesh", "4", "evaluate"], "--mesh is allowed after the command: evaluate --mesh"),
         (&["recheck", "x", "--out", "y"], "--out is allowed with"),
-        (&["recheck"], "DIR"),
+        (&["recheck"], "<DIR>"),
+        (&["evaluate", "x"], "x is allowed with recheck only"),
+        (&["evaluate", "--json", "--json"], "cannot be used multiple times"),
     ] {
         kit::refused(SIGNORINI, arguments, &[words]);
     }

@@ -60,7 +60,7 @@ fn every_objective_is_evaluated_verified_optimized_and_rechecked() {
     {
         let file = folder.path().join(format!("{index}.toml"));
         std::fs::write(&file, format!("{base}\n[objective]\n{section}\n")).unwrap();
-        let of_scene = |options: &[&str]| json(contact3d(), &[&[text(&file), "--mesh", "4"], options].concat());
+        let of_scene = |words: &[&str]| json(contact3d(), &[&[text(&file)], words, &["--mesh", "4"]].concat());
         let at_start = of_scene(&["evaluate", "--json"]);
         assert!(number(&at_start["objective"]).is_finite(), "{at_start}");
         assert_eq!(at_start.get("contact_areas").is_some(), index == 1);

@@ -177,7 +177,7 @@ fn heights_that_are_off_change_the_pressure() {
         (&["evaluate", "--height-error", "-1"], "≥ 0"),
         (&["evaluate", "--seed", "1"], "--height-error"),
         (&["study", "--height-error", "0.1", "--vary", "friction=0", "--optimize"], "without --optimize"),
-        (&["--height-error", "1"], "with evaluate"),
+        (&["--height-error", "1"], "with study and evaluate only"),
     ] {
         refused(SIGNORINI, arguments, &[words]);
     }
