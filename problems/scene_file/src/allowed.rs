@@ -1,7 +1,6 @@
 //! What a field may hold: as words for messages and tables, and as a test.
 
 use crate::schema::Node;
-use crate::setting::resolve;
 use serde_json::Value;
 
 /// What is allowed at a place, in words.
@@ -70,7 +69,7 @@ pub(super) fn default(path: &str) -> String {
 
 /// The field at a path.
 fn field(path: &str) -> Option<Node<'static>> {
-    resolve(path).ok().and_then(|nodes| nodes.first().copied())
+    path.split('.').try_fold(Node::root(), |node, name| node.field(name))
 }
 
 /// Whether a number lies in the range of a place.

@@ -130,7 +130,7 @@ fn steps(path: &str) -> Vec<Step<'_>> {
 }
 
 /// The places of the schema at a path: one per form of a table that has the field.
-pub(super) fn resolve(path: &str) -> Result<Vec<Node<'static>>, SceneError> {
+fn resolve(path: &str) -> Result<Vec<Node<'static>>, SceneError> {
     let (mut nodes, mut at) = (vec![Node::root()], String::new());
     for step in steps(path) {
         let field = match step {
