@@ -35,8 +35,10 @@ impl Setting {
         Self::read(path.trim(), value.trim())
     }
 
-    /// The field at a path such as `lower.loads[0].traction`, and its value in TOML. A text that is no value of TOML is a string. A
-    /// list of plain values may also be written as `6x6x3` or `6,12`; a single value stands for all entries of a list of fixed length.
+    /// The field at a path such as `lower.loads[0].traction`, and its value in TOML. A text that is no value of TOML
+    /// is a string. A
+    /// list of plain values may also be written as `6x6x3` or `6,12`; a single value stands for all entries of a list
+    /// of fixed length.
     ///
     /// # Errors
     /// [`SceneError::UnknownField`] with the nearest name; [`SceneError::OutOfRange`] with what the schema allows.
@@ -150,7 +152,8 @@ fn resolve(path: &str) -> Result<Vec<Node<'static>>, SceneError> {
     Ok(nodes)
 }
 
-/// Puts a value at a place below a table, or removes what is there. Tables on the way are made; an entry may follow the last one.
+/// Puts a value at a place below a table, or removes what is there. Tables on the way are made; an entry may follow
+/// the last one.
 fn put(here: &mut Value, steps: &[Step<'_>], value: Option<&Value>, path: &str) -> Result<(), SceneError> {
     let Some((step, rest)) = steps.split_first() else {
         value.into_iter().for_each(|value| *here = value.clone());

@@ -45,7 +45,8 @@ pub enum Command {
     Export,
 }
 
-/// Declares [`Arguments`]: groups of options, each with the commands that take it. Options of other commands are not given.
+/// Declares [`Arguments`]: groups of options, each with the commands that take it. Options of other commands are not
+/// given.
 macro_rules! groups {
     ($($(#[$meaning:meta])* $field:ident: $group:ty, of $($command:ident)|+;)+) => {
         /// A command with its options.
@@ -125,7 +126,8 @@ pub struct Certified {
 #[command(next_help_heading = "Study")]
 #[allow(missing_docs)]
 pub struct Variation {
-    /// An option of the scene, or any of its fields, with values a,b,c or FIRST:LAST:COUNT; several of them make all combinations.
+    /// An option of the scene, or any of its fields, with values a,b,c or FIRST:LAST:COUNT; several of them make all
+    /// combinations.
     #[arg(long, value_name = "OPTION=VALUES", value_parser = Varied::parse)]
     pub vary: Vec<Varied>,
     /// Optimize in every row, instead of evaluating the start.
@@ -161,7 +163,8 @@ pub struct Course {
     /// Control heights to start the optimization from, a file as with --controls of evaluate [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
-    /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks, --new-version,
+    /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks,
+    /// --new-version,
     /// --verbose, --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
@@ -371,7 +374,8 @@ impl Arguments {
         }
     }
 
-    /// Refuses options beside --resume that are no limits: a run that is continued has its scene and its options in its folder.
+    /// Refuses options beside --resume that are no limits: a run that is continued has its scene and its options in
+    /// its folder.
     fn check_resumed(&self) -> Result<(), Failure> {
         let allowed = Self {
             command: self.command,
@@ -393,7 +397,8 @@ impl Arguments {
     }
 }
 
-/// An error about an option that the command does not take, with the commands that do, or about a command that there is not.
+/// An error about an option that the command does not take, with the commands that do, or about a command that there
+/// is not.
 fn with_takers(error: Error, parser: &mut clap::Command) -> Error {
     let context = match error.kind() {
         ErrorKind::UnknownArgument => ContextKind::InvalidArg,

@@ -16,7 +16,8 @@ pub const START_OPTION: &str = "--start-controls";
 /// Largest control file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// The controls of a file that an option names, or those the case starts from. Where an optimization starts they lie in the admissible
+/// The controls of a file that an option names, or those the case starts from. Where an optimization starts they lie
+/// in the admissible
 /// set; of shapes that are only looked at, heights and slopes do.
 ///
 /// # Errors
@@ -49,7 +50,8 @@ pub fn read(file: &Path, counts: [usize; 2]) -> Result<Vector, SceneError> {
     parse(&text, &file.display().to_string(), counts)
 }
 
-/// The controls in a text, for so many control points along x₁ and x₂; `name` stands in messages. Rows say the grid that they are made
+/// The controls in a text, for so many control points along x₁ and x₂; `name` stands in messages. Rows say the grid
+/// that they are made
 /// for; a plain array of numbers does not.
 ///
 /// # Errors
@@ -119,7 +121,8 @@ fn check_count(found: usize, expected: usize, name: &str) -> Result<(), SceneErr
     }
 }
 
-/// Controls with the error of a workshop, if one is asked for: every height is off by the same amount, with signs that depend
+/// Controls with the error of a workshop, if one is asked for: every height is off by the same amount, with signs that
+/// depend
 /// on the seed alone. The admissible set binds what is designed, not what is made of it.
 pub fn as_made(controls: Vector, error: &HeightError) -> Vector {
     let Some(size) = error.height_error else { return controls };

@@ -1,4 +1,5 @@
-//! The options that stand for fields of the scene. Each is declared once, in [`OPTIONS`] or [`OPTIMIZER_OPTIONS`]; parser, help with
+//! The options that stand for fields of the scene. Each is declared once, in [`OPTIONS`] or [`OPTIMIZER_OPTIONS`];
+//! parser, help with
 //! defaults, messages, and the changes of a scene derive from that.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -276,7 +277,8 @@ impl<const OPTIMIZER: bool> SceneOptions<OPTIMIZER> {
 pub struct SceneChanges {
     #[command(flatten)]
     options: SceneOptions<false>,
-    /// Any field of the scene, after the other options, several times: lower.material.young_modulus=2e5, mesh.bricks=[6,6,3],
+    /// Any field of the scene, after the other options, several times: lower.material.young_modulus=2e5,
+    /// mesh.bricks=[6,6,3],
     /// upper.loads[0].traction=[0,0,-1500]. --print-scene shows all fields.
     #[arg(long, value_name = "FIELD=VALUE", value_parser = Setting::parse, help_heading = BODIES)]
     set: Vec<Setting>,
@@ -321,7 +323,8 @@ impl SceneChanges {
     }
 }
 
-/// Help that says what holds where an option is not given: the field of a scene, or its value in the scene of the binary.
+/// Help that says what holds where an option is not given: the field of a scene, or its value in the scene of the
+/// binary.
 pub fn help_with_defaults(command: Command, scene: Option<&SceneFile>) -> Command {
     let described = |argument: Arg| {
         let Some(field) = find(argument.get_id().as_str()).and_then(|option| option.fields.first()) else {
