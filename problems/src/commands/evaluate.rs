@@ -59,8 +59,8 @@ struct Seconds {
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let (objective, arguments) = (&solved_shape::objective(&loaded.case, &session.processes)?, session.arguments);
     let solver = objective.solver();
-    let controls = controls::load(solver.problem(), &loaded.case, ("--controls", arguments.controls.as_deref()))?;
-    let controls = controls::as_made(controls, arguments);
+    let controls = controls::load(solver.problem(), &loaded.case, ("--controls", arguments.shape.controls.as_deref()))?;
+    let controls = controls::as_made(controls, &arguments.error);
     let folder = Folder::of_command(&loaded.case, arguments)?;
     let clock = Instant::now();
     let abandon = |_: &Failure| folder.iter().for_each(Folder::abandon);
@@ -94,7 +94,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         warnings: checks(objective, &shape, arguments)?,
         work: state.work(),
         contraction: state.contraction,
-        diagnosis: arguments.diagnose.then(|| solver.diagnose(state)).transpose()?,
+        diagnosis: arguments.diagnosis.diagnose.then(|| solver.diagnose(state)).transpose()?,
         seconds: Seconds { state: state_seconds, subgradient: subgradient_seconds },
         left_out: arguments.left_out(solver),
         processes: session.processes.usage(state.solver)?,

@@ -93,7 +93,7 @@ impl Folder {
     /// # Errors
     /// As [`create`](Self::create).
     pub fn of_command(case: &Case, arguments: &Arguments) -> Result<Option<Self>, Failure> {
-        let create = |path: &String| Self::create(Path::new(path), 1, arguments.overwrite);
+        let create = |path: &String| Self::create(Path::new(path), 1, arguments.files.overwrite);
         case.output.folder.as_ref().map(create).transpose()
     }
 
@@ -279,7 +279,9 @@ pub fn resume_command(folder: &Path, kind: RunKind) -> String {
 /// The same with the options of this command that its folder does not hold.
 pub fn continuation(folder: &Path, arguments: &Arguments) -> String {
     let mut command = resume_command(folder, arguments.command.kind());
-    for (given, option) in [(arguments.vtk_history, " --vtk-history"), (arguments.no_checks, " --no-checks")] {
+    for (given, option) in
+        [(arguments.series.vtk_history, " --vtk-history"), (arguments.results.no_checks, " --no-checks")]
+    {
         command += if given { option } else { "" };
     }
     command

@@ -63,7 +63,7 @@ struct RecheckJson {
 
 /// The command.
 pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = arguments.certified.as_deref().unwrap_or(Path::new(""));
+    let folder = arguments.certified.folder.as_path();
     if let Some(kind) = RunKind::of(folder)?.filter(|kind| *kind != RunKind::Optimization) {
         let words = "recheck takes one of its optimizations, which lie in folders below";
         return Err(Failure::Input(format!("{}: holds {}; {words}", folder.display(), kind.words())));

@@ -110,7 +110,7 @@ pub fn checks(
     shape: &SolvedShape,
     arguments: &Arguments,
 ) -> Result<Vec<Warning>, Failure> {
-    if arguments.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
+    if arguments.results.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
 }
 
 /// A solver and why it was taken.

@@ -43,7 +43,7 @@ struct VerificationJson {
 pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
     let (objective, arguments) = (&solved_shape::objective(case, &session.processes)?, session.arguments);
     let shape = objective.solver();
-    let control = controls::load(shape.problem(), case, ("--controls", arguments.controls.as_deref()))?;
+    let control = controls::load(shape.problem(), case, ("--controls", arguments.shape.controls.as_deref()))?;
     let folder = Folder::of_command(case, arguments)?;
     let found = smooth_taylor_test(objective, &control);
     let (here, step, test) = found.inspect_err(|_| folder.iter().for_each(Folder::abandon))?;

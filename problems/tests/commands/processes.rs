@@ -37,7 +37,7 @@ impl Communication for Rank {
 }
 
 fn arguments(options: &[&str]) -> Arguments {
-    clap::Parser::try_parse_from([&["contact3d", "--json"], options].concat()).unwrap()
+    Arguments::try_parse_from([&["contact3d"], options, &["--json"]].concat()).unwrap()
 }
 
 type Opened = Result<(SceneFile, Option<std::path::PathBuf>), problems::commands::Failure>;

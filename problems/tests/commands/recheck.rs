@@ -141,9 +141,13 @@ fn what_is_no_certificate_of_the_scene_is_refused() {
         assert_eq!(output.status.code(), Some(status), "{arguments:?}: {message}");
         assert!(message.contains(words) && output.stdout.is_empty(), "{arguments:?}: {message}");
     };
-    refused(&["recheck"], 2, "needs DIR");
-    refused(&["evaluate", run.path()], 2, "DIR is allowed with recheck only");
-    refused(&["recheck", run.path(), "--out", run.path()], 2, "--out is allowed without recheck");
+    refused(&["recheck"], 2, "<DIR>");
+    refused(&["evaluate", run.path()], 2, "is allowed with recheck only");
+    refused(
+        &["recheck", run.path(), "--out", run.path()],
+        2,
+        "--out is allowed with optimize, compare, study, evaluate, verify and export only",
+    );
     refused(&["recheck", run.path(), "--controls", "c.json"], 2, "--controls is allowed");
     // A surface with other controls is another scene.
     refused(&["recheck", run.path(), "--mesh", "2", "--control-points", "5x5"], 1, "surface.control_points is [6,6]");

@@ -33,6 +33,35 @@ fn every_row_is_what_evaluate_finds() {
     }
 }
 
+/// A field that has no option is varied by its path.
+#[test]
+fn fields_are_varied_by_their_paths() {
+    let vary =
+        ["--vary", "lower.loads[0].traction=[0,0,1500],[0,0,3000]", "--vary", "lower.material.young_modulus=1e5:2e5:2"];
+    let study = json(SIGNORINI, &[&["study", "--mesh", "4", "--json"], &vary[..]].concat());
+    assert_eq!(rows(&study).len(), 4);
+    for row in rows(&study) {
+        let options: Vec<&str> = row["options"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+        let single = json(SIGNORINI, &[&["evaluate", "--mesh", "4", "--json"], &options[..]].concat());
+        assert_eq!(row["solved"]["objective"], single["objective"], "{options:?}");
+    }
+    let half =
+        json(SIGNORINI, &["evaluate", "--mesh", "4", "--load-factor", "0.5", "--young-modulus", "1e5", "--json"]);
+    assert_eq!(rows(&study)[0]["solved"]["objective"], half["objective"]);
+    let table = kit::run(SIGNORINI, &["study", "--mesh", "2", "--vary", "solver.kind=newton,direct"]).stdout;
+    let table = String::from_utf8(table).unwrap();
+    assert!(table.contains("solver.kind") && table.contains("newton ") && !table.contains("--set"), "{table}");
+    for (vary, words) in [
+        ("lower.material.young_modul=1,2", "did you mean `young_modulus`?"),
+        ("lower.material.young_modulus=1,-2", "≥ 1e-9 and ≤ 1e15 (MPa)"),
+        ("output.folder=a,b", "where results go"),
+    ] {
+        refused(SIGNORINI, &["study", "--vary", vary], &[words]);
+    }
+    let twice = ["study", "--vary", "friction=0,1", "--vary", "mesh=2", "--vary", "mesh.bricks=4"];
+    refused(SIGNORINI, &twice, &["mesh.bricks", "once"]);
+}
+
 #[test]
 fn a_row_that_fails_is_a_row_with_its_reason() {
     let arguments = ["study", "--mesh", "4", "--vary", "subdomains=3,2", "--vary", "load-factor=-1,1"];
@@ -148,7 +177,7 @@ fn heights_that_are_off_change_the_pressure() {
         (&["evaluate", "--height-error", "-1"], "≥ 0"),
         (&["evaluate", "--seed", "1"], "--height-error"),
         (&["study", "--height-error", "0.1", "--vary", "friction=0", "--optimize"], "without --optimize"),
-        (&["--height-error", "1"], "with evaluate"),
+        (&["--height-error", "1"], "with study and evaluate only"),
     ] {
         refused(SIGNORINI, arguments, &[words]);
     }

@@ -23,7 +23,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let friction = loaded.case.scene.friction;
     if friction == 0.0 {
         let allowed = "a coefficient > 0 to compare with no friction at all";
-        return Err(session.arguments.blame(SceneError::out_of_range("friction", 0, allowed)).into());
+        return Err(session.arguments.changes().blame(SceneError::out_of_range("friction", 0, allowed)).into());
     }
     let claimed = COMPARED.map(|part| format!("{part}/{REGISTER}"));
     let (folder, initial_controls) = begin(
@@ -96,7 +96,7 @@ fn check(parts: &[LoadedScene], session: &Session<'_>) -> Result<(), Failure> {
     for part in parts {
         let folder = part.case.output.folder.as_deref().map(Path::new);
         if let Some(folder) = folder.filter(|folder| RunFolder::is_one(folder)) {
-            RunFolder::reopen(Folder::reopen(folder, 1)?, part, session.arguments.new_version)?;
+            RunFolder::reopen(Folder::reopen(folder, 1)?, part, session.arguments.course.new_version)?;
         }
     }
     Ok(())

@@ -62,7 +62,7 @@ pub fn report(
     }
     let write = |folder: &Folder| {
         files::write_optimization(folder, loaded, runs, last, &shapes, &checks)?;
-        if session.arguments.vtk_history {
+        if session.arguments.series.vtk_history {
             vtk_history::write(folder, &optimization.reported())?;
         }
         folder.write("report.txt", &text)?;

@@ -1,6 +1,6 @@
 //! One row of a study.
 
-use crate::commands::arguments::Arguments;
+use crate::commands::arguments::HeightError;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
@@ -8,7 +8,7 @@ use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
 use crate::commands::optimize::standstill::standstill;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
-use crate::commands::study::plan::options;
+use crate::commands::study::plan::{RowOptions, options};
 use contact::equilibrium::StatusCounts;
 use contact::solvers::Wanted;
 use nonsmooth::Vector;
@@ -126,7 +126,7 @@ pub fn computed(
     let clock = Instant::now();
     let outcome = match stated(loaded, (words, fixed), (start.is_some(), out)) {
         Ok((part, _)) if optimized => optimum(&part, start, session),
-        Ok((part, options)) => evaluated(&part, start, &options, session).map(Ok),
+        Ok((part, options)) => evaluated(&part, start, &options.error, session).map(Ok),
         Err(failure) => Err(failure),
     };
     let outcome = match outcome {
@@ -158,11 +158,11 @@ fn stated(
     loaded: &LoadedScene,
     (words, fixed): (&[String], &[String]),
     (has_start, out): (bool, Option<&Path>),
-) -> Result<(LoadedScene, Arguments), Failure> {
+) -> Result<(LoadedScene, RowOptions), Failure> {
     let options = options(&[words, fixed].concat())?;
-    let mut file = options.apply(loaded.file.clone())?;
+    let mut file = options.scene.apply(loaded.file.clone())?;
     file.output.folder = out.map(|path| path.display().to_string());
-    let part = loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?;
+    let part = loaded.changed(|scene| *scene = file).map_err(|error| options.scene.blame(error))?;
     if has_start {
         let given = loaded.case.scene.control_points;
         controls::check_grid(given, part.case.scene.control_points, "the study, at which its rows begin")?;
@@ -174,7 +174,7 @@ fn stated(
 fn evaluated(
     part: &LoadedScene,
     start: Option<&Vector>,
-    options: &Arguments,
+    error: &HeightError,
     session: &Session<'_>,
 ) -> Result<Solved, Failure> {
     let objective = solved_shape::objective(&part.case, &session.processes)?;
@@ -185,7 +185,7 @@ fn evaluated(
         }
         None => controls::load(objective.solver().problem(), &part.case, ("--controls", None))?,
     };
-    solved(&objective, &SolvedShape::at(&objective, &controls::as_made(controls, options))?, session)
+    solved(&objective, &SolvedShape::at(&objective, &controls::as_made(controls, error))?, session)
 }
 
 /// The optimum, or why the run was cut short.

@@ -3,7 +3,7 @@
 use crate::commands::output::pressure;
 use crate::commands::study::plan::Plan;
 use crate::commands::study::row::{Outcome, Row, Solved};
-use crate::commands::study::varied::Varied;
+use crate::commands::study::varied::{Varied, parts};
 use serde::Serialize;
 use std::fmt;
 
@@ -114,8 +114,7 @@ pub fn row_folder(number: usize) -> String {
 
 /// The values of a row, without the names of its options.
 pub fn values(row: &Row) -> Vec<String> {
-    let value = |option: &String| option.split_once('=').map_or(String::new(), |(_, value)| value.to_owned());
-    row.options.iter().map(value).collect()
+    row.options.iter().map(|option| parts(option).1.to_owned()).collect()
 }
 
 fn line(solved: &Solved, seconds: f64) -> String {
