@@ -17,7 +17,7 @@ pub use record::{Counts, IterationRecord, Origin, StepKind, TrialCounts};
 pub use stop::StopRule;
 pub use termination::Termination;
 
-use crate::Vector;
+use crate::{Vector, plain};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -26,6 +26,7 @@ use std::fmt;
 #[non_exhaustive]
 pub struct Report {
     /// The admissible point that the termination speaks about; where a limit or a failure ended the run, the lowest one evaluated.
+    #[serde(with = "plain::vector")]
     pub solution: Vector,
     /// Θ there.
     pub value: f64,
