@@ -136,7 +136,7 @@ pub struct Arguments {
     #[command(flatten)]
     pub export: ExportOptions,
     /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks,
-    /// --new-version, --json only).
+    /// --new-version, --verbose, --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
     /// With --resume: continue a run that another version of the program has begun.
@@ -151,6 +151,9 @@ pub struct Arguments {
     /// Leave out the checks of uniqueness and plausibility at the state of evaluate and at the final shape of optimize.
     #[arg(long)]
     pub no_checks: bool,
+    /// Print the inner numbers of solver and optimizer too.
+    #[arg(long)]
+    pub verbose: bool,
     /// Print one JSON object on stdout.
     #[arg(long)]
     pub json: bool,
@@ -288,12 +291,13 @@ impl Arguments {
             no_checks: self.no_checks,
             new_version: self.new_version,
             json: self.json,
+            verbose: self.verbose,
             ..nothing
         };
         if *self == allowed {
             return Ok(());
         }
-        let allowed = "with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks, --new-version, --json only: all else is in the folder";
+        let allowed = "with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks, --new-version, --verbose, --json only: all else is in the folder";
         Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
 }

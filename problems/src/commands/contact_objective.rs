@@ -1,7 +1,9 @@
 //! The objective Θ of a contact problem as the commands solve it, and shapes with their contact states.
 
 use crate::commands::arguments::Arguments;
+use crate::commands::facts::Fact;
 use crate::commands::failure::Failure;
+use crate::commands::numbers::plain_unit;
 use crate::commands::processes::{Processes, SharedSolver, SharedState};
 use contact::communication::InProcess;
 use contact::contact_objective::{self, ContactCost};
@@ -64,7 +66,7 @@ pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result
 
 /// What a file of fields says of the objective: its value, and the units of all that it holds.
 pub fn objective_notes(objective: &ContactObjective, value: f64) -> [Note; 2] {
-    let unit = objective.unit().replace(['{', '}'], "");
+    let unit = plain_unit(&objective.unit());
     [
         Note::new("objective", NoteValue::Number(value)),
         Note::new("units", NoteValue::Text(format!("objective {unit}; lengths mm; stresses MPa"))),
@@ -119,12 +121,16 @@ pub fn checks(
     if arguments.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
 }
 
-/// A solver and why it was taken.
-pub fn solver_in_words(solver: SolverKind, reason: Option<&str>) -> String {
-    let name = match solver {
+/// The solver of a state and why it was taken.
+pub fn solver_facts(state: &ContactState<SharedState>) -> Result<Vec<Fact>, Failure> {
+    let name = match state.solver {
         SolverKind::Direct => "direct condensation",
         SolverKind::AugmentedLagrangian => "total FETI, successive approximations",
         _ => "total FETI, semismooth Newton",
     };
-    reason.map_or_else(|| name.into(), |reason| format!("{name}; {reason}"))
+    let words = state.reason.as_ref().map_or_else(|| name.into(), |reason| format!("{name}; {reason}"));
+    Ok(vec![
+        Fact::object("solver", "solver", &state.solver, words)?.detail(),
+        Fact::json("solver_reason", &state.reason)?,
+    ])
 }

@@ -1,11 +1,12 @@
 //! The comparison of optimizations with and without friction: table, conclusion, JSON.
 
 use crate::commands::contact_objective::SolvedShape;
+use crate::commands::facts::{Fact, Facts, Group, Value};
+use crate::commands::numbers::{number, raised};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::summary::{Ending, ending};
 use crate::commands::processes::Usage;
 use serde::Serialize;
-use std::fmt;
 
 /// Relative loss of the objective up to which leaving friction out counts as cheap.
 const MAX_NEGLIGIBLE_LOSS: f64 = 0.02;
@@ -109,16 +110,41 @@ impl Comparison<'_> {
         SurfaceDifference { mean, shape, variation: mean_and_deviation(&with).1 }
     }
 
+    /// The table of the shapes in both models.
+    pub fn table(&self) -> Group {
+        let unit = raised(&self.runs[0].objective.unit());
+        let friction = format!("friction {}", self.friction());
+        let columns = [friction.as_str(), "no friction"]
+            .into_iter()
+            .flat_map(|model| [format!("peak, MPa: {model}"), format!("Θ, {unit}: {model}")]);
+        let fact = |row: Row| {
+            let values = [
+                row.peak_pressure_with_friction,
+                row.objective_with_friction,
+                row.peak_pressure_without_friction,
+                row.objective_without_friction,
+            ];
+            Fact::row("", row.shape, values.map(Value::from).into(), "")
+        };
+        let facts = self.rows().map(fact).into();
+        Group { title: "Shapes in both models", columns: columns.collect(), facts, words: String::new() }
+    }
+
+    /// The text for people: what friction is worth, whether that is proved, and the table.
+    pub fn text(&self) -> String {
+        Facts { lead: self.conclusion(), groups: vec![self.table()] }.text(false)
+    }
+
     /// The conclusion: sentences that the numbers decide.
     pub fn conclusion(&self) -> Vec<String> {
         let difference = self.surface_difference();
         let mut sentences = self.loss().map_or_else(|| vec![self.vanished()], |loss| self.compared(loss));
         sentences.push(format!(
-            "The two surfaces differ by {:.3} mm (root mean square over the contact nodes, without {:.3} mm in the mean height); \
-             the surface optimized with friction departs from flat by {:.3} mm.",
-            difference.shape,
-            difference.mean.abs(),
-            difference.variation
+            "The two surfaces differ by {} mm (root mean square over the contact nodes, without {} mm in the mean height); \
+             the surface optimized with friction departs from flat by {} mm.",
+            number(difference.shape),
+            number(difference.mean.abs()),
+            number(difference.variation)
         ));
         for (run, name) in self.runs.into_iter().zip(["with", "without"]) {
             if !run.report.termination.is_confirmed() {
@@ -137,7 +163,7 @@ impl Comparison<'_> {
         let least = ZERO * self.own[0][0].value;
         let (friction, without) = (self.friction(), self.with_friction()[1]);
         let rest = if without > least {
-            format!("the shape optimized without friction has {without:.4e}")
+            format!("the shape optimized without friction has {}", number(without))
         } else {
             "so is that of the shape optimized without friction".into()
         };
@@ -150,11 +176,12 @@ impl Comparison<'_> {
     fn compared(&self, loss: f64) -> Vec<String> {
         let peaks = [self.own[0][1].peak_pressure, self.crossed[0].peak_pressure];
         let ratio = format!(
-            "With friction {}, the shape optimized without friction has {loss:.4} times the objective of the shape optimized \
-             with friction (peak pressure {:.1} against {:.1} MPa).",
+            "With friction {}, the shape optimized without friction has {} times the objective of the shape optimized \
+             with friction (peak pressure {} against {} MPa).",
             self.friction(),
-            peaks[1],
-            peaks[0]
+            number(loss),
+            number(peaks[1]),
+            number(peaks[0])
         );
         let meaning = if (loss - 1.0).abs() <= MAX_EQUAL_DIFFERENCE {
             "In these runs, both shapes are as good as each other with friction.".into()
@@ -198,28 +225,6 @@ fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
     (mean, (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt())
-}
-
-impl fmt::Display for Comparison<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let friction = self.friction();
-        writeln!(f, "comparison:  friction {friction} against none")?;
-        let (with, without) = (format!("friction {friction}"), "no friction");
-        writeln!(f, "{:<28}{with:>28}{without:>28}", "")?;
-        writeln!(f, "{:<28}{:>16}{:>12}{:>16}{:>12}", "shape", "objective", "peak, MPa", "objective", "peak, MPa")?;
-        for row in self.rows() {
-            writeln!(
-                f,
-                "{:<28}{:>16.6e}{:>12.1}{:>16.6e}{:>12.1}",
-                row.shape,
-                row.objective_with_friction,
-                row.peak_pressure_with_friction,
-                row.objective_without_friction,
-                row.peak_pressure_without_friction
-            )?;
-        }
-        self.conclusion().iter().try_for_each(|sentence| writeln!(f, "{sentence}"))
-    }
 }
 
 #[cfg(test)]

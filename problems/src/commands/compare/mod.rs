@@ -5,6 +5,7 @@ pub mod comparison;
 
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::contact_objective::{SolvedShape, optimized_objective};
+use crate::commands::facts::line;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::STATUS;
@@ -58,12 +59,12 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         runs.push((run, shapes));
     }
     let comparison = cross(&runs).map_err(|failure| failure.after(&printed))?;
-    let mut text = comparison.to_string();
+    let mut text = comparison.text();
     if let Some(command) = continued.as_ref().filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
-        text += &format!("to continue: {command}\n");
+        text += &line("to continue", command);
     }
     let usage = session.processes.usage(comparison.own[0][1].state.solver)?;
-    text += &usage.iter().map(|usage| format!("processes: {usage}\n")).collect::<String>();
+    text += &usage.iter().map(|usage| line("processes", &usage.to_string())).collect::<String>();
     let object = json(&comparison.summary(usage))?;
     let write = |folder: &Folder| {
         files::write_comparison(folder, loaded, &comparison)?;
