@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 /// Digits of a residual for people.
 const RESIDUAL_DIGITS: usize = 2;
 /// Width of the names before the values in a text.
-const NAME_WIDTH: usize = 21;
+const NAME_WIDTH: usize = 30;
 
 /// A value for people and for JSON.
 #[derive(Debug, Clone, PartialEq)]
@@ -343,11 +343,12 @@ mod tests {
 
     #[test]
     fn the_text_has_details_with_verbose_only() {
-        let short = "found\npeak pressure        2.00000 -> 1.00000 MPa\nevaluations          7\n";
+        let short = "found\npeak pressure                 2.00000 -> 1.00000 MPa\nevaluations                   7\n";
         assert_eq!(facts().text(false), short);
         let long = facts().text(true);
         assert!(
-            long.contains("time of the state    0.250000 s") && long.contains("cone                 0 -> 0 MPa"),
+            long.contains("time of the state             0.250000 s")
+                && long.contains("cone                          0 -> 0 MPa"),
             "{long}"
         );
         assert!(!long.contains("controls"));

@@ -77,7 +77,7 @@ fn an_honest_certificate_agrees_and_a_changed_one_does_not() {
     // The binary with the scene built in says the same to people.
     let output = signorini3d(&["recheck", run.path(), "--mesh", "4"]);
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(output.status.success() && text.contains("certificate         agrees"), "{text}");
+    assert!(output.status.success() && text.contains("certificate                   agrees\n"), "{text}");
 
     let numbers = |value: &Value| value.as_array().is_some_and(|array| array.iter().all(Value::is_number));
     for plain in [&certificate["point"], &certificate["bound_multipliers"], &certificate["cuts"][0]["subgradient"]] {

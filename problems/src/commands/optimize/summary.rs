@@ -3,7 +3,7 @@
 use crate::commands::contact_objective::{SolvedShape, solver_facts};
 use crate::commands::facts::{Fact, Facts, Group, Value};
 use crate::commands::failure::Failure;
-use crate::commands::numbers::number;
+use crate::commands::numbers::exact;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
 use crate::commands::processes::Usage;
@@ -265,7 +265,7 @@ fn scene_fact(run: &MeshRun) -> Fact {
     let scene = &run.objective.solver().problem().scene;
     let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
     let bricks = |counts: [usize; 3]| counts.map(|count| count.to_string()).join("×");
-    let (mesh, parts, friction) = (bricks(scene.mesh), bricks(scene.subdomains), number(scene.friction));
+    let (mesh, parts, friction) = (bricks(scene.mesh), bricks(scene.subdomains), exact(scene.friction));
     Fact::new("", "scene", format!("{bodies} of {mesh} bricks, {parts} subdomains each, friction {friction}"), "")
 }
 

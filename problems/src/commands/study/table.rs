@@ -62,7 +62,7 @@ impl StudyJson {
     }
 
     /// The columns that people read.
-    fn shown(&self) -> impl Iterator<Item = &'static Column> {
+    fn shown(&self) -> impl Iterator<Item = &Column> {
         COLUMNS.iter().filter(|column| !column.name.is_empty() && (self.optimize || !column.of_run))
     }
 
@@ -108,72 +108,43 @@ struct Column {
     value: fn(&Solved) -> Value,
 }
 
-/// A column of a row that was optimized.
-fn of_run(solved: &Solved, value: fn(&Optimized) -> Value) -> Value {
-    solved.optimization.as_ref().map_or(Value::Missing, value)
+/// A column that every row has.
+const fn column(key: &'static str, name: &'static str, value: fn(&Solved) -> Value) -> Column {
+    Column { key, name, of_run: false, value }
 }
 
-/// The columns; the two on the start come first.
-const COLUMNS: &[Column] = &[
-    Column {
-        key: "objective_start",
-        name: "objective at start",
-        of_run: true,
-        value: |solved| of_run(solved, |run| run.objective_start.into()),
-    },
-    Column {
-        key: "peak_pressure_start_MPa",
-        name: "peak at start, MPa",
-        of_run: true,
-        value: |solved| of_run(solved, |run| run.peak_pressure_start.into()),
-    },
-    Column { key: "objective", name: "objective", of_run: false, value: |solved| solved.objective.into() },
-    Column { key: "objective_unit", name: "", of_run: false, value: |solved| solved.objective_unit.clone().into() },
-    Column { key: "peak_pressure_MPa", name: "peak, MPa", of_run: false, value: |solved| solved.peak_pressure.into() },
-    Column {
-        key: "contact_area_mm2",
-        name: "contact area, mm²",
-        of_run: false,
-        value: |solved| solved.contact_area.into(),
-    },
-    Column { key: "total_normal_force_N", name: "", of_run: false, value: |solved| solved.total_normal_force.into() },
-    Column { key: "open", name: "open", of_run: false, value: |solved| solved.status.open.into() },
-    Column { key: "stick", name: "stick", of_run: false, value: |solved| solved.status.stick.into() },
-    Column { key: "slip", name: "slip", of_run: false, value: |solved| solved.status.slip.into() },
-    Column {
-        key: "evaluations",
-        name: "evaluations",
-        of_run: true,
-        value: |solved| of_run(solved, |run| run.evaluations.into()),
-    },
-    Column {
-        key: "confirmed",
-        name: "",
-        of_run: true,
-        value: |solved| of_run(solved, |run| run.confirmed.to_string().into()),
-    },
-    Column {
-        key: "",
-        name: "ended",
-        of_run: true,
-        value: |solved| {
-            let ended = |run: &Optimized| match run.confirmed {
-                true => "confirmed".to_owned(),
-                false => run.termination.clone(),
-            };
-            let unchanged = if solved.is_unchanged() { "no better shape; " } else { "" };
-            solved.optimization.as_ref().map_or(Value::Missing, |run| format!("{unchanged}{}", ended(run)).into())
-        },
-    },
-    Column {
-        key: "warnings",
-        name: "warnings",
-        of_run: false,
-        value: |solved| match solved.warnings.is_empty() {
-            true => Value::Missing,
-            false => solved.warnings.join(" ").into(),
-        },
-    },
+/// A column that rows have which were optimized.
+const fn of_run(key: &'static str, name: &'static str, value: fn(&Solved) -> Value) -> Column {
+    Column { key, name, of_run: true, value }
+}
+
+/// A value of a row that was optimized.
+fn run<V: Into<Value>>(solved: &Solved, value: fn(&Optimized) -> V) -> Value {
+    solved.optimization.as_ref().map_or(Value::Missing, |run| value(run).into())
+}
+
+/// The columns.
+const COLUMNS: [Column; 14] = [
+    of_run("objective_start", "objective at start", |row| run(row, |run| run.objective_start)),
+    of_run("peak_pressure_start_MPa", "peak at start, MPa", |row| run(row, |run| run.peak_pressure_start)),
+    column("objective", "objective", |row| row.objective.into()),
+    column("objective_unit", "", |row| row.objective_unit.clone().into()),
+    column("peak_pressure_MPa", "peak, MPa", |row| row.peak_pressure.into()),
+    column("contact_area_mm2", "contact area, mm²", |row| row.contact_area.into()),
+    column("total_normal_force_N", "", |row| row.total_normal_force.into()),
+    column("open", "open", |row| row.status.open.into()),
+    column("stick", "stick", |row| row.status.stick.into()),
+    column("slip", "slip", |row| row.status.slip.into()),
+    of_run("evaluations", "evaluations", |row| run(row, |run| run.evaluations)),
+    of_run("confirmed", "", |row| run(row, |run| run.confirmed.to_string())),
+    of_run("", "ended", |row| {
+        let ended = run(row, |run| if run.confirmed { "confirmed".into() } else { run.termination.clone() });
+        if row.is_unchanged() { format!("no better shape; {}", ended.shown()).into() } else { ended }
+    }),
+    column("warnings", "warnings", |row| match row.warnings.is_empty() {
+        true => Value::Missing,
+        false => row.warnings.join(" ").into(),
+    }),
 ];
 
 /// A value as it stands between commas.
