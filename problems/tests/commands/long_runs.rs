@@ -124,8 +124,8 @@ fn several_starts_are_reported_by_the_best_and_resumed() {
     let starts: Vec<f64> = runs.iter().map(|run| run["objective_start"].as_f64().unwrap()).collect();
     assert!(starts[0] != starts[1] && starts[1] != starts[2], "{starts:?}");
     // The start that the result is compared with is its own.
-    let own = runs.iter().find(|run| run["objective"] == result["objective"]).unwrap();
-    let ratio = result["objective_start"].as_f64().unwrap() / own["objective_start"].as_f64().unwrap();
+    let own = runs.iter().find(|run| run["objective"] == whole["objective"]).unwrap();
+    let ratio = whole["objective_start"].as_f64().unwrap() / own["objective_start"].as_f64().unwrap();
     assert!((ratio - 1.0).abs() < 1e-9, "{ratio}");
     assert_eq!(whole["objective"].as_f64(), objectives.iter().copied().reduce(f64::min));
     assert!((1..=3).contains(&whole["optima"].as_u64().unwrap()));
