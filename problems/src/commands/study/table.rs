@@ -143,7 +143,7 @@ const COLUMNS: [Column; 14] = [
     }),
     column("warnings", "warnings", |row| match row.warnings.is_empty() {
         true => Value::Missing,
-        false => row.warnings.join(" ").into(),
+        false => row.warnings.join("; ").into(),
     }),
 ];
 
