@@ -68,7 +68,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     if let Some(usage) = session.processes.usage(shape.state.solver)? {
         rest.push(Fact::object("processes", "processes", &usage, usage.to_string())?);
     }
-    let groups = vec![Group::new("Value", result), Group::new("State", states), Group::new("Work", rest)];
+    let groups = vec![Group::new("", result), Group::new("State", states), Group::new("Work", rest)];
     let facts = Facts { lead: lead(objective, &shape), groups };
     let object = json(&facts)?;
     let write =

@@ -128,6 +128,11 @@ impl Fact {
         Self { detail: true, ..self }
     }
 
+    /// The name with the unit, as it stands before the values of a table.
+    fn titled(&self) -> String {
+        if self.unit.is_empty() { self.name.clone() } else { format!("{}, {}", self.name, self.unit) }
+    }
+
     /// The fact for people only.
     pub fn without_key(self) -> Self {
         Self { key: "", ..self }
@@ -189,7 +194,7 @@ impl Group {
         if self.columns.len() > 2 {
             let head: Vec<String> = std::iter::once(String::new()).chain(self.columns.iter().cloned()).collect();
             let rows: Vec<Vec<String>> =
-                shown.map(|fact| std::iter::once(fact.name.clone()).chain(fact.shown()).collect()).collect();
+                shown.map(|fact| std::iter::once(fact.titled()).chain(fact.shown()).collect()).collect();
             return if rows.is_empty() { String::new() } else { aligned(&head, &rows) };
         }
         let lines = shown.map(|fact| {
@@ -209,9 +214,8 @@ impl Group {
         let columns = if self.columns.is_empty() { vec!["value".to_owned()] } else { self.columns.clone() };
         let head = std::iter::once(String::new()).chain(columns).chain(changes.then(|| "change".to_owned()));
         let rows = named().map(|fact| {
-            let name = if fact.unit.is_empty() { fact.name.clone() } else { format!("{}, {}", fact.name, fact.unit) };
             let change = || fact.change_percent().map_or_else(|| "–".to_owned(), percent);
-            std::iter::once(name).chain(fact.shown()).chain(changes.then(change)).collect::<Vec<String>>()
+            std::iter::once(fact.titled()).chain(fact.shown()).chain(changes.then(change)).collect::<Vec<String>>()
         });
         let mut blocks = vec![Block::table(head, rows.collect::<Vec<_>>())];
         blocks.extend((!self.words.is_empty()).then(|| Block::Text(self.words.clone())));

@@ -91,7 +91,7 @@ fn the_first_two_lines_say_what_was_found_and_whether_it_is_proved() {
     // The reduction of the objective is that of its root.
     let ratio = json["objective_start"].as_f64().unwrap() / json["objective"].as_f64().unwrap();
     assert!((told[5] / ratio.powf(0.25) - 1.0).abs() < 0.01 && after.contains("(Σσ⁴)^(1/4)"), "{}", lines[0]);
-    assert_eq!(lines[1], "not proved: evaluation limit reached; raise the limit and continue");
+    assert_eq!(lines[1], "Not proved: evaluation limit reached; raise the limit and continue");
     let inner = ["subproblems", "fallback", "predicted decrease", "noise", "weight", "aggregate", "left out", "trial"];
     let long = printed(SIGNORINI, &[&run[..], &["--verbose"]].concat());
     for word in inner {
@@ -103,7 +103,7 @@ fn the_first_two_lines_say_what_was_found_and_whether_it_is_proved() {
 #[test]
 fn a_confirmed_run_says_that_it_is_proved() {
     let text = printed(SIGNORINI, &["--mesh", "4"]);
-    assert!(text.lines().nth(1).unwrap().starts_with("proved: stationary, confirmed"), "{text}");
+    assert!(text.lines().nth(1).unwrap().starts_with("Proved: stationary, confirmed"), "{text}");
     let shape = printed(SIGNORINI, &["evaluate", "--mesh", "4"]);
     let lines: Vec<&str> = shape.lines().collect();
     assert!(lines[0].contains("peak pressure ") && lines[1].starts_with("contact nodes: "), "{shape}");

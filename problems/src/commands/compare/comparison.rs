@@ -1,10 +1,11 @@
 //! The comparison of optimizations with and without friction: table, conclusion, JSON.
 
 use crate::commands::contact_objective::SolvedShape;
-use crate::commands::facts::{Fact, Facts, Group, Value};
-use crate::commands::numbers::{number, raised};
+use crate::commands::facts::{Fact, Facts, Group};
+use crate::commands::failure::Failure;
+use crate::commands::numbers::{number, raised, rounded};
 use crate::commands::optimize::mesh_run::MeshRun;
-use crate::commands::optimize::summary::{Ending, ending};
+use crate::commands::optimize::summary::ending;
 use crate::commands::processes::Usage;
 use serde::Serialize;
 
@@ -25,37 +26,6 @@ pub struct Comparison<'a> {
     pub crossed: [SolvedShape; 2],
 }
 
-/// One shape in both models.
-#[derive(Debug, Serialize)]
-pub struct Row {
-    /// The name of the shape.
-    pub shape: &'static str,
-    /// Θ with friction.
-    pub objective_with_friction: f64,
-    /// Largest pressure with friction, MPa.
-    pub peak_pressure_with_friction: f64,
-    /// Θ without friction.
-    pub objective_without_friction: f64,
-    /// Largest pressure without friction, MPa.
-    pub peak_pressure_without_friction: f64,
-}
-
-/// The keys of the JSON of `compare`.
-#[derive(Serialize)]
-struct ComparisonJson<'a> {
-    friction: f64,
-    shapes: [Row; 3],
-    loss_without_friction_in_the_model: Option<f64>,
-    surface_difference: SurfaceDifference,
-    evaluations: [usize; 2],
-    terminations: [Ending<'a>; 2],
-    controls_with_friction: &'a [f64],
-    controls_without_friction: &'a [f64],
-    conclusion: Vec<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    processes: Option<Usage>,
-}
-
 /// How far two surfaces are apart, mm.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct SurfaceDifference {
@@ -70,23 +40,6 @@ pub struct SurfaceDifference {
 impl Comparison<'_> {
     fn friction(&self) -> f64 {
         self.runs[0].objective.solver().problem().scene.friction
-    }
-
-    /// The start and both optima, in both models.
-    pub fn rows(&self) -> [Row; 3] {
-        let row = |shape, with: &SolvedShape, without: &SolvedShape| Row {
-            shape,
-            objective_with_friction: with.value,
-            peak_pressure_with_friction: with.peak_pressure,
-            objective_without_friction: without.value,
-            peak_pressure_without_friction: without.peak_pressure,
-        };
-        let [with, without] = self.own;
-        [
-            row("start", &with[0], &without[0]),
-            row("optimized with friction", &with[1], &self.crossed[1]),
-            row("optimized without friction", &self.crossed[0], &without[1]),
-        ]
     }
 
     /// Θ of the shape found without friction over that of the shape found with friction, both with friction; none where the latter is zero up
@@ -110,29 +63,44 @@ impl Comparison<'_> {
         SurfaceDifference { mean, shape, variation: mean_and_deviation(&with).1 }
     }
 
-    /// The table of the shapes in both models.
-    pub fn table(&self) -> Group {
-        let unit = raised(&self.runs[0].objective.unit());
-        let friction = format!("friction {}", self.friction());
-        let columns = [friction.as_str(), "no friction"]
-            .into_iter()
-            .flat_map(|model| [format!("peak, MPa: {model}"), format!("Θ, {unit}: {model}")]);
-        let fact = |row: Row| {
-            let values = [
-                row.peak_pressure_with_friction,
-                row.objective_with_friction,
-                row.peak_pressure_without_friction,
-                row.objective_without_friction,
-            ];
-            Fact::row("", row.shape, values.map(Value::from).into(), "")
+    /// All facts: what friction is worth, whether that is proved, and the start and both optima in both models; with what several processes
+    /// have used.
+    ///
+    /// # Errors
+    /// [`Failure::Computation`] for a value that has no JSON.
+    pub fn facts(&self, processes: Option<&Usage>) -> Result<Facts, Failure> {
+        let names = ["start", "optimized with friction", "optimized without friction"];
+        let [with, without] = self.own;
+        let models = [[&with[0], &with[1], &self.crossed[0]], [&without[0], &self.crossed[1], &without[1]]];
+        let (unit, friction) = (raised(&self.runs[0].objective.unit()), format!("friction {}", self.friction()));
+        let row = |key, name: &str, model: usize, unit: &str, value: fn(&SolvedShape) -> f64| {
+            let name = format!("{name}, {}", [friction.as_str(), "no friction"][model]);
+            Fact::row(key, &name, models[model].map(|shape| value(shape).into()).into(), unit)
         };
-        let facts = self.rows().map(fact).into();
-        Group { title: "Shapes in both models", columns: columns.collect(), facts, words: String::new() }
-    }
-
-    /// The text for people: what friction is worth, whether that is proved, and the table.
-    pub fn text(&self) -> String {
-        Facts { lead: self.conclusion(), groups: vec![self.table()] }.text(false)
+        let shapes = vec![
+            Fact::row("shapes.shape", "", names.map(|name| name.to_owned().into()).into(), ""),
+            row("shapes.peak_pressure_with_friction", "peak pressure", 0, "MPa", |shape| shape.peak_pressure),
+            row("shapes.objective_with_friction", "objective Θ", 0, &unit, |shape| shape.value),
+            row("shapes.peak_pressure_without_friction", "peak pressure", 1, "MPa", |shape| shape.peak_pressure),
+            row("shapes.objective_without_friction", "objective Θ", 1, &unit, |shape| shape.value),
+        ];
+        let columns = names.map(str::to_owned).into();
+        let shapes = Group { title: "Shapes in both models", columns, facts: shapes, words: String::new() };
+        let lead = self.conclusion();
+        let mut rest = vec![
+            Fact::json("friction", &self.friction())?,
+            Fact::json("loss_without_friction_in_the_model", &self.loss())?,
+            Fact::json("surface_difference", &self.surface_difference())?,
+            Fact::json("evaluations", &self.runs.map(|run| run.report.counts.evaluations))?,
+            Fact::json("terminations", &self.runs.map(|run| ending(&run.report)))?,
+            Fact::json("controls_with_friction", &self.runs[0].report.solution.as_slice())?,
+            Fact::json("controls_without_friction", &self.runs[1].report.solution.as_slice())?,
+            Fact::json("conclusion", &lead)?,
+        ];
+        if let Some(usage) = processes {
+            rest.push(Fact::object("processes", "processes", usage, usage.to_string())?);
+        }
+        Ok(Facts { lead, groups: vec![shapes, Group::new("", rest)] })
     }
 
     /// The conclusion: sentences that the numbers decide.
@@ -187,36 +155,23 @@ impl Comparison<'_> {
             "In these runs, both shapes are as good as each other with friction.".into()
         } else if loss > 1.0 + MAX_NEGLIGIBLE_LOSS {
             format!(
-                "In these runs, leaving friction out of the optimization costs {:.1} %: it is no approximation of the optimum with \
+                "In these runs, leaving friction out of the optimization costs {} %: it is no approximation of the optimum with \
                  friction.",
-                100.0 * (loss - 1.0)
+                rounded(100.0 * (loss - 1.0), 3)
             )
         } else if loss >= 1.0 {
-            format!("In these runs, leaving friction out of the optimization costs only {:.2} %.", 100.0 * (loss - 1.0))
+            format!(
+                "In these runs, leaving friction out of the optimization costs only {} %.",
+                rounded(100.0 * (loss - 1.0), 3)
+            )
         } else {
             format!(
-                "The run with friction stopped {:.2} % above the other shape: a better shape than its own exists, and it may be \
+                "The run with friction stopped {} % above the other shape: a better shape than its own exists, and it may be \
                  continued from there (--start-controls).",
-                100.0 * (1.0 / loss - 1.0)
+                rounded(100.0 * (1.0 / loss - 1.0), 3)
             )
         };
         vec![ratio, meaning]
-    }
-
-    /// The JSON, with what several processes have used.
-    pub fn summary(&self, processes: Option<Usage>) -> impl Serialize {
-        ComparisonJson {
-            friction: self.friction(),
-            shapes: self.rows(),
-            loss_without_friction_in_the_model: self.loss(),
-            surface_difference: self.surface_difference(),
-            evaluations: self.runs.map(|run| run.report.counts.evaluations),
-            terminations: self.runs.map(|run| ending(&run.report)),
-            controls_with_friction: self.runs[0].report.solution.as_slice(),
-            controls_without_friction: self.runs[1].report.solution.as_slice(),
-            conclusion: self.conclusion(),
-            processes,
-        }
     }
 }
 

@@ -10,83 +10,50 @@ use crate::commands::processes::Usage;
 use crate::commands::report::found_label;
 use crate::commands::shape_facts;
 use contact::plausibility::Warning;
-use nonsmooth::{Certificate, IterationRecord, Origin, Report, StepKind, Termination, Vector};
-use serde::Serialize;
+use nonsmooth::{Certificate, IterationRecord, Report, Vector};
+use serde_json::json;
 
-/// One evaluation.
-#[derive(Debug, Serialize)]
-struct CourseJson<'a> {
-    evaluation: usize,
-    /// None if the evaluation failed.
-    objective: Option<f64>,
-    kind: StepKind,
-    /// Who proposed the point.
-    origin: Origin,
-    /// Whether the Jacobian of all pressures was computed.
-    jacobian: bool,
-    /// Products with the dual operator.
-    products: usize,
-    /// Seconds since the start.
-    seconds: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    note: Option<&'a str>,
-}
-
-fn course(record: &IterationRecord) -> CourseJson<'_> {
-    CourseJson {
-        evaluation: record.evaluation,
-        objective: record.value,
-        kind: record.kind,
-        origin: record.origin,
-        jacobian: record.jacobian,
-        products: record.work,
-        seconds: record.seconds,
-        note: record.note.as_deref().or(record.failure.as_deref()),
+/// One evaluation; its `objective` is null if it failed, its `seconds` count from the start, its `products` are those with the dual operator.
+fn course(record: &IterationRecord) -> serde_json::Value {
+    let mut entry = json!({
+        "evaluation": record.evaluation,
+        "objective": record.value,
+        "kind": record.kind,
+        "origin": record.origin,
+        "jacobian": record.jacobian,
+        "products": record.work,
+        "seconds": record.seconds,
+    });
+    if let Some(note) = record.note.as_ref().or(record.failure.as_ref()) {
+        entry["note"] = note.as_str().into();
     }
-}
-
-/// How a run ended.
-#[derive(Debug, Serialize)]
-pub struct Ending<'a> {
-    reason: &'a Termination,
-    text: String,
-    confirmed: bool,
+    entry
 }
 
 /// One of several runs: a mesh of a coarse-to-fine optimization, or a start.
-#[derive(Debug, Serialize)]
-struct MeshRunJson<'a> {
-    mesh: [usize; 3],
-    objective_start: f64,
-    objective: f64,
-    evaluations: usize,
-    seconds: f64,
-    termination: Ending<'a>,
-}
-
-fn stage(run: &MeshRun) -> MeshRunJson<'_> {
-    MeshRunJson {
-        mesh: run.objective.solver().problem().scene.mesh,
-        objective_start: run.report.start_value,
-        objective: run.report.value,
-        evaluations: run.report.counts.evaluations,
-        seconds: run.report.seconds,
-        termination: ending(&run.report),
-    }
+fn stage(run: &MeshRun) -> serde_json::Value {
+    json!({
+        "mesh": run.objective.solver().problem().scene.mesh,
+        "objective_start": run.report.start_value,
+        "objective": run.report.value,
+        "evaluations": run.report.counts.evaluations,
+        "seconds": run.report.seconds,
+        "termination": ending(&run.report),
+    })
 }
 
 /// How a run ended.
-pub fn ending(report: &Report) -> Ending<'_> {
+pub fn ending(report: &Report) -> serde_json::Value {
     let termination = &report.termination;
-    Ending { reason: termination, text: termination.to_string(), confirmed: termination.is_confirmed() }
+    json!({ "reason": termination, "text": termination.to_string(), "confirmed": termination.is_confirmed() })
 }
 
 /// Whether the end of a run is proved, and if not, why and what to do: a line of its own.
 pub fn proof(report: &Report) -> String {
     let termination = &report.termination;
     match termination.is_confirmed() {
-        true => format!("proved: {termination}"),
-        false => format!("not proved: {termination}; {}", termination.advice()),
+        true => format!("Proved: {termination}"),
+        false => format!("Not proved: {termination}; {}", termination.advice()),
     }
 }
 
@@ -244,8 +211,7 @@ impl Ended<'_> {
         if self.runs.len() < self.meshes {
             facts.push(Fact::new("", "runs begun", format!("{} of {}", self.runs.len(), self.meshes), ""));
         }
-        let advice = format!("The run ended: {}.", proof(report));
-        Ok(Group::new("Course of the optimization", facts).with_words(advice))
+        Ok(Group::new("Course of the optimization", facts).with_words(proof(report) + "."))
     }
 
     /// Solver, warnings, and what was left out.

@@ -1,6 +1,7 @@
 //! The figures of the bodies: stresses on the deformed bodies, heights of the contact surface.
 
 use crate::commands::contact_objective::ContactObjective;
+use crate::commands::numbers::number;
 use crate::commands::report::gallery::ShownShape;
 use contact::body::mesh::Block;
 use contact::fields::{BodyFields, Fields};
@@ -79,7 +80,7 @@ pub fn above_mean(caption: &str, heights: &[f64]) -> (String, Vec<f64>) {
     let mean = heights.iter().sum::<f64>() / heights.len() as f64;
     let rounding = f64::EPSILON * heights.len() as f64 * mean.abs();
     let above = |height: &f64| if (height - mean).abs() <= rounding { 0.0 } else { height - mean };
-    (format!("{caption}, mean height {mean:.2} mm"), heights.iter().map(above).collect())
+    (format!("{caption}, mean height {} mm", number(mean)), heights.iter().map(above).collect())
 }
 
 /// Heights of the contact surface of the lower body side by side on one scale; shapes without fields are left out.

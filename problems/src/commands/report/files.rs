@@ -55,7 +55,12 @@ pub fn write_evaluation(
 }
 
 /// The files of a comparison.
-pub fn write_comparison(folder: &Folder, loaded: &LoadedScene, comparison: &Comparison<'_>) -> Result<(), Failure> {
+pub fn write_comparison(
+    folder: &Folder,
+    loaded: &LoadedScene,
+    comparison: &Comparison<'_>,
+    facts: &Facts,
+) -> Result<(), Failure> {
     let mut out = ReportFolder::new(folder, loaded, &comparison.runs[0].objective);
     for part in COMPARED {
         out.announce(&format!("{part}/report.html"), "the optimization itself, with its files");
@@ -65,5 +70,5 @@ pub fn write_comparison(folder: &Folder, loaded: &LoadedScene, comparison: &Comp
         ("optimized_with_friction", "optimized with friction", with),
         ("optimized_without_friction", "optimized without friction", without),
     ])?;
-    out.finish(|parts| pages::comparison(parts, comparison), &[])
+    out.finish(|parts| pages::comparison(parts, comparison, facts), &[])
 }

@@ -32,20 +32,19 @@ pub fn optimization(parts: Parts, ended: &Ended<'_>, facts: &Facts, folder: &Pat
 /// The report of an evaluation.
 pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShape, facts: &Facts) -> Page {
     let mut sections = vec![parts.numbers, pictures(parts.pictures)];
-    sections.extend(facts.groups.iter().map(Group::section));
+    sections.extend(facts.groups.iter().filter(|group| !group.title.is_empty()).map(Group::section));
     sections.extend([controls(objective, shape.controls.as_slice()), seconds(shape)]);
     page(objective, "one shape", facts.lead.join(". ") + ".", sections)
 }
 
 /// The report of a comparison with and without friction.
-pub fn comparison(parts: Parts, comparison: &Comparison<'_>) -> Page {
+pub fn comparison(parts: Parts, comparison: &Comparison<'_>, facts: &Facts) -> Page {
     let objective = &comparison.runs[0].objective;
-    let sentences = comparison.conclusion();
     let confirmed = comparison.runs.iter().all(|run| run.report.termination.is_confirmed());
     let caveat = if confirmed { "" } else { " Not both runs ended with a proof of optimality." };
-    let lead = sentences.first().cloned().unwrap_or_default() + caveat;
-    let mut table = comparison.table().section();
-    table.blocks.push(Block::List(sentences));
+    let lead = facts.lead.first().cloned().unwrap_or_default() + caveat;
+    let mut table = facts.groups[0].section();
+    table.blocks.push(Block::List(facts.lead.clone()));
     let both =
         [("optimized with friction", &comparison.own[0][1]), ("optimized without friction", &comparison.crossed[0])];
     let shapes = both.map(|(_, shape)| shape);
