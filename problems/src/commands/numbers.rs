@@ -10,10 +10,10 @@ pub fn number(value: f64) -> String {
     rounded(value, DIGITS)
 }
 
-/// A number with so many digits; only very small and very large ones have an exponent.
+/// A number with so many digits; only very small and very large ones have an exponent. What is no number is a dash.
 pub fn rounded(value: f64, digits: usize) -> String {
-    if value == 0.0 {
-        return "0".into();
+    if value == 0.0 || value.is_nan() {
+        return if value.is_nan() { "–" } else { "0" }.into();
     }
     let text = format!("{value:.*e}", digits - 1);
     let power = text.rsplit('e').next().and_then(|power| power.parse::<i32>().ok());
@@ -86,7 +86,7 @@ mod tests {
         let expected =
             ["12082.0", "0.0123457", "800000", "100.000", "2.50000e-9", "1.80000e16", "0", "8.07790", "0.689020"];
         assert_eq!(texts, expected);
-        assert_eq!(rounded(4.04e-17, 2), "4.0e-17");
+        assert_eq!((rounded(4.04e-17, 2), rounded(f64::NAN, 2)), ("4.0e-17".into(), "–".into()));
         assert_eq!([-0.04, 0.0, -10.04, 156.0].map(percent), ["0.0 %", "0.0 %", "−10.0 %", "+156.0 %"]);
     }
 
