@@ -63,10 +63,10 @@ mod tests {
     fn arrays_are_plain_and_read_back() {
         let both =
             Both { v: Vector::from_vec(vec![1.5, -2.0]), m: Matrix::from_row_slice(2, 3, &[1., 2., 3., 4., 5., 6.]) };
-        let text = serde_json::to_string(&both).unwrap();
+        let text = serde_json::to_string(&both).expect("numbers");
         assert_eq!(text, r#"{"v":[1.5,-2.0],"m":[[1.0,2.0,3.0],[4.0,5.0,6.0]]}"#);
-        assert_eq!(serde_json::from_str::<Both>(&text).unwrap(), both);
-        let ragged = serde_json::from_str::<Both>(r#"{"v":[],"m":[[1],[2,3]]}"#).unwrap_err().to_string();
+        assert_eq!(serde_json::from_str::<Both>(&text).expect("arrays"), both);
+        let ragged = serde_json::from_str::<Both>(r#"{"v":[],"m":[[1],[2,3]]}"#).expect_err("ragged").to_string();
         assert!(ragged.contains("row 1 of a matrix has 2 entries; allowed: 1"), "{ragged}");
     }
 }

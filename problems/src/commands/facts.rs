@@ -339,7 +339,7 @@ mod tests {
         let run = vec![
             Fact::new("evaluations", "evaluations", 7, ""),
             Fact::new("seconds.state", "time of the state", 0.25, "s").detail(),
-            Fact::json("controls", &[1.0, 2.0]).unwrap(),
+            Fact::json("controls", &[1.0, 2.0]).expect("numbers"),
         ];
         let shapes = Group { title: "Result", columns, facts: shapes, words: "w".into() };
         Facts { lead: vec!["found".into()], groups: vec![shapes, Group::new("Run", run)] }
@@ -367,7 +367,7 @@ mod tests {
             "seconds": {"state": 0.25},
             "controls": [1.0, 2.0],
         });
-        assert_eq!(serde_json::to_value(facts()).unwrap(), expected);
+        assert_eq!(serde_json::to_value(facts()).expect("numbers"), expected);
     }
 
     #[test]
