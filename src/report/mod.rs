@@ -97,7 +97,7 @@ impl fmt::Display for Report {
         }
         writeln!(
             f,
-            "             {} subproblems ({} by the fallback solver), {:.3} s",
+            "             {} subproblems ({} by the fallback solver); {:.3} s for the whole run",
             counts.qp_solves, counts.qp_fallbacks, self.seconds
         )?;
         for warning in &self.warnings {

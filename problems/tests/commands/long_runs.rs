@@ -120,15 +120,13 @@ fn several_starts_are_reported_by_the_best_and_resumed() {
     let options = ["--mesh", "6", "--starts", "3", "--json"];
     let whole = succeeded(&options);
     let runs = whole["stages"].as_array().unwrap();
-    let objectives: Vec<f64> = runs.iter().map(|run| run["objective"].as_f64().unwrap()).collect();
-    let starts: Vec<f64> = runs.iter().map(|run| run["objective_start"].as_f64().unwrap()).collect();
+    let [objectives, starts] = ["objective", "objective_start"]
+        .map(|key| runs.iter().map(|run| run[key].as_f64().unwrap()).collect::<Vec<f64>>());
     assert!(starts[0] != starts[1] && starts[1] != starts[2], "{starts:?}");
     // The start that the result is compared with is its own.
     let best = (0..3).min_by(|a, b| objectives[*a].total_cmp(&objectives[*b])).unwrap();
-    assert!(
-        (whole["objective_start"].as_f64().unwrap() / starts[best] - 1.0).abs() < 1e-9
-            && whole["objective"] == objectives[best]
-    );
+    assert_eq!(whole["objective"], objectives[best]);
+    assert!((whole["objective_start"].as_f64().unwrap() / starts[best] - 1.0).abs() < 1e-9);
     assert!((1..=3).contains(&whole["optima"].as_u64().unwrap()));
     let scratch = kit::scratch();
     let folder = scratch.path().join("run");
