@@ -114,7 +114,7 @@ fn killed_runs_resume_to_the_same_bits_and_lose_one_evaluation_at_most() {
     }
 }
 
-/// Several starts: the best one is reported, and a resumed run repeats them.
+/// Several starts: the best one is reported with its own start, and a resumed run repeats them.
 #[test]
 fn several_starts_are_reported_by_the_best_and_resumed() {
     let options = ["--mesh", "6", "--starts", "3", "--json"];
@@ -123,7 +123,6 @@ fn several_starts_are_reported_by_the_best_and_resumed() {
     let [objectives, starts] = ["objective", "objective_start"]
         .map(|key| runs.iter().map(|run| run[key].as_f64().unwrap()).collect::<Vec<f64>>());
     assert!(starts[0] != starts[1] && starts[1] != starts[2], "{starts:?}");
-    // The start that the result is compared with is its own.
     let best = (0..3).min_by(|a, b| objectives[*a].total_cmp(&objectives[*b])).unwrap();
     assert_eq!(whole["objective"], objectives[best]);
     assert!((whole["objective_start"].as_f64().unwrap() / starts[best] - 1.0).abs() < 1e-9);
