@@ -64,10 +64,12 @@ pub fn states(objective: &ContactObjective, shapes: &[&SolvedShape], kinks: [&'s
         row("status.slip", "slipping contact nodes", "", &|shape| shape.state.forces.counts().slip.into()),
         rough("residuals.equilibrium", "residual: equilibrium", |shape| shape.state.forces.residuals.equilibrium)
             .meaning("this residual and the next four are relative to the load"),
-        rough("residuals.complementarity", "complementarity", |shape| shape.state.forces.residuals.complementarity),
-        rough("residuals.friction_cone", "friction cone", |shape| shape.state.forces.residuals.friction_cone),
-        rough("residuals.dissipation", "dissipation", |shape| shape.state.forces.residuals.dissipation),
-        rough("residuals.newton", "Newton", |shape| shape.state.forces.residuals.newton),
+        rough("residuals.complementarity", "residual: complementarity", |shape| {
+            shape.state.forces.residuals.complementarity
+        }),
+        rough("residuals.friction_cone", "residual: friction cone", |shape| shape.state.forces.residuals.friction_cone),
+        rough("residuals.dissipation", "residual: dissipation", |shape| shape.state.forces.residuals.dissipation),
+        rough("residuals.newton", "residual: Newton", |shape| shape.state.forces.residuals.newton),
         rough(kinks[0], "margin of the nearest kink", |shape| shape.state.forces.kink.smallest_margin)
             .meaning("relative distance of a contact node from a change between open, stick and slip"),
         row(kinks[1], "weakly active nodes", "", &|shape| shape.state.forces.kink.weakly_active.into()).detail(),
