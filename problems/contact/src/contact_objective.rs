@@ -1,6 +1,7 @@
 //! The objective Θ of a contact problem: a measure of the states that control heights lead to, and how far its first step goes.
 
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
+pub use crate::cost::PressureRoot;
 use crate::cost::{ContactAreas, FieldCost, Measure, PressureCost};
 use crate::equilibrium::{ContactProblem, ContactSolver};
 use crate::error::SceneError;
@@ -143,6 +144,14 @@ impl<S: ContactSolver> ContactObjective<S> {
         match self {
             Self::Pressure(objective) => objective.cost().unit(),
             Self::Field(objective) => objective.cost().unit().into(),
+        }
+    }
+
+    /// A value of Θ as a pressure, where Θ is a sum of powers of pressures.
+    pub fn pressure_root(&self, value: f64) -> Option<PressureRoot> {
+        match self {
+            Self::Pressure(objective) => objective.cost().pressure_root(value),
+            Self::Field(_) => None,
         }
     }
 

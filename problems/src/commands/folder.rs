@@ -1,6 +1,7 @@
 //! Output folders, and JSON as text.
 
 use crate::commands::arguments::Arguments;
+use crate::commands::facts::line;
 use crate::commands::failure::Failure;
 use crate::commands::output::notice;
 use crate::commands::register::{self, REGISTER, Register, UNFINISHED};
@@ -234,7 +235,7 @@ pub fn printed_with_files(
     let Some(folder) = folder else { return Ok(text) };
     match write(folder) {
         Ok(()) if as_json => Ok(text),
-        Ok(()) => Ok(format!("{text}files:       {}\n", folder.page().display())),
+        Ok(()) => Ok(text + &line("files", &folder.page().display().to_string())),
         Err(failure) => {
             let reason = format!("{failure}; the report above is complete");
             Err(Failure::Incomplete { text, reason, status: 1 })

@@ -1,7 +1,9 @@
 //! The objective Θ of a contact problem as the commands solve it, and shapes with their contact states.
 
 use crate::commands::arguments::Arguments;
+use crate::commands::facts::Fact;
 use crate::commands::failure::Failure;
+use crate::commands::numbers::plain_unit;
 use contact::communication::InProcess;
 use contact::contact_objective::ContactCost;
 use contact::contact_shape::{ContactShape, ContactState};
@@ -62,7 +64,7 @@ pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result
 
 /// What a file of fields says of the objective.
 pub fn objective_note(objective: &ContactObjective, value: f64) -> Note {
-    Note::new("objective", objective.unit().replace(['{', '}'], ""), NoteValue::Number(value))
+    Note::new("objective", plain_unit(&objective.unit()), NoteValue::Number(value))
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.
@@ -113,12 +115,16 @@ pub fn checks(
     if arguments.results.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
 }
 
-/// A solver and why it was taken.
-pub fn solver_in_words(solver: SolverKind, reason: Option<&str>) -> String {
-    let name = match solver {
+/// The solver of a state and why it was taken.
+pub fn solver_facts(state: &ContactState) -> Result<Vec<Fact>, Failure> {
+    let name = match state.solver {
         SolverKind::Direct => "direct condensation",
         SolverKind::AugmentedLagrangian => "total FETI, successive approximations",
         _ => "total FETI, semismooth Newton",
     };
-    reason.map_or_else(|| name.into(), |reason| format!("{name}; {reason}"))
+    let words = state.reason.as_ref().map_or_else(|| name.into(), |reason| format!("{name}; {reason}"));
+    Ok(vec![
+        Fact::object("solver", "solver", &state.solver, words)?.detail(),
+        Fact::json("solver_reason", &state.reason)?,
+    ])
 }

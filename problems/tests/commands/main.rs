@@ -19,6 +19,7 @@ mod certificates;
 mod compare;
 mod contact3d;
 mod export;
+mod facts;
 mod flat_foot;
 mod fuzz;
 mod just_touching;

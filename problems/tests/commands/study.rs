@@ -69,7 +69,8 @@ fn a_row_that_fails_is_a_row_with_its_reason() {
     let table = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{}", errors(&output));
     assert!(
-        table.contains("--subdomains = 3 is not allowed") && table.contains("rows:        4 of 4, 3 failed"),
+        table.contains("--subdomains = 3 is not allowed")
+            && table.contains("rows                          4 of 4, 3 failed"),
         "{table}"
     );
     let reason = json(SIGNORINI, &[&arguments[..], &["--json"]].concat())["rows"][2]["failed"].clone();
@@ -89,7 +90,10 @@ fn a_mesh_beyond_the_memory_is_named_before_the_first_row() {
         said.contains("row 2 will fail: mesh.bricks = 400x400x400 bricks") && !said.contains("row 3 will fail"),
         "{said}"
     );
-    assert!(String::from_utf8_lossy(&output.stdout).contains("rows:        3 of 3, 1 failed"), "{said}");
+    assert!(
+        String::from_utf8_lossy(&output.stdout).contains("rows                          3 of 3, 1 failed"),
+        "{said}"
+    );
     let output = kit::run(SIGNORINI, &["--continuation", "2,400", "--max-evaluations", "2"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(errors(&output).contains("the mesh of 400x400x400 bricks"), "{}", errors(&output));
@@ -117,7 +121,7 @@ fn an_optimized_study_goes_on_where_it_was_cut_short() {
         assert_eq!(row["solved"]["optimization"]["evaluations"], 4);
     }
     let table = std::fs::read_to_string(whole.join("study.csv")).unwrap();
-    assert_eq!((table.lines().count(), table.lines().next().unwrap().split(',').count()), (3, 15));
+    assert_eq!((table.lines().count(), table.lines().next().unwrap().split(',').count()), (3, 16));
     let page = std::fs::read_to_string(whole.join("report.html")).unwrap();
     for part in ["figures/objective.svg", "figures/surfaces_1.svg", "row_002/report.html", "study.csv", "rows.json"] {
         assert!(page.contains(&format!("href=\"{part}\"")) && whole.join(part).exists(), "{part}");

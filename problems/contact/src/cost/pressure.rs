@@ -10,7 +10,6 @@ use crate::scene::Scene;
 use nonsmooth::composite::{Maximum, OuterFunction, weighted_gram};
 use nonsmooth::{Matrix, Vector};
 use serde::Serialize;
-use std::fmt;
 
 /// A function of the contact pressures.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,10 +45,13 @@ pub struct ContactAreas {
     pub whole: f64,
 }
 
-impl fmt::Display for ContactAreas {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "closed nodes {:.6}, smoothed {:.6}, of {:.6} mm²", self.closed, self.smoothed, self.whole)
-    }
+/// A sum of powers of pressures as a pressure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PressureRoot {
+    /// What it is, such as `(Σσ^4)^(1/4)`.
+    pub name: String,
+    /// Its value, MPa.
+    pub value: f64,
 }
 
 /// A measure of the contact pressures σ, a function of these outputs of [`ContactShape`](crate::contact_shape::ContactShape).
@@ -127,6 +129,13 @@ impl PressureCost {
             PressureMeasure::Norm { exponent } if self.is_root => exponent,
             _ => 1.0,
         }
+    }
+
+    /// The root (Σσ^p)^{1/p} of a value of Σσ^p, with its name; none for the other measures, whose values have a plain meaning.
+    pub fn pressure_root(&self, value: f64) -> Option<PressureRoot> {
+        let PressureMeasure::Norm { exponent } = self.measure else { return None };
+        let name = format!("(Σσ^{exponent})^(1/{exponent})");
+        Some(PressureRoot { name, value: if self.is_root { value } else { value.powf(1.0 / exponent) } })
     }
 
     /// The unit of the value, such as `MPa^{4}`.

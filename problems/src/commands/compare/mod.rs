@@ -4,6 +4,7 @@
 pub mod comparison;
 
 use crate::commands::compare::comparison::Comparison;
+use crate::commands::facts::line;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::STATUS;
@@ -58,19 +59,17 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         runs.push((run, shapes));
     }
     let comparison = cross(&runs).map_err(|failure| failure.after(&printed))?;
-    let mut text = comparison.to_string();
-    if let Some(command) = continued.as_ref().filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
-        text += &format!("to continue: {command}\n");
-    }
-    let usage = session.processes.usage(comparison.own[0][1].state.solver)?;
-    text += &usage.iter().map(|usage| format!("processes: {usage}\n")).collect::<String>();
-    let object = json(&comparison.summary(usage))?;
+    let facts = comparison.facts(session.processes.usage(comparison.own[0][1].state.solver)?.as_ref())?;
+    let can_continue = runs.iter().any(|(run, _)| run.can_continue());
+    let command = continued.as_ref().filter(|_| can_continue);
+    let text = facts.text(true) + &command.map_or_else(String::new, |command| line("to continue", command));
+    let object = json(&facts)?;
     let write = |folder: &Folder| {
-        files::write_comparison(folder, loaded, &comparison)?;
+        files::write_comparison(folder, loaded, &comparison, &facts)?;
         folder.write("report.txt", &text)?;
         folder.write(REPORT, &object)
     };
-    let printed = session.arguments.printed(format!("{printed}\n{text}"), object.clone());
+    let printed = session.arguments.printed(format!("{text}\n{printed}"), object.clone());
     let text = printed_with_files(printed, as_json, folder.map(RunFolder::folder), write)?;
     let failed = runs.iter().find_map(|(run, _)| run.failure());
     match (interruption(continued.as_deref()), failed) {

@@ -12,6 +12,7 @@ use crate::commands::export::run::KeptRun;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::{LoadedScene, Session};
+use crate::commands::numbers::number;
 use crate::commands::scene_difference::Difference;
 use contact::equilibrium::ContactProblem;
 use nonsmooth::Vector;
@@ -107,7 +108,7 @@ fn start(problem: &ContactProblem, loaded: &LoadedScene, file: Option<&Path>) ->
 
 impl fmt::Display for ExportJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let objective = self.shape.objective.map_or_else(String::new, |value| format!(", Θ = {value:.6e}"));
+        let objective = self.shape.objective.map_or_else(String::new, |value| format!(", Θ = {}", number(value)));
         writeln!(f, "shape:       {}{objective}", self.shape.source)?;
         for difference in &self.differences {
             writeln!(f, "note:        another friction problem than in the run: {difference}")?;

@@ -1,6 +1,7 @@
 //! Why an optimization ended where it began.
 
 use crate::commands::failure::Failure;
+use crate::commands::numbers::number;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::plausibility::Warning;
@@ -41,7 +42,10 @@ pub fn standstill(runs: &[MeshRun], last: &MeshRun, shape: &SolvedShape) -> Resu
     let least = objective.lower_bound(force).filter(|least| shape.value - least <= LEAST * shape.value.abs());
     Ok(least.map(|least| Warning {
         code: "least-objective",
-        text: format!("the run begins at the least value that any shape has with this total force, {least:.4e}: nothing is to be gained"),
+        text: format!(
+            "the run begins at the least value that any shape has with this total force, {}: nothing is to be gained",
+            number(least)
+        ),
     }))
 }
 

@@ -6,7 +6,7 @@ use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
 use crate::commands::register::{JOURNAL, REGISTER};
 use crate::commands::report::gallery::ShownShape;
-use crate::commands::report::key_numbers::KeyNumbers;
+use crate::commands::report::key_numbers::key_numbers;
 use crate::commands::report::stamp::stamp;
 use crate::commands::report::{bodies, captions, gallery, sections, setup, tables};
 use crate::commands::run_kind::RUN;
@@ -94,8 +94,8 @@ impl<'a> ReportFolder<'a> {
         let shown = |&(name, label, shape)| ShownShape::new(self.objective, (name, label), shape, self.wanted());
         let shapes = solved.iter().map(shown).collect::<Result<Vec<_>, _>>()?;
         if self.wanted().report {
-            let numbers = KeyNumbers::new(self.objective, &shapes);
-            self.write("key_numbers.json", &json(&numbers)?, "the table of the result")?;
+            let numbers = key_numbers(self.objective, &shapes);
+            self.write("key_numbers.json", &json(&numbers.table())?, "the table of the result")?;
             self.parts.numbers = numbers.section();
         }
         for shape in &shapes {
@@ -132,17 +132,21 @@ impl<'a> ReportFolder<'a> {
             true => ("open, stick and slip, with the friction traction", captions::STATUS),
             false => ("open and closed contact nodes", captions::STATUS_WITHOUT_FRICTION),
         };
-        let figures = [
+        let mut figures = vec![
             (gallery::cuts(objective, shapes), "contact pressure along lines through the peaks", captions::CUTS),
             (gallery::status(objective, shapes), what, status),
-            (bodies::von_mises(objective, shapes), "von Mises stress on the deformed bodies", captions::STRESS),
+        ];
+        let stress = "von Mises stress on the deformed bodies";
+        figures
+            .extend(bodies::von_mises(objective, shapes).into_iter().map(|figure| (figure, stress, captions::STRESS)));
+        figures.extend([
             (bodies::surfaces(objective, shapes), "heights of the contact surface in space", captions::SURFACE),
             (
                 bodies::surface_map(objective, shapes),
                 "heights of the contact surface from above",
                 captions::SURFACE_MAP,
             ),
-        ];
+        ]);
         figures
             .into_iter()
             .try_for_each(|(figure, what, caption)| self.draw(figure.map_err(Failure::computation)?, what, caption))

@@ -39,7 +39,7 @@ impl<'a> ShownShape<'a> {
     ) -> Result<Self, Failure> {
         let seen = wanted.pictures || wanted.vtk || wanted.report;
         let fields = seen.then(|| solved.fields(objective, wanted.vtk)).transpose()?;
-        Ok(Self { label, caption: format!("{label}, Θ = {:.4e}", solved.value), name, solved, fields })
+        Ok(Self { label, caption: format!("{label}, Θ = {}", figures::number(solved.value)), name, solved, fields })
     }
 }
 

@@ -73,12 +73,7 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     }
     let page = Page {
         title: format!("{}: study of {}", loaded.case.scene.name, varied.join(", ")),
-        lead: format!(
-            "{} rows of {}, {failed} without a result.{}",
-            study.rows().len(),
-            study.rows_in_all(),
-            unconfirmed(study)
-        ),
+        lead: format!("Rows: {}.{}", study.counted(), unconfirmed(study)),
         origin: stamp(),
         warnings: vec![],
         sections: vec![

@@ -4,9 +4,11 @@ use crate::commands::arguments::HeightError;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
+use crate::commands::numbers::plain_unit;
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
 use crate::commands::optimize::standstill::standstill;
+use crate::commands::shape_facts::is_better;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
 use crate::commands::study::plan::{RowOptions, options};
 use contact::equilibrium::StatusCounts;
@@ -95,7 +97,19 @@ pub struct Picture {
     pub heights: Vec<f64>,
 }
 
+impl Solved {
+    /// Whether it was optimized and its shape is no better than the start.
+    pub fn is_unchanged(&self) -> bool {
+        self.optimization.as_ref().is_some_and(|run| !is_better(run.objective_start, self.objective))
+    }
+}
+
 impl Row {
+    /// Whether it was optimized and found no better shape than its start.
+    pub fn is_unchanged(&self) -> bool {
+        matches!(&self.outcome, Outcome::Solved(solved) if solved.is_unchanged())
+    }
+
     /// Evaluations on the mesh that took most, if the row was optimized.
     pub fn evaluations(&self) -> Option<usize> {
         let Outcome::Solved(solved) = &self.outcome else { return None };
@@ -226,7 +240,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
     let block = problem.lower_block(shape.controls.as_slice()).map_err(Failure::computation)?;
     Ok(Solved {
         objective: shape.value,
-        objective_unit: objective.unit().replace(['{', '}'], ""),
+        objective_unit: plain_unit(&objective.unit()),
         peak_pressure: shape.peak_pressure,
         contact_area: problem.boundary.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),
