@@ -14,8 +14,8 @@ use nonsmooth::{
 /// Least first step over the smallest edge of the body. Ten times as much takes more evaluations on flat bodies that touch everywhere.
 const LEAST_FIRST_STEP: f64 = 1e-3;
 
-/// Θ of a scene: a measure of the contact state that the control heights lead to. Where Σσ^p may lie outside the range of doubles, Θ is
-/// its p-th root.
+/// Θ of a scene: a measure of the contact state that the control heights lead to. Where a pressure norm may lie outside the range of
+/// doubles, Θ is its p-th root.
 #[derive(Debug)]
 pub enum ContactObjective<S: ContactSolver = AnySolver> {
     /// A convex function of the contact pressures.
@@ -138,7 +138,7 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// The unit of Θ, such as `MPa^{4}`.
+    /// The unit of Θ, such as `MPa^{4}·mm^{2}`.
     pub fn unit(&self) -> String {
         match self {
             Self::Pressure(objective) => objective.cost().unit(),
@@ -146,11 +146,27 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// p where Θ is (Σσ^p)^{1/p} in place of Σσ^p, else 1.
+    /// As [`PressureCost::root`]; 1 for functions of the displacements.
     pub fn root(&self) -> f64 {
         match self {
             Self::Pressure(objective) => objective.cost().root(),
             Self::Field(_) => 1.0,
+        }
+    }
+
+    /// As [`PressureCost::norm_of_root`]; none for functions of the displacements.
+    pub fn norm_of_root(&self) -> Option<(f64, String)> {
+        match self {
+            Self::Pressure(objective) => objective.cost().norm_of_root(),
+            Self::Field(_) => None,
+        }
+    }
+
+    /// As [`PressureCost::norm_in_mpa`]; none for functions of the displacements.
+    pub fn norm_in_mpa(&self, value: f64) -> Option<f64> {
+        match self {
+            Self::Pressure(objective) => objective.cost().norm_in_mpa(value),
+            Self::Field(_) => None,
         }
     }
 

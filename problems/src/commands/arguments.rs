@@ -347,7 +347,7 @@ fn named<T: DeserializeOwned>(text: &str) -> Result<T, NameError> {
 fn measures() -> impl TypedValueParser<Value = MeasureName> {
     let value = |name, meaning| PossibleValue::new(name).help(meaning);
     PossibleValuesParser::new([
-        value("pressure-norm", "Σσ^p"),
+        value("pressure-norm", "∫σ^p dA, or Σσ^p with objective.weight = \"nodes\" in the scene file"),
         value("peak-pressure", "max σ"),
         value("pressure-deviation", "mean of (σ − wanted)²; needs objective.wanted of the scene file"),
         value("open-area", "area that lacks contact pressure; needs objective.pressure of the scene file"),

@@ -21,9 +21,9 @@ struct EvaluationJson {
     objective: f64,
     /// The unit of the objective, or of its root.
     objective_unit: String,
-    /// log₁₀ of the objective, of Σσ^p where its root is given.
+    /// log₁₀ of the objective, of the pressure norm where its root is given.
     log10_objective: Option<f64>,
-    /// p where objective and subgradient are those of (Σσ^p)^{1/p}, since those of Σσ^p are no doubles; else 1.
+    /// p where objective and subgradient are those of the p-th root of a pressure norm, since those of the norm are no doubles; else 1.
     objective_root: f64,
     subgradient: Vec<f64>,
     peak_pressure: f64,
@@ -71,16 +71,18 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let subgradient_seconds = clock.elapsed().as_secs_f64();
     let (state, forces) = (&shape.state, &shape.state.forces);
     let root = objective.root();
-    // The root r as Θ = r^p, with ∂Θ = p r^{p−1} ∂r.
-    let (power, slope) = (evaluation.value.powf(root), root * evaluation.value.powf(root - 1.0));
+    // The norm of a root r is s r^p, with the derivative s p r^{p−1} ∂r.
+    let (size, norm_unit) = objective.norm_of_root().unwrap_or_else(|| (1.0, objective.unit()));
+    let (power, slope) = (size * evaluation.value.powf(root), size * root * evaluation.value.powf(root - 1.0));
     let representable = power.is_normal() && (slope * evaluation.subgradient.amax()).is_finite();
-    let (value, slope, objective_root) =
-        if representable { (power, slope, 1.0) } else { (evaluation.value, 1.0, root) };
-    let objective_unit = if objective_root == root { objective.unit() } else { format!("MPa^{root}") };
+    let (value, slope, objective_root, objective_unit) = match representable {
+        true => (power, slope, 1.0, norm_unit),
+        false => (evaluation.value, 1.0, root, objective.unit()),
+    };
     let result = EvaluationJson {
         objective: value,
         objective_unit: objective_unit.replace(['{', '}'], ""),
-        log10_objective: (evaluation.value > 0.0).then(|| root * evaluation.value.log10()),
+        log10_objective: (evaluation.value > 0.0).then(|| size.log10() + root * evaluation.value.log10()),
         objective_root,
         subgradient: (&evaluation.subgradient * slope).as_slice().to_vec(),
         peak_pressure: shape.peak_pressure,
@@ -114,7 +116,7 @@ impl fmt::Display for EvaluationJson {
             1.0 => String::new(),
             root => {
                 let exponent = self.log10_objective.map_or_else(|| "–".into(), |exponent| format!("{exponent:.10}"));
-                format!(" = (Σσ^{root})^(1/{root}); Σσ^{root} = 10^{exponent}")
+                format!(", the root of degree {root} of a pressure norm of 10^{exponent}")
             }
         };
         writeln!(f, "objective            {:.10e} {}{power}", self.objective, self.objective_unit)?;

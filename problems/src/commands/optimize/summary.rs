@@ -18,7 +18,7 @@ use serde::Serialize;
 struct OptimizationJson<'a> {
     objective_start: f64,
     objective: f64,
-    /// p where all values of the objective are (Σσ^p)^{1/p}, since Σσ^p may be no double; else 1.
+    /// p where all values of the objective are the p-th root of a pressure norm, since the norm may be no double; else 1.
     objective_root: f64,
     controls: &'a [f64],
     evaluations: usize,
