@@ -77,6 +77,7 @@ pub mod scene;
 mod schema;
 pub mod shape;
 mod solver_kind;
+pub mod standstill;
 pub mod tfeti;
 pub mod vtk;
 mod work_estimate;

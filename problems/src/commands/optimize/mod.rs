@@ -3,7 +3,6 @@
 pub mod mesh_run;
 pub mod run;
 pub mod stages;
-pub mod standstill;
 pub mod summary;
 mod vtk_history;
 
@@ -14,7 +13,6 @@ use crate::commands::interrupt::{STATUS, interrupted};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::run::{OptimizationRun, optimize};
-use crate::commands::optimize::standstill::standstill;
 use crate::commands::optimize::summary::{page, stages_page, summary};
 use crate::commands::report::files;
 
@@ -52,7 +50,7 @@ pub fn report(
     };
     let shapes = [solved(&first.initial_controls)?, solved(&last.report.solution)?];
     let mut checks = checks(&last.objective, &shapes[1], session.arguments)?;
-    checks.extend(standstill(runs, last, &shapes[1])?);
+    checks.extend(last.standstill(runs, &shapes[1])?);
     let usage = session.processes.usage(shapes[1].state.solver)?;
     let mut text = page(last, &shapes, &checks, session.arguments) + &stages_page(runs, optimization.meshes);
     text += &usage.iter().map(|usage| format!("processes:   {usage}\n")).collect::<String>();

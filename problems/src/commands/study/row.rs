@@ -7,7 +7,6 @@ use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
-use crate::commands::optimize::standstill::standstill;
 use crate::commands::study::plan::options;
 use contact::contact_shape::Wanted;
 use contact::equilibrium::StatusCounts;
@@ -215,7 +214,7 @@ fn optimum(
     };
     let objective = chosen.report.value;
     let mut solved = solved(&chosen.objective, &last, session)?;
-    solved.warnings.extend(standstill(&run.mesh_runs, chosen, &last)?.map(|warning| warning.code.to_owned()));
+    solved.warnings.extend(chosen.standstill(&run.mesh_runs, &last)?.map(|warning| warning.code.to_owned()));
     Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved }))
 }
 
