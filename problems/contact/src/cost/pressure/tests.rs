@@ -154,7 +154,7 @@ fn a_norm_in_mpa_is_the_sum_over_nodes_or_the_mean_over_the_area() {
         assert_eq!((root.unit().as_str(), root.root()), ("MPa", 4.0));
         assert_eq!(root.norm_of_root(), Some((size, unit.to_owned())));
         for found in [norm.norm_in_mpa(value), root.norm_in_mpa(root.value(&pressures))] {
-            assert!((found.unwrap() / expected - 1.0).abs() < 1e-15, "{found:?} {expected}");
+            assert!((found.expect("a norm") / expected - 1.0).abs() < 1e-15, "{found:?} {expected}");
         }
         // Without any pressure, value and subgradient are zero.
         let nothing = Vector::zeros(4);
