@@ -11,6 +11,9 @@ const FLAT: f64 = 1e-9;
 /// Distance of Θ from its least value, relative to Θ, that is rounding.
 const LEAST: f64 = 1e-9;
 
+/// Why Θ is constant without loads.
+const IDLE: &str = "nothing loads the bodies; give loads to the scene";
+
 /// A warning about runs that gained no more than rounding because Θ is constant there, or at its least value; none for all other runs.
 /// `start` are the controls at which the last run began, `end` the controls at which it ended, with their state.
 ///
@@ -36,26 +39,33 @@ pub fn standstill<'r, S: ContactSolver>(
     // Without loads, what is left of forces is rounding of the gaps.
     let idle = objective.solver().problem().scene.load() == 0.0;
     let slope = objective.differentiate(controls, state)?.subgradient.lp_norm(1);
-    if idle || slope * objective.first_step(start) <= FLAT * value.abs() {
-        let reason =
-            if idle { "nothing loads the bodies; give loads to the scene".into() } else { why_flat(objective, state) };
-        let text = format!("the objective does not change with the shape where the run begins: {reason}");
-        return Ok(Some(Warning { code: "flat-objective", text }));
+    let is_flat = idle || slope * objective.first_step(start) <= FLAT * value.abs();
+    let flat = |reason: String| Warning {
+        code: "flat-objective",
+        text: format!("the objective does not change with the shape where the run begins: {reason}"),
+    };
+    let known = if idle { Some(IDLE.into()) } else { why_flat(objective, state) };
+    if let Some(reason) = known.filter(|_| is_flat) {
+        return Ok(Some(flat(reason)));
     }
+    // At its least value, Θ is flat too where it is smooth.
     let least = objective.lower_bound(state.forces.total_normal_force());
-    Ok(least.filter(|least| value - least <= LEAST * value.abs()).map(|least| Warning {
+    let least = least.filter(|least| value - least <= LEAST * value.abs()).map(|least| Warning {
         code: "least-objective",
         text: format!("the run begins at the least value that any shape has with this total force, {least:.4e}: nothing is to be gained"),
-    }))
+    });
+    let unknown = "its derivative is zero; begin at another shape (--start-controls, --starts)";
+    Ok(least.or_else(|| is_flat.then(|| flat(unknown.into()))))
 }
 
-fn why_flat<S: ContactSolver>(objective: &ContactObjective<S>, state: &ContactState<S::State>) -> String {
+/// Why Θ does not change near a state, where more is known than that its derivative is zero.
+fn why_flat<S: ContactSolver>(objective: &ContactObjective<S>, state: &ContactState<S::State>) -> Option<String> {
     if state.forces.status.iter().all(|status| *status == ContactStatus::Open) {
-        return "the bodies do not touch there; bring them together by loads, the start or the counter surface".into();
+        let reason = "the bodies do not touch there; bring them together by loads, the start or the counter surface";
+        return Some(reason.into());
     }
-    let known = match objective {
+    match objective {
         ContactObjective::Pressure(objective) => objective.cost().why_flat(state),
         ContactObjective::Field(_) => None,
-    };
-    known.unwrap_or_else(|| "its derivative is zero; begin at another shape (--start-controls, --starts)".into())
+    }
 }
