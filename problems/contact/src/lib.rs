@@ -9,14 +9,14 @@
 //!
 //! ```
 //! use contact::contact_shape::{ContactShape, SolverKind};
-//! use contact::cost::{PressureCost, PressureMeasure};
+//! use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 //! use contact::scene::{Scene, signorini};
 //! use nonsmooth::{CompositeObjective, NonsmoothObjective, Request, StateSolver};
 //!
 //! // The paper's Example 5.1, a block against a wavy obstacle, on 4 × 4 × 4 bricks.
 //! let scene = Scene { mesh: [4; 3], ..signorini()? };
 //! let shape = ContactShape::new(scene, SolverKind::Newton)?;
-//! let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary)?;
+//! let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes }, &shape.problem().boundary)?;
 //! let start = shape.start();
 //! let theta = CompositeObjective::new(shape, cost);
 //!
@@ -75,6 +75,7 @@ pub mod scene;
 mod schema;
 pub mod shape;
 pub mod solvers;
+pub mod standstill;
 pub mod tfeti;
 mod work_estimate;
 

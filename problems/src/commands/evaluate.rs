@@ -29,15 +29,16 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let evaluation = objective.differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
     let root = objective.root();
-    // The root r as Θ = r^p, with ∂Θ = p r^{p−1} ∂r.
-    let (power, slope) = (evaluation.value.powf(root), root * evaluation.value.powf(root - 1.0));
+    // The norm of a root r is s r^p, with the derivative s p r^{p−1} ∂r.
+    let (size, norm_unit) = objective.norm_of_root().unwrap_or_else(|| (1.0, objective.unit()));
+    let (power, slope) = (size * evaluation.value.powf(root), size * root * evaluation.value.powf(root - 1.0));
     let representable = power.is_normal() && (slope * evaluation.subgradient.amax()).is_finite();
     let (value, slope, objective_root) =
         if representable { (power, slope, 1.0) } else { (evaluation.value, 1.0, root) };
     let subgradient = &evaluation.subgradient * slope;
     // Squares of entries above 1e154 are no doubles.
     let largest = subgradient.amax().max(f64::MIN_POSITIVE);
-    let unit = if objective_root == root { objective.unit() } else { format!("MPa^{root}") };
+    let unit = if objective_root == root { objective.unit() } else { norm_unit };
     let mut result = vec![
         shape_facts::peak_pressure(&[&shape]),
         Fact::new("objective", "objective Θ", value, &raised(&unit)),
@@ -46,7 +47,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     ];
     result.extend(shape_facts::objective(objective, &[&shape]).into_iter().skip(1));
     result.extend(shape_facts::contact_areas(objective, &[&shape]));
-    let logarithm = (evaluation.value > 0.0).then(|| root * evaluation.value.log10());
+    let logarithm = (evaluation.value > 0.0).then(|| size.log10() + root * evaluation.value.log10());
     result.extend([
         Fact::new("log10_objective", "log10 of Θ", logarithm, "").detail(),
         Fact::new("", "norm of subgradient", largest * (&subgradient / largest).norm(), ""),

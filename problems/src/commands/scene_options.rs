@@ -36,7 +36,7 @@ const OBJECTIVE: &str = "Objective";
 const OPTIMIZER: &str = "Optimizer";
 
 /// The options that all commands take, in the order in which they change a scene.
-const OPTIONS: [SceneOption; 13] = [
+const OPTIONS: [SceneOption; 14] = [
     SceneOption {
         adapt: fitting,
         ..option(
@@ -77,6 +77,11 @@ const OPTIONS: [SceneOption; 13] = [
     option((SURFACE, "control-points", "N1xN2"), &["surface.control_points"], "Control points along x1 and x2"),
     option((SOLVER, "solver", "NAME"), &["solver.kind"], "Contact solver"),
     option((SOLVER, "preconditioner", "NAME"), &["solver.preconditioner"], "Preconditioner of the dual operator"),
+    option(
+        (SOLVER, "clusters", "N"),
+        &["solver.clusters"],
+        "Clusters of subdomains (hybrid total FETI); pays in many processes",
+    ),
     SceneOption {
         adapt: measured,
         ..option(

@@ -54,6 +54,7 @@ fn every_objective_is_evaluated_verified_optimized_and_rechecked() {
         "measure = \"open-area\"\npressure = 60.0",
         "measure = \"stress-norm\"\nregion = { body = \"lower\", x1 = [0.0, 1e3] }",
         "measure = \"compliance\"",
+        "weight = \"area\"\nexponent = 6.0",
     ]
     .iter()
     .enumerate()
@@ -106,4 +107,10 @@ fn options_and_fields_that_do_not_fit_the_objective_are_refused() {
     let printed = kit::run(contact3d(), &[&support, "--objective", "compliance", "--print-scene"]);
     let printed = String::from_utf8_lossy(&printed.stdout).into_owned();
     assert!(printed.contains("measure = \"compliance\"") && !printed.contains("\nexponent ="), "{printed}");
+    // A scene of the same measure keeps its weight; for another measure, the default holds.
+    for (scene, weight) in [(&punch, "\nweight = \"nodes\""), (&support, "\n# weight is not set")] {
+        let printed = kit::run(contact3d(), &[scene, "--objective", "pressure-norm", "--print-scene"]);
+        let printed = String::from_utf8_lossy(&printed.stdout).into_owned();
+        assert!(printed.contains("measure = \"pressure-norm\"") && printed.contains(weight), "{printed}");
+    }
 }

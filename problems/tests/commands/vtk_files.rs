@@ -2,7 +2,7 @@
 
 use contact::body::elasticity::brick;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{PressureCost, PressureMeasure};
+use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
 use contact::fields::Fields;
 use contact::scene::{Scene, hertz, signorini};
@@ -20,7 +20,11 @@ fn fields(mut scene: Scene) -> Fields {
     let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
     let control = shape.start();
     let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
-    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
+    let cost = PressureCost::new(
+        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
+        &shape.problem().boundary,
+    )
+    .unwrap();
     let dual = shape.output_dual(&state, &cost.subgradient(&shape.outputs(&state)));
     let (heights, _) = shape.height_sensitivity(&state, &dual).unwrap();
     let mut fields = shape.fields(&state).unwrap();

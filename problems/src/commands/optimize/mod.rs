@@ -3,7 +3,6 @@
 pub mod mesh_run;
 pub mod run;
 pub mod stages;
-pub mod standstill;
 pub mod summary;
 mod vtk_history;
 
@@ -15,7 +14,6 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::run::{OptimizationRun, optimize};
 use crate::commands::optimize::stages::Part;
-use crate::commands::optimize::standstill::standstill;
 use crate::commands::optimize::summary::Ended;
 use crate::commands::report::{export_command, files};
 use crate::commands::solved_shape::{SolvedShape, checks};
@@ -56,7 +54,7 @@ pub fn report(
     let begun = if matches!(last.part, Part::Start(_)) { last } else { first };
     let shapes = [solved(&begun.initial_controls)?, solved(&last.report.solution)?];
     let mut checks = checks(&last.objective, &shapes[1], session.arguments)?;
-    checks.extend(standstill(runs, last, &shapes[1])?);
+    checks.extend(last.standstill(runs, &shapes[1])?);
     let ended = Ended {
         last,
         runs,

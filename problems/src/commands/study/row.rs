@@ -7,7 +7,6 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::numbers::plain_unit;
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
-use crate::commands::optimize::standstill::standstill;
 use crate::commands::shape_facts::is_better;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
 use crate::commands::study::plan::{RowOptions, options};
@@ -229,7 +228,7 @@ fn optimum(
     };
     let objective = chosen.report.value;
     let mut solved = solved(&chosen.objective, &last, session)?;
-    solved.warnings.extend(standstill(&run.mesh_runs, chosen, &last)?.map(|warning| warning.code.to_owned()));
+    solved.warnings.extend(chosen.standstill(&run.mesh_runs, &last)?.map(|warning| warning.code.to_owned()));
     Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved }))
 }
 

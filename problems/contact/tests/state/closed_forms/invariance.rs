@@ -3,7 +3,7 @@
 use contact::body::elasticity::Material;
 use contact::body::mesh::Face;
 use contact::contact_shape::{ContactShape, ContactWarmStart, SolverKind};
-use contact::cost::{PressureCost, PressureMeasure};
+use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
 use contact::scene::{Load, Scene, hertz, signorini};
 use nonsmooth::{Accuracy, CompositeObjective, Evaluation, StateSolver, Vector};
@@ -18,7 +18,11 @@ struct Outcome {
 
 fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
     let shape = ContactShape::new(scene.clone(), kind).unwrap();
-    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
+    let cost = PressureCost::new(
+        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
+        &shape.problem().boundary,
+    )
+    .unwrap();
     let objective = CompositeObjective::new(shape, cost);
     let state = objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
     let evaluation = objective.differentiate(control, &state).unwrap();
