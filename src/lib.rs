@@ -201,6 +201,7 @@ pub mod verify;
 mod accuracy;
 mod checks;
 mod panics;
+mod plain;
 
 pub use accuracy::Accuracy;
 pub use bundle::{AccuracyPolicy, BundleTrust, BundleTrustConfig, Convexity, Cut, Run, ScaledNorm, VariableScaling};

@@ -33,7 +33,7 @@ impl ConstraintKind {
 
 /// A further linearization of a constraint at the point of an evaluation: c_j(y) ≥ value + ⟨gradient, y − x⟩ up to second order for one of
 /// the pieces of which c_j is the maximum.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ConstraintPiece {
     /// The constraint j, counted from 0.
     pub constraint: usize,
@@ -44,7 +44,7 @@ pub struct ConstraintPiece {
 }
 
 /// Values of the constraints at a point, with one subgradient of each.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ConstraintEvaluation {
     /// c, m entries, each in the unit of its constraint.
     pub values: Vector,

@@ -4,10 +4,11 @@
 //! The shapes are the start of Example 5.2 of the paper and one after a single step down the subgradient.
 
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{PressureCost, PressureMeasure};
-use contact::fields::{FieldState, Fields, vtk_files};
+use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
+use contact::fields::Fields;
 use contact::scene::hertz;
 use nonsmooth::{Accuracy, CompositeObjective, OutputJacobian, StateSolver, Vector};
+use problems::vtk_files::{FieldState, vtk_files};
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -16,7 +17,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut scene = hertz()?;
     scene.mesh = [8; 3];
     let shape = ContactShape::new(scene, SolverKind::Newton)?;
-    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary)?;
+    let cost = PressureCost::new(
+        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
+        &shape.problem().boundary,
+    )?;
     let start = shape.start();
     let objective = CompositeObjective::new(shape, cost);
     let (first, subgradient) = solved(&objective, &start)?;

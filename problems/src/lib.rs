@@ -26,8 +26,10 @@
 //! | module | what it holds |
 //! |---|---|
 //! | [`commands`] | the commands of the contact binaries, their reports and long runs |
+//! | [`vtk_files`] | displacements, stresses and contact fields of solved shapes as VTK files |
 //! | [`membrane`], [`toy`] | the two small state problems |
 
 pub mod commands;
 pub mod membrane;
 pub mod toy;
+pub mod vtk_files;

@@ -145,7 +145,7 @@ def solve_by_siconos(name, stiffness, load, contact, offset, friction):
 def forces(path, areas):
     """Contact forces of the program from its table of pressures and tractions."""
     table = np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8")
-    columns = [table[name] * areas for name in ("pressure", "traction_1", "traction_2")]
+    columns = [table[name] * areas for name in ("pressure_MPa", "traction_1_MPa", "traction_2_MPa")]
     return np.stack(columns, axis=1).ravel()
 
 

@@ -6,20 +6,22 @@ use crate::outcome::RunOutcome;
 use crate::run::{RunError, RunInput, drive, journaled, signal};
 use crate::setup::Setup;
 use crate::watched::Watched;
-use contact::communication::InProcess;
 use contact::contact_objective::{ContactObjective, mean_height_coordinates};
-use contact::contact_shape::{ContactShape, Wanted};
+use contact::contact_shape::ContactShape;
 use contact::equilibrium::ContactStatus;
 use contact::error::SceneError;
+use contact::plausibility::Warning;
+use contact::solvers::{Processes, Wanted};
+use contact::standstill::standstill;
 use nonsmooth::interruption::watched;
-use nonsmooth::{Accuracy, Matrix, OracleError, StateSolver, VariableScaling};
+use nonsmooth::{Accuracy, Matrix, OracleError, Report, StateSolver, VariableScaling, Vector};
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use scene_file::{AccuracyName, Case, MethodName, SceneFile, read_text};
+use scene_file::{AccuracyName, Case, MeasureName, MethodName, SceneFile, read_text};
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
@@ -48,6 +50,19 @@ fn computation(error: OracleError) -> PyErr {
     }
 }
 
+/// Shapes that the admissible set refuses lie outside the domain of Θ, as for the commands.
+fn shape(error: SceneError) -> PyErr {
+    match error {
+        SceneError::NotAdmissible { .. } => crate::errors::OutsideDomain::new_err(error.to_string()),
+        error => input(error),
+    }
+}
+
+/// The measure of a scene's table, if it is told.
+fn measure(table: &toml::Table) -> Option<MeasureName> {
+    table.get("objective")?.get("measure")?.clone().try_into().ok()
+}
+
 /// Sets the fields of a table to others, field by field in nested tables.
 fn merge(table: &mut toml::Table, fields: toml::Table) {
     for (name, value) in fields {
@@ -72,7 +87,12 @@ impl ContactScene {
                 .map_err(|error| bad(&error))?,
             None => toml::Table::new(),
         };
-        merge(&mut table, serde_json::from_str(fields).map_err(|error| bad(&error))?);
+        let fields: toml::Table = serde_json::from_str(fields).map_err(|error| bad(&error))?;
+        if measure(&fields).is_some_and(|new| new != measure(&table).unwrap_or_default()) {
+            // Fields of the section belong to the measure of the file, as for the option --objective.
+            table.remove("objective");
+        }
+        merge(&mut table, fields);
         let text = toml::to_string(&table).map_err(|error| bad(&error))?;
         let file = SceneFile::parse(&text, name).map_err(|error| PyValueError::new_err(error.to_string()))?;
         let folder = path.and_then(|path| Path::new(path).parent()).unwrap_or(Path::new(""));
@@ -105,19 +125,26 @@ impl ContactScene {
         convert::array2(py, rows, columns, |i, j| start[i * columns + j])
     }
 
-    /// Θ, its subgradient, and the state at control heights in row-major order.
-    fn evaluate<'py>(&self, py: Python<'py>, heights: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyDict>> {
+    /// Θ, its subgradient, and the state at control heights in row-major order; with what is implausible about it if it is asked for.
+    fn evaluate<'py>(
+        &self,
+        py: Python<'py>,
+        heights: &Bound<'py, PyAny>,
+        checks: bool,
+    ) -> PyResult<Bound<'py, PyDict>> {
         let heights = convert::vector(heights, "heights", Some(self.case.scene.control_points.iter().product()))?;
         let objective = self.objective(py)?;
+        objective.solver().problem().admissible.check_shape(&heights).map_err(shape)?;
         let solve = || {
             let state = objective.solver().solve(&heights, None, Accuracy::TIGHTEST)?;
             let evaluation = objective.differentiate(&heights, &state)?;
-            Ok((state, evaluation))
+            let warnings = if checks { objective.solver().warnings(&state)? } else { vec![] };
+            Ok((state, evaluation, warnings))
         };
         let failure = Failure::default();
         let watch = failure.clone();
         let solved = py.detach(|| watched(move || signal(&watch), solve));
-        let (state, evaluation) = match (solved, failure.take()) {
+        let (state, evaluation, warnings) = match (solved, failure.take()) {
             (_, Some(error)) => return Err(error),
             (solved, None) => solved.map_err(computation)?,
         };
@@ -137,6 +164,8 @@ impl ContactScene {
         result.set_item("value", evaluation.value)?;
         result.set_item("root", objective.root())?;
         result.set_item("unit", objective.unit())?;
+        result.set_item("norm_in_mpa", objective.norm_in_mpa(evaluation.value))?;
+        result.set_item("warnings", in_words(&warnings))?;
         result.set_item("error_bound", evaluation.error_bound)?;
         let gradient = convert::array(py, &evaluation.subgradient).reshape([rows, columns])?;
         result.set_item("gradient", gradient)?;
@@ -210,7 +239,7 @@ impl ContactScene {
         let input = RunInput {
             config,
             set: problem.admissible.polyhedron().clone(),
-            start,
+            start: start.clone(),
             callback: setup.callback.as_ref().map(|callback| callback.clone_ref(py)),
             disp: setup.disp,
             failure: failure.clone(),
@@ -224,11 +253,41 @@ impl ContactScene {
         });
         let exception = failure.take().map(|error| error.into_value(py).into_bound(py).into_any());
         match (result, exception) {
+            (Ok(mut outcome), None) => {
+                let watch = failure.clone();
+                let checks = || final_warnings(&objective, &start, &outcome.report);
+                let warnings = py.detach(|| watched(move || signal(&watch), checks));
+                match (warnings, failure.take()) {
+                    (_, Some(error)) => {
+                        return Ok((Some(outcome), Some(error.into_value(py).into_bound(py).into_any())));
+                    }
+                    (Ok(warnings), None) => outcome.report.warnings.extend(in_words(&warnings)),
+                    (Err(error), None) => {
+                        let words = format!("not-checked: the checks of the final shape failed: {error}");
+                        outcome.report.warnings.push(words);
+                    }
+                }
+                Ok((Some(outcome), None))
+            }
             (Ok(outcome), exception) => Ok((Some(outcome), exception)),
             (Err(_), Some(exception)) => Ok((None, Some(exception))),
             (Err(error), None) => Err(error.into()),
         }
     }
+}
+
+/// What is implausible about the shape at which a run has ended, and why it stood still if it did.
+fn final_warnings(objective: &ContactObjective, start: &Vector, report: &Report) -> Result<Vec<Warning>, OracleError> {
+    let end = &report.solution;
+    let state = objective.solver().solve(end, None, Accuracy::TIGHTEST)?;
+    let mut warnings = objective.solver().warnings(&state)?;
+    warnings.extend(standstill([report], objective, start, (end, &state))?);
+    Ok(warnings)
+}
+
+/// Every warning as its code and its sentence.
+fn in_words(warnings: &[Warning]) -> Vec<String> {
+    warnings.iter().map(ToString::to_string).collect()
 }
 
 impl ContactScene {
@@ -239,8 +298,7 @@ impl ContactScene {
 
     fn objective_for(&self, wanted: Wanted) -> Result<ContactObjective, SceneError> {
         let case = &self.case;
-        let shape =
-            ContactShape::for_use(case.scene.clone(), case.solver, case.preconditioner, wanted, Arc::new(InProcess))?;
+        let shape = ContactShape::by(Processes::alone().solver(case.plan(wanted))?);
         let measure = case.objective.measure(shape.problem())?;
         ContactObjective::new(shape, measure)
     }

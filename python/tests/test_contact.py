@@ -80,6 +80,51 @@ def test_the_same_scene_for_minimize_and_by_keywords():
     assert result.fun < scene.evaluate().theta and result.largest_violation < 1e-9
 
 
+def test_a_scene_weighs_nodes_by_their_area_unless_it_says_nodes(signorini):
+    nodes = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
+    area = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL, objective={"weight": "area"})
+    first, second = nodes.evaluate(), area.evaluate()
+    assert (first.unit, second.unit) == ("MPa^{4}", "MPa^{4}·mm^{2}")
+    cells = np.full((5, 5), 625.0)
+    for edge in (cells[0], cells[-1], cells[:, 0], cells[:, -1]):
+        edge /= 2
+    assert abs((cells * np.maximum(second.pressures, 0) ** 4).sum() / second.theta - 1) < 1e-12
+    assert abs(first.theta**0.25 / first.norm_in_mpa - 1) < 1e-12
+    assert abs((second.theta / 1e4) ** 0.25 / second.norm_in_mpa - 1) < 1e-12
+    with pytest.raises(ValueError, match="objective.weight = nodes.*pressure norm"):
+        contact.Scene.from_toml(SCENES / "signorini.toml", objective={"measure": "compliance", "weight": "nodes"})
+
+
+def codes(found):
+    return {warning.split(":")[0] for warning in found.warnings}
+
+
+def test_results_have_the_warnings_of_the_commands():
+    # docs/settings.md names the first two.
+    state = contact.Scene.from_toml(SCENES / "signorini.toml").evaluate()
+    assert {"large-displacement", "large-strain"} <= codes(state)
+    body = {
+        "material": {"young_modulus": 2.1e5, "poisson_ratio": 0.4999},
+        "supports": [{"face": "bottom", "held": ["u1", "u2", "u3"]}],
+        "loads": [{"face": "x1-max", "traction": [0.0, 0.0, -1.0]}],
+    }
+    scene = contact.Scene(
+        name="never touches", size=[20.0, 20.0], friction=0.3, mesh={"bricks": [4, 4, 4]}, lower=body,
+        counter_surface={"form": "plane", "height": 21.0}, surface={"start": {"form": "plane", "height": 20.0}},
+        admissible={"minimum_height": 15.0, "slope": 1.0, "volume": [1000.0, 9000.0]},
+    )
+    assert codes(scene.evaluate()) == {"no-contact", "volume-locking"}
+    assert codes(scene.optimize()) == {"no-contact", "volume-locking", "flat-objective"}
+
+
+def test_heights_that_the_commands_refuse_are_refused(signorini):
+    for change, words in [(5.0, "control"), (-60.0, "control")]:
+        heights = signorini.start + change
+        for call in (signorini.evaluate, signorini.fun):
+            with pytest.raises(nonsmooth.OutsideDomain, match=f"admissible set: .*{words}"):
+                call(heights)
+
+
 def test_a_shape_without_a_solution_is_outside_the_domain():
     scene = contact.Scene.from_toml(SCENES / "signorini.toml", mesh=SMALL)
     # The surface lies below the base: elements are inverted.

@@ -1,12 +1,12 @@
 //! Linear coordinates of the variables, in which lengths are measured.
 
 use crate::checks::{check_finite, check_size};
-use crate::{InputError, Matrix};
+use crate::{InputError, Matrix, plain};
 use serde::{Deserialize, Serialize};
 
 /// The regular matrix M of x = M β with its inverse and W = M⁻ᵀ M⁻¹; stored as M alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Matrix", into = "Matrix")]
+#[serde(try_from = "Vec<Vec<f64>>", into = "Vec<Vec<f64>>")]
 pub(crate) struct Coordinates {
     pub matrix: Matrix,
     pub inverse: Matrix,
@@ -34,8 +34,16 @@ impl TryFrom<Matrix> for Coordinates {
     }
 }
 
-impl From<Coordinates> for Matrix {
+impl TryFrom<Vec<Vec<f64>>> for Coordinates {
+    type Error = String;
+
+    fn try_from(rows: Vec<Vec<f64>>) -> Result<Self, String> {
+        Self::try_from(plain::from_rows(&rows)?).map_err(|error| error.to_string())
+    }
+}
+
+impl From<Coordinates> for Vec<Vec<f64>> {
     fn from(coordinates: Coordinates) -> Self {
-        coordinates.matrix
+        plain::rows(&coordinates.matrix)
     }
 }

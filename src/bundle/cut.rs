@@ -5,8 +5,8 @@
 //! ```
 
 use super::norm::ScaledNorm;
-use crate::Vector;
 use crate::qp::kernels::difference_dot;
+use crate::{Vector, plain};
 use serde::{Deserialize, Serialize};
 
 /// A cut is active if its multiplier exceeds this, where Σ λ = 1: stopping test, noise, scales and certificate count
@@ -31,6 +31,7 @@ pub struct Cut {
     /// Number of the cut in the order in which cuts were made; unique in a run.
     pub id: u64,
     /// Where Θ was evaluated, y; of merged cuts, the point of the one with the larger multiplier.
+    #[serde(with = "plain::vector")]
     pub point: Vector,
     /// Largest distance from `point` of a point that the cut stems from; 0 for a cut that is not merged.
     #[serde(default)]
@@ -38,6 +39,7 @@ pub struct Cut {
     /// Θ(y), or a lower bound of it.
     pub value: f64,
     /// One subgradient of Θ at y.
+    #[serde(with = "plain::vector")]
     pub subgradient: Vector,
     /// Bound or estimate of the error of `value` that the oracle promised, in units of Θ.
     pub error_bound: f64,

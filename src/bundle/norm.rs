@@ -9,7 +9,7 @@ use super::coordinates::Coordinates;
 use crate::checks::check_size;
 use crate::qp::Metric;
 use crate::qp::kernels::{weighted_squared_distance, weighted_squares};
-use crate::{InputError, Matrix, Polyhedron, Vector};
+use crate::{InputError, Matrix, Polyhedron, Vector, plain};
 use serde::{Deserialize, Serialize};
 
 /// Widths beyond this many times the median width count as no wider.
@@ -27,7 +27,7 @@ pub struct ScaledNorm(Scale);
 #[serde(rename_all = "snake_case")]
 enum Scale {
     /// The diagonal of W.
-    Weights(Vector),
+    Weights(#[serde(with = "plain::vector")] Vector),
     /// The matrix M.
     Linear(Coordinates),
 }

@@ -8,7 +8,7 @@
 use super::{CompositeProof, ConstraintProof};
 use crate::bundle::cut::{Cut, offset};
 use crate::bundle::norm::ScaledNorm;
-use crate::{ConstraintKind, Polyhedron, Vector};
+use crate::{ConstraintKind, Polyhedron, Vector, plain};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -17,6 +17,7 @@ use std::fmt;
 #[non_exhaustive]
 pub struct Certificate {
     /// The center x̂.
+    #[serde(with = "plain::vector")]
     pub point: Vector,
     /// Θ(x̂).
     pub value: f64,
@@ -40,8 +41,10 @@ pub struct Certificate {
     /// All cuts of the subproblem, with their points, values, subgradients and multipliers.
     pub cuts: Vec<Cut>,
     /// Multipliers μ of the rows, > 0 at the upper and < 0 at the lower side.
+    #[serde(with = "plain::vector")]
     pub row_multipliers: Vector,
     /// Multipliers ν of the bounds, signed likewise.
+    #[serde(with = "plain::vector")]
     pub bound_multipliers: Vector,
     /// Largest distance from x̂ of a cut with a positive multiplier, in the run's norm.
     pub active_radius: f64,

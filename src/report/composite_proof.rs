@@ -8,7 +8,7 @@
 //! conjugate, and ⟨w, c_j⟩ − h*(w) stands for h(c_j).
 
 use crate::bundle::OuterCut;
-use crate::{Matrix, Vector};
+use crate::{Matrix, Vector, plain};
 use serde::{Deserialize, Serialize};
 
 /// Outputs, Jacobian and cuts of the outer function behind a certificate. The certificate's own cuts are these, seen in
@@ -17,8 +17,10 @@ use serde::{Deserialize, Serialize};
 #[non_exhaustive]
 pub struct CompositeProof {
     /// c at the point, m entries.
+    #[serde(with = "plain::vector")]
     pub outputs: Vector,
     /// G there, m × n.
+    #[serde(with = "plain::matrix")]
     pub jacobian: Matrix,
     /// Relative error of the columns of G that the oracle promised.
     pub accuracy: f64,

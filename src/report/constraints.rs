@@ -2,7 +2,7 @@
 
 use crate::bundle::norm::ScaledNorm;
 use crate::qp::kernels::difference_dot;
-use crate::{ConstraintKind, Vector};
+use crate::{ConstraintKind, Vector, plain};
 use serde::{Deserialize, Serialize};
 
 /// What a run has found of one nonlinear constraint.
@@ -29,10 +29,12 @@ pub struct ConstraintCut {
     /// The constraint j, counted from 0.
     pub constraint: usize,
     /// Where it was taken, y.
+    #[serde(with = "plain::vector")]
     pub point: Vector,
     /// The value of the constraint, or of one of its pieces, at y.
     pub value: f64,
     /// The subgradient h there.
+    #[serde(with = "plain::vector")]
     pub subgradient: Vector,
     /// The multiplier of the linearization, ≥ 0 for an inequality.
     pub multiplier: f64,
@@ -59,8 +61,10 @@ pub struct ConstraintProof {
     /// What each constraint asks for.
     pub kinds: Vec<ConstraintKind>,
     /// c at the point, m entries.
+    #[serde(with = "plain::vector")]
     pub values: Vector,
     /// The largest |c_j| at the centers of the run, which violations are compared with.
+    #[serde(with = "plain::vector")]
     pub sizes: Vector,
     /// The linearizations with a multiplier.
     pub cuts: Vec<ConstraintCut>,

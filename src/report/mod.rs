@@ -19,7 +19,7 @@ pub use record::{Counts, IterationRecord, Origin, StepKind, TrialCounts};
 pub use stop::StopRule;
 pub use termination::Termination;
 
-use crate::Vector;
+use crate::{Vector, plain};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -29,6 +29,7 @@ use std::fmt;
 pub struct Report {
     /// The admissible point that the termination speaks about; where a limit or a failure ended the run, the lowest one
     /// evaluated.
+    #[serde(with = "plain::vector")]
     pub solution: Vector,
     /// Θ there.
     pub value: f64,
@@ -133,7 +134,7 @@ impl fmt::Display for Report {
         }
         writeln!(
             f,
-            "             {} subproblems ({} by the fallback solver), {:.3} s",
+            "             {} subproblems ({} by the fallback solver); {:.3} s for the whole run",
             counts.qp_solves, counts.qp_fallbacks, self.seconds
         )?;
         for warning in &self.warnings {

@@ -48,7 +48,7 @@ proptest! {
             (values[active] + curvature * y.norm_squared(), gradient / size)
         });
         let config = BundleTrustConfig { max_evaluations: 120, ..Default::default() };
-        let method = BundleTrust::new(config).unwrap().constraints(set.clone());
+        let mut method = BundleTrust::new(config).unwrap().constraints(set.clone());
         let report = method.minimize(&theta, v(&start) * size).unwrap();
         prop_assert!(worst.get() <= 1e-9, "violation {} {report}", worst.get());
         let failed = matches!(report.termination, nonsmooth::Termination::SubproblemFailed { .. });

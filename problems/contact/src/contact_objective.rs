@@ -1,10 +1,11 @@
 //! The objective Θ of a contact problem: a measure of the states that control heights lead to, and how far its first step goes.
 
-use crate::any_solver::AnySolver;
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
+pub use crate::cost::PressureRoot;
 use crate::cost::{ContactAreas, FieldCost, Measure, PressureCost};
 use crate::equilibrium::{ContactProblem, ContactSolver};
 use crate::error::SceneError;
+use crate::solvers::AnySolver;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
     Answer, CompositeObjective, Cost, Evaluation, Matrix, NonsmoothObjective, OracleError, OutputJacobian,
@@ -13,9 +14,11 @@ use nonsmooth::{
 
 /// Least first step over the smallest edge of the body. Ten times as much takes more evaluations on flat bodies that touch everywhere.
 const LEAST_FIRST_STEP: f64 = 1e-3;
+/// Largest first step over the smallest edge of the body: bodies close larger gaps by moving as a whole, which says nothing about their shape.
+const LARGEST_FIRST_STEP: f64 = 0.5;
 
-/// Θ of a scene: a measure of the contact state that the control heights lead to. Where Σσ^p may lie outside the range of doubles, Θ is
-/// its p-th root.
+/// Θ of a scene: a measure of the contact state that the control heights lead to. Where a pressure norm may lie outside the range of
+/// doubles, Θ is its p-th root.
 #[derive(Debug)]
 pub enum ContactObjective<S: ContactSolver = AnySolver> {
     /// A convex function of the contact pressures.
@@ -138,11 +141,19 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// The unit of Θ, such as `MPa^{4}`.
+    /// The unit of Θ, such as `MPa^{4}·mm^{2}`.
     pub fn unit(&self) -> String {
         match self {
             Self::Pressure(objective) => objective.cost().unit(),
             Self::Field(objective) => objective.cost().unit().into(),
+        }
+    }
+
+    /// A value of Θ as a pressure, where Θ is a sum of powers of pressures.
+    pub fn pressure_root(&self, value: f64) -> Option<PressureRoot> {
+        match self {
+            Self::Pressure(objective) => objective.cost().pressure_root(value),
+            Self::Field(_) => None,
         }
     }
 
@@ -154,6 +165,22 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
+    /// As [`PressureCost::norm_of_root`]; none for functions of the displacements.
+    pub fn norm_of_root(&self) -> Option<(f64, String)> {
+        match self {
+            Self::Pressure(objective) => objective.cost().norm_of_root(),
+            Self::Field(_) => None,
+        }
+    }
+
+    /// As [`PressureCost::norm_in_mpa`]; none for functions of the displacements.
+    pub fn norm_in_mpa(&self, value: f64) -> Option<f64> {
+        match self {
+            Self::Pressure(objective) => objective.cost().norm_in_mpa(value),
+            Self::Field(_) => None,
+        }
+    }
+
     /// The contact areas of a state, where the open area is what is minimised.
     pub fn contact_areas(&self, state: &ContactState<S::State>) -> Option<ContactAreas> {
         match self {
@@ -162,14 +189,15 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// Half of the mean distance between a surface and its counterpart, the length on which contact changes, but at least a thousandth of the
-    /// smallest edge of the body, mm: bodies that touch everywhere have no distance, and deform.
+    /// Half of the mean distance between a surface and its counterpart, the length on which contact changes, but at least a thousandth and
+    /// at most half of the smallest edge of the body, mm: bodies that touch everywhere have no distance, and deform.
     pub fn first_step(&self, start: &Vector) -> f64 {
         let problem = self.solver().problem();
         let gaps = problem.lower_block(start.as_slice()).map(|block| problem.gaps(&block)).unwrap_or_default();
         let length = gaps.iter().map(|gap| gap.abs()).sum::<f64>() / (2 * gaps.len().max(1)) as f64;
         let [first, second] = problem.grid.size;
-        length.max(LEAST_FIRST_STEP * first.min(second).min(start.mean().abs()))
+        let edge = first.min(second).min(start.mean().abs());
+        length.max(LEAST_FIRST_STEP * edge).min(LARGEST_FIRST_STEP * edge)
     }
 }
 

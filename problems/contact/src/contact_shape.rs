@@ -8,29 +8,23 @@
 //! ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries). A cost of the displacements adds three entries per node of
 //! every body, lower first ([`ContactProblem::displacement_count`]); other costs leave them out, and nothing is computed for them.
 
-use crate::communication::{Communication, InProcess};
 use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, ValueError,
 };
 use crate::error::{ContactError, SceneError};
 use crate::fields::Fields;
-use crate::memory;
 use crate::plausibility::{self, Estimates, Warning};
 use crate::scene::Scene;
-use crate::tfeti::PreconditionerKind;
+use crate::solvers::{Processes, SolverPlan};
 use nonsmooth::composite::{InactiveConstraints, Linearization};
 use nonsmooth::interruption::interrupted;
 use nonsmooth::{
     Accuracy, Coderivative, InputError, Matrix, OracleError, OutputJacobian, Sensitivity, StateSolver, Vector,
 };
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-pub use crate::any_solver::AnySolver;
-pub use crate::any_state::AnyState;
-pub use crate::auto_solver::{AutoSolver, Wanted};
 pub use crate::equilibrium::ContactWarmStart;
-pub use crate::solver_kind::SolverKind;
+pub use crate::solvers::{AnySolver, AnyState, SolverKind};
 
 /// A solved shape; by default by a solver whose kind was chosen when the program ran.
 pub type ContactState<S = AnyState> = crate::equilibrium::ContactState<S>;
@@ -57,47 +51,13 @@ const ADJOINT_SHARE: f64 = 0.1;
 const TIGHTEST_ADJOINT: f64 = 1e-11;
 
 impl ContactShape {
-    /// Checks a scene and prepares its solver.
+    /// Checks a scene and prepares its solver in this process; [`Processes::solver`] has more choices.
     ///
     /// # Errors
-    /// [`SceneError`] for a bad field, a scene that needs more memory than there is, or a size whose symbolic analysis fails.
+    /// As [`Processes::solver`].
     pub fn new(scene: Scene, kind: SolverKind) -> Result<Self, SceneError> {
-        Self::for_use(scene, kind, PreconditionerKind::default(), Wanted::States, Arc::new(InProcess))
+        Ok(Self::by(Processes::alone().solver(SolverPlan::new(scene, kind))?))
     }
-
-    /// As [`ContactShape::new`], with a choice of the preconditioner of total FETI, and for what the solver will be asked for: the
-    /// choice of `auto` depends on it. Where there are several processes, all of them do the same: total FETI shares the
-    /// subdomains among them, direct condensation is repeated by each.
-    ///
-    /// # Errors
-    /// As [`ContactShape::new`].
-    pub fn for_use(
-        scene: Scene,
-        kind: SolverKind,
-        preconditioner: PreconditionerKind,
-        wanted: Wanted,
-        communication: Arc<dyn Communication>,
-    ) -> Result<Self, SceneError> {
-        scene.validate()?;
-        let columns = if wanted == Wanted::Jacobians { scene.control_points.iter().product() } else { 0 };
-        check_processes(&scene, kind, communication.size())?;
-        memory::check(&scene, kind, preconditioner, columns, &*communication)?;
-        let problem = Arc::new(ContactProblem::new(scene)?);
-        let solver = AnySolver::new(problem, kind, preconditioner, wanted, communication)
-            .map_err(|error| SceneError::out_of_range("mesh.bricks", error, "a size that can be factored"))?;
-        Ok(Self::by(solver))
-    }
-}
-
-/// Refuses processes that would own no subdomain. Direct condensation, which every process repeats, takes any number of them.
-fn check_processes(scene: &Scene, kind: SolverKind, processes: usize) -> Result<(), SceneError> {
-    let bodies = if scene.upper.is_some() { 2 } else { 1 };
-    let subdomains = bodies * scene.subdomains.iter().product::<usize>();
-    if kind == SolverKind::Direct || processes <= subdomains {
-        return Ok(());
-    }
-    let allowed = format!("at most {subdomains}, as many as there are subdomains (mesh.subdomains)");
-    Err(SceneError::out_of_range("number of processes", processes, allowed))
 }
 
 impl<S: ContactSolver> ContactShape<S> {
@@ -115,11 +75,6 @@ impl<S: ContactSolver> ContactShape<S> {
     /// The contact solver.
     pub fn contact_solver(&self) -> &S {
         &self.solver
-    }
-
-    /// The contact solver, for a map that does more with it.
-    pub fn into_solver(self) -> S {
-        self.solver
     }
 
     /// The discrete problem.

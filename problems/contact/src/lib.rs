@@ -9,14 +9,14 @@
 //!
 //! ```
 //! use contact::contact_shape::{ContactShape, SolverKind};
-//! use contact::cost::{PressureCost, PressureMeasure};
+//! use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 //! use contact::scene::{Scene, signorini};
 //! use nonsmooth::{CompositeObjective, NonsmoothObjective, Request, StateSolver};
 //!
 //! // The paper's Example 5.1, a block against a wavy obstacle, on 4 × 4 × 4 bricks.
 //! let scene = Scene { mesh: [4; 3], ..signorini()? };
 //! let shape = ContactShape::new(scene, SolverKind::Newton)?;
-//! let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary)?;
+//! let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes }, &shape.problem().boundary)?;
 //! let start = shape.start();
 //! let theta = CompositeObjective::new(shape, cost);
 //!
@@ -44,17 +44,15 @@
 //! | [`tfeti`] | total FETI: torn bodies, dual problem, Newton, the paper's method, derivative |
 //! | [`direct`] | direct condensation: an independent path |
 //! | [`qp`], [`linear`] | dual QPs over half-lines and discs; factorisations |
-//! | [`fields`], [`vtk`] | displacements, stresses and contact fields of a solved shape; their files |
+//! | [`fields`] | displacements, stresses and contact fields of a solved shape |
 //! | [`friction_problem`] | the matrices of a shape, for other solvers |
+//! | [`solvers`] | the solver of a scene: by name, by choice, shared by several processes |
 //! | [`communication`] | what passes between the processes of a run |
 //! | [`memory`] | memory estimated before any work |
 //! | [`deformation`] | the largest displacement, rotation and strain of bodies |
 //! | [`plausibility`] | what linear elasticity, the mesh and uniqueness say about a state |
 //! | [`error`] | what can be wrong with a scene, and why a contact problem has no answer |
 
-mod any_solver;
-mod any_state;
-mod auto_solver;
 pub mod body;
 pub mod communication;
 pub mod contact_objective;
@@ -76,9 +74,9 @@ pub mod scene;
 #[cfg(feature = "schema")]
 mod schema;
 pub mod shape;
-mod solver_kind;
+pub mod solvers;
+pub mod standstill;
 pub mod tfeti;
-pub mod vtk;
 mod work_estimate;
 
 pub use work_estimate::WorkEstimate;

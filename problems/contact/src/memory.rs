@@ -3,7 +3,7 @@
 use crate::communication::Communication;
 use crate::error::SceneError;
 use crate::scene::{BodyScene, Scene};
-use crate::solver_kind::SolverKind;
+use crate::solvers::{SolverKind, SolverPlan};
 use crate::tfeti::{MAX_COLUMNS, PreconditionerKind};
 use crate::work_estimate::factor_values;
 
@@ -66,24 +66,19 @@ pub(crate) fn estimate(
     NUMBER * (owned * per_piece + DUAL_VECTORS * rows + coarse) + tangents
 }
 
-/// Refuses a scene that needs more memory than the machine has to give, with `columns` of its Jacobian. Where the system does not
+/// Refuses a scene that needs more memory than the machine has to give. Where the system does not
 /// tell, nothing is refused. Of several processes, each looks at its own machine, and all refuse if one does.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`] with both figures; [`SceneError::OtherProcess`] if only another process refuses.
-pub fn check(
-    scene: &Scene,
-    kind: SolverKind,
-    preconditioner: PreconditionerKind,
-    columns: usize,
-    communication: &dyn Communication,
-) -> Result<(), SceneError> {
+pub fn check(plan: &SolverPlan, communication: &dyn Communication) -> Result<(), SceneError> {
     let processes = communication.size();
+    let needed = estimate(&plan.scene, plan.kind, plan.preconditioner, plan.columns(), processes);
     if processes == 1 {
-        return compare(scene, estimate(scene, kind, preconditioner, columns, 1), available());
+        return compare(&plan.scene, needed, available());
     }
     let here = on_this_machine(communication) as f64;
-    let own = compare(scene, here * estimate(scene, kind, preconditioner, columns, processes), available());
+    let own = compare(&plan.scene, here * needed, available());
     match (communication.agree(own.as_ref().err().map(ToString::to_string)), own) {
         (Some(reason), Ok(())) => Err(SceneError::OtherProcess { reason }),
         (_, own) => own,
@@ -164,7 +159,7 @@ mod tests {
     #[test]
     fn a_scene_beyond_any_machine_is_refused_with_the_figures() {
         let scene = Scene { mesh: [400; 3], subdomains: [1; 3], ..signorini().expect("a preset") };
-        let error = check(&scene, SolverKind::Direct, PreconditionerKind::Dirichlet, 0, &InProcess);
+        let error = check(&SolverPlan::new(scene, SolverKind::Direct), &InProcess);
         if available().is_some() {
             let text = error.expect_err("needs terabytes").to_string();
             assert!(text.contains("GB"), "{text}");

@@ -8,7 +8,7 @@
 
 use crate::equilibrium::Work;
 use crate::scene::Scene;
-use crate::solver_kind::SolverKind;
+use crate::solvers::SolverKind;
 
 /// Products with F after which total FETI gives up where bodies are too large to be condensed. The Newton steps of direct
 /// condensation may cost as many operations.

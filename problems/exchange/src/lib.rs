@@ -1,9 +1,11 @@
-//! Surfaces over a rectangle, and bodies below or above them, as STL and STEP files; matrices as Matrix Market files.
+//! Surfaces over a rectangle, and bodies below or above them, as STL and STEP files; matrices as Matrix Market files; grids
+//! with data as VTU files.
 //!
 //! ```text
 //! heights on lines ─ triangles ─ stl        chord error bounded by second derivatives (triangulation.rs)
 //! B-spline heights ─ step                   exact: x₁, x₂ of the control points are Greville abscissae (step)
 //! entries          ─ matrix_market
+//! points, cells    ─ vtk                    arrays with units, numbers without rounding
 //! ```
 //! The package knows numbers only: no mechanics, no command line. Lengths are in mm. The same input gives the same
 //! bytes.
@@ -14,6 +16,7 @@ pub mod matrix_market;
 pub mod step;
 mod stl;
 mod triangulation;
+pub mod vtk;
 
 pub use error::ExchangeError;
 pub use heights::Heights;

@@ -30,8 +30,8 @@ pub(super) struct Frame {
 /// Which parts of the axes are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Parts {
-    /// Room at the left for ticks, labels and title of the vertical axis, points; none: only its line is drawn.
-    pub left: Option<f64>,
+    /// Room at the left for ticks, labels and title of the vertical axis, points.
+    pub left: f64,
     /// Lines across the frame at the ticks.
     pub grid: bool,
 }
@@ -66,15 +66,13 @@ impl Frame {
             }
         }
         canvas.anchored([middle, foot + ROOM_BELOW - 3.0], LABEL, Anchor::Middle, &across.title);
-        if let Some(room) = parts.left {
-            for tick in &up.ticks {
-                let [x, y] = self.place([0.0, tick.share]);
-                canvas.line(&[[x - TICK, y], [x, y]], ink);
-                canvas.anchored([x - GAP, y + 0.5 * DIGIT * LABEL], LABEL, Anchor::End, &tick.label);
-            }
-            let title = [self.left - room + DIGIT * LABEL, self.top + 0.5 * self.height];
-            canvas.anchored(title, LABEL, Anchor::Upward, &up.title);
+        for tick in &up.ticks {
+            let [x, y] = self.place([0.0, tick.share]);
+            canvas.line(&[[x - TICK, y], [x, y]], ink);
+            canvas.anchored([x - GAP, y + 0.5 * DIGIT * LABEL], LABEL, Anchor::End, &tick.label);
         }
+        let title = [self.left - parts.left + DIGIT * LABEL, self.top + 0.5 * self.height];
+        canvas.anchored(title, LABEL, Anchor::Upward, &up.title);
         canvas.outline(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|share| self.place(share)), ink);
     }
 }

@@ -5,7 +5,7 @@ use super::chart::{Frame, Parts, ROOM_BELOW};
 use super::error::{FigureError, below, cells, count, finite, positive, some};
 use super::figure::Figure;
 use super::nodes::PlaneGrid;
-use super::panel_layout::PanelLayout;
+use super::panel_layout::{PanelLayout, ROOM_LEFT};
 use super::scale::{Axis, behind, nice_below, number};
 
 /// Every node is in one of a few classes, which have a colour each. Where there are arrows, their middles are at the
@@ -98,7 +98,7 @@ impl Classes {
         layout.write(&mut canvas, &captions, end);
         for (index, panel) in self.panels.iter().enumerate() {
             let points = arrows.as_ref().map_or(0.0, |(points, ..)| *points);
-            self.draw(&mut canvas, layout.frames[index], panel, points, layout.labelled[index]);
+            self.draw(&mut canvas, layout.frames[index], panel, points);
         }
         let (x, mut y) = (layout.right, layout.frames[0].top + 2.0);
         for (index, name) in self.classes.iter().enumerate() {
@@ -149,7 +149,7 @@ impl Classes {
         Some((longest / largest, value, format!("{quantity} {}{}", number(value), behind(unit))))
     }
 
-    fn draw(&self, canvas: &mut Canvas, frame: Frame, panel: &ClassPanel, points: f64, room: Option<f64>) {
+    fn draw(&self, canvas: &mut Canvas, frame: Frame, panel: &ClassPanel, points: f64) {
         let [n1, n2] = panel.counts;
         let last = [n1 - 1, n2 - 1].map(|nodes| nodes as f64);
         let place = |[i, j]: [f64; 2]| frame.place([(i / last[0]).clamp(0.0, 1.0), (j / last[1]).clamp(0.0, 1.0)]);
@@ -166,7 +166,7 @@ impl Classes {
             let ends = [panel.origin[index], panel.origin[index] + panel.size[index]];
             Axis::linear(&self.axes[index], "", ends, 0.0, 5)
         };
-        frame.axes(canvas, &axis(0), &axis(1), Parts { left: room, grid: false });
+        frame.axes(canvas, &axis(0), &axis(1), Parts { left: ROOM_LEFT, grid: false });
         for (node, [a, b]) in panel.arrows.iter().enumerate() {
             let drawn = [node / n2, node % n2].iter().all(|index| index.is_multiple_of(panel.stride()));
             let [x, y] = place([(node / n2) as f64, (node % n2) as f64]);

@@ -88,7 +88,7 @@ impl Convergence {
         let width = (right + legend_width(&legend)).max(text_width(&self.title, TITLE) + 32.0);
         let mut canvas = Canvas::new(width, frame.top + SIZE[1] + ROOM_BELOW + 8.0);
         canvas.text([16.0, 22.0], TITLE, &self.title);
-        frame.axes(&mut canvas, &across, &up, Parts { left: Some(60.0), grid: true });
+        frame.axes(&mut canvas, &across, &up, Parts { left: 60.0, grid: true });
         let place = |number: f64, value: f64| {
             let share = [across.share(number).unwrap_or(0.0), up.share(value).unwrap_or(0.0).clamp(0.0, 1.0)];
             frame.place(share)

@@ -119,7 +119,7 @@ impl Landscape {
             let ends = [self.origin[index], self.origin[index] + self.size[index]];
             Axis::linear(&self.axes[index], "", ends, 0.0, 6)
         };
-        frame.axes(canvas, &axis(0), &axis(1), Parts { left: Some(ROOM_LEFT), grid: false });
+        frame.axes(canvas, &axis(0), &axis(1), Parts { left: ROOM_LEFT, grid: false });
         let [low, high] = scale.axis.ends();
         for level in scale.levels() {
             let pieces = contour(lattice, low + level * (high - low));

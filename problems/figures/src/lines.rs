@@ -125,7 +125,7 @@ impl LinePanel {
     fn draw(&self, canvas: &mut Canvas, frame: Frame, up: &Axis, names: &[&str]) {
         let places = self.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0));
         let across = Axis::linear(&self.across, "", places, 0.02, 6);
-        frame.axes(canvas, &across, up, Parts { left: Some(ROOM_LEFT - 8.0), grid: true });
+        frame.axes(canvas, &across, up, Parts { left: ROOM_LEFT - 8.0, grid: true });
         for line in &self.curves {
             let index = names.iter().position(|name| *name == line.name).unwrap_or(0);
             let place = |(x, y): &(f64, f64)| Some(frame.place([across.share(*x)?, up.share(*y)?]));

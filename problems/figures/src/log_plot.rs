@@ -75,7 +75,7 @@ impl LogPlot {
         let width = (right + legend_width(&legend)).max(text_width(&self.title, TITLE) + 32.0);
         let mut canvas = Canvas::new(width, frame.top + SIZE[1] + ROOM_BELOW + 8.0);
         canvas.text([16.0, 22.0], TITLE, &self.title);
-        frame.axes(&mut canvas, &across, &up, Parts { left: Some(66.0), grid: true });
+        frame.axes(&mut canvas, &across, &up, Parts { left: 66.0, grid: true });
         let place = |x: f64, y: f64| Some(frame.place([across.share(x)?, up.share(y)?]));
         canvas.clipped("inside", [frame.left, frame.top], SIZE, |canvas| {
             for (_, factor, slope) in &self.guides {

@@ -6,7 +6,7 @@ use super::error::{FigureError, finite, grid, some};
 use super::figure::Figure;
 use super::levels::{ColourScale, Lattice, contour, fill};
 use super::nodes::PlaneGrid;
-use super::panel_layout::PanelLayout;
+use super::panel_layout::{PanelLayout, ROOM_LEFT};
 use super::scale::{Axis, behind, number};
 
 /// Values over the plane: one or more panels; the largest value of every panel is marked. Up to 5000 nodes of a panel,
@@ -115,7 +115,7 @@ impl Map {
         layout.write(&mut canvas, &captions, layout.foot + 14.0);
         for (index, panel) in self.panels.iter().enumerate() {
             let (frame, scale) = (layout.frames[index], &scales[index.min(scales.len() - 1)]);
-            panel.draw(&mut canvas, frame, scale, self, layout.labelled[index]);
+            panel.draw(&mut canvas, frame, scale, self);
             if self.scales == ColourScales::Own {
                 scale.bar(&mut canvas, [layout.ends[index] + 16.0, frame.top], frame.height);
             }
@@ -141,7 +141,7 @@ impl MapPanel {
         (place, format!("largest {}{} at {}", number(self.values[best]), behind(unit), self.grid().position(place)))
     }
 
-    fn draw(&self, canvas: &mut Canvas, frame: Frame, scale: &ColourScale, map: &Map, room: Option<f64>) {
+    fn draw(&self, canvas: &mut Canvas, frame: Frame, scale: &ColourScale, map: &Map) {
         let last = self.counts.map(|nodes| (nodes - 1) as f64);
         let place = |[i, j]: [f64; 2]| frame.place([i / last[0], j / last[1]]);
         fill(canvas, Lattice { counts: self.counts, values: &self.values }, scale, place);
@@ -152,7 +152,7 @@ impl MapPanel {
             let ends = [self.origin[index], self.origin[index] + self.size[index]];
             Axis::linear(&map.axes[index], "", ends, 0.0, 5)
         };
-        frame.axes(canvas, &axis(0), &axis(1), Parts { left: room, grid: false });
+        frame.axes(canvas, &axis(0), &axis(1), Parts { left: ROOM_LEFT, grid: false });
         let ([i, j], _) = self.largest(&map.unit);
         ring(canvas, place([i as f64, j as f64]));
         let text = |node: usize| format!("{}{}", number(self.values[node]), behind(&map.unit));

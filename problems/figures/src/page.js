@@ -2,7 +2,8 @@
 for (const figure of document.querySelectorAll("figure")) {
   const told = figure.querySelector("output");
   if (told) {
-    told.textContent = "Point at a node or a mark for its number and value.";
+    const nodes = figure.querySelector(".nodes");
+    told.textContent = nodes ? "Point at a node for its place and value." : "Point at a mark for its evaluation and value.";
     const tell = (event) => {
       const title = event.target.querySelector(":scope > title");
       if (title && event.target.tagName !== "svg") told.textContent = title.textContent;

@@ -7,7 +7,7 @@ use super::nodes::PlaneGrid;
 /// Longer side of a panel, points.
 const SIDE: f64 = 280.0;
 /// Room at the left for labels and title of the vertical axis, points.
-const ROOM_LEFT: f64 = 52.0;
+pub(super) const ROOM_LEFT: f64 = 52.0;
 /// Least ratio of the sides of a panel; slimmer ones are not drawn to scale.
 const MIN_SIDE_RATIO: f64 = 0.25;
 /// Upper side of the panels, points.
@@ -17,8 +17,6 @@ const TOP: f64 = 72.0;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct PanelLayout {
     pub frames: Vec<Frame>,
-    /// Room for the labels of the vertical axis; none where the panel before has the same axis.
-    pub labelled: Vec<Option<f64>>,
     /// Where each panel ends, and its captions.
     pub ends: Vec<f64>,
     /// Where the panels end, with a distance.
@@ -30,36 +28,27 @@ pub(super) struct PanelLayout {
 impl PanelLayout {
     /// Panels over some grids, each with room for its captions and for something behind it.
     pub fn new(grids: &[PlaneGrid], captions: &[[String; 2]], behind: f64) -> Self {
-        let same =
-            behind == 0.0 && grids.windows(2).all(|two| two[0].origin == two[1].origin && two[0].size == two[1].size);
         let (mut left, mut foot) = (16.0, TOP);
         let mut frames = Vec::new();
-        let mut labelled = Vec::new();
         let mut ends = Vec::new();
-        for (index, (grid, captions)) in grids.iter().zip(captions).enumerate() {
-            let room = (index == 0 || !same).then_some(ROOM_LEFT);
-            left += room.unwrap_or(0.0);
+        for (grid, captions) in grids.iter().zip(captions) {
+            // On a narrow page a panel stands alone, so that every panel has labels of its own.
+            left += ROOM_LEFT;
             let [width, height] = sides(grid.size);
             frames.push(Frame { left, top: TOP, width, height });
-            labelled.push(room);
             let text = captions.iter().fold(0.0_f64, |width, text| width.max(text_width(text, LABEL)));
             ends.push(left + width.max(text));
             left += width.max(text) + behind + if behind > 0.0 { 20.0 } else { 36.0 };
             foot = foot.max(TOP + height);
         }
-        Self { frames, labelled, ends, right: left, foot }
+        Self { frames, ends, right: left, foot }
     }
 
     /// The captions above the panels. Every panel is a part of the figure, and so is what stands right of all panels
     /// and ends at some height.
     pub fn write(&self, canvas: &mut Canvas, captions: &[[String; 2]], end: f64) {
         let foot = self.foot + ROOM_BELOW + 8.0;
-        let lefts: Vec<f64> = self
-            .frames
-            .iter()
-            .zip(&self.labelled)
-            .map(|(frame, room)| frame.left - room.map_or(16.0, |room| room + 8.0))
-            .collect();
+        let lefts: Vec<f64> = self.frames.iter().map(|frame| frame.left - ROOM_LEFT - 8.0).collect();
         for (index, left) in lefts.iter().enumerate() {
             canvas.part([*left, TITLE_ROOM], [lefts.get(index + 1).copied().unwrap_or(self.right - 4.0), foot]);
         }

@@ -205,6 +205,19 @@ fn the_parts_of_a_figure_hold_all_of_its_text_but_the_title() {
     assert_eq!(parted, 8);
 }
 
+/// On a narrow page the parts of a figure stand alone.
+#[test]
+fn every_panel_of_a_map_has_labels_of_its_own() {
+    let figure = map(ColourScales::Common, false);
+    let document = roxmltree::Document::parse(&figure.svg).expect("XML");
+    let labels = document.descendants().filter(|node| node.attribute("text-anchor") == Some("end"));
+    let places: Vec<f64> = labels.filter_map(|node| node.attribute("x")?.parse().ok()).collect();
+    for [left, _, width, _] in &figure.parts[..2] {
+        let inside = f64::from(*left)..f64::from(left + width);
+        assert!(places.iter().filter(|x| inside.contains(x)).count() >= 3, "{places:?} {inside:?}");
+    }
+}
+
 #[test]
 fn axes_have_their_ticks_where_the_numbers_are() {
     let [_, plot, _] = plots();

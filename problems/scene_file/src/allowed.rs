@@ -7,11 +7,7 @@ use serde_json::Value;
 pub(super) fn words(node: &Node<'_>) -> String {
     let unit = node.text("x-unit").filter(|unit| unit != "1").map_or_else(String::new, |unit| format!(" ({unit})"));
     if let Some(items) = node.items() {
-        let bounds = [&node.inner["minItems"], &node.inner["maxItems"]].map(Value::as_u64);
-        let count = match bounds {
-            [Some(low), Some(high)] if low == high => format!("{low} entries"),
-            _ => "a list".to_owned(),
-        };
+        let count = node.length().map_or_else(|| "a list".to_owned(), |count| format!("{count} entries"));
         let one_of = if items.names().is_empty() { "" } else { "one of " };
         return format!("{count}, each {one_of}{}{unit}", words(&items));
     }
@@ -54,15 +50,15 @@ fn short(value: f64) -> String {
     if value.abs() >= 1e6 || (value != 0.0 && value.abs() < 1e-3) { format!("{value:e}") } else { value.to_string() }
 }
 
-/// The number that a text gives to the field at a path such as `mesh.bricks`, or to an entry of it where it is a list.
-///
-/// # Errors
-/// What is allowed, in words.
-pub fn number(path: &str, text: &str) -> Result<f64, String> {
-    let node = field(path).ok_or_else(|| format!("there is no field {path}"))?;
-    let node = node.items().unwrap_or(node);
-    let number = if node.is("integer") { text.parse().ok().map(|n: u32| f64::from(n)) } else { text.parse().ok() };
-    number.filter(|number| contains(&node, *number)).ok_or_else(|| format!("allowed: {}", words(&node)))
+/// The names among which the field at a path chooses, each with its meaning; none for a field of another kind.
+pub fn choices(path: &str) -> Vec<(&'static str, String)> {
+    let Some(node) = field(path) else { return vec![] };
+    let described = node.inner["oneOf"].as_array();
+    let meaning = |name: &str| described?.iter().find(|choice| choice["const"] == name)?["description"].as_str();
+    node.names()
+        .into_iter()
+        .map(|name| (name, meaning(name).unwrap_or_default().trim_end_matches('.').into()))
+        .collect()
 }
 
 /// What the documentation of a field says of its default.
@@ -73,8 +69,7 @@ pub(super) fn default(path: &str) -> String {
 
 /// The field at a path.
 fn field(path: &str) -> Option<Node<'static>> {
-    let inner = |node: Node<'static>, name: &str| node.fields().and_then(|fields| fields.get(name)).map(Node::new);
-    path.split('.').try_fold(Node::root(), inner)
+    path.split('.').try_fold(Node::root(), |node, name| node.field(name))
 }
 
 /// Whether a number lies in the range of a place.

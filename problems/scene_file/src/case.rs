@@ -6,10 +6,10 @@ use crate::{
     AccuracyName, CounterSection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile, SplineName,
     StartSection, SurfaceSection,
 };
-use contact::contact_shape::SolverKind;
 use contact::error::SceneError;
 use contact::scene::{CounterSurface, Scene, UpperBody};
 use contact::shape::{ShapeBounds, SplineKind};
+use contact::solvers::{SolverKind, SolverPlan, Wanted, cluster_shape};
 use contact::tfeti::PreconditionerKind;
 use std::path::Path;
 
@@ -31,6 +31,8 @@ pub struct Case {
     pub solver: SolverKind,
     /// Its preconditioner.
     pub preconditioner: PreconditionerKind,
+    /// Number of clusters of subdomains; none: every subdomain by itself.
+    pub clusters: Option<usize>,
     /// Settings of the optimizer.
     pub optimizer: OptimizerSection,
     /// Outputs.
@@ -66,6 +68,9 @@ impl Case {
             start_height,
         };
         scene.validate()?;
+        if let Some(clusters) = file.solver.clusters {
+            cluster_shape(&scene, file.solver.kind, clusters)?;
+        }
         check_continuation(&file.optimizer)?;
         let objective = Objective::new(&file.objective, file.size, folder)?;
         if let Objective::Deviation(wanted) = &objective {
@@ -80,9 +85,16 @@ impl Case {
             method,
             solver: file.solver.kind,
             preconditioner: file.solver.preconditioner,
+            clusters: file.solver.clusters,
             optimizer: file.optimizer.clone(),
             output: file.output.clone(),
         })
+    }
+
+    /// How the scene is to be solved.
+    pub fn plan(&self, wanted: Wanted) -> SolverPlan {
+        let Self { preconditioner, clusters, .. } = *self;
+        SolverPlan { scene: self.scene.clone(), kind: self.solver, preconditioner, clusters, wanted }
     }
 }
 

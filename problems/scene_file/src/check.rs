@@ -3,6 +3,7 @@
 use crate::allowed;
 use crate::schema::{Node, place};
 use contact::error::SceneError;
+use std::collections::BTreeSet;
 use toml::{Table, Value};
 
 /// Names at least this similar to a misspelt one are suggested (Jaro–Winkler, 1 for equal names).
@@ -13,8 +14,10 @@ pub(super) fn check(table: &Table, file: &str) -> Result<(), SceneError> {
     Checker { file }.table(&Node::root(), table, "")
 }
 
-struct Checker<'f> {
-    file: &'f str,
+/// The checks of one file.
+pub(super) struct Checker<'f> {
+    /// What messages call it.
+    pub file: &'f str,
 }
 
 impl Checker<'_> {
@@ -32,16 +35,7 @@ impl Checker<'_> {
         for (name, value) in table {
             match fields.get(name) {
                 Some(field) => self.value(&Node::new(field), value, &place(path, name))?,
-                None => {
-                    let names: Vec<&str> = fields.keys().map(String::as_str).collect();
-                    return Err(SceneError::UnknownField {
-                        file: self.file.to_owned(),
-                        path: place(path, &shorten(name.clone())),
-                        suggestion: nearest(name, &names)
-                            .map_or_else(String::new, |near| format!(" (did you mean `{near}`?)")),
-                        allowed: names.join(", "),
-                    });
-                }
+                None => return Err(self.unknown(&place(path, &shorten(name.clone())), name, &[*node])),
             }
         }
         match fields.iter().find(|(name, _)| node.requires(name) && !table.contains_key(*name)) {
@@ -50,7 +44,21 @@ impl Checker<'_> {
         }
     }
 
-    fn value(&self, node: &Node<'_>, value: &Value, path: &str) -> Result<(), SceneError> {
+    /// The refusal of a field that no table among `nodes` has.
+    pub(super) fn unknown(&self, path: &str, name: &str, nodes: &[Node<'_>]) -> SceneError {
+        let mut names: Vec<&str> = nodes.iter().flat_map(Node::tables_at).flat_map(|table| table.own_names()).collect();
+        let mut known = BTreeSet::new();
+        names.retain(|name| known.insert(*name));
+        let suggestion = nearest(name, &names).map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"));
+        let allowed = match (&names[..], nodes) {
+            ([], [node, ..]) => allowed::words(node),
+            _ => names.join(", "),
+        };
+        SceneError::UnknownField { file: self.file.to_owned(), path: path.to_owned(), suggestion, allowed }
+    }
+
+    /// Refuses a value that a place does not take.
+    pub(super) fn value(&self, node: &Node<'_>, value: &Value, path: &str) -> Result<(), SceneError> {
         match value {
             Value::Table(table) if node.fields().is_some() => self.table(node, table, path),
             Value::Table(table) if !node.forms().is_empty() => {

@@ -2,7 +2,7 @@
 
 use crate::grid_file;
 use crate::wanted_pressure::WantedPressure;
-use contact::cost::{FieldMeasure, Measure, PressureMeasure, Region};
+use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use schemars::JsonSchema;
@@ -18,12 +18,15 @@ const DEFAULT_STRESS_EXPONENT: f64 = 8.0;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectiveSection {
-    /// Of the contact pressures: sum of powers, largest value, mean squared deviation from a wanted pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region, compliance.
+    /// Of the contact pressures: integral or sum of powers, largest value, mean squared deviation from a wanted pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region, compliance.
     pub measure: MeasureName,
     /// Exponent p of the pressure norm and of the stress norm. Default 4 for the pressure norm, 8 for the stress norm.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 64.0), extend("x-unit" = "1", "exclusiveMinimum" = 1.0))]
     pub exponent: Option<f64>,
+    /// For `pressure-norm`, what a contact node counts: its area, so that the objective is the integral of the power over the contact boundary, or 1 each, which gives the paper's sum. Default "area".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub weight: Option<NodeWeight>,
     /// For `open-area`: the pressure from which a contact node counts with its whole area. Default none: required there.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e15), extend("x-unit" = "MPa", "exclusiveMinimum" = 0.0))]
@@ -41,7 +44,7 @@ pub struct ObjectiveSection {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum MeasureName {
-    /// Σσ^p.
+    /// ∫σ^p dA or Σσ^p.
     #[default]
     PressureNorm,
     /// max σ.
@@ -119,7 +122,10 @@ impl Objective {
         refuse_foreign_fields(section)?;
         let exponent = |default: f64| section.exponent.unwrap_or(default);
         Ok(match section.measure {
-            MeasureName::PressureNorm => Self::Pressure(PressureMeasure::Norm { exponent: exponent(DEFAULT_EXPONENT) }),
+            MeasureName::PressureNorm => Self::Pressure(PressureMeasure::Norm {
+                exponent: exponent(DEFAULT_EXPONENT),
+                weight: section.weight.unwrap_or_default(),
+            }),
             MeasureName::PeakPressure => Self::Pressure(PressureMeasure::Peak),
             MeasureName::PressureDeviation => Self::Deviation(match &section.wanted {
                 None => return Err(missing("objective.wanted", "a table with form = \"formula\" or form = \"grid\"")),
@@ -184,9 +190,14 @@ fn refuse_foreign_fields(section: &ObjectiveSection) -> Result<(), SceneError> {
     use MeasureName::{OpenArea, PressureDeviation, PressureNorm, StressNorm};
     let exponent = section.exponent.map(|exponent| exponent.to_string());
     let pressure = section.pressure.map(|pressure| pressure.to_string());
+    let weight = section.weight.map(|weight| match weight {
+        NodeWeight::Area => "area".to_owned(),
+        NodeWeight::Nodes => "nodes".to_owned(),
+    });
     let table = |is_set: bool| is_set.then(|| "a table".to_owned());
     for (field, value, measures, words) in [
         ("exponent", exponent, &[PressureNorm, StressNorm][..], "pressure norm and the stress norm"),
+        ("weight", weight, &[PressureNorm], "pressure norm"),
         ("pressure", pressure, &[OpenArea], "open area"),
         ("wanted", table(section.wanted.is_some()), &[PressureDeviation], "pressure deviation"),
         ("region", table(section.region.is_some()), &[StressNorm], "stress norm"),

@@ -83,6 +83,28 @@ impl<'s> Node<'s> {
         self.inner["properties"].as_object()
     }
 
+    /// A field of a table.
+    pub(super) fn field(&self, name: &str) -> Option<Node<'s>> {
+        self.fields().and_then(|fields| fields.get(name)).map(Node::new)
+    }
+
+    /// Names of the fields of a table.
+    pub(super) fn own_names(&self) -> Vec<&'s str> {
+        self.fields().map_or(vec![], |fields| fields.keys().map(String::as_str).collect())
+    }
+
+    /// The tables that may stand at the place: itself, or its forms.
+    pub(super) fn tables_at(&self) -> Vec<Node<'s>> {
+        let forms = self.forms().into_iter().map(|(_, node)| node);
+        self.fields().map(|_| *self).into_iter().chain(forms).collect()
+    }
+
+    /// The number of entries of a list of fixed length.
+    pub(super) fn length(&self) -> Option<usize> {
+        let [low, high] = ["minItems", "maxItems"].map(|bound| self.inner[bound].as_u64());
+        low.filter(|_| low == high).map(|count| count as usize)
+    }
+
     /// Whether a table must have a field.
     pub(super) fn requires(&self, field: &str) -> bool {
         self.inner["required"].as_array().is_some_and(|required| required.iter().any(|name| name == field))

@@ -32,6 +32,10 @@ pub struct SolverSection {
     pub kind: SolverKind,
     /// Preconditioner of the dual operator of total FETI.
     pub preconditioner: PreconditionerKind,
+    /// Clusters into which the subdomains of all bodies are joined, equal boxes with six unknowns each in the coarse problem of total FETI; at least as many as processes. Default none: every subdomain by itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
+    pub clusters: Option<usize>,
 }
 
 /// The optimizer.
@@ -51,7 +55,7 @@ pub struct OptimizerSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "s", "exclusiveMinimum" = 0.0))]
     pub time_limit: Option<f64>,
-    /// Length of the first step; a fifth of it on the later meshes of a continuation. Default half of the mean gap at the start, at least a thousandth of the smallest edge.
+    /// Length of the first step; a fifth of it on the later meshes of a continuation. Default half of the mean gap at the start, at least a thousandth and at most half of the smallest edge.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
     pub first_step: Option<f64>,

@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use contact::contact_shape::{ContactShape, SolverKind};
+use contact::cost::{NodeWeight, PressureMeasure};
 use contact::scene;
 use nonsmooth::{Accuracy, StateSolver, Vector};
-use scene_file::{Case, MethodName, SceneFile, field_table, schema};
+use scene_file::{Case, MethodName, Objective, SceneFile, field_table, schema};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use testset::kit;
@@ -137,7 +138,7 @@ fn contradictions_between_fields_are_refused() {
         ("face = \"bottom\"\nheld", "face = \"top\"\nheld", "any face but the contact boundary"),
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"controls\", heights = [1.0, 2.0] }", "36"),
         ("start = { form = \"plane\", height = 10.0 }", "start = { form = \"grid\", file = \"none.csv\" }", "none.csv"),
-        ("[admissible]", "[objective]\nmeasure = \"peak-pressure\"\nexponent = 4\n[admissible]", "objective.exponent"),
+        ("weight = \"nodes\"", "measure = \"peak-pressure\"\nexponent = 4", "objective.exponent"),
         ("[admissible]", "[optimizer]\ncontinuation = [6, 6]\n[admissible]", "optimizer.continuation"),
     ] {
         assert!(scene.contains(right), "{right}");
@@ -162,7 +163,9 @@ fn starts_of_all_forms_and_grids_from_files() {
         assert_eq!(start.len(), 36);
         assert!((start[0] - first).abs() < 1e-12 && (start[35] - last).abs() < 1e-12, "{start:?}");
     }
-    for (bad, word) in [("1,2\n3\n", "line 2"), ("1,x\n", "line 1"), ("", "2 to 2000"), ("1,inf\n2,3\n", "finite")] {
+    for (bad, word) in
+        [("1,2\n3\n", "line 2"), ("1,x\n", "line 1, column 2 = \"x\""), ("", "2 to 2000"), ("1,inf\n2,3\n", "finite")]
+    {
         std::fs::write(scratch.join("start.csv"), bad).unwrap();
         let form = "{ form = \"grid\", file = \"start.csv\" }";
         let scene = text("hertz").replacen("{ form = \"plane\", height = 10.0 }", form, 1);
@@ -235,6 +238,8 @@ fn objectives_are_read_or_refused_with_the_field() {
         ("measure = \"pressure-deviation\"", ["objective.wanted = missing", "form = \"formula\""]),
         ("measure = \"open-area\"", ["objective.pressure = missing", "MPa"]),
         ("measure = \"open-area\"\npressure = 0.0", ["objective.pressure = 0.0", "> 0"]),
+        ("measure = \"peak-pressure\"\nweight = \"nodes\"", ["objective.weight = nodes", "pressure norm"]),
+        ("weight = \"edges\"", ["objective.weight = \"edges\"", "\"area\", \"nodes\""]),
         ("measure = \"compliance\"\nexponent = 3.0", ["objective.exponent = 3", "stress norm"]),
         ("measure = \"stress-norm\"\npressure = 3.0", ["objective.pressure = 3", "open area"]),
         ("measure = \"peak-pressure\"\nregion = { x1 = [0.0, 1.0] }", ["objective.region", "stress norm"]),
@@ -260,6 +265,21 @@ fn objectives_are_read_or_refused_with_the_field() {
     ] {
         let refusal = with_objective(section).expect_err(section);
         assert!(words.iter().all(|word| refusal.contains(word)), "{section}: {refusal}");
+    }
+}
+
+/// The scenes of the published numbers say what they sum; other scenes integrate.
+#[test]
+fn a_norm_counts_nodes_by_their_area_unless_the_scene_says_nodes() {
+    let weight = |case: Case| match case.objective {
+        Objective::Pressure(PressureMeasure::Norm { exponent, weight }) => (exponent, weight),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(weight(with_objective("").unwrap()), (4.0, NodeWeight::Area));
+    assert_eq!(weight(with_objective("weight = \"nodes\"\nexponent = 8.0").unwrap()), (8.0, NodeWeight::Nodes));
+    for name in ["hertz", "signorini", "signorini_frictionless", "jack_seat", "flat_punch", "tangential"] {
+        let file = SceneFile::parse(&text(name), name).unwrap();
+        assert_eq!(weight(Case::new(&file, &folder()).unwrap()), (4.0, NodeWeight::Nodes), "{name}");
     }
 }
 

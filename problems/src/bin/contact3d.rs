@@ -1,6 +1,6 @@
 //! `contact3d`: contact shape optimization of any scene file; see `--help`.
 
-use problems::commands::processes::Processes;
+use contact::solvers::Processes;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {

@@ -3,157 +3,227 @@
 use crate::commands::ascii::shown;
 use crate::commands::export::options::ExportOptions;
 use crate::commands::failure::{Failure, refused};
-use crate::commands::processes::SharedSolver;
 use crate::commands::run_kind::RunKind;
+use crate::commands::scene_options::{SceneChanges, SceneOptions, options};
 use crate::commands::study::varied::Varied;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Parser, ValueEnum};
-use contact::body::elasticity::Formulation;
-use contact::contact_shape::{ContactShape, SolverKind};
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, FromArgMatches, Subcommand, ValueEnum};
+use contact::contact_shape::ContactShape;
 use contact::error::SceneError;
-use contact::shape::SplineKind;
-use contact::tfeti::PreconditionerKind;
-use scene_file::{MeasureName, MethodName};
-use serde::de::value::Error as NameError;
-use serde::de::{DeserializeOwned, IntoDeserializer};
+use scene_file::SceneFile;
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
+/// The argument that names the scene, where the binary takes any.
+pub const SCENE: &str = "scene";
+/// The options of a scene that a run which is continued may have.
+const LIMITS: [&str; 2] = ["max-evaluations", "time-limit"];
+/// What stands above the list of options.
+const ABOUT: &str = "3D contact shape optimization with Coulomb friction (units: N, mm, MPa). Options without a command are those of \
+    optimize [default: optimize]; COMMAND --help shows those of the others. An option that is not given leaves the field of the scene \
+    as it is; --print-scene shows all fields.";
+
 /// What to do.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum, Subcommand)]
 pub enum Command {
-    /// Optimize the shape.
+    /// Optimize the shape
     #[default]
     Optimize,
-    /// Optimize with and without friction, and solve both shapes with and without it (Example 5.3 of the paper).
+    /// Optimize with and without friction, and solve both shapes with and without it (Example 5.3 of the paper)
     Compare,
-    /// A table over values of parameters (--vary), each evaluated, or optimized with --optimize.
+    /// A table over values of parameters (--vary), each evaluated, or optimized with --optimize
     Study,
-    /// Objective, subgradient and certificates at one shape.
+    /// Objective, subgradient and certificates at one shape
     Evaluate,
-    /// Taylor test of the subgradient at one shape.
+    /// Taylor test of the subgradient at one shape
     Verify,
-    /// Compute norm and error of the certificate of an optimization again, from the files in its folder DIR.
+    /// Compute norm and error of the certificate of an optimization again, from the files in its folder DIR
     Recheck,
-    /// Write a shape as files for other programs (STL, STEP, CSV, matrices); needs --out.
+    /// Write a shape as files for other programs (STL, STEP, CSV, matrices); needs --out
     Export,
 }
 
-/// 3D contact shape optimization with Coulomb friction (units: N, mm, MPa). An option that is not given leaves the field of the
-/// scene as it is; --print-scene shows all fields.
-#[derive(Debug, Clone, PartialEq, Parser)]
-#[command(version, allow_negative_numbers = true)]
-pub struct Arguments {
-    /// What to do.
-    #[arg(value_enum, default_value_t)]
-    pub command: Command,
-    /// With recheck: the folder that an optimization of this scene has left.
+/// Declares [`Arguments`]: groups of options, each with the commands that take it. Options of other commands are not
+/// given.
+macro_rules! groups {
+    ($($(#[$meaning:meta])* $field:ident: $group:ty, of $($command:ident)|+;)+) => {
+        /// A command with its options.
+        #[derive(Debug, Clone, Default, PartialEq)]
+        pub struct Arguments {
+            /// What to do.
+            pub command: Command,
+            /// Whether one JSON object is printed on stdout.
+            pub json: bool,
+            /// Whether the inner numbers of the optimizer are printed.
+            pub verbose: bool,
+            $($(#[$meaning])* pub $field: $group,)+
+        }
+
+        impl Arguments {
+            /// The parser with the options of a command.
+            fn augmented(command: Command, mut parser: clap::Command) -> clap::Command {
+                // A group would put its own description in the place of the command's.
+                let about = parser.get_about().cloned();
+                $(if matches!(command, $(Command::$command)|+) {
+                    parser = <$group as Args>::augment_args(parser);
+                })+
+                parser.about(about.unwrap_or_default())
+            }
+
+            /// What the parser found.
+            fn groups(command: Command, matches: &ArgMatches) -> Result<Self, Error> {
+                $(let $field = if matches!(command, $(Command::$command)|+) {
+                    <$group as FromArgMatches>::from_arg_matches(matches)?
+                } else {
+                    <$group>::default()
+                };)+
+                Ok(Self { command, json: false, verbose: false, $($field,)+ })
+            }
+        }
+    };
+}
+
+groups! {
+    /// The folder to check again.
+    certified: Certified, of Recheck;
+    /// What a study varies.
+    variation: Variation, of Study;
+    /// What is exported.
+    export: ExportOptions, of Export;
+    /// What changes in the scene.
+    scene: SceneChanges, of Optimize | Compare | Study | Evaluate | Verify | Recheck | Export;
+    /// The shape that is looked at.
+    shape: Shape, of Study | Evaluate | Verify | Export;
+    /// How far that shape is off.
+    error: HeightError, of Study | Evaluate;
+    /// How the scene changes the optimizer.
+    optimizer: SceneOptions<true>, of Optimize | Compare | Study;
+    /// Where an optimization begins.
+    course: Course, of Optimize | Compare | Study;
+    /// Where files go.
+    files: Files, of Optimize | Compare | Study | Evaluate | Verify | Export;
+    /// A series of fields.
+    series: Series, of Optimize;
+    /// What is computed besides at a state.
+    diagnosis: Diagnosis, of Evaluate;
+    /// What is said of states and runs.
+    results: Results, of Optimize | Compare | Study | Evaluate;
+    /// What all commands take.
+    common: Common, of Optimize | Compare | Study | Evaluate | Verify | Recheck | Export;
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[allow(missing_docs, reason = "the help says it, here and below")]
+pub struct Certified {
+    /// The folder that an optimization of this scene has left.
     #[arg(value_name = "DIR")]
-    pub certified: Option<PathBuf>,
-    /// Bricks of each body: per edge, or along x1, x2 and x3.
-    #[arg(long, value_name = "N|N1xN2xN3", value_parser = parse_mesh)]
-    pub mesh: Option<[usize; 3]>,
-    /// Subdomains per edge of each body; must divide the mesh. Where neither this option nor the scene says it: 2, or, where 2
-    /// does not divide the mesh, the divisor that leaves closest to 6 bricks per subdomain and edge.
-    #[arg(long, value_name = "S", value_parser = count("mesh.subdomains"))]
-    pub subdomains: Option<usize>,
-    /// Coulomb friction coefficient.
-    #[arg(long, value_name = "MU", value_parser = real("friction"))]
-    pub friction: Option<f64>,
-    /// Spline of the contact surface.
-    #[arg(long, value_name = "bspline:DEGREE|bezier", value_parser = parse_surface)]
-    pub surface: Option<SplineKind>,
-    /// Control points along x1 and x2.
-    #[arg(long, value_name = "N1xN2", value_parser = parse_counts)]
-    pub control_points: Option<[usize; 2]>,
-    /// Poisson's ratio of the lower body.
-    #[arg(long, value_name = "NU", value_parser = real("lower.material.poisson_ratio"))]
-    pub poisson_ratio: Option<f64>,
-    /// Young's modulus of the lower body, MPa.
-    #[arg(long, value_name = "E", value_parser = real("lower.material.young_modulus"))]
-    pub young_modulus: Option<f64>,
-    /// How bricks of all bodies see the change of volume; mean-dilatation is for nearly incompressible materials.
-    #[arg(long, value_parser = named::<Formulation>, value_name = "standard|mean-dilatation")]
-    pub formulation: Option<Formulation>,
-    /// Factor on all loads (negative: reversed) [default: 1].
-    #[arg(long, value_name = "F", value_parser = finite)]
-    pub load_factor: Option<f64>,
-    /// Contact solver.
-    #[arg(long, value_parser = named::<SolverKind>, value_name = "auto|newton|direct|augmented-lagrangian")]
-    pub solver: Option<SolverKind>,
-    /// Preconditioner of the dual operator.
-    #[arg(long, value_parser = named::<PreconditionerKind>, value_name = "dirichlet|lumped|none")]
-    pub preconditioner: Option<PreconditionerKind>,
-    /// What is minimised; two names need fields of the scene file.
-    #[arg(long, value_parser = measures())]
-    pub objective: Option<MeasureName>,
-    /// Exponent p of the pressure norm or of the stress norm.
-    #[arg(long, value_name = "P", value_parser = real("objective.exponent"))]
-    pub exponent: Option<f64>,
-    /// With study: an option and its values, a,b,c or FIRST:LAST:COUNT; several of them make all combinations.
+    pub folder: PathBuf,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Study")]
+#[allow(missing_docs)]
+pub struct Variation {
+    /// An option of the scene, or any of its fields, with values a,b,c or FIRST:LAST:COUNT; several of them make all
+    /// combinations.
     #[arg(long, value_name = "OPTION=VALUES", value_parser = Varied::parse)]
     pub vary: Vec<Varied>,
-    /// With study: optimize in every row, instead of evaluating the start.
+    /// Optimize in every row, instead of evaluating the start.
     #[arg(long)]
     pub optimize: bool,
-    /// Control heights to evaluate, verify or export: a JSON array with an array per control point along x1 [default: surface.start].
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Shape")]
+#[allow(missing_docs)]
+pub struct Shape {
+    /// Control heights of the shape: a JSON array with an array per control point along x1 [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub controls: Option<PathBuf>,
-    /// With evaluate and study: every control height is off by so much, mm, up or down at random.
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Shape")]
+#[allow(missing_docs)]
+pub struct HeightError {
+    /// Every control height is off by so much, mm, up or down at random.
     #[arg(long, value_name = "MM", value_parser = size)]
     pub height_error: Option<f64>,
     /// With --height-error: another number, other signs [default: 1].
     #[arg(long, value_name = "K")]
     pub seed: Option<u64>,
-    /// Control heights to start the optimization from, as with --controls [default: surface.start].
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Optimizer")]
+#[allow(missing_docs)]
+pub struct Course {
+    /// Control heights to start the optimization from, a file as with --controls of evaluate [default: surface.start].
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
-    /// What proposes trial points: the composite model beside the bundle, or the bundle alone.
-    #[arg(long, value_parser = named::<MethodName>, value_name = "composite|bundle")]
-    pub optimizer: Option<MethodName>,
-    /// Largest number of evaluations of the optimization.
-    #[arg(long, value_name = "K", value_parser = count("optimizer.max_evaluations"))]
-    pub max_evaluations: Option<usize>,
-    /// Longest time of this run in seconds; the evaluation under way is finished [default: that of the scene, or none].
-    #[arg(long, value_name = "SECONDS", value_parser = real("optimizer.time_limit"))]
-    pub time_limit: Option<f64>,
-    /// Optimize on growing meshes with so many bricks along the axis that has most, the others in proportion, each starting from the last
-    /// optimum.
-    #[arg(long, value_name = "N1,N2,...", value_delimiter = ',', value_parser = count("optimizer.continuation"))]
-    pub continuation: Option<Vec<usize>>,
-    /// Optimize from so many starts: that of the scene, then random surfaces near it; reports how many optima they reach.
-    #[arg(long, value_name = "K", value_parser = count("optimizer.starts"))]
-    pub starts: Option<usize>,
-    /// New folder for the report, controls, history and pressures; an optimization can be resumed from there [default: none].
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
-    #[arg(long, requires = "out")]
-    pub overwrite: bool,
-    /// With optimize and a folder: fields for ParaView of the start and of every serious step, as a series (history.pvd).
-    #[arg(long)]
-    pub vtk_history: bool,
-    /// What export writes.
-    #[command(flatten)]
-    pub export: ExportOptions,
     /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks,
-    /// --new-version, --json only).
+    /// --new-version,
+    /// --verbose, --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
     /// With --resume: continue a run that another version of the program has begun.
     #[arg(long, requires = "resume")]
     pub new_version: bool,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Results")]
+#[allow(missing_docs)]
+pub struct Files {
+    /// New folder for report, pictures and data; an optimization can be resumed from there [default: none].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// With --out: rename a DIR that holds results to the first free DIR.1, DIR.2, ...
+    #[arg(long, requires = "out")]
+    pub overwrite: bool,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Results")]
+#[allow(missing_docs)]
+pub struct Series {
+    /// With a folder: fields for ParaView of the start and of every serious step, as a series (history.pvd).
+    #[arg(long)]
+    pub vtk_history: bool,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Results")]
+#[allow(missing_docs)]
+pub struct Diagnosis {
+    /// Contraction factor and condition at the state (costs some ten adjoint solves; not done unless asked).
+    #[arg(long)]
+    pub diagnose: bool,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Results")]
+#[allow(missing_docs)]
+pub struct Results {
+    /// Leave out the checks of uniqueness and plausibility.
+    #[arg(long)]
+    pub no_checks: bool,
+    /// Print the optimizer's inner numbers too.
+    #[arg(long)]
+    verbose: bool,
+}
+
+#[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Program")]
+#[allow(missing_docs)]
+pub struct Common {
     /// Threads for the work on subdomains [default: one per processor].
     #[arg(long, value_name = "T", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
-    /// With evaluate: contraction factor and condition at the state (costs some ten adjoint solves; not done unless asked).
-    #[arg(long)]
-    pub diagnose: bool,
-    /// Leave out the checks of uniqueness and plausibility at the state of evaluate and at the final shape of optimize.
-    #[arg(long)]
-    pub no_checks: bool,
     /// Print one JSON object on stdout.
     #[arg(long)]
-    pub json: bool,
+    json: bool,
     /// Print the scene, options included, as a complete commented file, and do nothing else.
     #[arg(long)]
     pub print_scene: bool,
@@ -174,97 +244,83 @@ impl Command {
 }
 
 impl Arguments {
+    /// The parser: the options of `optimize`, and all commands with theirs.
+    pub fn parser() -> clap::Command {
+        let root = clap::Command::new("contact").version(env!("CARGO_PKG_VERSION"));
+        let root = Command::augment_subcommands(Self::augmented(Command::Optimize, root));
+        let root = root.subcommand_required(false).arg_required_else_help(false).disable_help_subcommand(true);
+        let with_options = |parser: clap::Command| match Command::from_str(parser.get_name(), false) {
+            Ok(command) => Self::augmented(command, parser).allow_negative_numbers(true),
+            Err(_) => parser,
+        };
+        root.about(ABOUT).allow_negative_numbers(true).mut_subcommands(with_options)
+    }
+
+    /// What the parser found, of the options of a command.
+    fn found(command: Command, matches: &ArgMatches) -> Result<Self, Error> {
+        let found = Self::groups(command, matches)?;
+        Ok(Self { json: found.common.json, verbose: found.results.verbose, ..found })
+    }
+
+    /// Reads the words of a command line, the name of the program first.
+    ///
+    /// # Errors
+    /// [`Error`] for what the parser refuses, and with the help that is asked for.
+    pub fn try_parse_from(words: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Result<Self, Error> {
+        Self::parse_by(Self::parser(), words).map(|(arguments, _)| arguments)
+    }
+
+    /// Reads the words of a command line by this parser; the scene too, where it has an argument [`SCENE`].
+    ///
+    /// # Errors
+    /// As [`try_parse_from`](Self::try_parse_from).
+    pub fn parse_by(
+        mut parser: clap::Command,
+        words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
+    ) -> Result<(Self, Option<PathBuf>), Error> {
+        let matches = parser.try_get_matches_from_mut(words).map_err(|error| with_takers(error, &mut parser))?;
+        let scene = matches.try_get_one::<PathBuf>(SCENE).ok().flatten().cloned();
+        let Some((name, inner)) = matches.subcommand() else {
+            return Ok((Self::found(Command::Optimize, &matches)?, scene));
+        };
+        let is_given = |id: &str| id != SCENE && matches.value_source(id) == Some(ValueSource::CommandLine);
+        let early = parser.get_arguments().find(|argument| is_given(argument.get_id().as_str()));
+        if let Some(option) = early.and_then(clap::Arg::get_long) {
+            let words = format!("--{option} is allowed after the command: {name} --{option}");
+            return Err(parser.error(ErrorKind::ArgumentConflict, words));
+        }
+        let command =
+            Command::from_str(name, false).map_err(|words| parser.error(ErrorKind::InvalidSubcommand, words))?;
+        Ok((Self::found(command, inner)?, scene))
+    }
+
     /// The folder that holds what is printed too, if there is one.
     pub fn kept(&self) -> Option<&Path> {
-        self.out.as_deref().or(self.resume.as_deref())
+        self.files.out.as_deref().or(self.course.resume.as_deref())
+    }
+
+    /// All that changes in the scene.
+    pub fn changes(&self) -> SceneChanges {
+        self.scene.clone().and(&self.optimizer)
+    }
+
+    /// The scene file with all changes; checked further when it becomes a case.
+    ///
+    /// # Errors
+    /// As [`SceneChanges::apply`].
+    pub fn apply(&self, file: SceneFile) -> Result<SceneFile, SceneError> {
+        let mut file = self.changes().apply(file)?;
+        if let Some(folder) = &self.files.out {
+            file.output.folder = Some(folder.display().to_string());
+        }
+        Ok(file)
     }
 
     /// What was left out because the scene does not need it or an option says so, in words.
-    pub fn left_out(&self, shape: &ContactShape<SharedSolver>) -> Vec<&'static str> {
+    pub fn left_out(&self, shape: &ContactShape) -> Vec<&'static str> {
         let mut left_out = shape.left_out();
-        left_out.extend(self.no_checks.then_some("checks of uniqueness and plausibility (--no-checks)"));
+        left_out.extend(self.results.no_checks.then_some("checks of uniqueness and plausibility (--no-checks)"));
         left_out
-    }
-
-    /// Refuses options that do not go together.
-    ///
-    /// # Errors
-    /// [`Failure::Input`] naming the option.
-    pub fn check(&self) -> Result<(), Failure> {
-        self.check_command()?;
-        if self.continuation.is_some() && self.mesh.is_some() {
-            return refused("--mesh", "without --continuation, which names the meshes");
-        }
-        for (option, path) in [("--out", &self.out), ("--resume", &self.resume)] {
-            if let Some(path) = path.as_ref().filter(|path| path.to_str().is_none()) {
-                return Err(SceneError::out_of_range(option, path.display(), "a name in Unicode").into());
-            }
-        }
-        self.check_resume()?;
-        self.export.check(self.command == Command::Export, self.out.is_some(), self.controls.is_some())?;
-        let has_exponent = |measure| matches!(measure, MeasureName::PressureNorm | MeasureName::StressNorm);
-        if self.exponent.is_some() && self.objective.is_some_and(|measure| !has_exponent(measure)) {
-            return refused("--exponent", "with --objective pressure-norm or stress-norm only");
-        }
-        Ok(())
-    }
-
-    /// Refuses options that the command does not take.
-    fn check_command(&self) -> Result<(), Failure> {
-        let studying = self.command == Command::Study;
-        let optimizing_rows = studying && (self.optimize || self.resume.is_some());
-        let evaluating = matches!(self.command, Command::Evaluate | Command::Verify) || studying && !self.optimize;
-        let optimizing = matches!(self.command, Command::Optimize | Command::Compare) || optimizing_rows;
-        let rechecking = self.command == Command::Recheck;
-        let looking = self.command == Command::Evaluate || studying && !self.optimize;
-        let showing = evaluating || self.command == Command::Export;
-        let takes_controls = "with evaluate, verify, study and export only (what optimizes takes --start-controls)";
-        let takes_start = "with optimize, compare and study --optimize only (what evaluates takes --controls)";
-        let limits = "with optimize, compare and study --optimize only";
-        for (option, given, taken, allowed) in [
-            ("--controls", self.controls.is_some(), showing, takes_controls),
-            ("--start-controls", self.start_controls.is_some(), optimizing, takes_start),
-            (
-                "--height-error",
-                self.height_error.is_some(),
-                looking,
-                "with evaluate, and with study without --optimize",
-            ),
-            (
-                "--seed",
-                self.seed.is_some(),
-                looking && (self.height_error.is_some() || studying),
-                "with --height-error only",
-            ),
-            ("--optimizer", self.optimizer.is_some(), optimizing, limits),
-            ("--max-evaluations", self.max_evaluations.is_some(), optimizing, limits),
-            ("--diagnose", self.diagnose, self.command == Command::Evaluate, "with evaluate only"),
-            (
-                "--time-limit",
-                self.time_limit.is_some(),
-                optimizing || studying,
-                "with optimize, compare and study only",
-            ),
-            ("--vary", !self.vary.is_empty(), studying, "with study only"),
-            ("--optimize", self.optimize, studying, "with study only"),
-            ("--continuation", self.continuation.is_some(), optimizing, limits),
-            ("--vtk-history", self.vtk_history, self.command == Command::Optimize, "with optimize only"),
-            ("--starts", self.starts.is_some(), self.command == Command::Optimize, "with optimize only"),
-            ("--resume", self.resume.is_some(), optimizing || studying, "with optimize, compare and study only"),
-            ("--out", self.out.is_some(), !rechecking, "without recheck, which writes no file"),
-            ("DIR", self.certified.is_some(), rechecking, "with recheck only"),
-        ] {
-            if given && !taken {
-                return refused(option, allowed);
-            }
-        }
-        if studying && self.vary.is_empty() && self.resume.is_none() {
-            return Err(Failure::Input("study needs --vary OPTION=VALUES, for example --vary friction=0:0.8:5".into()));
-        }
-        if rechecking && self.certified.is_none() {
-            return Err(Failure::Input("recheck needs DIR, the folder that an optimization has left".into()));
-        }
-        Ok(())
     }
 
     /// The result of a command for stdout, in the form that is asked for.
@@ -272,128 +328,101 @@ impl Arguments {
         if self.json { json } else { shown(&text).into_owned() }
     }
 
-    /// Refuses options beside --resume that are no limits: a run that is continued has its scene and its options in its folder.
-    fn check_resume(&self) -> Result<(), Failure> {
-        if self.resume.is_none() {
-            return Ok(());
+    /// Refuses options that do not go together.
+    ///
+    /// # Errors
+    /// [`Failure::Input`] naming the option.
+    pub fn check(&self) -> Result<(), Failure> {
+        let changes = self.changes();
+        if changes.has("continuation") && changes.has("mesh") {
+            return refused("--mesh", "without --continuation, which names the meshes");
         }
-        let Ok(nothing) = Self::try_parse_from(["resume"]) else { return Ok(()) };
+        for (option, path) in [("--out", &self.files.out), ("--resume", &self.course.resume)] {
+            if let Some(path) = path.as_ref().filter(|path| path.to_str().is_none()) {
+                return Err(SceneError::out_of_range(option, path.display(), "a name in Unicode").into());
+            }
+        }
+        if self.command == Command::Evaluate && self.error.seed.is_some() && self.error.height_error.is_none() {
+            return refused("--seed", "with --height-error only");
+        }
+        if self.course.resume.is_some() {
+            return self.check_resumed();
+        }
+        match self.command {
+            Command::Export => self.export.check(self.files.out.is_some(), self.shape.controls.is_some()),
+            Command::Study => self.check_study(),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses options of a study that belong to the other kind of rows.
+    fn check_study(&self) -> Result<(), Failure> {
+        let Variation { vary, optimize } = &self.variation;
+        if vary.is_empty() {
+            return Err(Failure::Input("study needs --vary OPTION=VALUES, for example --vary friction=0:0.8:5".into()));
+        }
+        if *optimize && self.shape.controls.is_some() {
+            return refused("--controls", "without --optimize (rows that are optimized begin at --start-controls)");
+        }
+        let of_optimizer =
+            options(true).iter().find(|option| option.name != "time-limit" && self.changes().has(option.name));
+        let start = self.course.start_controls.as_ref().map(|_| "start-controls");
+        match start.or(of_optimizer.map(|option| option.name)).filter(|_| !optimize) {
+            Some(option) => refused(&format!("--{option}"), "with optimize, compare and study --optimize only"),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses options beside --resume that are no limits: a run that is continued has its scene and its options in
+    /// its folder.
+    fn check_resumed(&self) -> Result<(), Failure> {
         let allowed = Self {
             command: self.command,
-            resume: self.resume.clone(),
-            max_evaluations: self.max_evaluations,
-            time_limit: self.time_limit,
-            threads: self.threads,
-            vtk_history: self.vtk_history,
-            no_checks: self.no_checks,
-            new_version: self.new_version,
             json: self.json,
-            ..nothing
+            verbose: self.verbose,
+            optimizer: self.optimizer.only(&LIMITS),
+            course: Course { start_controls: None, ..self.course.clone() },
+            series: self.series.clone(),
+            results: self.results.clone(),
+            common: Common { print_scene: false, print_schema: false, ..self.common.clone() },
+            ..Self::default()
         };
         if *self == allowed {
             return Ok(());
         }
-        let allowed = "with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks, --new-version, --json only: all else is in the folder";
+        let allowed = "with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks, --new-version, --verbose, --json \
+                       only: all else is in the folder";
         Err(Failure::Input(format!("--resume is allowed {allowed}")))
     }
 }
 
-fn parse_surface(text: &str) -> Result<SplineKind, String> {
-    match text.split_once(':') {
-        None if text == "bezier" => Ok(SplineKind::Bezier),
-        Some(("bspline", degree)) => count("surface.degree")(degree).map(SplineKind::BSpline),
-        _ => Err("allowed: bspline:DEGREE or bezier".into()),
-    }
-}
-
-fn parse_mesh(text: &str) -> Result<[usize; 3], String> {
-    let bricks: Vec<usize> = text.split('x').map(count("mesh.bricks")).collect::<Result<_, _>>()?;
-    match bricks[..] {
-        [all] => Ok([all; 3]),
-        [first, second, third] => Ok([first, second, third]),
-        _ => Err("allowed: one number, or three such as 12x12x6".into()),
-    }
-}
-
-fn parse_counts(text: &str) -> Result<[usize; 2], String> {
-    let (first, second) = text.split_once('x').ok_or("allowed: two numbers such as 6x6")?;
-    let count = count("surface.control_points");
-    Ok([count(first)?, count(second)?])
-}
-
-/// Reads a number for a field of the scene.
-fn real(field: &'static str) -> impl Fn(&str) -> Result<f64, String> + Clone {
-    move |text| scene_file::number(field, text)
-}
-
-/// Reads a count for a field of the scene.
-fn count(field: &'static str) -> impl Fn(&str) -> Result<usize, String> + Clone {
-    move |text| scene_file::number(field, text).map(|count| count as usize)
-}
-
-fn finite(text: &str) -> Result<f64, &'static str> {
-    text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or("allowed: a finite number")
+/// An error about an option that the command does not take, with the commands that do, or about a command that there
+/// is not.
+fn with_takers(error: Error, parser: &mut clap::Command) -> Error {
+    let context = match error.kind() {
+        ErrorKind::UnknownArgument => ContextKind::InvalidArg,
+        ErrorKind::InvalidSubcommand => ContextKind::InvalidSubcommand,
+        _ => return error,
+    };
+    let Some(ContextValue::String(word)) = error.get(context) else { return error };
+    let is_meant = |argument: &clap::Arg| match word.strip_prefix("--") {
+        Some(option) => argument.get_long() == Some(option),
+        None => argument.is_positional() && !word.starts_with('-'),
+    };
+    let takes = |command: &&clap::Command| {
+        error.kind() == ErrorKind::InvalidSubcommand || command.get_arguments().any(is_meant)
+    };
+    let takers: Vec<&str> = parser.get_subcommands().filter(takes).map(clap::Command::get_name).collect();
+    let Some((last, others)) = takers.split_last() else { return error };
+    let takers = if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
+    let words = match error.kind() {
+        ErrorKind::UnknownArgument => format!("{word} is allowed with {takers} only"),
+        _ => format!("there is no command {word}; allowed: {takers}"),
+    };
+    parser.error(error.kind(), words)
 }
 
 fn size(text: &str) -> Result<f64, &'static str> {
-    finite(text).ok().filter(|size| *size >= 0.0).ok_or("allowed: a finite number ≥ 0")
-}
-
-/// A choice by its name in scene files; the error lists all names.
-fn named<T: DeserializeOwned>(text: &str) -> Result<T, NameError> {
-    T::deserialize(text.into_deserializer())
-}
-
-fn measures() -> impl TypedValueParser<Value = MeasureName> {
-    let value = |name, meaning| PossibleValue::new(name).help(meaning);
-    PossibleValuesParser::new([
-        value("pressure-norm", "Σσ^p"),
-        value("peak-pressure", "max σ"),
-        value("pressure-deviation", "mean of (σ − wanted)²; needs objective.wanted of the scene file"),
-        value("open-area", "area that lacks contact pressure; needs objective.pressure of the scene file"),
-        value(
-            "stress-norm",
-            "p-norm of the von Mises stress, in the whole bodies or in objective.region of the scene file",
-        ),
-        value("compliance", "work of all loads"),
-    ])
-    .try_map(|name| named(&name))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_name_that_the_help_lists_is_one() {
-        let command = <Arguments as clap::CommandFactory>::command();
-        for option in ["solver", "preconditioner", "formulation", "objective", "optimizer"] {
-            let argument = command.get_arguments().find(|argument| argument.get_id() == option).expect(option);
-            let listed: Vec<String> = match argument.get_possible_values() {
-                values if !values.is_empty() => values.iter().map(|value| value.get_name().to_owned()).collect(),
-                _ => argument.get_value_names().expect(option)[0].split('|').map(str::to_owned).collect(),
-            };
-            assert!(listed.len() > 1, "{option}");
-            for name in listed {
-                Arguments::try_parse_from(["contact", &format!("--{option}"), &name]).expect(&name);
-            }
-        }
-        let refusal = Arguments::try_parse_from(["contact", "--solver", "newtn"]).expect_err("no solver").to_string();
-        assert!(refusal.contains("`auto`, `newton`, `direct`, `augmented-lagrangian`"), "{refusal}");
-    }
-
-    #[test]
-    fn surfaces_and_counts_are_parsed_or_refused() {
-        assert_eq!(parse_surface("bspline:3"), Ok(SplineKind::BSpline(3)));
-        assert_eq!(parse_surface("bezier"), Ok(SplineKind::Bezier));
-        assert!(parse_surface("spline").is_err() && parse_surface("bspline:x").is_err());
-        assert_eq!((parse_mesh("6"), parse_mesh("12x10x4")), (Ok([6; 3]), Ok([12, 10, 4])));
-        for bad in ["", "6x", "6x6", "6x6x0", "6x6x6x6", "6x6x401"] {
-            assert!(parse_mesh(bad).is_err(), "{bad}");
-        }
-        assert_eq!(parse_counts("6x8"), Ok([6, 8]));
-        for bad in ["6", "6x", "1x6", "6x41", "-6x6", "axb"] {
-            assert!(parse_counts(bad).is_err(), "{bad}");
-        }
-    }
+    let size = text.parse().ok().filter(|size: &f64| size.is_finite() && *size >= 0.0);
+    size.ok_or("allowed: a finite number ≥ 0")
 }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 /// The symbols of this program and their ASCII forms.
-const FORMS: [(char, &str); 34] = [
+const FORMS: [(char, &str); 40] = [
     ('Θ', "Theta"),
     ('Σ', "sum "),
     ('σ', "sigma"),
@@ -21,6 +21,12 @@ const FORMS: [(char, &str); 34] = [
     ('²', "^2"),
     ('³', "^3"),
     ('⁴', "^4"),
+    ('⁵', "^5"),
+    ('⁶', "^6"),
+    ('⁷', "^7"),
+    ('⁸', "^8"),
+    ('⁹', "^9"),
+    ('⁰', "^0"),
     ('⁻', "^-"),
     ('×', "x"),
     ('·', "*"),

@@ -1,6 +1,6 @@
 //! Control files: a JSON array of rows of heights.
 
-use crate::commands::arguments::Arguments;
+use crate::commands::arguments::HeightError;
 use crate::commands::failure::Failure;
 use crate::commands::folder::file_error;
 use contact::equilibrium::ContactProblem;
@@ -16,7 +16,8 @@ pub const START_OPTION: &str = "--start-controls";
 /// Largest control file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// The controls of a file that an option names, or those the case starts from. Where an optimization starts they lie in the admissible
+/// The controls of a file that an option names, or those the case starts from. Where an optimization starts they lie
+/// in the admissible
 /// set; of shapes that are only looked at, heights and slopes do.
 ///
 /// # Errors
@@ -49,7 +50,8 @@ pub fn read(file: &Path, counts: [usize; 2]) -> Result<Vector, SceneError> {
     parse(&text, &file.display().to_string(), counts)
 }
 
-/// The controls in a text, for so many control points along x₁ and x₂; `name` stands in messages. Rows say the grid that they are made
+/// The controls in a text, for so many control points along x₁ and x₂; `name` stands in messages. Rows say the grid
+/// that they are made
 /// for; a plain array of numbers does not.
 ///
 /// # Errors
@@ -119,10 +121,11 @@ fn check_count(found: usize, expected: usize, name: &str) -> Result<(), SceneErr
     }
 }
 
-/// Controls with the error of a workshop, if the arguments ask for one: every height is off by the same amount, with signs that depend
+/// Controls with the error of a workshop, if one is asked for: every height is off by the same amount, with signs that
+/// depend
 /// on the seed alone. The admissible set binds what is designed, not what is made of it.
-pub fn as_made(controls: Vector, arguments: &Arguments) -> Vector {
-    let Some(error) = arguments.height_error else { return controls };
-    let signs = seeded_direction(controls.len(), arguments.seed.unwrap_or(1));
-    controls.zip_map(&signs, |height, sign| height + error.copysign(sign))
+pub fn as_made(controls: Vector, error: &HeightError) -> Vector {
+    let Some(size) = error.height_error else { return controls };
+    let signs = seeded_direction(controls.len(), error.seed.unwrap_or(1));
+    controls.zip_map(&signs, |height, sign| height + size.copysign(sign))
 }

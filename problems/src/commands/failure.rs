@@ -81,6 +81,12 @@ impl From<SceneError> for Failure {
     }
 }
 
+impl From<ContactError> for Failure {
+    fn from(error: ContactError) -> Self {
+        Self::computation(error)
+    }
+}
+
 impl From<JournalError> for Failure {
     fn from(error: JournalError) -> Self {
         match error {

@@ -1,6 +1,7 @@
 //! Output folders, and JSON as text.
 
 use crate::commands::arguments::Arguments;
+use crate::commands::facts::line;
 use crate::commands::failure::Failure;
 use crate::commands::output::notice;
 use crate::commands::register::{self, REGISTER, Register, UNFINISHED};
@@ -93,7 +94,7 @@ impl Folder {
     /// # Errors
     /// As [`create`](Self::create).
     pub fn of_command(case: &Case, arguments: &Arguments) -> Result<Option<Self>, Failure> {
-        let create = |path: &String| Self::create(Path::new(path), 1, arguments.overwrite);
+        let create = |path: &String| Self::create(Path::new(path), 1, arguments.files.overwrite);
         case.output.folder.as_ref().map(create).transpose()
     }
 
@@ -234,7 +235,7 @@ pub fn printed_with_files(
     let Some(folder) = folder else { return Ok(text) };
     match write(folder) {
         Ok(()) if as_json => Ok(text),
-        Ok(()) => Ok(format!("{text}files:       {}\n", folder.page().display())),
+        Ok(()) => Ok(text + &line("files", &folder.page().display().to_string())),
         Err(failure) => {
             let reason = format!("{failure}; the report above is complete");
             Err(Failure::Incomplete { text, reason, status: 1 })
@@ -279,7 +280,9 @@ pub fn resume_command(folder: &Path, kind: RunKind) -> String {
 /// The same with the options of this command that its folder does not hold.
 pub fn continuation(folder: &Path, arguments: &Arguments) -> String {
     let mut command = resume_command(folder, arguments.command.kind());
-    for (given, option) in [(arguments.vtk_history, " --vtk-history"), (arguments.no_checks, " --no-checks")] {
+    for (given, option) in
+        [(arguments.series.vtk_history, " --vtk-history"), (arguments.results.no_checks, " --no-checks")]
+    {
         command += if given { option } else { "" };
     }
     command

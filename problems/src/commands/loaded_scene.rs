@@ -2,8 +2,8 @@
 
 use crate::commands::arguments::Arguments;
 use crate::commands::long_run::StatusLine;
-use crate::commands::processes::Processes;
 use contact::error::SceneError;
+use contact::solvers::Processes;
 use scene_file::{Case, SceneFile};
 use std::path::{Path, PathBuf};
 use std::time::Instant;

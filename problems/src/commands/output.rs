@@ -33,15 +33,6 @@ pub fn finish(result: Result<String, Failure>, kept: Option<&Path>) -> ExitCode 
     ExitCode::from(status)
 }
 
-/// A pressure, MPa: one decimal from 100 on, else four digits.
-pub fn pressure(value: f64) -> String {
-    match value.abs() {
-        size if size >= 100.0 || size == 0.0 => format!("{value:.1}"),
-        size if size >= 1.0 => format!("{value:.3}"),
-        _ => format!("{value:.3e}"),
-    }
-}
-
 /// Prints the message of a failure on stderr; its exit status.
 pub fn print_failure(failure: &Failure) -> ExitCode {
     notice(&format!("error: {failure}"));

@@ -2,6 +2,7 @@
 
 use crate::commands::arguments::Arguments;
 use crate::commands::controls;
+use crate::commands::facts::{Fact, Facts, Group, Value, line};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{SCENE, file_error, json};
 use crate::commands::loaded_scene::LoadedScene;
@@ -13,7 +14,6 @@ use contact::equilibrium::ContactProblem;
 use nonsmooth::{Certificate, CertificateCheck, ProofCheck};
 use scene_file::{SceneFile, read_text};
 use serde::Serialize;
-use std::fmt;
 use std::path::Path;
 
 /// Largest difference of the norm, in norms of the subgradients behind it, and of the error, in values of Θ, that counts as
@@ -63,7 +63,7 @@ struct RecheckJson {
 
 /// The command.
 pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
-    let folder = arguments.certified.as_deref().unwrap_or(Path::new(""));
+    let folder = arguments.certified.folder.as_path();
     if let Some(kind) = RunKind::of(folder)?.filter(|kind| *kind != RunKind::Optimization) {
         let words = "recheck takes one of its optimizations, which lie in folders below";
         return Err(Failure::Input(format!("{}: holds {}; {words}", folder.display(), kind.words())));
@@ -96,7 +96,7 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let mut result = RecheckJson::new(&certificate, &check, certificate.point == controls);
     result.agrees &= proof.is_none_or(|proof| proof.largest() <= MAX_ROUNDING);
     result.composite = proof;
-    let text = arguments.printed(result.to_string(), json(&result)?);
+    let text = arguments.printed(result.text(), json(&result)?);
     if result.agrees {
         return Ok(text);
     }
@@ -153,29 +153,38 @@ impl RecheckJson {
     }
 }
 
-impl fmt::Display for RecheckJson {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl RecheckJson {
+    /// The text for people: the verdict first, then the numbers behind it.
+    fn text(&self) -> String {
         let verdict = |agrees: bool| if agrees { "agrees" } else { "does NOT agree" };
-        writeln!(f, "{:<20}{:>16}{:>16}", "", "recorded", "recomputed")?;
-        for (name, number) in [("aggregate norm", &self.aggregate_norm), ("aggregate error", &self.aggregate_error)] {
-            let Number { recorded, recomputed, rounding, agrees } = number;
-            let agrees = verdict(*agrees);
-            writeln!(f, "{name:<20}{recorded:>16.8e}{recomputed:>16.8e}  {agrees} (rounding: {rounding:.1e})")?;
-        }
         let admissible = if self.multipliers_and_point_admissible { "admissible" } else { "NOT admissible" };
-        writeln!(
-            f,
-            "multipliers, point  {admissible}: defect {:.1e}, at open sides {:.1e}; violation {:.1e}",
-            self.multiplier_defect, self.open_side_multiplier, self.violation
-        )?;
         let equal = if self.point_equals_controls { "equals" } else { "does NOT equal" };
-        writeln!(f, "point               {equal} controls.json")?;
+        let lead = vec![
+            line("certificate", verdict(self.agrees)).trim_end().to_owned(),
+            line("point", &format!("{equal} controls.json")).trim_end().to_owned(),
+        ];
+        let number = |name, number: &Number| {
+            let Number { recorded, recomputed, rounding, agrees } = *number;
+            let values =
+                vec![recorded.into(), recomputed.into(), Value::Rough(rounding), verdict(agrees).to_owned().into()];
+            Fact::row("", name, values, "")
+        };
+        let numbers =
+            vec![number("aggregate norm", &self.aggregate_norm), number("aggregate error", &self.aggregate_error)];
+        let columns = ["recorded", "recomputed", "rounding", ""].map(str::to_owned).into();
+        let rough = |name, value| Fact::new("", name, Value::Rough(value), "");
+        let mut rest = vec![
+            Fact::new("", "multipliers, point", admissible.to_owned(), ""),
+            rough("multiplier defect", self.multiplier_defect),
+            rough("at open sides", self.open_side_multiplier),
+            rough("violation", self.violation),
+        ];
         if let Some(ProofCheck { value, outer, cuts, .. }) = &self.composite {
-            writeln!(
-                f,
-                "composite proof     relative differences: objective {value:.1e}, pressure measure {outer:.1e}, cuts {cuts:.1e}"
-            )?;
+            rest.push(rough("composite: objective", *value));
+            rest.push(rough("pressure measure", *outer));
+            rest.push(rough("cuts", *cuts));
         }
-        writeln!(f, "certificate         {}", verdict(self.agrees))
+        let numbers = Group { columns, ..Group::new("", numbers) };
+        Facts { lead, groups: vec![numbers, Group::new("", rest)] }.text(true)
     }
 }

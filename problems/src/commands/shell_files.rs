@@ -35,13 +35,30 @@ pub fn asked(command: &clap::Command, arguments: &[String]) -> Option<Result<Str
             text(bytes)
         })),
         ["completions", ..] => Some(unknown(String::new())),
-        ["man"] => {
-            let mut bytes = Vec::new();
-            let written = Man::new(command.clone()).render(&mut bytes).map_err(Failure::computation);
-            Some(written.and_then(|()| text(bytes)))
-        }
+        ["man"] => Some(manual(command)),
         _ => None,
     }
+}
+
+/// The page for `man`: that of the program, and for every command the options that the program without a command does not take.
+fn manual(command: &clap::Command) -> Result<String, Failure> {
+    let mut bytes = Vec::new();
+    Man::new(command.clone()).render(&mut bytes).map_err(Failure::computation)?;
+    for part in command.get_subcommands() {
+        let known = |id: &clap::Id| command.get_arguments().any(|argument| argument.get_id() == id);
+        if part.get_arguments().all(|argument| known(argument.get_id())) {
+            continue;
+        }
+        let mut section = Vec::new();
+        let own = part.clone().disable_help_flag(true).mut_args(|argument| {
+            let is_known = known(argument.get_id());
+            argument.hide(is_known)
+        });
+        Man::new(own).render_options_section(&mut section).map_err(Failure::computation)?;
+        let heading = format!(".SH \"OPTIONS OF {}\"\n", part.get_name().to_uppercase());
+        bytes.extend((heading + &text(section)?.replace(".SH ", ".SS ")).into_bytes());
+    }
+    text(bytes)
 }
 
 fn unknown(_: String) -> Result<String, Failure> {

@@ -1,13 +1,15 @@
 //! `verify`: Taylor test of the subgradient on the smooth piece around one shape.
 
-use crate::commands::contact_objective::{self, ContactObjective};
 use crate::commands::controls;
+use crate::commands::facts::line;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::Session;
-use crate::commands::processes::{SharedState, Usage};
+use crate::commands::numbers::rounded;
+use crate::commands::solved_shape::{self, ContactObjective};
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactStatus, Residuals};
+use contact::solvers::Usage;
 use nonsmooth::verify::{Direction, TaylorTest, taylor_test};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::Case;
@@ -41,9 +43,9 @@ struct VerificationJson {
 
 /// The command.
 pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
-    let (objective, arguments) = (&contact_objective::objective(case, &session.processes)?, session.arguments);
+    let (objective, arguments) = (&solved_shape::objective(case, &session.processes)?, session.arguments);
     let shape = objective.solver();
-    let control = controls::load(shape.problem(), case, ("--controls", arguments.controls.as_deref()))?;
+    let control = controls::load(shape.problem(), case, ("--controls", arguments.shape.controls.as_deref()))?;
     let folder = Folder::of_command(case, arguments)?;
     let found = smooth_taylor_test(objective, &control);
     let (here, step, test) = found.inspect_err(|_| folder.iter().for_each(Folder::abandon))?;
@@ -56,22 +58,42 @@ pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
         processes: session.processes.usage(here.solver)?,
     };
     let object = json(&result)?;
-    let text = format!(
-        "{}no contact node changes its status up to the step {:.1e} mm (nearest kink: relative margin {:.1e}, {} nodes weakly active)\n\
-         relative residuals of the state: {}\n{}",
-        result.test,
-        step,
-        result.smallest_margin,
-        result.weakly_active,
-        result.residuals,
-        result.processes.iter().map(|usage| format!("processes: {usage}\n")).collect::<String>()
-    );
+    let text = lead(&result) + &result.test.to_string() + &rest(&result);
     let write = |folder: &Folder| {
         folder.write("verification.json", &object)?;
         folder.write("verification.txt", &text)
     };
     let printed = arguments.printed(text.clone(), object.clone());
     printed_with_files(printed, arguments.json, folder.as_ref(), write)
+}
+
+/// Whether the subgradient is right, and where that was tested: two lines.
+fn lead(result: &VerificationJson) -> String {
+    /// Least slope of the remainder of a right subgradient; a wrong one has 1.
+    const LEAST_SLOPE: f64 = 1.5;
+    let verdict = match result.test.fitted_slope {
+        Some(slope) if slope >= LEAST_SLOPE => {
+            format!(
+                "the subgradient is right: the remainder falls with the power {slope:.3} of the step (right: 2, wrong: 1)"
+            )
+        }
+        Some(slope) => format!(
+            "the subgradient is wrong, or a kink is near: the remainder falls with the power {slope:.3} of the step (right: 2)"
+        ),
+        None => "nothing can be said of the subgradient: rounding hides the remainder".into(),
+    };
+    let (step, error) = (rounded(result.smooth_step, 2), rounded(result.test.best_derivative_error, 2));
+    let where_from = format!("no contact node changes its status up to the step {step} mm");
+    format!("{verdict}\n{where_from}; smallest relative error of the derivative {error}\n")
+}
+
+/// What the table of the test leaves out.
+fn rest(result: &VerificationJson) -> String {
+    let margin = rounded(result.smallest_margin, 2);
+    let kink = format!("relative margin {margin}, {} nodes weakly active", result.weakly_active);
+    let usage = result.processes.iter().map(|usage| line("processes", &usage.to_string()));
+    let lines = [line("nearest kink", &kink), line("relative residuals", &result.residuals.to_string())];
+    lines.into_iter().chain(usage).collect()
 }
 
 /// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the largest step.
@@ -81,7 +103,7 @@ pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,
-) -> Result<(ContactState<SharedState>, f64, TaylorTest), Failure> {
+) -> Result<(ContactState, f64, TaylorTest), Failure> {
     let direction = nonsmooth::verify::seeded_direction(control.len(), DIRECTION_SEED);
     let here = objective.solver().solve(control, None, Accuracy::TIGHTEST)?;
     let step = smooth_step(objective, control, &direction, &here.forces.status)?;

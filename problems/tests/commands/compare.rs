@@ -123,7 +123,7 @@ fn objectives_that_reach_zero_are_compared_in_words() {
 }
 
 /// A body that does not reach its counterpart: both objectives are zero from the start on.
-const NEVER_TOUCHES: &str = r#"
+pub const NEVER_TOUCHES: &str = r#"
 name = "never touches"
 size = [20.0, 20.0]
 friction = 0.3

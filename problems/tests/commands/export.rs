@@ -92,7 +92,7 @@ fn the_relief_of_the_surface_stands_beside_the_tolerance() {
     let out = folder.path().join("out");
     let printed = kit::run(HERTZ, &["export", "--stl", "--out", text(&out)]);
     let printed = String::from_utf8_lossy(&printed.stdout).into_owned();
-    assert!(printed.contains("whose heights differ by 0.000e0 mm: 18 triangles within 0.001 mm"), "{printed}");
+    assert!(printed.contains("whose heights differ by 0 mm: 18 triangles within 0.001 mm"), "{printed}");
 }
 
 /// Closed bodies of the right volume, and triangles within the tolerance of the surfaces.
@@ -383,7 +383,6 @@ fn the_history_has_every_serious_step() {
         let (objective, expected): (f64, f64) =
             (note("objective").parse().unwrap(), step["objective"].as_f64().unwrap());
         assert!((objective / expected - 1.0).abs() < 1e-8, "{objective} {expected}");
-        assert!(note("units").ends_with(" 0"));
     }
     assert!(out.join("vtk/view.py").exists() && out.join("vtk/fields.pvd").exists());
 }

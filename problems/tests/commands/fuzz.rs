@@ -9,6 +9,7 @@ use contact::cost::{FieldCost, Measure, PressureCost};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::memory;
+use contact::solvers::Wanted;
 use nonsmooth::Journal;
 use problems::commands::parse_controls;
 use scene_file::{Case, SceneFile};
@@ -160,7 +161,7 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
     let file = SceneFile::parse(text, "input.toml")?;
     assert_eq!(SceneFile::parse(&file.print()?, "printed").as_ref().ok(), Some(&file), "the printed file differs");
     let case = Case::new(&file, folder)?;
-    memory::check(&case.scene, case.solver, case.preconditioner, 0, &InProcess)?;
+    memory::check(&case.plan(Wanted::States), &InProcess)?;
     let nodes = (case.scene.mesh[0] + 1) * (case.scene.mesh[1] + 1);
     if nodes <= SMALL && case.scene.control_points.iter().product::<usize>() <= SMALL {
         let start =

@@ -19,6 +19,7 @@ mod certificates;
 mod compare;
 mod contact3d;
 mod export;
+mod facts;
 mod flat_foot;
 mod fuzz;
 mod just_touching;
@@ -40,6 +41,7 @@ mod study;
 mod tall_columns;
 mod terminal;
 mod toy2d;
+mod vtk_files;
 
 #[path = "../../examples/own_objective.rs"]
 mod own_objective;

@@ -54,13 +54,14 @@ fn every_objective_is_evaluated_verified_optimized_and_rechecked() {
         "measure = \"open-area\"\npressure = 60.0",
         "measure = \"stress-norm\"\nregion = { body = \"lower\", x1 = [0.0, 1e3] }",
         "measure = \"compliance\"",
+        "weight = \"area\"\nexponent = 6.0",
     ]
     .iter()
     .enumerate()
     {
         let file = folder.path().join(format!("{index}.toml"));
         std::fs::write(&file, format!("{base}\n[objective]\n{section}\n")).unwrap();
-        let of_scene = |options: &[&str]| json(contact3d(), &[&[text(&file), "--mesh", "4"], options].concat());
+        let of_scene = |words: &[&str]| json(contact3d(), &[&[text(&file)], words, &["--mesh", "4"]].concat());
         let at_start = of_scene(&["evaluate", "--json"]);
         assert!(number(&at_start["objective"]).is_finite(), "{at_start}");
         assert_eq!(at_start.get("contact_areas").is_some(), index == 1);
@@ -102,8 +103,14 @@ fn options_and_fields_that_do_not_fit_the_objective_are_refused() {
     refused(&[&punch, "--objective", "pressure-deviation"], &["objective.wanted = missing"]);
     refused(&[&punch, "--objective", "compliance", "--optimizer", "composite"], &["--optimizer", "contact pressures"]);
     refused(&[&support, "--optimizer", "composite"], &["--optimizer", "contact pressures"]);
-    refused(&[&support, "--objective", "compliance", "--exponent", "3"], &["--exponent", "stress-norm"]);
+    refused(&[&support, "--objective", "compliance", "--exponent", "3"], &["--exponent", "stress norm"]);
     let printed = kit::run(contact3d(), &[&support, "--objective", "compliance", "--print-scene"]);
     let printed = String::from_utf8_lossy(&printed.stdout).into_owned();
     assert!(printed.contains("measure = \"compliance\"") && !printed.contains("\nexponent ="), "{printed}");
+    // A scene of the same measure keeps its weight; for another measure, the default holds.
+    for (scene, weight) in [(&punch, "\nweight = \"nodes\""), (&support, "\n# weight is not set")] {
+        let printed = kit::run(contact3d(), &[scene, "--objective", "pressure-norm", "--print-scene"]);
+        let printed = String::from_utf8_lossy(&printed.stdout).into_owned();
+        assert!(printed.contains("measure = \"pressure-norm\"") && printed.contains(weight), "{printed}");
+    }
 }

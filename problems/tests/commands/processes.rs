@@ -37,15 +37,29 @@ impl Communication for Rank {
 }
 
 fn arguments(options: &[&str]) -> Arguments {
-    clap::Parser::try_parse_from([&["contact3d", "--json"], options].concat()).unwrap()
+    Arguments::try_parse_from([&["contact3d"], options, &["--json"]].concat()).unwrap()
 }
 
-fn open() -> Result<(SceneFile, Option<std::path::PathBuf>), problems::commands::Failure> {
+type Opened = Result<(SceneFile, Option<std::path::PathBuf>), problems::commands::Failure>;
+
+fn open() -> Opened {
     Ok((SceneFile::parse(include_str!("../../scenes/signorini.toml"), "signorini.toml")?, None))
+}
+
+/// The same scene with eight clusters of subdomains.
+fn clustered() -> Opened {
+    let (mut file, path) = open()?;
+    file.solver.clusters = Some(8);
+    Ok((file, path))
 }
 
 /// What the first of so many processes says: JSON, or the message and the exit status of its failure.
 fn together(count: usize, options: &[&str]) -> Result<Value, (String, u8)> {
+    together_on(open, count, options)
+}
+
+/// As [`together`], with another scene.
+fn together_on(open: fn() -> Opened, count: usize, options: &[&str]) -> Result<Value, (String, u8)> {
     let arguments = arguments(options);
     let handles: Vec<_> = Mailbox::all(count)
         .into_iter()
@@ -77,6 +91,10 @@ fn found(mut report: Value) -> Value {
 }
 
 fn alone(options: &[&str]) -> Value {
+    alone_on(open, options)
+}
+
+fn alone_on(open: fn() -> Opened, options: &[&str]) -> Value {
     found(serde_json::from_str(&execute(open, &arguments(options)).unwrap()).unwrap())
 }
 
@@ -122,6 +140,64 @@ fn another_number_of_processes_continues_a_run() {
     for key in ["objective", "controls", "termination", "certificate", "course"] {
         assert_eq!(found(report.clone())[key], expected[key], "{key}");
     }
+}
+
+#[test]
+fn clusters_change_rounding_alone_and_nothing_by_the_number_of_processes() {
+    // 64 subdomains of 2³ bricks in eight clusters of 2³ subdomains.
+    let options = ["evaluate", "--mesh", "8", "--subdomains", "4", "--solver", "newton"];
+    let expected = alone_on(clustered, &options);
+    for count in [1, 2, 3] {
+        assert_eq!(found(together_on(clustered, count, &options).unwrap()), expected, "{count} processes");
+    }
+    let plain = alone(&options);
+    let [with, without] = [&expected, &plain].map(|report| report["objective"].as_f64().unwrap());
+    assert!(with != without, "the clusters were not used");
+    assert!((with / without - 1.0).abs() < 1e-10, "{with:e} {without:e}");
+    let gradients = [&expected, &plain].map(|report| {
+        let entries = report["subgradient"].as_array().unwrap();
+        entries
+            .iter()
+            .flat_map(|entry| entry.as_array().map_or_else(|| vec![entry], |row| row.iter().collect()))
+            .map(|entry| entry.as_f64().unwrap())
+            .collect::<Vec<f64>>()
+    });
+    let difference = testset::kit::relative_difference(&gradients[0], &gradients[1]);
+    assert!(difference < 1e-8, "{difference:e}");
+}
+
+#[test]
+fn a_run_with_clusters_is_continued_with_them() {
+    let folder = scratch();
+    let folder = folder.path().join("run");
+    let run = ["--mesh", "8", "--subdomains", "4", "--solver", "newton", "--max-evaluations"];
+    let expected = alone_on(clustered, &[&run[..], &["4"]].concat());
+    together_on(clustered, 3, &[&run[..], &["2", "--out", text(&folder)]].concat()).unwrap();
+    // The scene of the folder names the clusters; the one that is opened is not read.
+    let report = together(2, &["--resume", text(&folder), "--max-evaluations", "4"]).unwrap();
+    assert_eq!(report["resumed_evaluations"], 2);
+    for key in ["objective", "controls", "course"] {
+        assert_eq!(found(report.clone())[key], expected[key], "{key}");
+    }
+}
+
+#[test]
+fn clusters_that_the_subdomains_or_processes_do_not_make_are_refused() {
+    let refused = |count: usize, options: &[&str]| together_on(clustered, count, options).unwrap_err();
+    let (message, status) = refused(1, &["evaluate", "--mesh", "6", "--subdomains", "3"]);
+    assert!(message.contains("solver.clusters = 8") && message.contains("the nearest are 3 and 9"), "{message}");
+    assert_eq!(status, 2);
+    let (message, status) = refused(1, &["evaluate", "--mesh", "4", "--subdomains", "4"]);
+    assert!(message.contains("solver.clusters = 8") && message.contains("subdomains need more bricks"), "{message}");
+    assert_eq!(status, 2);
+    let (message, _) = refused(1, &["evaluate", "--mesh", "4", "--solver", "direct"]);
+    assert!(message.contains("solver.clusters = 8") && message.contains("direct"), "{message}");
+    let (message, status) = refused(9, &["evaluate", "--mesh", "4", "--subdomains", "4"]);
+    assert!(
+        message.contains("number of processes = 9") && message.contains("at most 8, as many as there are clusters"),
+        "{message}"
+    );
+    assert_eq!(status, 2);
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! The stages that a state and its subgradient tell a listener.
 
 use contact::contact_shape::SolverKind;
+use contact::solvers::Processes;
 use nonsmooth::{Accuracy, StateSolver};
 use problems::commands::StageLayer;
 use problems::commands::objective;
-use problems::commands::processes::Processes;
 use scene_file::{Case, SceneFile};
 use std::path::Path;
 use std::sync::{Arc, Mutex};

@@ -33,6 +33,35 @@ fn every_row_is_what_evaluate_finds() {
     }
 }
 
+/// A field that has no option is varied by its path.
+#[test]
+fn fields_are_varied_by_their_paths() {
+    let vary =
+        ["--vary", "lower.loads[0].traction=[0,0,1500],[0,0,3000]", "--vary", "lower.material.young_modulus=1e5:2e5:2"];
+    let study = json(SIGNORINI, &[&["study", "--mesh", "4", "--json"], &vary[..]].concat());
+    assert_eq!(rows(&study).len(), 4);
+    for row in rows(&study) {
+        let options: Vec<&str> = row["options"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+        let single = json(SIGNORINI, &[&["evaluate", "--mesh", "4", "--json"], &options[..]].concat());
+        assert_eq!(row["solved"]["objective"], single["objective"], "{options:?}");
+    }
+    let half =
+        json(SIGNORINI, &["evaluate", "--mesh", "4", "--load-factor", "0.5", "--young-modulus", "1e5", "--json"]);
+    assert_eq!(rows(&study)[0]["solved"]["objective"], half["objective"]);
+    let table = kit::run(SIGNORINI, &["study", "--mesh", "2", "--vary", "solver.kind=newton,direct"]).stdout;
+    let table = String::from_utf8(table).unwrap();
+    assert!(table.contains("solver.kind") && table.contains("newton ") && !table.contains("--set"), "{table}");
+    for (vary, words) in [
+        ("lower.material.young_modul=1,2", "did you mean `young_modulus`?"),
+        ("lower.material.young_modulus=1,-2", "≥ 1e-9 and ≤ 1e15 (MPa)"),
+        ("output.folder=a,b", "where results go"),
+    ] {
+        refused(SIGNORINI, &["study", "--vary", vary], &[words]);
+    }
+    let twice = ["study", "--vary", "friction=0,1", "--vary", "mesh=2", "--vary", "mesh.bricks=4"];
+    refused(SIGNORINI, &twice, &["mesh.bricks", "once"]);
+}
+
 #[test]
 fn a_row_that_fails_is_a_row_with_its_reason() {
     let arguments = ["study", "--mesh", "4", "--vary", "subdomains=3,2", "--vary", "load-factor=-1,1"];
@@ -40,7 +69,8 @@ fn a_row_that_fails_is_a_row_with_its_reason() {
     let table = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{}", errors(&output));
     assert!(
-        table.contains("--subdomains = 3 is not allowed") && table.contains("rows:        4 of 4, 3 failed"),
+        table.contains("--subdomains = 3 is not allowed")
+            && table.contains("rows                          4 of 4, 3 failed"),
         "{table}"
     );
     let reason = json(SIGNORINI, &[&arguments[..], &["--json"]].concat())["rows"][2]["failed"].clone();
@@ -60,7 +90,10 @@ fn a_mesh_beyond_the_memory_is_named_before_the_first_row() {
         said.contains("row 2 will fail: mesh.bricks = 400x400x400 bricks") && !said.contains("row 3 will fail"),
         "{said}"
     );
-    assert!(String::from_utf8_lossy(&output.stdout).contains("rows:        3 of 3, 1 failed"), "{said}");
+    assert!(
+        String::from_utf8_lossy(&output.stdout).contains("rows                          3 of 3, 1 failed"),
+        "{said}"
+    );
     let output = kit::run(SIGNORINI, &["--continuation", "2,400", "--max-evaluations", "2"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(errors(&output).contains("the mesh of 400x400x400 bricks"), "{}", errors(&output));
@@ -88,7 +121,7 @@ fn an_optimized_study_goes_on_where_it_was_cut_short() {
         assert_eq!(row["solved"]["optimization"]["evaluations"], 4);
     }
     let table = std::fs::read_to_string(whole.join("study.csv")).unwrap();
-    assert_eq!((table.lines().count(), table.lines().next().unwrap().split(',').count()), (3, 15));
+    assert_eq!((table.lines().count(), table.lines().next().unwrap().split(',').count()), (3, 16));
     let page = std::fs::read_to_string(whole.join("report.html")).unwrap();
     for part in ["figures/objective.svg", "figures/surfaces_1.svg", "row_002/report.html", "study.csv", "rows.json"] {
         assert!(page.contains(&format!("href=\"{part}\"")) && whole.join(part).exists(), "{part}");
@@ -148,7 +181,7 @@ fn heights_that_are_off_change_the_pressure() {
         (&["evaluate", "--height-error", "-1"], "≥ 0"),
         (&["evaluate", "--seed", "1"], "--height-error"),
         (&["study", "--height-error", "0.1", "--vary", "friction=0", "--optimize"], "without --optimize"),
-        (&["--height-error", "1"], "with evaluate"),
+        (&["--height-error", "1"], "with study and evaluate only"),
     ] {
         refused(SIGNORINI, arguments, &[words]);
     }

@@ -49,7 +49,13 @@ class Evaluation:
     unit : str
         Unit of theta.
     root : float
-        p where theta is (sum of pressures**p)**(1/p), because the sum may be no double; else 1.
+        p where theta is the p-th root of a pressure norm, because the norm may be no double; else 1.
+    norm_in_mpa : float or None
+        For a pressure norm, its p-th root in MPa: with ``weight = "area"`` the power mean of the pressures over the area, with
+        ``"nodes"`` the root of their sum. None for other objectives.
+    warnings : list of str
+        What is implausible about the state, as the command ``evaluate`` says it: each begins with a code that does not change, such as
+        ``"large-strain: "``.
     """
 
     theta: float
@@ -63,6 +69,8 @@ class Evaluation:
     weakly_active: dict
     unit: str
     root: float
+    norm_in_mpa: float | None
+    warnings: list
 
 
 class Scene:
@@ -147,7 +155,7 @@ class Scene:
         return self._scene.toml()
 
     def evaluate(self, heights=None):
-        """Solve the contact problem of a shape. An interrupt takes effect between its steps.
+        """Solve the contact problem of a shape, and check what it means. An interrupt takes effect between its steps.
 
         Parameters
         ----------
@@ -158,9 +166,14 @@ class Scene:
         -------
         Evaluation
             Objective and contact state.
+
+        Raises
+        ------
+        OutsideDomain
+            Heights or slopes outside the admissible set, which the commands refuse too, and bodies that are inverted. The volume
+            may be any.
         """
-        _check_process()
-        found = self._scene.evaluate(self._flat(heights, "heights"))
+        found = self._solved(heights, True)
         return Evaluation(
             theta=found["value"],
             gradient=found["gradient"],
@@ -173,6 +186,8 @@ class Scene:
             weakly_active=json.loads(found["weakly_active"]),
             unit=found["unit"],
             root=found["root"],
+            norm_in_mpa=found["norm_in_mpa"],
+            warnings=found["warnings"],
         )
 
     def fun(self, heights):
@@ -191,10 +206,15 @@ class Scene:
             Theta and its subgradient.
         """
         try:
-            found = self.evaluate(heights)
+            found = self._solved(heights, False)
         except RuntimeError as error:
             raise OutsideDomain(str(error)) from error
-        return found.theta, found.gradient.ravel()
+        return found["value"], found["gradient"].ravel()
+
+    def _solved(self, heights, checks):
+        """The engine's answer at a shape."""
+        _check_process()
+        return self._scene.evaluate(self._flat(heights, "heights"), checks)
 
     def optimize(self, start=None, options=None, callback=None, *, journal=None, resume=None):
         """Minimise theta over the admissible heights, with the Jacobian of all pressures where theta is a function of them.
@@ -210,7 +230,8 @@ class Scene:
         Returns
         -------
         Result
-            ``x`` has the shape of the control points in row-major order, flattened.
+            ``x`` holds the control heights in row-major order, flattened. ``warnings`` holds those of the optimizer and those about
+            the final shape, with codes as in `Evaluation`.
         """
         _check_process()
         start = self._flat(start, "start")

@@ -27,6 +27,8 @@ class Evaluation:
     weakly_active: dict[str, Any]
     unit: str
     root: float
+    norm_in_mpa: float | None
+    warnings: list[str]
 
 class Scene:
     def __init__(self, **fields: Any) -> None: ...

@@ -9,7 +9,7 @@
 use crate::bundle::norm::{ScaledNorm, WeightedMetric};
 use crate::bundle::proposers::proposal::SubproblemError;
 use crate::composite::{Linearization, OuterFunction};
-use crate::{Matrix, Polyhedron, Vector};
+use crate::{Matrix, Polyhedron, Vector, plain};
 use serde::{Deserialize, Serialize};
 
 /// A cut above h by more than this share of the sizes of its terms is no rounding: h is not convex.
@@ -20,10 +20,12 @@ pub(super) const MAX_EXCESS: f64 = 1e-9;
 #[non_exhaustive]
 pub struct OuterCut {
     /// Outputs c_j, m entries.
+    #[serde(with = "plain::vector")]
     pub outputs: Vector,
     /// h(c_j), or ⟨w_j, c_j⟩ − h*(w_j) ≤ h(c_j).
     pub value: f64,
     /// w_j ∈ ∂h(c_j), m entries; where h is built from cones, any w_j with a finite conjugate h*(w_j).
+    #[serde(with = "plain::vector")]
     pub subgradient: Vector,
     /// λ_j ≥ 0; Σ λ_j = 1.
     pub multiplier: f64,

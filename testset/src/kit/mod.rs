@@ -11,6 +11,7 @@ mod pins;
 mod program;
 pub mod step_file;
 pub mod stl_file;
+pub mod vtu_file;
 
 pub use documented_commands::run_commands;
 pub use mailbox::Mailbox;

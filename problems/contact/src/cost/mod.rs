@@ -10,7 +10,7 @@ mod pressure;
 mod region;
 
 pub use field::{FieldCost, FieldGradient, FieldMeasure};
-pub use pressure::{ContactAreas, PressureCost, PressureMeasure};
+pub use pressure::{ContactAreas, NodeWeight, PressureCost, PressureMeasure, PressureRoot};
 pub use region::{Region, RegionBricks};
 
 /// What is minimised.

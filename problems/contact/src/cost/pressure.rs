@@ -1,7 +1,7 @@
 //! Costs of the contact pressure σ_i = λ_N,i / A_i; method.md (3.4) to (3.6).
 //!
 //! ```text
-//! Σσ^p,    max σ,    Σ A_i (σ_i − w_i)² / Σ A_i,    Σ A_i max(1 − σ_i/σ₀, 0)
+//! ∫σ^p dA = Σ A_i σ_i^p  or  Σσ^p,    max σ,    Σ A_i (σ_i − w_i)² / Σ A_i,    Σ A_i max(1 − σ_i/σ₀, 0)
 //! ```
 
 use crate::equilibrium::{ContactBoundary, ContactState};
@@ -10,15 +10,28 @@ use crate::scene::Scene;
 use nonsmooth::composite::{Maximum, OuterFunction, weighted_gram};
 use nonsmooth::{Matrix, Vector};
 use serde::Serialize;
-use std::fmt;
+
+/// What a contact node counts in a pressure norm.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "NodeWeightName", transform = crate::schema::names_only))]
+pub enum NodeWeight {
+    /// Its area A_i: the sum is ∫σ^p dA, MPa^p mm², which meshes of one scene agree on.
+    #[default]
+    Area,
+    /// 1, as in the paper: the sum Σσ^p, MPa^p, grows with the number of nodes, and nodes on edges count as much as those inside.
+    Nodes,
+}
 
 /// A function of the contact pressures.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PressureMeasure {
-    /// Σσ^p, MPa^p.
+    /// Σ m_i σ_i^p with the weights m_i of the nodes.
     Norm {
         /// The exponent p > 1.
         exponent: f64,
+        /// What a node counts.
+        weight: NodeWeight,
     },
     /// max σ, MPa; nonsmooth on its own, with one subgradient at the first node of largest pressure.
     Peak,
@@ -46,24 +59,29 @@ pub struct ContactAreas {
     pub whole: f64,
 }
 
-impl fmt::Display for ContactAreas {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "closed nodes {:.6}, smoothed {:.6}, of {:.6} mm²", self.closed, self.smoothed, self.whole)
-    }
+/// A sum of powers of pressures as a pressure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PressureRoot {
+    /// What it is, such as `(Σσ^4)^(1/4)`.
+    pub name: String,
+    /// Its value, MPa.
+    pub value: f64,
 }
 
 /// A measure of the contact pressures σ, a function of these outputs of [`ContactShape`](crate::contact_shape::ContactShape).
 #[derive(Debug, Clone)]
 pub struct PressureCost {
     measure: PressureMeasure,
-    /// Whether the value is the p-th root of Σσ^p.
+    /// Whether the value of a norm is its root in MPa.
     is_root: bool,
+    /// What the nodes count in a norm; empty for the other measures.
+    weights: Vec<f64>,
     boundary: ContactBoundary,
     /// Areas of its nodes, mm².
     areas: Vec<f64>,
 }
 
-/// Decades of Σσ^p at the typical pressure of a scene beyond which its root is taken. Squares of subgradients at pressures far
+/// Decades of a pressure norm at the typical pressure of a scene beyond which its root is taken. Squares of subgradients at pressures far
 /// above that must still be doubles, which end at 308 decades.
 const MAX_DECADES: f64 = 100.0;
 /// Largest pressure over the mean pressure, roughly: those of the paper's scenes are at 4 to 10.
@@ -78,7 +96,7 @@ impl PressureCost {
     pub fn new(measure: PressureMeasure, boundary: &ContactBoundary) -> Result<Self, SceneError> {
         match &measure {
             PressureMeasure::Peak => {}
-            PressureMeasure::Norm { exponent } => {
+            PressureMeasure::Norm { exponent, .. } => {
                 let valid = *exponent > 1.0 && exponent.is_finite();
                 SceneError::require(valid, "objective.exponent", exponent, "a finite number > 1")?;
             }
@@ -100,17 +118,46 @@ impl PressureCost {
                 SceneError::require(valid, "objective.pressure", pressure, "a finite number > 0 (MPa)")?;
             }
         }
-        let areas = boundary.points.iter().map(|point| point.area).collect();
-        Ok(Self { measure, is_root: false, boundary: boundary.clone(), areas })
+        let areas: Vec<f64> = boundary.points.iter().map(|point| point.area).collect();
+        let weights = match &measure {
+            PressureMeasure::Norm { weight: NodeWeight::Area, .. } => areas.clone(),
+            PressureMeasure::Norm { weight: NodeWeight::Nodes, .. } => vec![1.0; areas.len()],
+            _ => vec![],
+        };
+        Ok(Self { measure, is_root: false, weights, boundary: boundary.clone(), areas })
     }
 
-    /// The same cost in a form that can be computed for the pressures of a scene: where Σσ^p may leave the range of doubles, its
-    /// root (Σσ^p)^{1/p}, which has the same minimisers. The choice depends neither on the mesh nor on the shape.
+    /// The same cost in a form that can be computed for the pressures of a scene: where a pressure norm may leave the range of doubles, its
+    /// root in MPa, which has the same minimisers. The choice depends neither on the mesh nor on the shape.
     #[must_use]
     pub fn normalised_for(self, scene: &Scene) -> Self {
-        let PressureMeasure::Norm { exponent } = self.measure else { return self };
+        let PressureMeasure::Norm { exponent, .. } = self.measure else { return self };
         let typical = TYPICAL_PEAK * scene.load() / (scene.size[0] * scene.size[1]);
-        Self { is_root: typical > 0.0 && exponent * typical.log10().abs() > MAX_DECADES, ..self }
+        match typical > 0.0 && exponent * typical.log10().abs() > MAX_DECADES {
+            true => self.rooted(),
+            false => self,
+        }
+    }
+
+    /// A norm as its root: (Σσ^p)^{1/p}, or (∫σ^p dA / ΣA)^{1/p}.
+    fn rooted(self) -> Self {
+        let size = self.root_size();
+        Self { is_root: true, weights: self.weights.iter().map(|weight| weight / size).collect(), ..self }
+    }
+
+    /// What a norm is divided by before its root is taken: ΣA, so that the root is a mean, or 1 for a sum over nodes.
+    fn root_size(&self) -> f64 {
+        match self.measure {
+            PressureMeasure::Norm { weight: NodeWeight::Area, .. } => self.areas.iter().sum(),
+            _ => 1.0,
+        }
+    }
+
+    /// The root of a norm in MPa from a value of this cost: (Σσ^p)^{1/p}, or (∫σ^p dA / ΣA)^{1/p}, the power mean of the pressures. None for
+    /// the other measures.
+    pub fn norm_in_mpa(&self, value: f64) -> Option<f64> {
+        let PressureMeasure::Norm { exponent, .. } = self.measure else { return None };
+        Some(if self.is_root { value } else { (value / self.root_size()).powf(1.0 / exponent) })
     }
 
     /// The wanted pressure per contact node, MPa, of a deviation; none for the other measures.
@@ -121,18 +168,38 @@ impl PressureCost {
         }
     }
 
-    /// p where the value is (Σσ^p)^{1/p}, else 1.
+    /// p where the value is the root of a norm, (Σσ^p)^{1/p} or (∫σ^p dA / ΣA)^{1/p}, else 1.
     pub fn root(&self) -> f64 {
         match self.measure {
-            PressureMeasure::Norm { exponent } if self.is_root => exponent,
+            PressureMeasure::Norm { exponent, .. } if self.is_root => exponent,
             _ => 1.0,
         }
     }
 
-    /// The unit of the value, such as `MPa^{4}`.
+    /// A value as a pressure with its name, where it is a norm; see [`norm_in_mpa`](Self::norm_in_mpa).
+    pub fn pressure_root(&self, value: f64) -> Option<PressureRoot> {
+        let PressureMeasure::Norm { exponent, weight } = self.measure else { return None };
+        let name = match weight {
+            NodeWeight::Nodes => format!("(Σσ^{exponent})^(1/{exponent})"),
+            NodeWeight::Area => format!("(∫σ^{exponent} dA / ∫dA)^(1/{exponent})"),
+        };
+        Some(PressureRoot { name, value: self.norm_in_mpa(value)? })
+    }
+
+    /// Where the value is the root of a norm, the factor and the unit of the norm: it is the factor times the value to the power p.
+    pub fn norm_of_root(&self) -> Option<(f64, String)> {
+        match self.measure {
+            PressureMeasure::Norm { exponent, weight } if self.is_root => {
+                Some((self.root_size(), norm_unit(exponent, weight)))
+            }
+            _ => None,
+        }
+    }
+
+    /// The unit of the value, such as `MPa^{4}·mm^{2}`.
     pub fn unit(&self) -> String {
         match &self.measure {
-            PressureMeasure::Norm { exponent } if !self.is_root => format!("MPa^{{{exponent}}}"),
+            &PressureMeasure::Norm { exponent, weight } if !self.is_root => norm_unit(exponent, weight),
             PressureMeasure::Norm { .. } | PressureMeasure::Peak => "MPa".into(),
             PressureMeasure::Deviation { .. } => "MPa^{2}".into(),
             PressureMeasure::OpenArea { .. } => "mm^{2}".into(),
@@ -167,12 +234,16 @@ impl PressureCost {
     /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that carries
     /// this force is below it.
     ///
-    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1}, max σ ≥ Λ/ΣA, Σ A max(1 − σ/σ₀, 0) ≥ max(ΣA − Λ/σ₀, 0), with Λ = Σλ_N ≥ 0 in N; method.md
-    /// (9.1) to (9.4).
+    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1}, ΣAσ^p ≥ Λ^p / (ΣA)^{p−1}, max σ ≥ Λ/ΣA, Σ A max(1 − σ/σ₀, 0) ≥ max(ΣA − Λ/σ₀, 0), with
+    /// Λ = Σλ_N ≥ 0 in N; method.md (9.1) to (9.5).
     pub fn lower_bound(&self, total_force: f64) -> f64 {
         let whole = || self.areas.iter().sum::<f64>();
         match &self.measure {
-            &PressureMeasure::Norm { exponent: p } => {
+            PressureMeasure::Norm { weight: NodeWeight::Area, .. } if self.is_root => total_force / whole(),
+            &PressureMeasure::Norm { exponent, weight: NodeWeight::Area } => {
+                whole() * (total_force / whole()).powf(exponent)
+            }
+            &PressureMeasure::Norm { exponent: p, weight: NodeWeight::Nodes } => {
                 // Relative to the largest area, so that the sum is at least 1 for every p.
                 let largest = self.areas.iter().copied().fold(0.0, f64::max);
                 let weights: f64 = self.areas.iter().map(|area| (area / largest).powf(p / (p - 1.0))).sum();
@@ -188,15 +259,29 @@ impl PressureCost {
     }
 }
 
+impl PressureCost {
+    /// The largest pressure s, and Σ m(σ/s)^p; s is positive, also where no pressure is.
+    fn relative_sum(&self, pressures: &Vector, exponent: f64) -> (f64, f64) {
+        let largest = pressures.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let terms =
+            pressures.iter().zip(&self.weights).map(|(p, weight)| weight * (p.max(0.0) / largest).powf(exponent));
+        // The node of the largest pressure alone gives this much, unless there is no pressure at all.
+        let least = self.weights.iter().copied().fold(f64::INFINITY, f64::min);
+        (largest, terms.sum::<f64>().max(least))
+    }
+}
+
 impl OuterFunction for PressureCost {
     fn value(&self, pressures: &Vector) -> f64 {
         let nodes = || pressures.iter().zip(&self.areas);
         match &self.measure {
-            &PressureMeasure::Norm { exponent } if self.is_root => {
-                let (largest, sum) = relative_sum(pressures, exponent);
+            &PressureMeasure::Norm { exponent, .. } if self.is_root => {
+                let (largest, sum) = self.relative_sum(pressures, exponent);
                 largest * sum.powf(1.0 / exponent)
             }
-            &PressureMeasure::Norm { exponent } => pressures.iter().map(|p| p.max(0.0).powf(exponent)).sum(),
+            &PressureMeasure::Norm { exponent, .. } => {
+                pressures.iter().zip(&self.weights).map(|(p, weight)| weight * p.max(0.0).powf(exponent)).sum()
+            }
             PressureMeasure::Deviation { wanted } => {
                 let terms = nodes().zip(wanted).map(|((pressure, area), wanted)| area * (pressure - wanted).powi(2));
                 terms.sum::<f64>() / self.areas.iter().sum::<f64>()
@@ -210,15 +295,18 @@ impl OuterFunction for PressureCost {
 
     fn subgradient(&self, pressures: &Vector) -> Vector {
         match &self.measure {
-            &PressureMeasure::Norm { exponent } => {
+            &PressureMeasure::Norm { exponent, .. } => {
                 let (largest, factor) = match self.is_root {
                     false => (1.0, exponent),
                     true => {
-                        let (largest, sum) = relative_sum(pressures, exponent);
+                        let (largest, sum) = self.relative_sum(pressures, exponent);
                         (largest, sum.powf(1.0 / exponent - 1.0))
                     }
                 };
-                pressures.map(|pressure| factor * (pressure.max(0.0) / largest).powf(exponent - 1.0))
+                let slope = |(pressure, weight): (&f64, &f64)| {
+                    weight * (factor * (pressure.max(0.0) / largest).powf(exponent - 1.0))
+                };
+                Vector::from_iterator(pressures.len(), pressures.iter().zip(&self.weights).map(slope))
             }
             PressureMeasure::Peak => Maximum.subgradient(pressures),
             PressureMeasure::Deviation { wanted } => {
@@ -234,12 +322,12 @@ impl OuterFunction for PressureCost {
         }
     }
 
-    /// Σσ^p has the curvature p(p−1)σ^{p−2} per node; its root N has (p−1)/N ((σ/N)^{p−2} − g gᵀ) with g = (σ/N)^{p−1}, which is formed
-    /// from the rows of G − (σ/N) gᵀG. The deviation has 2A/ΣA. None for the peak and the open area, which have kinks, and for p < 2, where the curvature grows without bound as a
-    /// node opens.
+    /// Σmσ^p has the curvature p(p−1)mσ^{p−2} per node; its root N has (p−1)/N (m(σ/N)^{p−2} − g gᵀ) with g = m(σ/N)^{p−1}, which is formed
+    /// from the rows of G − (σ/N) gᵀG. The deviation has 2A/ΣA. None for the peak and the open area, which have kinks, and for p < 2, where
+    /// the curvature grows without bound as a node opens.
     fn curvature(&self, pressures: &Vector, jacobian: &Matrix) -> Option<Matrix> {
         let exponent = match self.measure {
-            PressureMeasure::Norm { exponent } if exponent >= 2.0 => exponent,
+            PressureMeasure::Norm { exponent, .. } if exponent >= 2.0 => exponent,
             PressureMeasure::Deviation { .. } => {
                 let whole = self.areas.iter().sum::<f64>();
                 let weights = Vector::from_fn(self.areas.len(), |index, _| 2.0 * self.areas[index] / whole);
@@ -250,15 +338,23 @@ impl OuterFunction for PressureCost {
         let size = if self.is_root { self.value(pressures) } else { 1.0 };
         let relative = pressures.map(|pressure| pressure.max(0.0) / size);
         let factor = if self.is_root { (exponent - 1.0) / size } else { exponent * (exponent - 1.0) };
-        let weights = relative.map(|p| factor * p.powf(exponent - 2.0));
+        let nodes = Vector::from_column_slice(&self.weights);
+        let weights = relative.map(|p| factor * p.powf(exponent - 2.0)).component_mul(&nodes);
         if !self.is_root {
             return Some(weighted_gram(jacobian, &weights));
         }
-        // As a difference, rounding would make it indefinite where few nodes carry the norm: Σ (σ/N)^p = 1.
+        // As a difference, rounding would make it indefinite where few nodes carry the norm: Σ m(σ/N)^p = 1.
         let mut centred = jacobian.clone();
-        let gradient = jacobian.tr_mul(&relative.map(|p| p.powf(exponent - 1.0)));
+        let gradient = jacobian.tr_mul(&relative.map(|p| p.powf(exponent - 1.0)).component_mul(&nodes));
         centred.ger(-1.0, &relative, &gradient, 1.0);
         Some(weighted_gram(&centred, &weights))
+    }
+}
+
+fn norm_unit(exponent: f64, weight: NodeWeight) -> String {
+    match weight {
+        NodeWeight::Area => format!("MPa^{{{exponent}}}·mm^{{2}}"),
+        NodeWeight::Nodes => format!("MPa^{{{exponent}}}"),
     }
 }
 
@@ -279,13 +375,6 @@ fn least_deviation(areas: &[f64], wanted: &[f64], total_force: f64) -> f64 {
     let deviation = |wanted: f64| (wanted + shift).max(0.0) - wanted;
     let sum = areas.iter().zip(wanted).map(|(area, wanted)| area * deviation(*wanted).powi(2)).sum::<f64>();
     sum / areas.iter().sum::<f64>()
-}
-
-/// The largest pressure m, and Σ(σ/m)^p; m is positive, also where no pressure is.
-fn relative_sum(pressures: &Vector, exponent: f64) -> (f64, f64) {
-    let largest = pressures.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    // At least 1, which it is unless there is no pressure at all.
-    (largest, pressures.iter().map(|p| (p.max(0.0) / largest).powf(exponent)).sum::<f64>().max(1.0))
 }
 
 #[cfg(test)]

@@ -20,10 +20,7 @@ mod resistance;
 mod solver;
 mod tangents;
 
-pub use compliant_body::CompliantBody;
 pub use compliant_contact::CompliantContact;
-pub use condensation::{CondensationPattern, CondensedBody};
-pub use cone_programs::Programs;
-#[cfg(feature = "interior-point")]
-pub use resistance::Resistance;
-pub use solver::{DirectSolver, DirectState};
+pub use condensation::CondensationPattern;
+pub use solver::DirectSolver;
+pub(crate) use solver::DirectState;

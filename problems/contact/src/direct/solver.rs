@@ -18,7 +18,7 @@ use crate::equilibrium::{
 use crate::error::ContactError;
 use crate::linear::vector::norm;
 use crate::scene::BodyScene;
-use crate::solver_kind::SolverKind;
+use crate::solvers::SolverKind;
 use crate::work_estimate::{MAX_PRODUCTS, WorkEstimate};
 use faer::Mat;
 use nonsmooth::interruption::interrupted;
@@ -35,7 +35,7 @@ const BY_PROGRAMS: &str =
 /// The direct solver of one problem.
 #[derive(Debug)]
 pub struct DirectSolver {
-    pub(super) problem: Arc<ContactProblem>,
+    pub(crate) problem: Arc<ContactProblem>,
     lower: CondensationPattern,
     upper: Option<CondensationPattern>,
     fixed: OnceLock<Arc<CompliantBody>>,

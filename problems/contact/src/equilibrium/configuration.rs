@@ -5,6 +5,9 @@ use crate::equilibrium::modes::{Motion, RigidScene};
 use crate::equilibrium::{ContactProblem, Stage};
 use crate::error::ContactError;
 
+/// Rounding of a gap over the larger height of its node: both heights are sums of a few products.
+const GAP_ROUNDING: f64 = 32.0 * f64::EPSILON;
+
 /// The undeformed configuration of a shape, checked to have an equilibrium as rigid bodies.
 #[derive(Debug)]
 pub struct Configuration {
@@ -14,7 +17,7 @@ pub struct Configuration {
     pub rigid: RigidScene,
     /// Motions that nothing holds and that the load does not drive.
     pub grounded: Vec<Motion>,
-    /// Initial gap per contact node, mm.
+    /// Initial gap per contact node, mm. Without loads, overlaps that rounding explains are 0 where there is no other.
     pub gaps: Vec<f64>,
 }
 
@@ -35,7 +38,14 @@ impl Configuration {
         Stage::Equilibrium.enter()?;
         let rigid = problem.rigid_scene(&blocks);
         let grounded = rigid.analyse(&problem.boundary)?;
-        let gaps = problem.gaps(&blocks[0]);
+        let mut gaps = problem.gaps(&blocks[0]);
+        if rigid.total_load() == 0.0 {
+            let rounding = |(gap, height): (&f64, &f64)| -gap <= GAP_ROUNDING * height.abs().max((height + gap).abs());
+            if gaps.iter().zip(&blocks[0].upper).all(rounding) {
+                // Bodies that just touch are at rest: rounding would press them together.
+                gaps.iter_mut().for_each(|gap| *gap = gap.max(0.0));
+            }
+        }
         Ok(Self { blocks, rigid, grounded, gaps })
     }
 

@@ -8,8 +8,8 @@ use std::fmt;
 
 /// A solver of one contact problem.
 ///
-/// A state belongs to the solver that found it: the state of another kind of solver does not compile, and that of another
-/// mesh is refused with [`ContactError::ForeignState`].
+/// A state belongs to the solver that found it. That of another mesh is refused with [`ContactError::ForeignState`]; a solver whose kind is
+/// chosen when the program runs refuses that of another kind with [`ContactError::OtherSolver`].
 pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// What the solver keeps of a solved shape for derivative, diagnosis and displacements.
     type State: SolverState;

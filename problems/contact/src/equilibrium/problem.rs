@@ -176,8 +176,7 @@ impl ContactProblem {
         let contact: Vec<[[f64; 3]; 2]> = contact.collect();
         let frame = |(body, block): (usize, &Block)| {
             let own = held.iter().filter(|(holder, ..)| *holder == body).map(|(_, point, _)| *point);
-            let nodes = lattice::points([0; 3], self.grid.nodes()).map(|node| block.coordinates(node));
-            Frame::new(&own.collect::<Vec<_>>(), &nodes.collect::<Vec<_>>())
+            Frame::new(&own.collect::<Vec<_>>(), &block.points().collect::<Vec<_>>())
         };
         let frames = blocks.iter().enumerate().map(frame).collect();
         RigidScene { bodies: blocks.len(), held, loads, contact, frames }

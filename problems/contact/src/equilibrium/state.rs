@@ -2,7 +2,7 @@
 
 use crate::equilibrium::{ContactBoundary, ContactStatus, Kink, Residuals, SolvedBody, StatusCounts};
 use crate::error::ContactError;
-use crate::solver_kind::SolverKind;
+use crate::solvers::SolverKind;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -9,9 +9,7 @@
 mod bodies;
 mod contact;
 mod solved_shape;
-mod vtk;
 
 pub use bodies::BodyFields;
 pub use contact::ContactFields;
 pub use solved_shape::Fields;
-pub use vtk::{FieldState, FieldsError, StateFiles, list, state_files, vtk_files};

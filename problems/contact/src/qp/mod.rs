@@ -14,11 +14,11 @@ mod cone;
 mod error;
 mod face;
 mod lanczos;
-pub mod mpgp;
+mod mpgp;
 mod operator;
 mod program;
 mod separable_set;
-pub mod smalse;
+mod smalse;
 
 #[cfg(feature = "interior-point")]
 pub use cone::{Cone, ConeProgram, MAX_ITERATIONS, Minimiser};

@@ -35,8 +35,11 @@ impl HeightGrid {
         if heights.len() != expected {
             return Err(SceneError::WrongCount { what: "heights of a grid".into(), expected, found: heights.len() });
         }
-        match heights.iter().find(|height| !height.is_finite()) {
-            Some(height) => Err(SceneError::out_of_range("height of a grid", height, "finite numbers (mm)")),
+        match heights.iter().position(|height| !height.is_finite()) {
+            Some(index) => {
+                let field = format!("height ({}, {}) of a grid", index / counts[1], index % counts[1]);
+                Err(SceneError::out_of_range(field, heights[index], "finite numbers (mm)"))
+            }
             None => Ok(Self { size, counts, heights }),
         }
     }
@@ -86,5 +89,7 @@ mod tests {
         }
         assert!((grid.pieces().curvature[1] - 0.125).abs() < 1e-14 && grid.pieces().lines[0] == [0.0, 2.0, 4.0]);
         assert!(HeightGrid::new([1.0, 1.0], [2, 2], vec![0.0; 3]).is_err());
+        let refusal = HeightGrid::new([1.0, 1.0], [2, 2], vec![0.0, 0.0, f64::NAN, 0.0]).expect_err("no number");
+        assert!(refusal.to_string().starts_with("height (1, 0) of a grid = NaN is not allowed"), "{refusal}");
     }
 }

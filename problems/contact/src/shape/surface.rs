@@ -60,6 +60,17 @@ impl SplineSurface {
         (0..counts[0]).flat_map(move |i| (0..counts[1]).map(move |j| [along(0, i), along(1, j)]))
     }
 
+    /// Places of the control points of the surface x₃ = Σ α_ij N_i N_j along both axes, mm, as a STEP file has them: the means of p neighbouring
+    /// knots (Greville abscissae), with which Σ x_i N_i = x.
+    pub fn control_places(&self, size: [f64; 2]) -> [Vec<f64>; 2] {
+        std::array::from_fn(|axis| {
+            let basis = &self.bases[axis];
+            let degree = basis.degree().max(1);
+            let mean = |index: usize| basis.knots()[index + 1..=index + degree].iter().sum::<f64>() / degree as f64;
+            (0..basis.count()).map(|index| size[axis] * mean(index)).collect()
+        })
+    }
+
     /// ∫∫ N_i N_j over the unit square, per control.
     pub fn integrals(&self) -> Vec<f64> {
         let (first, second) = (self.bases[0].integrals(), self.bases[1].integrals());

@@ -23,11 +23,9 @@ mod state;
 mod torn;
 
 pub(crate) use derivative::MAX_COLUMNS;
-pub use dual::{DualOperator, Iterate, Precision, Preconditioner, TornContact, TornSolution};
-pub use newton::{NewtonSettings, Recycling};
+pub use dual::{DualOperator, Precision};
+pub use newton::Recycling;
 pub use paper::{AugmentedLagrangianCounts, AugmentedLagrangianSettings};
 pub use solver::{DualMethod, TotalFeti};
 pub use state::TornState;
-pub use torn::{
-    Constraints, PreconditionerKind, RowVector, SubdomainFactors, TornModel, TornOptions, TornSystem, TornVector,
-};
+pub use torn::{PreconditionerKind, TornModel, TornOptions};

@@ -7,7 +7,7 @@ use crate::equilibrium::{
     StageSeconds, Work,
 };
 use crate::error::ContactError;
-use crate::solver_kind::SolverKind;
+use crate::solvers::SolverKind;
 use crate::tfeti::dual::{CoarseSpace, DualOperator, Precision, Preconditioner, TornContact, TornSolution};
 use crate::tfeti::newton::{NewtonSettings, Recycling};
 use crate::tfeti::paper::AugmentedLagrangianSettings;
@@ -24,6 +24,12 @@ pub enum DualMethod {
     Newton(Recycling),
     /// Successive approximations of the slip bound, dual QPs by SMALSE-M and MPGP.
     SuccessiveApproximations,
+}
+
+impl Default for DualMethod {
+    fn default() -> Self {
+        Self::Newton(Recycling::default())
+    }
 }
 
 /// A contact problem torn into subdomains, with the method for its dual problem.
@@ -65,8 +71,7 @@ impl TotalFeti {
     pub fn new(problem: Arc<ContactProblem>, options: TornOptions) -> Result<Self, ContactError> {
         let preconditioner = options.preconditioner;
         let model = TornModel::new(problem, options)?;
-        let method = DualMethod::Newton(Recycling::default());
-        Ok(Self { model, preconditioner, precision: Precision::default(), method })
+        Ok(Self { model, preconditioner, precision: Precision::default(), method: DualMethod::default() })
     }
 
     /// The same solver with another method for the dual problem.

@@ -2,7 +2,7 @@
 
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{AnySolver, ContactShape};
-use contact::cost::{FieldMeasure, Measure, PressureMeasure, Region};
+use contact::cost::{FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
 use contact::direct::DirectSolver;
 use contact::equilibrium::{ContactProblem, ValueError};
 use contact::scene::{Scene, hertz, signorini};
@@ -81,7 +81,7 @@ fn check_pressures(scene: &Scene, control: &Vector) -> Result<(), TestCaseError>
         Some((PreconditionerKind::Dirichlet, DualMethod::SuccessiveApproximations)),
         None,
     ];
-    let norm = Measure::Pressure(PressureMeasure::Norm { exponent: 4.0 });
+    let norm = Measure::Pressure(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes });
     check(scene, control, &norm, &solvers, &[1e-2, 1e-4, 1e-7, 1e-10])
 }
 

@@ -2,7 +2,7 @@
 //! subgradient within 1e-9, for both contact solvers.
 
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{PressureCost, PressureMeasure};
+use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::{Accuracy, CompositeObjective, StateSolver, Vector};
 use serde_json::Value;
@@ -20,7 +20,11 @@ fn evaluate(mut scene: Scene, case: &Value, kind: SolverKind, subdomains: usize)
     scene.subdomains = [subdomains; 3];
     scene.friction = case["friction"].as_f64().unwrap();
     let shape = ContactShape::new(scene, kind).unwrap();
-    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
+    let cost = PressureCost::new(
+        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
+        &shape.problem().boundary,
+    )
+    .unwrap();
     let objective = CompositeObjective::new(shape, cost);
     let controls = Vector::from_vec(numbers(&case["controls"]));
     let state = objective.solver().solve(&controls, None, Accuracy::TIGHTEST).unwrap();

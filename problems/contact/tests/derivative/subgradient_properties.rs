@@ -1,7 +1,7 @@
 //! The coderivative against central differences over random shapes, friction coefficients and loads.
 
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{PressureCost, PressureMeasure};
+use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::{CompositeObjective, NonsmoothObjective, Request, Vector};
 use proptest::prelude::*;
@@ -53,7 +53,7 @@ proptest! {
     fn one_body_against_an_obstacle(
         seed in 0_u64..1_000_000, friction in prop_oneof![Just(0.0), 0.05..0.8], load in 0.3_f64..2.0, exponent in 2.0_f64..6.0,
     ) {
-        let objective = objective(signorini().unwrap(), friction, load, PressureMeasure::Norm { exponent });
+        let objective = objective(signorini().unwrap(), friction, load, PressureMeasure::Norm { exponent, weight: NodeWeight::Nodes });
         let control = numbers(seed, 36).map(|entry| 98.0 + entry);
         agrees(&objective, &control, &numbers(seed + 1, 36))?;
     }
@@ -62,7 +62,7 @@ proptest! {
     fn two_bodies(
         seed in 0_u64..1_000_000, friction in prop_oneof![Just(0.0), 0.05..0.6], load in 0.5_f64..1.5,
     ) {
-        let objective = objective(hertz().unwrap(), friction, load, PressureMeasure::Norm { exponent: 4.0 });
+        let objective = objective(hertz().unwrap(), friction, load, PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes });
         let control = numbers(seed, 36).map(|entry| 9.7 + 0.1 * entry);
         agrees(&objective, &control, &numbers(seed + 1, 36))?;
     }

@@ -4,7 +4,7 @@
 use contact::body::elasticity::stress::{BrickStress, COMPONENTS};
 use contact::body::elasticity::{Formulation, brick};
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
-use contact::cost::{PressureCost, PressureMeasure};
+use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::equilibrium::{ContactSolver, ContactStatus};
 use contact::error::ContactError;
 use contact::fields::{BodyFields, Fields};
@@ -221,7 +221,11 @@ fn height_sensitivities_are_what_the_subgradient_is_made_of() {
     for kind in [SolverKind::Newton, SolverKind::Direct] {
         let scene = hertz().unwrap();
         let (shape, state, control) = solve(scene.clone(), kind, Some(bent(&scene)));
-        let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
+        let cost = PressureCost::new(
+            PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
+            &shape.problem().boundary,
+        )
+        .unwrap();
         let gradient = shape.output_dual(&state, &cost.subgradient(&shape.outputs(&state)));
         let (heights, _) = shape.height_sensitivity(&state, &gradient).unwrap();
         let (subgradient, _) = shape.pull_back(&control, &state, &gradient).unwrap();

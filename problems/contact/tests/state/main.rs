@@ -16,4 +16,3 @@ mod paths_agree;
 mod scene_structure;
 mod several_processes;
 mod successive_approximations;
-mod vtk_files;

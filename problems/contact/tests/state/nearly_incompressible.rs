@@ -1,9 +1,11 @@
 //! Nearly incompressible bodies take about as many products with F as compressible ones, and the two solvers agree on them.
 
 use contact::body::elasticity::{Formulation, Material};
+use contact::body::mesh::Face;
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::linear::vector::{add_scaled, norm};
-use contact::scene::{Scene, hertz, signorini};
+use contact::plausibility::Warning;
+use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
 use nonsmooth::{Accuracy, StateSolver};
 
 /// A preset with all bodies of one Poisson's ratio and formulation.
@@ -67,5 +69,47 @@ fn ordinary_materials_have_no_compressible_neighbour() {
         assert!((neighbour.shear_modulus() / near.shear_modulus() - 1.0).abs() < 1e-14);
         assert!(neighbour.poisson_ratio() <= 0.49 && neighbour.formulation() == formulation);
         assert!(neighbour.compressible_neighbour().is_none());
+    }
+}
+
+/// A soft layer, bonded to its base, under a steel sphere: `problems/scenes/thin_layer.toml`.
+fn layer(ratio: f64, formulation: Formulation) -> Scene {
+    let mut scene =
+        Scene { mesh: [12, 12, 4], subdomains: [2, 2, 1], friction: 0.1, start_height: 1.0, ..hertz().unwrap() };
+    scene.lower.material = Material::new(100.0, ratio).unwrap().with_formulation(formulation);
+    for support in scene.lower.supports.iter_mut().filter(|support| support.face == Face::Bottom) {
+        *support = Support { components: [true; 3], ..*support };
+    }
+    scene.counter_surface = CounterSurface::Sphere { apex: 1.0, radius: 100.0, centre: [0.0; 2] };
+    scene.bounds.minimum_height = 0.5;
+    scene.bounds.volume = [80.0, 120.0];
+    if let Some(upper) = &mut scene.upper {
+        upper.top = 8.0;
+        upper.body.loads = vec![Load { face: Face::Top, traction: [0.0, 0.0, -1.0] }];
+    }
+    scene
+}
+
+/// Peak pressure, and the warnings about locking.
+fn peak(ratio: f64, formulation: Formulation) -> (f64, Vec<Warning>) {
+    let shape = ContactShape::new(layer(ratio, formulation), SolverKind::default()).unwrap();
+    let state = shape.solve(&shape.start(), None, Accuracy::TIGHTEST).unwrap();
+    let pressures = shape.problem().boundary.pressures(&state.forces.normal);
+    let warnings = shape.warnings(&state).unwrap().into_iter().filter(|warning| warning.code == "volume-locking");
+    (pressures.iter().copied().fold(0.0, f64::max), warnings.collect())
+}
+
+#[test]
+fn standard_bricks_that_lock_are_named() {
+    // Peaks of standard bricks in those of mean dilatation: 1.01, 1.04, 1.10, 4.0.
+    for (ratio, least, most) in [(0.45, 0.98, 1.02), (0.47, 1.0, 1.05), (0.49, 1.08, 1.12), (0.4999, 3.5, 4.5)] {
+        let (standard, warnings) = peak(ratio, Formulation::Standard);
+        let (right, none) = peak(ratio, Formulation::MeanDilatation);
+        assert!((least..=most).contains(&(standard / right)), "{ratio}: {standard} {right}");
+        assert_eq!((warnings.len(), none.len()), (usize::from(ratio > 0.47), 0), "{ratio}: {warnings:?}");
+        for warning in warnings {
+            let words = ["of the lower body", "lower.material.formulation = \"mean-dilatation\""];
+            assert!(words.iter().all(|word| warning.text.contains(word)), "{warning}");
+        }
     }
 }

@@ -1,10 +1,10 @@
 //! Independent paths give the same state: TFETI against direct condensation, different tearings, different numbers of threads.
 
 use contact::body::mesh::Face;
-use contact::communication::InProcess;
-use contact::contact_shape::{ContactShape, ContactState, SolverKind, Wanted};
+use contact::contact_shape::{ContactShape, ContactState, SolverKind};
 use contact::equilibrium::{ContactProblem, ContactSolver};
 use contact::scene::{CounterSurface, Load, Scene, Support, hertz, signorini};
+use contact::solvers::{Processes, SolverPlan};
 use contact::tfeti::{Precision, PreconditionerKind, TornOptions, TotalFeti};
 use nonsmooth::{Accuracy, Coderivative, StateSolver, Vector};
 use std::sync::Arc;
@@ -63,8 +63,8 @@ fn every_preconditioner_gives_the_same_state() {
     scene.mesh = [6; 3];
     let control = bent(&scene);
     let state = |kind| {
-        let shape = ContactShape::for_use(scene.clone(), SolverKind::Newton, kind, Wanted::States, Arc::new(InProcess))
-            .unwrap();
+        let plan = SolverPlan { preconditioner: kind, ..SolverPlan::new(scene.clone(), SolverKind::Newton) };
+        let shape = ContactShape::by(Processes::alone().solver(plan).unwrap());
         shape.solve(&control, None, Accuracy::TIGHTEST).unwrap()
     };
     let reference = state(PreconditionerKind::Dirichlet);

@@ -36,10 +36,10 @@ fn what_several_processes_use_is_told() {
     assert!(usage["messages_per_product"].as_f64() >= Some(1.0), "{usage}");
     let output = ended(started(PROGRAM, 2, &arguments));
     let page = String::from_utf8(output.stdout).unwrap();
-    assert_eq!(page.matches("processes            2; ").count(), 1, "{page}");
+    assert_eq!(page.matches("processes                     2; ").count(), 1, "{page}");
     let output = ended(started(PROGRAM, 2, &[&arguments[..5], &["direct"]].concat()));
     let page = String::from_utf8(output.stdout).unwrap();
-    assert!(page.contains("processes            2, each of which repeats the direct condensation"), "{page}");
+    assert!(page.contains("processes                     2, each of which repeats the direct condensation"), "{page}");
 }
 
 /// Options of a short optimization.

@@ -7,7 +7,6 @@ mod equal;
 mod failures;
 mod refused;
 
-use clap::Parser;
 use problems::commands::{Arguments, Failure, execute};
 use scene_file::SceneFile;
 use serde_json::Value;

@@ -1,11 +1,13 @@
 //! The comparison of optimizations with and without friction: table, conclusion, JSON.
 
-use crate::commands::contact_objective::SolvedShape;
+use crate::commands::facts::{Fact, Facts, Group};
+use crate::commands::failure::Failure;
+use crate::commands::numbers::{number, raised, rounded};
 use crate::commands::optimize::mesh_run::MeshRun;
-use crate::commands::optimize::summary::{Ending, ending};
-use crate::commands::processes::Usage;
+use crate::commands::optimize::summary::ending;
+use crate::commands::solved_shape::SolvedShape;
+use contact::solvers::Usage;
 use serde::Serialize;
-use std::fmt;
 
 /// Relative loss of the objective up to which leaving friction out counts as cheap.
 const MAX_NEGLIGIBLE_LOSS: f64 = 0.02;
@@ -24,37 +26,6 @@ pub struct Comparison<'a> {
     pub crossed: [SolvedShape; 2],
 }
 
-/// One shape in both models.
-#[derive(Debug, Serialize)]
-pub struct Row {
-    /// The name of the shape.
-    pub shape: &'static str,
-    /// Θ with friction.
-    pub objective_with_friction: f64,
-    /// Largest pressure with friction, MPa.
-    pub peak_pressure_with_friction: f64,
-    /// Θ without friction.
-    pub objective_without_friction: f64,
-    /// Largest pressure without friction, MPa.
-    pub peak_pressure_without_friction: f64,
-}
-
-/// The keys of the JSON of `compare`.
-#[derive(Serialize)]
-struct ComparisonJson<'a> {
-    friction: f64,
-    shapes: [Row; 3],
-    loss_without_friction_in_the_model: Option<f64>,
-    surface_difference: SurfaceDifference,
-    evaluations: [usize; 2],
-    terminations: [Ending<'a>; 2],
-    controls_with_friction: &'a [f64],
-    controls_without_friction: &'a [f64],
-    conclusion: Vec<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    processes: Option<Usage>,
-}
-
 /// How far two surfaces are apart, mm.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct SurfaceDifference {
@@ -69,23 +40,6 @@ pub struct SurfaceDifference {
 impl Comparison<'_> {
     fn friction(&self) -> f64 {
         self.runs[0].objective.solver().problem().scene.friction
-    }
-
-    /// The start and both optima, in both models.
-    pub fn rows(&self) -> [Row; 3] {
-        let row = |shape, with: &SolvedShape, without: &SolvedShape| Row {
-            shape,
-            objective_with_friction: with.value,
-            peak_pressure_with_friction: with.peak_pressure,
-            objective_without_friction: without.value,
-            peak_pressure_without_friction: without.peak_pressure,
-        };
-        let [with, without] = self.own;
-        [
-            row("start", &with[0], &without[0]),
-            row("optimized with friction", &with[1], &self.crossed[1]),
-            row("optimized without friction", &self.crossed[0], &without[1]),
-        ]
     }
 
     /// Θ of the shape found without friction over that of the shape found with friction, both with friction; none where the latter is zero up
@@ -109,16 +63,56 @@ impl Comparison<'_> {
         SurfaceDifference { mean, shape, variation: mean_and_deviation(&with).1 }
     }
 
+    /// All facts: what friction is worth, whether that is proved, and the start and both optima in both models; with what several processes
+    /// have used.
+    ///
+    /// # Errors
+    /// [`Failure::Computation`] for a value that has no JSON.
+    pub fn facts(&self, processes: Option<&Usage>) -> Result<Facts, Failure> {
+        let names = ["start", "optimized with friction", "optimized without friction"];
+        let [with, without] = self.own;
+        let models = [[&with[0], &with[1], &self.crossed[0]], [&without[0], &self.crossed[1], &without[1]]];
+        let (unit, friction) = (raised(&self.runs[0].objective.unit()), format!("friction {}", self.friction()));
+        let row = |key, name: &str, model: usize, unit: &str, value: fn(&SolvedShape) -> f64| {
+            let name = format!("{name}, {}", [friction.as_str(), "no friction"][model]);
+            Fact::row(key, &name, models[model].map(|shape| value(shape).into()).into(), unit)
+        };
+        let shapes = vec![
+            Fact::row("shapes.shape", "", names.map(|name| name.to_owned().into()).into(), ""),
+            row("shapes.peak_pressure_with_friction", "peak pressure", 0, "MPa", |shape| shape.peak_pressure),
+            row("shapes.objective_with_friction", "objective Θ", 0, &unit, |shape| shape.value),
+            row("shapes.peak_pressure_without_friction", "peak pressure", 1, "MPa", |shape| shape.peak_pressure),
+            row("shapes.objective_without_friction", "objective Θ", 1, &unit, |shape| shape.value),
+        ];
+        let columns = names.map(str::to_owned).into();
+        let shapes = Group { title: "Shapes in both models", columns, facts: shapes, words: String::new() };
+        let lead = self.conclusion();
+        let mut rest = vec![
+            Fact::json("friction", &self.friction())?,
+            Fact::json("loss_without_friction_in_the_model", &self.loss())?,
+            Fact::json("surface_difference", &self.surface_difference())?,
+            Fact::json("evaluations", &self.runs.map(|run| run.report.counts.evaluations))?,
+            Fact::json("terminations", &self.runs.map(|run| ending(&run.report)))?,
+            Fact::json("controls_with_friction", &self.runs[0].report.solution.as_slice())?,
+            Fact::json("controls_without_friction", &self.runs[1].report.solution.as_slice())?,
+            Fact::json("conclusion", &lead)?,
+        ];
+        if let Some(usage) = processes {
+            rest.push(Fact::object("processes", "processes", usage, usage.to_string())?);
+        }
+        Ok(Facts { lead, groups: vec![shapes, Group::new("", rest)] })
+    }
+
     /// The conclusion: sentences that the numbers decide.
     pub fn conclusion(&self) -> Vec<String> {
         let difference = self.surface_difference();
         let mut sentences = self.loss().map_or_else(|| vec![self.vanished()], |loss| self.compared(loss));
         sentences.push(format!(
-            "The two surfaces differ by {:.3} mm (root mean square over the contact nodes, without {:.3} mm in the mean height); \
-             the surface optimized with friction departs from flat by {:.3} mm.",
-            difference.shape,
-            difference.mean.abs(),
-            difference.variation
+            "The two surfaces differ by {} mm (root mean square over the contact nodes, without {} mm in the mean height); \
+             the surface optimized with friction departs from flat by {} mm.",
+            number(difference.shape),
+            number(difference.mean.abs()),
+            number(difference.variation)
         ));
         for (run, name) in self.runs.into_iter().zip(["with", "without"]) {
             if !run.report.termination.is_confirmed() {
@@ -137,7 +131,7 @@ impl Comparison<'_> {
         let least = ZERO * self.own[0][0].value;
         let (friction, without) = (self.friction(), self.with_friction()[1]);
         let rest = if without > least {
-            format!("the shape optimized without friction has {without:.4e}")
+            format!("the shape optimized without friction has {}", number(without))
         } else {
             "so is that of the shape optimized without friction".into()
         };
@@ -150,46 +144,34 @@ impl Comparison<'_> {
     fn compared(&self, loss: f64) -> Vec<String> {
         let peaks = [self.own[0][1].peak_pressure, self.crossed[0].peak_pressure];
         let ratio = format!(
-            "With friction {}, the shape optimized without friction has {loss:.4} times the objective of the shape optimized \
-             with friction (peak pressure {:.1} against {:.1} MPa).",
+            "With friction {}, the shape optimized without friction has {} times the objective of the shape optimized \
+             with friction (peak pressure {} against {} MPa).",
             self.friction(),
-            peaks[1],
-            peaks[0]
+            number(loss),
+            number(peaks[1]),
+            number(peaks[0])
         );
         let meaning = if (loss - 1.0).abs() <= MAX_EQUAL_DIFFERENCE {
             "In these runs, both shapes are as good as each other with friction.".into()
         } else if loss > 1.0 + MAX_NEGLIGIBLE_LOSS {
             format!(
-                "In these runs, leaving friction out of the optimization costs {:.1} %: it is no approximation of the optimum with \
+                "In these runs, leaving friction out of the optimization costs {} %: it is no approximation of the optimum with \
                  friction.",
-                100.0 * (loss - 1.0)
+                rounded(100.0 * (loss - 1.0), 3)
             )
         } else if loss >= 1.0 {
-            format!("In these runs, leaving friction out of the optimization costs only {:.2} %.", 100.0 * (loss - 1.0))
+            format!(
+                "In these runs, leaving friction out of the optimization costs only {} %.",
+                rounded(100.0 * (loss - 1.0), 3)
+            )
         } else {
             format!(
-                "The run with friction stopped {:.2} % above the other shape: a better shape than its own exists, and it may be \
+                "The run with friction stopped {} % above the other shape: a better shape than its own exists, and it may be \
                  continued from there (--start-controls).",
-                100.0 * (1.0 / loss - 1.0)
+                rounded(100.0 * (1.0 / loss - 1.0), 3)
             )
         };
         vec![ratio, meaning]
-    }
-
-    /// The JSON, with what several processes have used.
-    pub fn summary(&self, processes: Option<Usage>) -> impl Serialize {
-        ComparisonJson {
-            friction: self.friction(),
-            shapes: self.rows(),
-            loss_without_friction_in_the_model: self.loss(),
-            surface_difference: self.surface_difference(),
-            evaluations: self.runs.map(|run| run.report.counts.evaluations),
-            terminations: self.runs.map(|run| ending(&run.report)),
-            controls_with_friction: self.runs[0].report.solution.as_slice(),
-            controls_without_friction: self.runs[1].report.solution.as_slice(),
-            conclusion: self.conclusion(),
-            processes,
-        }
     }
 }
 
@@ -198,28 +180,6 @@ fn mean_and_deviation(values: &[f64]) -> (f64, f64) {
     let count = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
     (mean, (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt())
-}
-
-impl fmt::Display for Comparison<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let friction = self.friction();
-        writeln!(f, "comparison:  friction {friction} against none")?;
-        let (with, without) = (format!("friction {friction}"), "no friction");
-        writeln!(f, "{:<28}{with:>28}{without:>28}", "")?;
-        writeln!(f, "{:<28}{:>16}{:>12}{:>16}{:>12}", "shape", "objective", "peak, MPa", "objective", "peak, MPa")?;
-        for row in self.rows() {
-            writeln!(
-                f,
-                "{:<28}{:>16.6e}{:>12.1}{:>16.6e}{:>12.1}",
-                row.shape,
-                row.objective_with_friction,
-                row.peak_pressure_with_friction,
-                row.objective_without_friction,
-                row.peak_pressure_without_friction
-            )?;
-        }
-        self.conclusion().iter().try_for_each(|sentence| writeln!(f, "{sentence}"))
-    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 pub mod comparison;
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::contact_objective::{SolvedShape, optimized_objective};
+use crate::commands::facts::line;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::STATUS;
@@ -15,6 +15,7 @@ use crate::commands::optimize::{interruption, report};
 use crate::commands::register::REGISTER;
 use crate::commands::report::files;
 use crate::commands::run_kind::RunKind;
+use crate::commands::solved_shape::{SolvedShape, optimized_objective};
 use contact::error::SceneError;
 use std::path::Path;
 
@@ -23,7 +24,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let friction = loaded.case.scene.friction;
     if friction == 0.0 {
         let allowed = "a coefficient > 0 to compare with no friction at all";
-        return Err(session.arguments.blame(SceneError::out_of_range("friction", 0, allowed)).into());
+        return Err(session.arguments.changes().blame(SceneError::out_of_range("friction", 0, allowed)).into());
     }
     let claimed = COMPARED.map(|part| format!("{part}/{REGISTER}"));
     let (folder, initial_controls) = begin(
@@ -58,19 +59,17 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         runs.push((run, shapes));
     }
     let comparison = cross(&runs).map_err(|failure| failure.after(&printed))?;
-    let mut text = comparison.to_string();
-    if let Some(command) = continued.as_ref().filter(|_| runs.iter().any(|(run, _)| run.can_continue())) {
-        text += &format!("to continue: {command}\n");
-    }
-    let usage = session.processes.usage(comparison.own[0][1].state.solver)?;
-    text += &usage.iter().map(|usage| format!("processes: {usage}\n")).collect::<String>();
-    let object = json(&comparison.summary(usage))?;
+    let facts = comparison.facts(session.processes.usage(comparison.own[0][1].state.solver)?.as_ref())?;
+    let can_continue = runs.iter().any(|(run, _)| run.can_continue());
+    let command = continued.as_ref().filter(|_| can_continue);
+    let text = facts.text(true) + &command.map_or_else(String::new, |command| line("to continue", command));
+    let object = json(&facts)?;
     let write = |folder: &Folder| {
-        files::write_comparison(folder, loaded, &comparison)?;
+        files::write_comparison(folder, loaded, &comparison, &facts)?;
         folder.write("report.txt", &text)?;
         folder.write(REPORT, &object)
     };
-    let printed = session.arguments.printed(format!("{printed}\n{text}"), object.clone());
+    let printed = session.arguments.printed(format!("{text}\n{printed}"), object.clone());
     let text = printed_with_files(printed, as_json, folder.map(RunFolder::folder), write)?;
     let failed = runs.iter().find_map(|(run, _)| run.failure());
     match (interruption(continued.as_deref()), failed) {
@@ -96,7 +95,7 @@ fn check(parts: &[LoadedScene], session: &Session<'_>) -> Result<(), Failure> {
     for part in parts {
         let folder = part.case.output.folder.as_deref().map(Path::new);
         if let Some(folder) = folder.filter(|folder| RunFolder::is_one(folder)) {
-            RunFolder::reopen(Folder::reopen(folder, 1)?, part, session.arguments.new_version)?;
+            RunFolder::reopen(Folder::reopen(folder, 1)?, part, session.arguments.course.new_version)?;
         }
     }
     Ok(())

@@ -12,6 +12,7 @@ use crate::commands::export::run::KeptRun;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::{LoadedScene, Session};
+use crate::commands::numbers::number;
 use crate::commands::scene_difference::Difference;
 use contact::equilibrium::ContactProblem;
 use nonsmooth::Vector;
@@ -47,12 +48,12 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let options = &arguments.export;
     let problem = ContactProblem::new(case.scene.clone())?;
     if options.friction_problem {
-        friction::check(&problem).map_err(|error| arguments.blame(error))?;
+        friction::check(&problem).map_err(|error| arguments.changes().blame(error))?;
     }
     let run = options.run.as_ref().map(|folder| KeptRun::open(folder, loaded)).transpose()?;
     let (controls, origin) = match &run {
         Some(run) => run.shape(options.evaluation)?,
-        None => start(&problem, loaded, arguments.controls.as_deref())?,
+        None => start(&problem, loaded, arguments.shape.controls.as_deref())?,
     };
     let differences = run.filter(|_| options.friction_problem).map_or_else(Vec::new, |run| run.differences);
     problem.admissible.check_shape(&controls)?;
@@ -72,9 +73,9 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         files.extend(friction::matrices(&problem, controls.as_slice())?);
     }
     // The folder is touched when all that it will hold is there.
-    let path = arguments.out.as_deref().unwrap_or(Path::new(""));
+    let path = arguments.files.out.as_deref().unwrap_or(Path::new(""));
     let bytes = files.iter().map(|file| file.content.len() as u64).sum();
-    let folder = Folder::create(path, bytes, arguments.overwrite)?;
+    let folder = Folder::create(path, bytes, arguments.files.overwrite)?;
     let describe = |file: &OutputFile| FileJson {
         file: file.name,
         holds: file.what.clone(),
@@ -107,7 +108,7 @@ fn start(problem: &ContactProblem, loaded: &LoadedScene, file: Option<&Path>) ->
 
 impl fmt::Display for ExportJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let objective = self.shape.objective.map_or_else(String::new, |value| format!(", Θ = {value:.6e}"));
+        let objective = self.shape.objective.map_or_else(String::new, |value| format!(", Θ = {}", number(value)));
         writeln!(f, "shape:       {}{objective}", self.shape.source)?;
         for difference in &self.differences {
             writeln!(f, "note:        another friction problem than in the run: {difference}")?;

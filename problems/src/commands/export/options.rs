@@ -9,28 +9,29 @@ const DEFAULT_TOLERANCE: f64 = 1e-3;
 
 /// What `export` writes, and of which shape.
 #[derive(Debug, Clone, Default, PartialEq, Args)]
+#[command(next_help_heading = "Export")]
 pub struct ExportOptions {
-    /// With export: the shape is that of the optimization in the folder DIR: its optimum or, while it has not ended, the best one
+    /// The shape is that of the optimization in the folder DIR: its optimum or, while it has not ended, the best one
     /// so far.
     #[arg(long, value_name = "DIR")]
     pub run: Option<PathBuf>,
     /// With --run: the shape of evaluation K instead.
     #[arg(long, value_name = "K", requires = "run")]
     pub evaluation: Option<usize>,
-    /// With export: bodies and surface as triangles. Without one of --stl, --step, --csv, --friction-problem the first three are
+    /// Bodies and surface as triangles. Without one of --stl, --step, --csv, --friction-problem the first three are
     /// written.
     #[arg(long)]
     pub stl: bool,
-    /// With export: the B-spline surface, and the lower body as a solid, for CAD systems.
+    /// The B-spline surface, and the lower body as a solid, for CAD systems.
     #[arg(long)]
     pub step: bool,
-    /// With export: a table of heights of the surface.
+    /// A table of heights of the surface.
     #[arg(long)]
     pub csv: bool,
-    /// With export: stiffness, loads, contact matrix, gaps and friction coefficients for other solvers.
+    /// Stiffness, loads, contact matrix, gaps and friction coefficients for other solvers.
     #[arg(long)]
     pub friction_problem: bool,
-    /// With export: largest distance between triangles and surface, mm [default: 1e-3].
+    /// Largest distance between triangles and surface, mm [default: 1e-3].
     #[arg(long, value_name = "MM", value_parser = tolerance)]
     pub tolerance: Option<f64>,
 }
@@ -61,26 +62,12 @@ impl ExportOptions {
         !(self.stl || self.step || self.csv || self.friction_problem)
     }
 
-    /// Refuses these options beside another command, and options of `export` that do not go together; `has_folder`,
-    /// `has_controls`: whether `--out` and `--controls` are given.
+    /// Refuses options that do not go together; `has_folder`, `has_controls`: whether `--out` and `--controls` are given.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the option.
-    pub fn check(&self, exporting: bool, has_folder: bool, has_controls: bool) -> Result<(), Failure> {
-        for (option, given) in [
-            ("--run", self.run.is_some()),
-            ("--evaluation", self.evaluation.is_some()),
-            ("--stl", self.stl),
-            ("--step", self.step),
-            ("--csv", self.csv),
-            ("--friction-problem", self.friction_problem),
-            ("--tolerance", self.tolerance.is_some()),
-        ] {
-            if given && !exporting {
-                return refused(option, "with export only");
-            }
-        }
-        if exporting && !has_folder {
+    pub fn check(&self, has_folder: bool, has_controls: bool) -> Result<(), Failure> {
+        if !has_folder {
             return Err(Failure::Input("export needs --out DIR, the folder for its files".into()));
         }
         if has_controls && self.run.is_some() {

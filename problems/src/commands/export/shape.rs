@@ -2,6 +2,7 @@
 
 use crate::commands::export::files::OutputFile;
 use crate::commands::failure::Failure;
+use crate::commands::numbers::number;
 use contact::equilibrium::ContactProblem;
 use contact::shape::Pieces;
 use exchange::step::{self, SplineHeights};
@@ -52,7 +53,7 @@ fn relief(heights: &Heights) -> String {
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), [.., height]| (height.min(low), height.max(high)));
     let rounding = 16.0 * f64::EPSILON * high.abs();
     let relief = if high - low > rounding { high - low } else { 0.0 };
-    format!("whose heights differ by {relief:.3e} mm")
+    format!("whose heights differ by {} mm", number(relief))
 }
 
 /// Lines on which triangles keep their distance.

@@ -1,11 +1,13 @@
 //! One optimization on one mesh, kept in a journal if asked for.
 
-use crate::commands::contact_objective::ContactObjective;
 use crate::commands::failure::Failure;
 use crate::commands::long_run::{Progress, RunFolder, StatusLine};
 use crate::commands::optimize::stages::{MeshStage, Part};
 use crate::commands::output::notice;
+use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::contact_objective::mean_height_coordinates;
+use contact::plausibility::Warning;
+use contact::standstill::standstill;
 use nonsmooth::{
     AccuracyPolicy, BundleTrust, BundleTrustConfig, IterationRecord, Journaled, Observer, Report, VariableScaling,
     Vector,
@@ -30,6 +32,15 @@ pub struct MeshRun {
 }
 
 impl MeshRun {
+    /// As [`standstill`], for all runs of an optimization and the shape at which this one, the last, ended.
+    ///
+    /// # Errors
+    /// [`Failure`] of the adjoint.
+    pub fn standstill(&self, runs: &[Self], shape: &SolvedShape) -> Result<Option<Warning>, Failure> {
+        let reports = runs.iter().map(|run| &run.report);
+        Ok(standstill(reports, &self.objective, &self.initial_controls, (&shape.controls, &shape.state))?)
+    }
+
     /// The constraints of the shape that the solution attains, in words.
     pub fn active_constraints(&self) -> String {
         /// As many constraints as a line holds.

@@ -3,20 +3,20 @@
 pub mod mesh_run;
 pub mod run;
 pub mod stages;
-pub mod standstill;
 pub mod summary;
 mod vtk_history;
 
-use crate::commands::contact_objective::{SolvedShape, checks};
+use crate::commands::facts::line;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::{STATUS, interrupted};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::run::{OptimizationRun, optimize};
-use crate::commands::optimize::standstill::standstill;
-use crate::commands::optimize::summary::{page, stages_page, summary};
-use crate::commands::report::files;
+use crate::commands::optimize::stages::Part;
+use crate::commands::optimize::summary::Ended;
+use crate::commands::report::{export_command, files};
+use crate::commands::solved_shape::{SolvedShape, checks};
 
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
@@ -50,22 +50,32 @@ pub fn report(
     let solved = |controls| {
         SolvedShape::at(&last.objective, controls).map_err(|failure| failure.after(&last.report.to_string()))
     };
-    let shapes = [solved(&first.initial_controls)?, solved(&last.report.solution)?];
+    // A start leads to its own end; on growing meshes, the first start leads to the last end.
+    let begun = if matches!(last.part, Part::Start(_)) { last } else { first };
+    let shapes = [solved(&begun.initial_controls)?, solved(&last.report.solution)?];
     let mut checks = checks(&last.objective, &shapes[1], session.arguments)?;
-    checks.extend(standstill(runs, last, &shapes[1])?);
-    let usage = session.processes.usage(shapes[1].state.solver)?;
-    let mut text = page(last, &shapes, &checks, session.arguments) + &stages_page(runs, optimization.meshes);
-    text += &usage.iter().map(|usage| format!("processes:   {usage}\n")).collect::<String>();
-    let object = json(&summary(last, runs, &shapes, &checks, session.arguments, usage))?;
-    if let Some(command) = continued.filter(|_| optimization.can_continue()) {
-        text += &format!("to continue: {command}\n");
-    }
+    checks.extend(last.standstill(runs, &shapes[1])?);
+    let ended = Ended {
+        last,
+        runs,
+        meshes: optimization.meshes,
+        shapes: &shapes,
+        checks: &checks,
+        left_out: session.arguments.left_out(last.objective.solver()),
+        processes: session.processes.usage(shapes[1].state.solver)?,
+    };
+    let facts = ended.facts()?;
+    let object = json(&facts)?;
+    let continued = continued.filter(|_| optimization.can_continue());
+    let kept = optimization.folder.as_ref().map(|folder| export_command(folder.folder().path()));
+    let more = [("to continue", continued), ("to export", kept.as_deref())];
+    let more: String = more.iter().filter_map(|(name, command)| Some(line(name, (*command)?))).collect();
     let write = |folder: &Folder| {
-        files::write_optimization(folder, loaded, runs, last, &shapes, &checks)?;
-        if session.arguments.vtk_history {
+        files::write_optimization(folder, loaded, &ended, &facts)?;
+        if session.arguments.series.vtk_history {
             vtk_history::write(folder, &optimization.reported())?;
         }
-        folder.write("report.txt", &text)?;
+        folder.write("report.txt", facts.text(true) + &more)?;
         if let Some(run) = runs.iter().find(|run| !run.is_kept) {
             let evaluations = run.report.counts.evaluations;
             let words = format!("the journal does not hold all {evaluations} evaluations, see the warnings");
@@ -76,7 +86,7 @@ pub fn report(
     };
     let folder = optimization.folder.as_ref().map(RunFolder::folder);
     let json = session.arguments.json;
-    let printed = session.arguments.printed(text.clone(), object.clone());
+    let printed = session.arguments.printed(facts.text(session.arguments.verbose) + &more, object.clone());
     Ok((printed_with_files(printed, json, folder, write)?, shapes))
 }
 

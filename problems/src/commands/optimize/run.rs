@@ -1,6 +1,5 @@
 //! An optimization from its beginning to its end: on one mesh or on growing ones, kept on disk if asked for.
 
-use crate::commands::contact_objective::{ContactObjective, check_ahead, optimized_objective, wanted};
 use crate::commands::controls;
 use crate::commands::failure::{Failure, failed};
 use crate::commands::folder::Folder;
@@ -10,6 +9,7 @@ use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::mesh_run::{MeshRun, run_on_mesh};
 use crate::commands::optimize::stages::{MeshStage, Part, stages};
 use crate::commands::run_kind::RunKind;
+use crate::commands::solved_shape::{ContactObjective, check_ahead, optimized_objective, wanted};
 use contact::error::SceneError;
 use nonsmooth::qp::project;
 use nonsmooth::verify::seeded_direction;
@@ -157,20 +157,21 @@ pub fn begin(
 ) -> Result<(Option<RunFolder>, Vector), Failure> {
     let (shape, arguments) = (objective.solver(), session.arguments);
     let path = loaded.case.output.folder.as_deref().map(Path::new);
-    let bytes = room(&stages(&loaded.case), kind, arguments.vtk_history);
-    if let Some(path) = path.filter(|path| arguments.resume.is_some() && RunFolder::is_one(path)) {
-        let folder = RunFolder::reopen(Folder::reopen(path, bytes)?, loaded, arguments.new_version)?;
+    let bytes = room(&stages(&loaded.case), kind, arguments.series.vtk_history);
+    if let Some(path) = path.filter(|path| arguments.course.resume.is_some() && RunFolder::is_one(path)) {
+        let folder = RunFolder::reopen(Folder::reopen(path, bytes)?, loaded, arguments.course.new_version)?;
         shape.problem().admissible.check(folder.initial_controls())?;
         let controls = folder.initial_controls().clone();
         return Ok((Some(folder), controls));
     }
     let load = || {
-        let file = (controls::START_OPTION, arguments.start_controls.as_deref());
+        let file = (controls::START_OPTION, arguments.course.start_controls.as_deref());
         controls::load(shape.problem(), &loaded.case, file)
     };
     let controls = given.cloned().map_or_else(load, Ok)?;
-    let begin =
-        |path| RunFolder::begin(Folder::create(path, bytes, arguments.overwrite)?, loaded, &controls, (kind, claimed));
+    let begin = |path| {
+        RunFolder::begin(Folder::create(path, bytes, arguments.files.overwrite)?, loaded, &controls, (kind, claimed))
+    };
     Ok((path.map(begin).transpose()?, controls))
 }
 

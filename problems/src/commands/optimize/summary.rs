@@ -1,148 +1,60 @@
-//! The report of an optimization as text and as JSON.
+//! The facts of an optimization.
 
-use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::{SolvedShape, solver_in_words};
+use crate::commands::facts::{Fact, Facts, Group, Value};
+use crate::commands::failure::Failure;
+use crate::commands::numbers::exact;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
-use crate::commands::output::pressure;
-use crate::commands::processes::Usage;
-use contact::contact_shape::SolverKind;
-use contact::cost::ContactAreas;
-use contact::equilibrium::{Kink, Residuals};
+use crate::commands::report::found_label;
+use crate::commands::shape_facts;
+use crate::commands::solved_shape::{SolvedShape, solver_facts};
 use contact::plausibility::Warning;
-use nonsmooth::{IterationRecord, Origin, Report, StepKind, Termination, Vector};
-use serde::Serialize;
+use contact::solvers::Usage;
+use nonsmooth::{Certificate, IterationRecord, Report, Vector};
+use serde_json::json;
 
-/// The keys of the JSON of `optimize`.
-#[derive(Debug, Serialize)]
-struct OptimizationJson<'a> {
-    objective_start: f64,
-    objective: f64,
-    /// p where all values of the objective are (Σσ^p)^{1/p}, since Σσ^p may be no double; else 1.
-    objective_root: f64,
-    controls: &'a [f64],
-    evaluations: usize,
-    /// Contact problems solved at trial points, failed ones included.
-    states: usize,
-    /// Jacobians of all pressures.
-    jacobians: usize,
-    serious_steps: usize,
-    null_steps: usize,
-    termination: Ending<'a>,
-    certificate: Option<CertificateJson>,
-    largest_constraint_violation: f64,
-    /// One entry per evaluation.
-    course: Vec<CourseJson<'a>>,
-    seconds: f64,
-    /// Number of evaluations of an earlier part of the run, which were answered from its journal.
-    resumed_evaluations: usize,
-    peak_pressure: [f64; 2],
-    /// Contact areas at the start and at the end, where the open area is the objective.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    contact_areas: Option<[ContactAreas; 2]>,
-    /// Certificates of the contact states at the start and at the end.
-    residuals: [Residuals; 2],
-    /// Distances of these states to the nearest kink.
-    kinks: [Kink; 2],
-    /// Number of different values of Θ at confirmed ends, of an optimization from several starts.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    optima: Option<usize>,
-    /// One entry per mesh of a coarse-to-fine optimization, or per start.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    stages: Vec<MeshRunJson<'a>>,
-    /// The solver of the final state.
-    solver: SolverKind,
-    /// Why that solver, where another would have been the first choice.
-    solver_reason: Option<&'a str>,
-    /// Those of the optimizer have the code `optimizer`, the others look at the final state.
-    warnings: Vec<Warning>,
-    left_out: Vec<&'static str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    processes: Option<Usage>,
-}
-
-/// One evaluation.
-#[derive(Debug, Serialize)]
-struct CourseJson<'a> {
-    evaluation: usize,
-    /// None if the evaluation failed.
-    objective: Option<f64>,
-    kind: StepKind,
-    /// Who proposed the point.
-    origin: Origin,
-    /// Whether the Jacobian of all pressures was computed.
-    jacobian: bool,
-    /// Products with the dual operator.
-    products: usize,
-    /// Seconds since the start.
-    seconds: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    note: Option<&'a str>,
-}
-
-fn course(record: &IterationRecord) -> CourseJson<'_> {
-    CourseJson {
-        evaluation: record.evaluation,
-        objective: record.value,
-        kind: record.kind,
-        origin: record.origin,
-        jacobian: record.jacobian,
-        products: record.work,
-        seconds: record.seconds,
-        note: record.note.as_deref().or(record.failure.as_deref()),
+/// One evaluation; its `objective` is null if it failed, its `seconds` count from the start, its `products` are those with the dual operator.
+fn course(record: &IterationRecord) -> serde_json::Value {
+    let mut entry = json!({
+        "evaluation": record.evaluation,
+        "objective": record.value,
+        "kind": record.kind,
+        "origin": record.origin,
+        "jacobian": record.jacobian,
+        "products": record.work,
+        "seconds": record.seconds,
+    });
+    if let Some(note) = record.note.as_ref().or(record.failure.as_ref()) {
+        entry["note"] = note.as_str().into();
     }
-}
-
-/// How a run ended.
-#[derive(Debug, Serialize)]
-pub struct Ending<'a> {
-    reason: &'a Termination,
-    text: String,
-    confirmed: bool,
-}
-
-/// The certificate without its cuts, which go to a file.
-#[derive(Debug, Serialize)]
-struct CertificateJson {
-    aggregate_norm: f64,
-    aggregate_error: f64,
-    predicted_decrease: f64,
-    active_cuts: usize,
-    active_radius: f64,
-    active_rows: usize,
-    active_bounds: usize,
-    noise: f64,
+    entry
 }
 
 /// One of several runs: a mesh of a coarse-to-fine optimization, or a start.
-#[derive(Debug, Serialize)]
-struct MeshRunJson<'a> {
-    mesh: [usize; 3],
-    objective_start: f64,
-    objective: f64,
-    evaluations: usize,
-    seconds: f64,
-    termination: Ending<'a>,
-}
-
-fn stages(runs: &[MeshRun]) -> Vec<MeshRunJson<'_>> {
-    runs.iter()
-        .filter(|run| run.part != Part::Whole)
-        .map(|run| MeshRunJson {
-            mesh: run.objective.solver().problem().scene.mesh,
-            objective_start: run.report.start_value,
-            objective: run.report.value,
-            evaluations: run.report.counts.evaluations,
-            seconds: run.report.seconds,
-            termination: ending(&run.report),
-        })
-        .collect()
+fn stage(run: &MeshRun) -> serde_json::Value {
+    json!({
+        "mesh": run.objective.solver().problem().scene.mesh,
+        "objective_start": run.report.start_value,
+        "objective": run.report.value,
+        "evaluations": run.report.counts.evaluations,
+        "seconds": run.report.seconds,
+        "termination": ending(&run.report),
+    })
 }
 
 /// How a run ended.
-pub fn ending(report: &Report) -> Ending<'_> {
+pub fn ending(report: &Report) -> serde_json::Value {
     let termination = &report.termination;
-    Ending { reason: termination, text: termination.to_string(), confirmed: termination.is_confirmed() }
+    json!({ "reason": termination, "text": termination.to_string(), "confirmed": termination.is_confirmed() })
+}
+
+/// Whether the end of a run is proved, and if not, why and what to do: a line of its own.
+pub fn proof(report: &Report) -> String {
+    let termination = &report.termination;
+    match termination.is_confirmed() {
+        true => format!("Proved: {termination}"),
+        false => format!("Not proved: {termination}; {}", termination.advice()),
+    }
 }
 
 /// Difference of Θ beyond which two ends are two optima, relative to Θ where it lies between the next constant and 1 times the largest
@@ -170,141 +82,198 @@ fn different(mut values: Vec<f64>, decrease: f64) -> usize {
     values.len()
 }
 
-/// One line per mesh or start; nothing for a single run.
-pub fn stages_page(runs: &[MeshRun], meshes: usize) -> String {
-    let mut text = String::new();
-    for run in runs.iter().filter(|run| run.part != Part::Whole) {
-        let [n1, n2, n3] = run.objective.solver().problem().scene.mesh;
-        let report = &run.report;
-        text += &format!(
-            "{} on {n1}x{n2}x{n3}: {:.6e} -> {:.6e} in {} evaluations, {:.1} s; {}\n",
-            run.part.folder().unwrap_or_default().replace('_', " "),
-            report.start_value,
-            report.value,
-            report.counts.evaluations,
-            report.seconds,
-            report.termination
-        );
-    }
-    if runs.iter().any(|run| matches!(run.part, Part::Start(_))) {
-        text += &format!("optima:      {} different values at confirmed ends\n", optima(runs));
-    }
-    if runs.len() < meshes {
-        text += &format!("stages:      {} of {meshes} begun\n", runs.len());
-    }
-    text
+/// An optimization that has ended, with what its facts are made of.
+pub struct Ended<'a> {
+    /// The run that it is reported by: the last mesh, or the best start.
+    pub last: &'a MeshRun,
+    /// All runs, in order.
+    pub runs: &'a [MeshRun],
+    /// Number of runs asked for.
+    pub meshes: usize,
+    /// The shape at the start of the run that it is reported by, or of the first mesh, and the shape found.
+    pub shapes: &'a [SolvedShape; 2],
+    /// What is implausible about the shape found.
+    pub checks: &'a [Warning],
+    /// What was left out.
+    pub left_out: Vec<&'static str>,
+    /// What several processes have used.
+    pub processes: Option<Usage>,
 }
 
-/// The JSON of an optimization: the run `last` that it is reported by, and an entry for every run if there are several.
-pub fn summary<'a>(
-    last: &'a MeshRun,
-    runs: &'a [MeshRun],
-    shapes: &'a [SolvedShape; 2],
-    checks: &[Warning],
-    arguments: &Arguments,
-    processes: Option<Usage>,
-) -> impl Serialize + use<'a> {
-    let MeshRun { report, objective, replayed, .. } = last;
+impl Ended<'_> {
+    /// All facts.
+    ///
+    /// # Errors
+    /// [`Failure::Computation`] for a value that has no JSON.
+    pub fn facts(&self) -> Result<Facts, Failure> {
+        let MeshRun { report, objective, .. } = self.last;
+        let shapes = self.shapes.each_ref();
+        let scene = &objective.solver().problem().scene;
+        let lead = vec![format!("{}: {}", scene.name, shape_facts::found(objective, shapes)), proof(report)];
+        let mut result = vec![shape_facts::peak_pressure(&shapes)];
+        result.extend(shape_facts::objective(objective, &shapes).into_iter().map(Fact::without_key));
+        result.extend(shape_facts::contact_areas(objective, &shapes));
+        result.extend([
+            Fact::json("objective_start", &shapes[0].value)?,
+            Fact::json("objective", &report.value)?,
+            Fact::json("objective_root", &objective.root())?,
+            Fact::json("controls", &report.solution.as_slice())?,
+        ]);
+        let states = shape_facts::states(objective, &shapes, ["kinks.smallest_margin", "kinks.weakly_active"]);
+        let columns = vec!["start".to_owned(), found_label(report).to_owned()];
+        let pair = |title, facts| Group { title, columns: columns.clone(), facts, words: String::new() };
+        let groups = vec![
+            pair("", result),
+            Group::new("", vec![scene_fact(self.last)]),
+            self.stages()?,
+            self.course()?,
+            certificate(report.certificate.as_ref())?,
+            pair("States", states),
+            self.rest()?,
+        ];
+        Ok(Facts { lead, groups })
+    }
+
+    /// The facts of several runs.
+    fn stages(&self) -> Result<Group, Failure> {
+        let several = || self.runs.iter().filter(|run| run.part != Part::Whole);
+        let fact = |run: &MeshRun| {
+            let (report, name) = (&run.report, run.part.folder().unwrap_or_default().replace('_', " "));
+            let [n1, n2, n3] = run.objective.solver().problem().scene.mesh;
+            let values = vec![
+                format!("{n1}×{n2}×{n3}").into(),
+                report.start_value.into(),
+                report.value.into(),
+                report.counts.evaluations.into(),
+                Value::Rough(report.seconds),
+                report.termination.to_string().into(),
+            ];
+            Fact::row("", &name, values, "")
+        };
+        let mut facts: Vec<Fact> = several().map(fact).collect();
+        if several().next().is_some() {
+            facts.push(Fact::json("stages", &several().map(stage).collect::<Vec<_>>())?);
+        }
+        let columns =
+            ["bricks", "Θ at its start", "Θ at its end", "evaluations", "seconds", "ended"].map(str::to_owned);
+        let words = "Pictures, course and certificate are those of the last mesh, or of the best start. The result compares the best of \
+                     several starts with its own start, and the last of several meshes with the start on the first.";
+        Ok(Group { title: "Runs", columns: columns.into(), facts, words: words.into() })
+    }
+
+    /// The facts of the course.
+    fn course(&self) -> Result<Group, Failure> {
+        let MeshRun { report, replayed, .. } = self.last;
+        let (counts, trials) = (&report.counts, &report.counts.trials);
+        let first = report.history.first().map_or(0.0, |record| record.seconds);
+        let slowest = report.history.windows(2).map(|pair| pair[1].seconds - pair[0].seconds).fold(first, f64::max);
+        let all: f64 = self.runs.iter().map(|run| run.report.seconds).sum();
+        let count = |key, name: &str, count: usize| Fact::new(key, name, count, "").detail();
+        let mut facts = vec![
+            Fact::new("evaluations", "evaluations", counts.evaluations, "").meaning(
+                "a contact problem with a subgradient each; a failed one could not be computed and shortened the step",
+            ),
+            Fact::new("seconds", "time of the whole run", all, "s"),
+            Fact::new("", "constraints attained", self.last.active_constraints(), ""),
+            Fact::json("states", &counts.evaluations)?,
+            count("jacobians", "Jacobians", counts.jacobians),
+            count("serious_steps", "serious steps", counts.serious),
+            count("null_steps", "null steps", counts.null),
+            count("", "refined evaluations", counts.refined),
+            count("", "failed evaluations", counts.failed),
+            count("", "restarts", counts.restarts),
+            count("", "trial points: cuts", trials.cuts),
+            count("", "trial points: curved model", trials.curved_model),
+            count("", "trial points: composite model", trials.composite_model),
+            count("", "trial points: proof", trials.confirmation),
+            count("", "subproblems", counts.qp_solves),
+            count("", "of these, fallback solver", counts.qp_fallbacks),
+            count("resumed_evaluations", "evaluations from the journal", *replayed),
+            Fact::new("", "mean evaluation", report.seconds / counts.evaluations.max(1) as f64, "s").detail(),
+            Fact::new("", "longest evaluation", slowest, "s").detail(),
+            Fact::new(
+                "largest_constraint_violation",
+                "constraint violation",
+                Value::Rough(report.largest_violation),
+                "",
+            )
+            .meaning("largest relative violation of a point evaluated")
+            .detail(),
+            Fact::json("termination", &ending(report))?,
+            Fact::json("course", &report.history.iter().map(course).collect::<Vec<_>>())?,
+        ];
+        if self.runs.iter().filter(|run| run.part != Part::Whole).count() > 1 {
+            facts.push(
+                Fact::new("optima", "different optima", optima(self.runs), "")
+                    .meaning("different values of Θ at proved ends of the runs"),
+            );
+        }
+        if self.runs.len() < self.meshes {
+            facts.push(Fact::new("", "runs begun", format!("{} of {}", self.runs.len(), self.meshes), ""));
+        }
+        Ok(Group::new("Course of the optimization", facts).with_words(proof(report) + "."))
+    }
+
+    /// Solver, warnings, and what was left out.
+    fn rest(&self) -> Result<Group, Failure> {
+        let mut facts = solver_facts(&self.shapes[1].state)?;
+        facts.extend(warning_facts(&all_warnings(&self.last.report, self.checks))?);
+        facts.push(Fact::object("left_out", "left out", &self.left_out, self.left_out.join("; "))?.detail());
+        if let Some(usage) = &self.processes {
+            facts.push(Fact::object("processes", "processes", usage, usage.to_string())?);
+        }
+        Ok(Group::new("", facts))
+    }
+}
+
+/// The bodies of the scene.
+fn scene_fact(run: &MeshRun) -> Fact {
+    let scene = &run.objective.solver().problem().scene;
+    let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
+    let bricks = |counts: [usize; 3]| counts.map(|count| count.to_string()).join("×");
+    let (mesh, parts, friction) = (bricks(scene.mesh), bricks(scene.subdomains), exact(scene.friction));
+    Fact::new("", "scene", format!("{bodies} of {mesh} bricks, {parts} subdomains each, friction {friction}"), "")
+}
+
+/// The facts of the certificate; its cuts go to a file.
+fn certificate(certificate: Option<&Certificate>) -> Result<Group, Failure> {
+    let title = "Certificate";
+    let Some(certificate) = certificate else {
+        let none = Fact::json("certificate", &None::<()>)?;
+        return Ok(Group::new(title, vec![none]));
+    };
     let active = |multipliers: &Vector| multipliers.iter().filter(|multiplier| **multiplier != 0.0).count();
-    OptimizationJson {
-        objective_start: shapes[0].value,
-        objective: report.value,
-        objective_root: objective.root(),
-        controls: report.solution.as_slice(),
-        evaluations: report.counts.evaluations,
-        states: report.counts.evaluations,
-        jacobians: report.counts.jacobians,
-        serious_steps: report.counts.serious,
-        null_steps: report.counts.null,
-        termination: ending(report),
-        certificate: report.certificate.as_ref().map(|certificate| CertificateJson {
-            aggregate_norm: certificate.aggregate_norm,
-            aggregate_error: certificate.aggregate_error,
-            predicted_decrease: certificate.predicted_decrease,
-            active_cuts: certificate.active_cuts().count(),
-            active_radius: certificate.active_radius,
-            active_rows: active(&certificate.row_multipliers),
-            active_bounds: active(&certificate.bound_multipliers),
-            noise: certificate.noise,
-        }),
-        largest_constraint_violation: report.largest_violation,
-        course: report.history.iter().map(course).collect(),
-        seconds: report.seconds,
-        resumed_evaluations: *replayed,
-        peak_pressure: shapes.each_ref().map(|shape| shape.peak_pressure),
-        contact_areas: contact_areas(last, shapes),
-        residuals: shapes.each_ref().map(|shape| shape.state.forces.residuals),
-        kinks: shapes.each_ref().map(|shape| shape.state.forces.kink),
-        optima: (runs.iter().filter(|run| run.part != Part::Whole).count() > 1).then(|| optima(runs)),
-        stages: stages(runs),
-        solver: shapes[1].state.solver,
-        solver_reason: shapes[1].state.reason.as_deref(),
-        warnings: all_warnings(report, checks),
-        left_out: arguments.left_out(objective.solver()),
-        processes,
-    }
+    let rough = |key, name, value| Fact::new(key, name, Value::Rough(value), "").detail();
+    let count = |key, name, count: usize| Fact::new(key, name, count, "").detail();
+    let facts = vec![
+        rough("certificate.aggregate_norm", "aggregate subgradient", certificate.aggregate_norm)
+            .meaning("its norm; it vanishes at a stationary point, as the aggregate error does"),
+        rough("certificate.aggregate_error", "aggregate error", certificate.aggregate_error),
+        rough("certificate.predicted_decrease", "predicted decrease", certificate.predicted_decrease)
+            .meaning("what the model still hopes for"),
+        count("certificate.active_cuts", "active cuts", certificate.active_cuts().count()),
+        rough("certificate.active_radius", "radius of active cuts", certificate.active_radius),
+        count("certificate.active_rows", "active rows", active(&certificate.row_multipliers)),
+        count("certificate.active_bounds", "active bounds", active(&certificate.bound_multipliers)),
+        rough("certificate.noise", "noise", certificate.noise),
+        rough("", "weight", certificate.weight),
+        rough("", "curvature added", certificate.convexification),
+        rough("", "predicted decrease/Θ", certificate.predicted_decrease / certificate.value.abs()),
+    ];
+    let words = "certificate.json holds all cuts and multipliers, from which the command recheck computes norm and error again.";
+    Ok(Group::new(title, facts).with_words(words))
 }
 
-/// The contact areas of both shapes, where the open area is the objective.
-fn contact_areas(last: &MeshRun, shapes: &[SolvedShape; 2]) -> Option<[ContactAreas; 2]> {
-    let [first, second] = shapes.each_ref().map(|shape| last.objective.contact_areas(&shape.state));
-    first.zip(second).map(|(first, second)| [first, second])
+/// Warnings, a line each, and as a list.
+pub fn warning_facts(warnings: &[Warning]) -> Result<Vec<Fact>, Failure> {
+    let lines = warnings.iter().map(|warning| Ok(Fact::new("", "warning", warning.to_string(), "")));
+    lines.chain([Fact::json("warnings", &warnings)]).collect()
 }
 
 /// The warnings of the optimizer and those about the final state.
 pub fn all_warnings(report: &Report, checks: &[Warning]) -> Vec<Warning> {
     let own = report.warnings.iter().map(|text| Warning { code: "optimizer", text: text.clone() });
     own.chain(checks.iter().cloned()).collect()
-}
-
-/// Reduction of Θ from which on what is left of it is rounding.
-const MEANINGLESS_REDUCTION: f64 = 1e12;
-
-/// Θ at the start over Θ at the end; none where that says nothing: a compliance may change its sign, and a deviation may vanish up to
-/// rounding.
-pub fn reduction(start: f64, end: f64) -> Option<f64> {
-    Some(start / end).filter(|ratio| *ratio > 0.0 && *ratio < MEANINGLESS_REDUCTION)
-}
-
-/// The one-page report.
-pub fn page(last: &MeshRun, shapes: &[SolvedShape; 2], checks: &[Warning], arguments: &Arguments) -> String {
-    let MeshRun { report, objective, .. } = last;
-    let at_solution = &shapes[1].state.forces;
-    let scene = &objective.solver().problem().scene;
-    let bodies = if scene.upper.is_some() { "2 bodies" } else { "1 body" };
-    let ratio = reduction(shapes[0].value, report.value);
-    let reduction = ratio.map_or_else(|| "no ratio".into(), |ratio| format!("{ratio:.4} times"));
-    let areas = contact_areas(last, shapes).map_or_else(String::new, |[start, end]| {
-        format!("contact:     at the start {start}\n             at the end   {end}\n")
-    });
-    format!(
-        "{}: {} of {}x{}x{} bricks, {}x{}x{} subdomains each, friction {}; objective in {}\n\
-         reduction:   {reduction}, peak pressure {} -> {} MPa\n{areas}{report}\
-         state:       relative residuals at the solution: {}\n\
-         \x20            nearest kink: relative margin {:.1e}, {} nodes weakly active\n\
-         solver:      {}\n\
-         active:      {}\n\
-         {}left out:    {}\n",
-        scene.name,
-        bodies,
-        scene.mesh[0],
-        scene.mesh[1],
-        scene.mesh[2],
-        scene.subdomains[0],
-        scene.subdomains[1],
-        scene.subdomains[2],
-        scene.friction,
-        objective.unit().replace(['{', '}'], ""),
-        pressure(shapes[0].peak_pressure),
-        pressure(shapes[1].peak_pressure),
-        at_solution.residuals,
-        at_solution.kink.smallest_margin,
-        at_solution.kink.weakly_active,
-        solver_in_words(shapes[1].state.solver, shapes[1].state.reason.as_deref()),
-        last.active_constraints(),
-        checks.iter().map(|warning| format!("warning:     {warning}\n")).collect::<String>(),
-        arguments.left_out(objective.solver()).join("; "),
-    )
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! `--vtk-history`: the shapes that an optimization came through, as a series for ParaView.
 
-use crate::commands::contact_objective::{SolvedShape, objective_notes};
 use crate::commands::failure::Failure;
 use crate::commands::folder::Folder;
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::report::VTK;
-use contact::fields::{FieldState, list, state_files};
-use contact::vtk::{Note, NoteValue};
+use crate::commands::solved_shape::{SolvedShape, objective_note};
+use crate::vtk_files::{FieldState, list, state_files};
+use exchange::vtk::{Note, NoteValue};
 use nonsmooth::{Journal, StepKind, Vector};
 
 /// The list of the series.
@@ -34,9 +34,8 @@ pub fn write(folder: &Folder, runs: &[&MeshRun]) -> Result<(), Failure> {
             let solved = SolvedShape::at(&run.objective, &Vector::from_column_slice(&entry.point))?;
             let fields = solved.fields(&run.objective, true)?;
             let evaluation = before + record.evaluation;
-            let [objective, units] = objective_notes(&run.objective, solved.value);
             let number = NoteValue::Integer(i32::try_from(evaluation).unwrap_or(i32::MAX));
-            let notes = [objective, Note::new("evaluation", number), units];
+            let notes = [objective_note(&run.objective, solved.value), Note::new("evaluation", "", number)];
             let name = format!("history_{evaluation:04}");
             let state = FieldState { time: evaluation as f64, name: &name, fields: &fields, notes: &notes };
             let files = state_files(entries.len() / 2, &state).map_err(Failure::computation)?;

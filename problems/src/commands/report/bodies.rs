@@ -1,7 +1,8 @@
 //! The figures of the bodies: stresses on the deformed bodies, heights of the contact surface.
 
-use crate::commands::contact_objective::ContactObjective;
+use crate::commands::numbers::number;
 use crate::commands::report::gallery::ShownShape;
+use crate::commands::solved_shape::ContactObjective;
 use contact::body::mesh::Block;
 use contact::fields::{BodyFields, Fields};
 use figures::{
@@ -14,27 +15,51 @@ const MAX_SHOWN_DISPLACEMENT: f64 = 0.08;
 /// Largest lift of an upper body, as a share of its largest height.
 const MAX_LIFT: f64 = 0.25;
 
-/// Von Mises stresses on the deformed bodies side by side on one scale; shapes without fields are left out.
-pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
+/// Von Mises stresses on the deformed bodies, the shapes side by side on one scale: a figure of all bodies, or, where their materials
+/// differ, one per body. Shapes without fields are left out.
+pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Vec<Result<Figure, FigureError>> {
+    let mut scenes = objective.solver().problem().bodies();
+    match (scenes.next(), scenes.next()) {
+        (Some(lower), Some(upper)) if lower.material != upper.material => vec![
+            stresses(objective, shapes, ("von_mises_lower", ", lower body", &[0])),
+            stresses(objective, shapes, ("von_mises_upper", ", upper body", &[1])),
+        ],
+        _ => vec![stresses(objective, shapes, ("von_mises", "", &[0, 1]))],
+    }
+}
+
+/// The stresses of the bodies with these numbers.
+fn stresses(
+    objective: &ContactObjective,
+    shapes: &[ShownShape<'_>],
+    (name, words, numbers): (&str, &str, &[usize]),
+) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let seen = || shapes.iter().filter_map(|shape| shape.fields.as_ref().map(|fields| (shape, fields)));
-    let bodies = || seen().flat_map(|(_, fields)| &fields.bodies);
+    let bodies = || seen().flat_map(|(_, fields)| numbers.iter().filter_map(|&number| fields.bodies.get(number)));
     let [a, b] = problem.grid.size;
     let tallest = bodies().map(height).fold(0.0, f64::max);
     let largest =
         bodies().flat_map(|body| &body.displacement).map(|u| u[0].hypot(u[1]).hypot(u[2])).fold(0.0, f64::max);
     let times =
         if largest > 0.0 { nice_below(MAX_SHOWN_DISPLACEMENT * a.max(b).max(tallest) / largest).max(1.0) } else { 1.0 };
-    let upper = seen().filter_map(|(_, fields)| fields.bodies.get(1)).map(height).fold(0.0, f64::max);
+    // A body that is shown alone covers nothing.
+    let both = numbers.len() > 1;
+    let upper = seen().filter_map(|(_, fields)| fields.bodies.get(1)).filter(|_| both).map(height).fold(0.0, f64::max);
     let lift = if upper > 0.0 { nice_below(MAX_LIFT * upper) } else { 0.0 };
     let panel = |(shape, fields): (&ShownShape<'_>, &Fields)| SolidPanel {
         caption: shape.caption.clone(),
-        blocks: fields.bodies.iter().zip([0.0, lift]).map(|(body, lift)| block(body, times, lift)).collect(),
+        blocks: numbers
+            .iter()
+            .filter_map(|&number| fields.bodies.get(number))
+            .zip([0.0, lift])
+            .map(|(body, lift)| block(body, times, lift))
+            .collect(),
     };
     let lifted = if lift > 0.0 { format!(", upper body lifted by {lift} mm") } else { String::new() };
     Solids {
-        name: "von_mises".into(),
-        title: format!("{}: von Mises stress", problem.scene.name),
+        name: name.into(),
+        title: format!("{}: von Mises stress{words}", problem.scene.name),
         quantity: "stress".into(),
         unit: "MPa".into(),
         axes: [format!("x₁ ({a} mm)"), format!("x₂ ({b} mm)"), "x₃".into()],
@@ -55,7 +80,7 @@ pub fn above_mean(caption: &str, heights: &[f64]) -> (String, Vec<f64>) {
     let mean = heights.iter().sum::<f64>() / heights.len() as f64;
     let rounding = f64::EPSILON * heights.len() as f64 * mean.abs();
     let above = |height: &f64| if (height - mean).abs() <= rounding { 0.0 } else { height - mean };
-    (format!("{caption}, mean height {mean:.2} mm"), heights.iter().map(above).collect())
+    (format!("{caption}, mean height {} mm", number(mean)), heights.iter().map(above).collect())
 }
 
 /// Heights of the contact surface of the lower body side by side on one scale; shapes without fields are left out.

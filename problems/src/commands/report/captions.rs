@@ -22,8 +22,9 @@ pub const STATUS: &str = "Open nodes carry no pressure. Sticking nodes hold by f
 pub const STATUS_WITHOUT_FRICTION: &str = "Open nodes carry no pressure, closed ones do.";
 
 /// The stress.
-pub const STRESS: &str = "Von Mises stress, averaged from brick centres to nodes, on the outside of the deformed bodies. Bright spots are \
-    where the material yields first. The note below the picture says by how much displacements are magnified.";
+pub const STRESS: &str = "Von Mises stress, averaged from brick centres to nodes, on the outside of the deformed bodies. Bodies of \
+    different materials have a picture and a colour scale each, since their strengths differ. The note below the picture says by how much \
+    displacements are magnified.";
 
 /// The surface in space.
 pub const SURFACE: &str = "The contact surface of the lower body without load, its heights counted from their mean. The note below the \

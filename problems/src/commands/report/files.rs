@@ -1,42 +1,42 @@
 //! The files of each command. None of them is computed unless a folder is asked for.
 
 use crate::commands::compare::comparison::Comparison;
-use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::controls;
+use crate::commands::facts::Facts;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::mesh_run::MeshRun;
-use crate::commands::optimize::summary::all_warnings;
+use crate::commands::optimize::summary::{Ended, all_warnings};
 use crate::commands::report::folder::ReportFolder;
 use crate::commands::report::sections::found_label;
 use crate::commands::report::{captions, gallery, pages, tables};
+use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::plausibility::Warning;
 
-/// The files of an optimization; `last` is the run that it is reported by: the last mesh, or the best start.
+/// The files of an optimization.
 pub fn write_optimization(
     folder: &Folder,
     loaded: &LoadedScene,
-    runs: &[MeshRun],
-    last: &MeshRun,
-    shapes: &[SolvedShape; 2],
-    checks: &[Warning],
+    ended: &Ended<'_>,
+    facts: &Facts,
 ) -> Result<(), Failure> {
-    let MeshRun { objective, report, .. } = last;
+    let shapes = ended.shapes;
+    let MeshRun { objective, report, .. } = ended.last;
     let mut out = ReportFolder::new(folder, loaded, objective);
     let counts = objective.solver().problem().scene.control_points;
     let heights = controls::written(report.solution.as_slice(), counts)?;
     out.write("controls.json", &heights, "the control heights found, a row per control point along x₁")?;
     let what = "all cuts and multipliers behind the certificate, for recheck";
     out.write("certificate.json", &json(&report.certificate)?, what)?;
-    out.write("history.csv", &tables::history(report), "one line per evaluation")?;
+    out.write("history.csv", &tables::history(objective, report), "one line per evaluation")?;
     let shown = [("initial", "start", &shapes[0]), ("optimal", found_label(report), &shapes[1])];
     out.show(&shown)?;
     if out.wanted().pictures {
         let figure = gallery::convergence(objective, report, &shapes[1]).map_err(Failure::computation)?;
         out.draw(figure, "objective of every evaluation, kinds and origins of steps", captions::COURSE)?;
     }
-    out.finish(|parts| pages::optimization(parts, runs, last, shapes), &all_warnings(report, checks))
+    out.finish(|parts| pages::optimization(parts, ended, facts, folder.path()), &all_warnings(report, ended.checks))
 }
 
 /// The files of an evaluation.
@@ -45,17 +45,22 @@ pub fn write_evaluation(
     loaded: &LoadedScene,
     objective: &ContactObjective,
     shape: &SolvedShape,
-    json: &str,
+    (facts, json): (&Facts, &str),
     checks: &[Warning],
 ) -> Result<(), Failure> {
     let mut out = ReportFolder::new(folder, loaded, objective);
     out.write("evaluation.json", json, "everything that evaluate knows, as one JSON object")?;
     out.show(&[("shape", "this shape", shape)])?;
-    out.finish(|parts| pages::evaluation(parts, objective, shape), checks)
+    out.finish(|parts| pages::evaluation(parts, objective, shape, facts), checks)
 }
 
 /// The files of a comparison.
-pub fn write_comparison(folder: &Folder, loaded: &LoadedScene, comparison: &Comparison<'_>) -> Result<(), Failure> {
+pub fn write_comparison(
+    folder: &Folder,
+    loaded: &LoadedScene,
+    comparison: &Comparison<'_>,
+    facts: &Facts,
+) -> Result<(), Failure> {
     let mut out = ReportFolder::new(folder, loaded, &comparison.runs[0].objective);
     for part in COMPARED {
         out.announce(&format!("{part}/report.html"), "the optimization itself, with its files");
@@ -65,5 +70,5 @@ pub fn write_comparison(folder: &Folder, loaded: &LoadedScene, comparison: &Comp
         ("optimized_with_friction", "optimized with friction", with),
         ("optimized_without_friction", "optimized without friction", without),
     ])?;
-    out.finish(|parts| pages::comparison(parts, comparison), &[])
+    out.finish(|parts| pages::comparison(parts, comparison, facts), &[])
 }

@@ -1,19 +1,19 @@
 //! The folder of a report while it is filled: its files with what they hold, and the parts of the page so far.
 
-use crate::commands::contact_objective::{ContactObjective, SolvedShape, objective_notes};
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, PICTURE_ENDINGS, REPORT, SCENE, START, json};
 use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::long_run::RunFolder;
 use crate::commands::register::{JOURNAL, REGISTER};
 use crate::commands::report::gallery::ShownShape;
-use crate::commands::report::key_numbers::KeyNumbers;
+use crate::commands::report::key_numbers::key_numbers;
 use crate::commands::report::stamp::stamp;
 use crate::commands::report::{bodies, captions, gallery, sections, setup, tables};
 use crate::commands::run_kind::RUN;
-use contact::fields::{FieldState, vtk_files};
+use crate::commands::solved_shape::{ContactObjective, SolvedShape, objective_note};
+use crate::vtk_files::{FieldState, vtk_files};
 use contact::plausibility::Warning;
-use contact::vtk::Note;
+use exchange::vtk::Note;
 use figures::page::{Block, File, Page, Section};
 use figures::{ColourScales, Figure};
 use scene_file::OutputSection;
@@ -94,8 +94,8 @@ impl<'a> ReportFolder<'a> {
         let shown = |&(name, label, shape)| ShownShape::new(self.objective, (name, label), shape, self.wanted());
         let shapes = solved.iter().map(shown).collect::<Result<Vec<_>, _>>()?;
         if self.wanted().report {
-            let numbers = KeyNumbers::new(self.objective, &shapes);
-            self.write("key_numbers.json", &json(&numbers)?, "the table of the result")?;
+            let numbers = key_numbers(self.objective, &shapes);
+            self.write("key_numbers.json", &json(&numbers.table())?, "the table of the result")?;
             self.parts.numbers = numbers.section();
         }
         for shape in &shapes {
@@ -132,17 +132,21 @@ impl<'a> ReportFolder<'a> {
             true => ("open, stick and slip, with the friction traction", captions::STATUS),
             false => ("open and closed contact nodes", captions::STATUS_WITHOUT_FRICTION),
         };
-        let figures = [
+        let mut figures = vec![
             (gallery::cuts(objective, shapes), "contact pressure along lines through the peaks", captions::CUTS),
             (gallery::status(objective, shapes), what, status),
-            (bodies::von_mises(objective, shapes), "von Mises stress on the deformed bodies", captions::STRESS),
+        ];
+        let stress = "von Mises stress on the deformed bodies";
+        figures
+            .extend(bodies::von_mises(objective, shapes).into_iter().map(|figure| (figure, stress, captions::STRESS)));
+        figures.extend([
             (bodies::surfaces(objective, shapes), "heights of the contact surface in space", captions::SURFACE),
             (
                 bodies::surface_map(objective, shapes),
                 "heights of the contact surface from above",
                 captions::SURFACE_MAP,
             ),
-        ];
+        ]);
         figures
             .into_iter()
             .try_for_each(|(figure, what, caption)| self.draw(figure.map_err(Failure::computation)?, what, caption))
@@ -150,8 +154,8 @@ impl<'a> ReportFolder<'a> {
 
     /// Fields of shapes for ParaView.
     fn write_fields(&mut self, shapes: &[ShownShape<'_>]) -> Result<(), Failure> {
-        let notes: Vec<[Note; 2]> =
-            shapes.iter().map(|shape| objective_notes(self.objective, shape.solved.value)).collect();
+        let notes: Vec<[Note; 1]> =
+            shapes.iter().map(|shape| [objective_note(self.objective, shape.solved.value)]).collect();
         let mut states = Vec::new();
         for (index, (shape, notes)) in shapes.iter().zip(&notes).enumerate() {
             let fields = shape.fields.iter();

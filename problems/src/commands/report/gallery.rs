@@ -1,7 +1,7 @@
 //! The figures of contact and of a run; solved shapes as figures and files show them.
 
-use crate::commands::contact_objective::{ContactObjective, SolvedShape};
 use crate::commands::failure::Failure;
+use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::ContactStatus;
 use contact::fields::Fields;
 use figures::{
@@ -39,7 +39,7 @@ impl<'a> ShownShape<'a> {
     ) -> Result<Self, Failure> {
         let seen = wanted.pictures || wanted.vtk || wanted.report;
         let fields = seen.then(|| solved.fields(objective, wanted.vtk)).transpose()?;
-        Ok(Self { label, caption: format!("{label}, Θ = {:.4e}", solved.value), name, solved, fields })
+        Ok(Self { label, caption: format!("{label}, Θ = {}", figures::number(solved.value)), name, solved, fields })
     }
 }
 

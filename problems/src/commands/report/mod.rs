@@ -14,3 +14,4 @@ pub mod study;
 mod tables;
 
 pub use folder::VTK;
+pub use sections::{export_command, found_label};

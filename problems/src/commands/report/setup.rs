@@ -1,7 +1,7 @@
 //! The sketch of a scene: bodies at a shape, supports and loads with their values.
 
-use crate::commands::contact_objective::ContactObjective;
 use crate::commands::failure::Failure;
+use crate::commands::solved_shape::ContactObjective;
 use contact::body::mesh::{Block, Face};
 use contact::scene::{BodyScene, Load, Support};
 use figures::{Figure, Sign, Sketch, SketchBody, SketchMark, nice_below, number};
@@ -27,12 +27,14 @@ pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, 
         blocks.iter().flat_map(|block| block.upper.iter().zip(&block.lower)).map(|(upper, lower)| upper - lower);
     let side = tallest.fold(a.max(b), f64::max);
     let lift = nice_below(MAX_LIFT * side);
-    let mut bodies: Vec<SketchBody> = blocks.iter().zip([0.0, lift]).map(|(block, lift)| body(block, lift)).collect();
+    let counter = Counter::of(objective, side);
+    let mut bodies = vec![body(&blocks[0], 0.0)];
+    bodies.extend(blocks.get(1).map(|block| body(&counter.carved(block), lift)));
     let mut notes = Vec::new();
     if scene.upper.is_none() {
         let heights = grid.columns().map(|(i, j)| {
             let [x1, x2] = grid.position(i, j);
-            [x1, x2, scene.counter_surface.height(x1, x2) + lift]
+            [x1, x2, counter.drawn(scene.counter_surface.height(x1, x2)) + lift]
         });
         bodies.push(SketchBody { nodes: [grid.cells[0] + 1, grid.cells[1] + 1, 1], points: heights.collect() });
         notes.push("surface above: rigid obstacle".to_owned());
@@ -55,6 +57,7 @@ pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, 
         true => format!("friction coefficient {}", number(scene.friction)),
         false => "no friction".into(),
     });
+    notes.push(counter.words());
     notes.push(format!("what lies above the contact surface is lifted by {} mm", number(lift)));
     let sketch = Sketch {
         name: "sketch".into(),
@@ -65,6 +68,53 @@ pub fn sketch(objective: &ContactObjective, controls: &[f64]) -> Result<Figure, 
         notes,
     };
     sketch.figure().map_err(Failure::computation)
+}
+
+/// The counter surface as it is drawn: its heights over the lowest of them magnified, so that its curvature is seen.
+struct Counter {
+    low: f64,
+    high: f64,
+    times: f64,
+}
+
+impl Counter {
+    /// That of an objective with bodies whose largest side has this length, mm.
+    fn of(objective: &ContactObjective, side: f64) -> Self {
+        /// Drawn difference of its heights, as a share of the largest side.
+        const RELIEF: f64 = 0.12;
+        /// Largest share of an upper body that the magnified surface cuts off.
+        const MAX_CUT: f64 = 0.6;
+        let problem = objective.solver().problem();
+        let heights = problem.grid.columns().map(|(i, j)| {
+            let [x1, x2] = problem.grid.position(i, j);
+            problem.scene.counter_surface.height(x1, x2)
+        });
+        let extent = |(low, high): (f64, f64), height: f64| (low.min(height), high.max(height));
+        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), extent);
+        let room = problem.scene.upper.as_ref().map_or(f64::INFINITY, |upper| MAX_CUT * (upper.top - low));
+        let drawn = (RELIEF * side).min(room);
+        // Differences that are rounding are no curvature.
+        let curved = high - low > 16.0 * f64::EPSILON * high.abs().max(side);
+        Self { low, high, times: if curved { nice_below(drawn / (high - low)).max(1.0) } else { 1.0 } }
+    }
+
+    fn drawn(&self, height: f64) -> f64 {
+        self.low + self.times * (height - self.low)
+    }
+
+    /// An upper body with the surface as it is drawn.
+    fn carved(&self, block: &Block) -> Block {
+        let lower = block.lower.iter().map(|height| self.drawn(*height)).collect();
+        Block { lower, ..block.clone() }
+    }
+
+    fn words(&self) -> String {
+        let [low, high] = [self.low, self.high].map(number);
+        match self.times > 1.0 {
+            true => format!("counter surface: heights {low} to {high} mm, drawn × {}", number(self.times)),
+            false => format!("counter surface: heights {low} to {high} mm"),
+        }
+    }
 }
 
 fn body(block: &Block, lift: f64) -> SketchBody {

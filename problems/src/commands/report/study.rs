@@ -9,6 +9,7 @@ use crate::commands::report::stamp::stamp;
 use crate::commands::run_kind::RUN;
 use crate::commands::study::row::{Outcome, Picture, Row, Solved};
 use crate::commands::study::table::{StudyJson, row_folder, values};
+use crate::commands::study::varied::parts;
 use figures::page::{Block, File, Page, Section};
 use figures::{ColourScales, Curve, Figure, FigureError, LinePanel, Lines, Map, MapPanel, SurfacePanel, Surfaces};
 
@@ -72,12 +73,7 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     }
     let page = Page {
         title: format!("{}: study of {}", loaded.case.scene.name, varied.join(", ")),
-        lead: format!(
-            "{} rows of {}, {failed} without a result.{}",
-            study.rows().len(),
-            study.rows_in_all(),
-            unconfirmed(study)
-        ),
+        lead: format!("Rows: {}.{}", study.counted(), unconfirmed(study)),
         origin: stamp(),
         warnings: vec![],
         sections: vec![
@@ -190,7 +186,7 @@ fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureEr
 
 /// The options of a row, and whether its shape is only the best one found.
 fn caption(row: &Row) -> String {
-    let options = row.options.iter().map(|option| option.trim_start_matches("--").replace('=', " "));
+    let options = row.options.iter().map(|option| <[&str; 2]>::from(parts(option)).join(" "));
     let found = Shown::of(row).and_then(|shown| shown.solved.optimization.as_ref()).filter(|run| !run.confirmed);
     options.chain(found.map(|_| "best found".to_owned())).collect::<Vec<_>>().join(", ")
 }

@@ -1,42 +1,41 @@
-//! Tables of comma-separated values.
+//! Tables of comma-separated values; the names of columns carry their units.
 
-use crate::commands::contact_objective::ContactObjective;
-use crate::commands::processes::SharedState;
+use crate::commands::numbers::{exact, plain_unit};
+use crate::commands::solved_shape::ContactObjective;
 use contact::contact_shape::ContactState;
 use nonsmooth::Report;
 
-/// One line per contact node: place (mm), pressure and traction (MPa), remaining gap (mm, ≥ 0 up to the accuracy of the state),
-/// status.
-pub fn contact_nodes(objective: &ContactObjective, state: &ContactState<SharedState>) -> String {
+/// One line per contact node: place, pressure and traction, remaining gap (≥ 0 up to the accuracy of the state), status.
+pub fn contact_nodes(objective: &ContactObjective, state: &ContactState) -> String {
     let problem = objective.solver().problem();
-    let mut table = String::from("x1,x2,pressure,traction_1,traction_2,remaining_gap,status\n");
+    let mut table = String::from("x1_mm,x2_mm,pressure_MPa,traction_1_MPa,traction_2_MPa,remaining_gap_mm,status\n");
     let pressures = objective.pressures(state);
     for (index, (point, pressure)) in problem.boundary.points.iter().zip(pressures).enumerate() {
         let [x1, x2] = problem.grid.position(point.position[0], point.position[1]);
-        let traction = state.forces.tangential.get(index).map_or([0.0; 2], |force| force.map(|f| f / point.area));
+        let [t1, t2] = state.forces.tangential.get(index).map_or([0.0; 2], |force| force.map(|f| f / point.area));
         // The jump less the gap is negative where bodies are apart.
-        let (gap, status) = (-state.forces.opening[index], state.forces.status[index]);
-        table += &format!("{x1},{x2},{pressure},{},{},{gap},{status:?}\n", traction[0], traction[1]);
+        let gap = -state.forces.opening[index];
+        let cells = [x1, x2, pressure, t1, t2, gap].map(exact).join(",");
+        table += &format!("{cells},{:?}\n", state.forces.status[index]);
     }
     table
 }
 
-/// One line per evaluation of an optimization.
-pub fn history(report: &Report) -> String {
-    let mut table =
-        String::from("evaluation,kind,value,center_value,predicted_decrease,aggregate_norm,aggregate_error,seconds\n");
+/// One line per evaluation of an optimization. The aggregate norm is in the norm of the optimizer, which has no unit in common with Θ.
+pub fn history(objective: &ContactObjective, report: &Report) -> String {
+    let unit = plain_unit(&objective.unit()).replace(' ', "_");
+    let named = ["value", "center_value", "predicted_decrease"].map(|name| format!("{name}_{unit}")).join(",");
+    let mut table = format!("evaluation,kind,{named},aggregate_norm,aggregate_error_{unit},seconds\n");
     for record in &report.history {
-        let value = record.value.map_or_else(String::new, |value| value.to_string());
-        table += &format!(
-            "{},{},{value},{},{},{},{},{}\n",
-            record.evaluation,
-            record.kind,
+        let value = record.value.map_or_else(String::new, exact);
+        let numbers = [
             record.center_value,
             record.predicted_decrease,
             record.aggregate_norm,
             record.aggregate_error,
-            record.seconds
-        );
+            record.seconds,
+        ];
+        table += &format!("{},{},{value},{}\n", record.evaluation, record.kind, numbers.map(exact).join(","));
     }
     table
 }

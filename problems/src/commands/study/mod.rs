@@ -11,7 +11,6 @@ pub mod row;
 pub mod table;
 pub mod varied;
 
-use crate::commands::contact_objective;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, STUDY, continuation, file_error, json, printed_with_files};
@@ -23,6 +22,7 @@ use crate::commands::output::notice;
 use crate::commands::register::REGISTER;
 use crate::commands::report::study::write_study;
 use crate::commands::run_kind::RunKind;
+use crate::commands::solved_shape;
 use contact::error::SceneError;
 use nonsmooth::Vector;
 use plan::Plan;
@@ -40,7 +40,7 @@ const LARGEST_FILE: u64 = 1 << 30;
 /// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let path = loaded.case.output.folder.as_deref().map(Path::new);
-    let plan = match path.filter(|_| session.arguments.resume.is_some()) {
+    let plan = match path.filter(|_| session.arguments.course.resume.is_some()) {
         Some(folder) => read::<Plan>(&folder.join(STUDY))?.checked()?,
         None => Plan::stated(session.arguments)?,
     };
@@ -54,9 +54,10 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         let failure = row::refusal(loaded, (options, &plan.fixed), (plan.optimize, plan.same_start), session);
         failure.iter().for_each(|failure| notice(&format!("row {} will fail: {failure}", index + 1)));
     }
+    let new_limit = session.arguments.changes().has("max-evaluations");
     let mut cut = None;
     for (index, options) in combinations.iter().enumerate() {
-        if rows.get(index).is_some_and(|row| !row.is_to_be_continued(session.arguments.max_evaluations.is_some())) {
+        if rows.get(index).is_some_and(|row| !row.is_to_be_continued(new_limit)) {
             continue;
         }
         session.status.begin(format!("row {} of {}: ", index + 1, combinations.len()));
@@ -91,12 +92,15 @@ fn started(
 ) -> Result<(Option<RunFolder>, Vector), Failure> {
     let rows = (1..=if plan.optimize { count } else { 0 }).map(|number| format!("{}/{REGISTER}", row_folder(number)));
     let claimed: Vec<String> = std::iter::once(STUDY.to_owned()).chain(rows).collect();
-    let objective = contact_objective::objective(&loaded.case, &session.processes)?;
+    let objective = solved_shape::objective(&loaded.case, &session.processes)?;
     let load = |file| controls::load(objective.solver().problem(), &loaded.case, ("--controls", Some(file)));
-    let given = session.arguments.controls.as_deref().map(load).transpose()?;
+    let given = session.arguments.shape.controls.as_deref().map(load).transpose()?;
     let (folder, controls) = begin(&objective, loaded, given.as_ref(), (RunKind::Study, &claimed), session)?;
     let optimizer = &loaded.case.optimizer;
-    if plan.optimize && !optimizer.continuation.is_empty() && plan.vary.iter().any(|varied| varied.name() == "mesh") {
+    if plan.optimize
+        && !optimizer.continuation.is_empty()
+        && plan.vary.iter().any(|varied| varied.field() == "mesh.bricks")
+    {
         folder.iter().for_each(RunFolder::abandon);
         return Err(Failure::Input("--vary mesh is allowed without --continuation, which names the meshes".into()));
     }

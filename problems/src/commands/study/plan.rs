@@ -1,7 +1,8 @@
 //! What a study varies, as the command line or the folder of a study states it.
 
-use crate::commands::arguments::Arguments;
+use crate::commands::arguments::{Arguments, HeightError, Variation};
 use crate::commands::failure::Failure;
+use crate::commands::scene_options::SceneChanges;
 use crate::commands::study::varied::{HEIGHT_ERROR, SEED, Varied, assignment};
 use clap::Parser;
 use contact::error::SceneError;
@@ -9,6 +10,18 @@ use serde::{Deserialize, Serialize};
 
 /// Most rows.
 const MAX_ROWS: usize = 1000;
+
+/// The options of a row.
+#[derive(Debug, Parser)]
+#[command(allow_negative_numbers = true)]
+pub struct RowOptions {
+    /// What changes in the scene.
+    #[command(flatten)]
+    pub scene: SceneChanges,
+    /// How far the shape is off.
+    #[command(flatten)]
+    pub error: HeightError,
+}
 
 /// What a study varies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -29,11 +42,13 @@ impl Plan {
     /// # Errors
     /// As [`Plan::checked`].
     pub fn stated(arguments: &Arguments) -> Result<Self, Failure> {
-        let same_start = arguments.controls.is_some() || arguments.start_controls.is_some();
-        let height_error = arguments.height_error.map(|error| assignment(HEIGHT_ERROR, &error.to_string()));
-        let seed = arguments.seed.map(|seed| assignment(SEED, &seed.to_string()));
+        let same_start = arguments.shape.controls.is_some() || arguments.course.start_controls.is_some();
+        let HeightError { height_error, seed } = arguments.error;
+        let height_error = height_error.map(|error| assignment(HEIGHT_ERROR, &error.to_string()));
+        let seed = seed.map(|seed| assignment(SEED, &seed.to_string()));
         let fixed = height_error.into_iter().chain(seed).collect();
-        Self { vary: arguments.vary.clone(), fixed, optimize: arguments.optimize, same_start }.checked()
+        let Variation { vary, optimize } = arguments.variation.clone();
+        Self { vary, fixed, optimize, same_start }.checked()
     }
 
     /// The same, unless options cannot be varied together.
@@ -41,7 +56,7 @@ impl Plan {
     /// # Errors
     /// [`Failure::Input`] naming the option and a value that it does not take, or for more than [`MAX_ROWS`] rows.
     pub fn checked(self) -> Result<Self, Failure> {
-        let mut names: Vec<&str> = self.vary.iter().map(Varied::name).collect();
+        let mut names: Vec<&str> = self.vary.iter().map(Varied::field).collect();
         names.sort_unstable();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(Failure::Input(format!("--vary {} is allowed once", pair[0])));
@@ -68,13 +83,13 @@ impl Plan {
     }
 }
 
-/// The options of a row as arguments of a command.
+/// The options of a row from its words.
 ///
 /// # Errors
 /// [`Failure::Input`] for a value that the option does not take.
-pub fn options(words: &[String]) -> Result<Arguments, Failure> {
+pub fn options(words: &[String]) -> Result<RowOptions, Failure> {
     let words = std::iter::once("study").chain(words.iter().map(String::as_str));
-    Arguments::try_parse_from(words).map_err(|error| {
+    RowOptions::try_parse_from(words).map_err(|error| {
         let text = error.to_string();
         let first = text.lines().next().unwrap_or_default();
         Failure::Input(first.trim_start_matches("error: ").to_owned())

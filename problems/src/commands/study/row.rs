@@ -1,16 +1,17 @@
 //! One row of a study.
 
-use crate::commands::arguments::Arguments;
-use crate::commands::contact_objective::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
+use crate::commands::arguments::HeightError;
 use crate::commands::controls;
 use crate::commands::failure::Failure;
 use crate::commands::loaded_scene::{LoadedScene, Session};
+use crate::commands::numbers::plain_unit;
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
-use crate::commands::optimize::standstill::standstill;
-use crate::commands::study::plan::options;
-use contact::contact_shape::Wanted;
+use crate::commands::shape_facts::is_better;
+use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
+use crate::commands::study::plan::{RowOptions, options};
 use contact::equilibrium::StatusCounts;
+use contact::solvers::Wanted;
 use nonsmooth::Vector;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -95,7 +96,19 @@ pub struct Picture {
     pub heights: Vec<f64>,
 }
 
+impl Solved {
+    /// Whether it was optimized and its shape is no better than the start.
+    pub fn is_unchanged(&self) -> bool {
+        self.optimization.as_ref().is_some_and(|run| !is_better(run.objective_start, self.objective))
+    }
+}
+
 impl Row {
+    /// Whether it was optimized and found no better shape than its start.
+    pub fn is_unchanged(&self) -> bool {
+        matches!(&self.outcome, Outcome::Solved(solved) if solved.is_unchanged())
+    }
+
     /// Evaluations on the mesh that took most, if the row was optimized.
     pub fn evaluations(&self) -> Option<usize> {
         let Outcome::Solved(solved) = &self.outcome else { return None };
@@ -126,7 +139,7 @@ pub fn computed(
     let clock = Instant::now();
     let outcome = match stated(loaded, (words, fixed), (start.is_some(), out)) {
         Ok((part, _)) if optimized => optimum(&part, start, session),
-        Ok((part, options)) => evaluated(&part, start, &options, session).map(Ok),
+        Ok((part, options)) => evaluated(&part, start, &options.error, session).map(Ok),
         Err(failure) => Err(failure),
     };
     let outcome = match outcome {
@@ -158,11 +171,11 @@ fn stated(
     loaded: &LoadedScene,
     (words, fixed): (&[String], &[String]),
     (has_start, out): (bool, Option<&Path>),
-) -> Result<(LoadedScene, Arguments), Failure> {
+) -> Result<(LoadedScene, RowOptions), Failure> {
     let options = options(&[words, fixed].concat())?;
-    let mut file = options.apply(loaded.file.clone())?;
+    let mut file = options.scene.apply(loaded.file.clone())?;
     file.output.folder = out.map(|path| path.display().to_string());
-    let part = loaded.changed(|scene| *scene = file).map_err(|error| options.blame(error))?;
+    let part = loaded.changed(|scene| *scene = file).map_err(|error| options.scene.blame(error))?;
     if has_start {
         let given = loaded.case.scene.control_points;
         controls::check_grid(given, part.case.scene.control_points, "the study, at which its rows begin")?;
@@ -174,10 +187,10 @@ fn stated(
 fn evaluated(
     part: &LoadedScene,
     start: Option<&Vector>,
-    options: &Arguments,
+    error: &HeightError,
     session: &Session<'_>,
 ) -> Result<Solved, Failure> {
-    let objective = contact_objective::objective(&part.case, &session.processes)?;
+    let objective = solved_shape::objective(&part.case, &session.processes)?;
     let controls = match start {
         Some(start) => {
             objective.solver().problem().admissible.check_shape(start)?;
@@ -185,7 +198,7 @@ fn evaluated(
         }
         None => controls::load(objective.solver().problem(), &part.case, ("--controls", None))?,
     };
-    solved(&objective, &SolvedShape::at(&objective, &controls::as_made(controls, options))?, session)
+    solved(&objective, &SolvedShape::at(&objective, &controls::as_made(controls, error))?, session)
 }
 
 /// The optimum, or why the run was cut short.
@@ -215,7 +228,7 @@ fn optimum(
     };
     let objective = chosen.report.value;
     let mut solved = solved(&chosen.objective, &last, session)?;
-    solved.warnings.extend(standstill(&run.mesh_runs, chosen, &last)?.map(|warning| warning.code.to_owned()));
+    solved.warnings.extend(chosen.standstill(&run.mesh_runs, &last)?.map(|warning| warning.code.to_owned()));
     Ok(Ok(Solved { objective, optimization: Some(optimization), ..solved }))
 }
 
@@ -226,7 +239,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
     let block = problem.lower_block(shape.controls.as_slice()).map_err(Failure::computation)?;
     Ok(Solved {
         objective: shape.value,
-        objective_unit: objective.unit().replace(['{', '}'], ""),
+        objective_unit: plain_unit(&objective.unit()),
         peak_pressure: shape.peak_pressure,
         contact_area: problem.boundary.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),

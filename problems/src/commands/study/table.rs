@@ -1,9 +1,10 @@
 //! The table of a study as text, as comma-separated values and as JSON.
 
-use crate::commands::output::pressure;
+use crate::commands::facts::{Value, aligned, line};
+use crate::commands::numbers::exact;
 use crate::commands::study::plan::Plan;
-use crate::commands::study::row::{Outcome, Row, Solved};
-use crate::commands::study::varied::Varied;
+use crate::commands::study::row::{Optimized, Outcome, Row, Solved};
+use crate::commands::study::varied::{Varied, parts};
 use serde::Serialize;
 use std::fmt;
 
@@ -39,11 +40,6 @@ impl StudyJson {
         &self.vary
     }
 
-    /// Number of rows of the whole study.
-    pub fn rows_in_all(&self) -> usize {
-        self.rows_in_all
-    }
-
     /// The rows so far.
     pub fn rows(&self) -> &[Row] {
         &self.rows
@@ -51,16 +47,8 @@ impl StudyJson {
 
     /// Names of the columns of the table.
     pub fn head(&self) -> Vec<String> {
-        let mut head: Vec<String> = self.vary.iter().map(|varied| varied.name().to_owned()).collect();
-        if self.optimize {
-            head.extend(["objective at start", "peak at start, MPa"].map(str::to_owned));
-        }
-        head.extend(["objective", "peak, MPa", "contact area, mm²", "open", "stick", "slip"].map(str::to_owned));
-        if self.optimize {
-            head.extend(["evaluations", "ended"].map(str::to_owned));
-        }
-        head.push("warnings".to_owned());
-        head
+        let varied = self.vary.iter().map(|varied| varied.name().to_owned());
+        varied.chain(self.shown().map(|column| column.name.to_owned())).collect()
     }
 
     /// The cells of a row; a failed one has its reason in the first cell after the values.
@@ -68,42 +56,103 @@ impl StudyJson {
         let mut cells = values(row);
         match &row.outcome {
             Outcome::Failed(reason) => cells.push(reason.clone()),
-            Outcome::Solved(solved) => cells.extend(self.result(solved)),
+            Outcome::Solved(solved) => cells.extend(self.shown().map(|column| (column.value)(solved).shown())),
         }
         cells
     }
 
-    fn result(&self, solved: &Solved) -> Vec<String> {
-        let mut cells = Vec::new();
-        let run = solved.optimization.as_ref();
-        cells.extend(run.map(|run| format!("{:.6e}", run.objective_start)));
-        cells.extend(run.map(|run| pressure(run.peak_pressure_start)));
-        let status = &solved.status;
-        cells.push(format!("{:.6e}", solved.objective));
-        cells.push(pressure(solved.peak_pressure));
-        cells.push(format!("{:.1}", solved.contact_area));
-        cells.extend([status.open, status.stick, status.slip].map(|count| count.to_string()));
-        cells.extend(run.map(|run| run.evaluations.to_string()));
-        cells.extend(run.map(|run| if run.confirmed { "confirmed".into() } else { run.termination.clone() }));
-        cells.push(if solved.warnings.is_empty() { "–".into() } else { solved.warnings.join(", ") });
-        cells
+    /// The columns that people read.
+    fn shown(&self) -> impl Iterator<Item = &Column> {
+        COLUMNS.iter().filter(|column| !column.name.is_empty() && (self.optimize || !column.of_run))
     }
 
     /// Comma-separated values with all digits, one line per row.
     pub fn csv(&self) -> String {
-        let mut table: String =
-            self.vary.iter().map(|varied| format!("{},", varied.name().replace('-', "_"))).collect();
-        table += "objective_start,peak_pressure_start,objective,peak_pressure,contact_area,total_normal_force,open,stick,slip,evaluations,confirmed,warnings,seconds,reason\n";
+        let varied = self.vary.iter().map(|varied| varied.name().replace('-', "_"));
+        let columns: Vec<&Column> = COLUMNS.iter().filter(|column| !column.key.is_empty()).collect();
+        let keys = columns.iter().map(|column| column.key.to_owned());
+        let head: Vec<String> = varied.chain(keys).chain(["seconds", "reason"].map(str::to_owned)).collect();
+        let mut table = head.join(",") + "\n";
         for row in &self.rows {
-            table += &values(row).iter().map(|value| format!("{value},")).collect::<String>();
-            table += &match &row.outcome {
+            let (cells, reason): (Vec<String>, String) = match &row.outcome {
                 Outcome::Failed(reason) => {
-                    format!(",,,,,,,,,,,,{},\"{}\"\n", row.seconds, reason.replace('"', "\"\"").replace('\n', " "))
+                    let reason = format!("\"{}\"", reason.replace('"', "\"\"").replace('\n', " "));
+                    (vec![String::new(); columns.len()], reason)
                 }
-                Outcome::Solved(solved) => line(solved, row.seconds),
+                Outcome::Solved(solved) => {
+                    (columns.iter().map(|column| cell(&(column.value)(solved))).collect(), String::new())
+                }
             };
+            let cells = values(row).into_iter().chain(cells).chain([exact(row.seconds), reason]);
+            table += &(cells.collect::<Vec<_>>().join(",") + "\n");
         }
         table
+    }
+
+    /// How many rows there are of how many, and what did not succeed.
+    pub fn counted(&self) -> String {
+        let unchanged = self.rows.iter().filter(|row| row.is_unchanged()).count();
+        let unchanged = if unchanged == 0 { String::new() } else { format!(", {unchanged} found no better shape") };
+        format!("{} of {}, {} failed{unchanged}", self.rows.len(), self.rows_in_all, self.failures)
+    }
+}
+
+/// A column of the table behind those of the options.
+struct Column {
+    /// Its name in the comma-separated values, with its unit.
+    key: &'static str,
+    /// Its name for people; empty in the comma-separated values only.
+    name: &'static str,
+    /// Whether only rows that were optimized have it.
+    of_run: bool,
+    value: fn(&Solved) -> Value,
+}
+
+/// A column that every row has.
+const fn column(key: &'static str, name: &'static str, value: fn(&Solved) -> Value) -> Column {
+    Column { key, name, of_run: false, value }
+}
+
+/// A column that rows have which were optimized.
+const fn of_run(key: &'static str, name: &'static str, value: fn(&Solved) -> Value) -> Column {
+    Column { key, name, of_run: true, value }
+}
+
+/// A value of a row that was optimized.
+fn run<V: Into<Value>>(solved: &Solved, value: fn(&Optimized) -> V) -> Value {
+    solved.optimization.as_ref().map_or(Value::Missing, |run| value(run).into())
+}
+
+/// The columns.
+const COLUMNS: [Column; 14] = [
+    of_run("objective_start", "objective at start", |row| run(row, |run| run.objective_start)),
+    of_run("peak_pressure_start_MPa", "peak at start, MPa", |row| run(row, |run| run.peak_pressure_start)),
+    column("objective", "objective", |row| row.objective.into()),
+    column("objective_unit", "", |row| row.objective_unit.clone().into()),
+    column("peak_pressure_MPa", "peak, MPa", |row| row.peak_pressure.into()),
+    column("contact_area_mm2", "contact area, mm²", |row| row.contact_area.into()),
+    column("total_normal_force_N", "", |row| row.total_normal_force.into()),
+    column("open", "open", |row| row.status.open.into()),
+    column("stick", "stick", |row| row.status.stick.into()),
+    column("slip", "slip", |row| row.status.slip.into()),
+    of_run("evaluations", "evaluations", |row| run(row, |run| run.evaluations)),
+    of_run("confirmed", "", |row| run(row, |run| run.confirmed.to_string())),
+    of_run("", "ended", |row| {
+        let ended = run(row, |run| if run.confirmed { "confirmed".into() } else { run.termination.clone() });
+        if row.is_unchanged() { format!("no better shape; {}", ended.shown()).into() } else { ended }
+    }),
+    column("warnings", "warnings", |row| match row.warnings.is_empty() {
+        true => Value::Missing,
+        false => row.warnings.join("; ").into(),
+    }),
+];
+
+/// A value as it stands between commas.
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Number(value) | Value::Rough(value) => exact(*value),
+        Value::Missing => String::new(),
+        Value::Count(_) | Value::Text(_) => value.shown(),
     }
 }
 
@@ -114,47 +163,13 @@ pub fn row_folder(number: usize) -> String {
 
 /// The values of a row, without the names of its options.
 pub fn values(row: &Row) -> Vec<String> {
-    let value = |option: &String| option.split_once('=').map_or(String::new(), |(_, value)| value.to_owned());
-    row.options.iter().map(value).collect()
-}
-
-fn line(solved: &Solved, seconds: f64) -> String {
-    let Solved { objective, peak_pressure, contact_area, total_normal_force, status, optimization, .. } = solved;
-    let start = optimization
-        .as_ref()
-        .map_or_else(|| ",".to_owned(), |run| format!("{},{}", run.objective_start, run.peak_pressure_start));
-    let end =
-        optimization.as_ref().map_or_else(|| ",".to_owned(), |run| format!("{},{}", run.evaluations, run.confirmed));
-    let warnings = solved.warnings.join(" ");
-    let [open, stick, slip] = [status.open, status.stick, status.slip];
-    format!(
-        "{start},{objective},{peak_pressure},{contact_area},{total_normal_force},{open},{stick},{slip},{end},{warnings},{seconds},\n"
-    )
+    row.options.iter().map(|option| parts(option).1.to_owned()).collect()
 }
 
 /// Columns side by side, a line per row.
 impl fmt::Display for StudyJson {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let head = self.head();
         let rows: Vec<Vec<String>> = self.rows.iter().map(|row| self.cells(row)).collect();
-        let count = |cell: &String| cell.chars().count();
-        // The reason of a failed row runs over the columns behind it, and the last column over the end.
-        let whole = rows.iter().filter(|cells| cells.len() == head.len());
-        let mut widths: Vec<usize> = head.iter().map(count).collect();
-        for cells in whole {
-            for (width, cell) in widths.iter_mut().zip(cells) {
-                *width = (*width).max(count(cell));
-            }
-        }
-        for cells in std::iter::once(&head).chain(&rows) {
-            let last = cells.len() - 1;
-            let padded = cells.iter().zip(&widths).enumerate().map(|(index, (cell, &width))| match index {
-                index if index == last && cells.len() != head.len() => cell.clone(),
-                _ => format!("{cell:>width$}"),
-            });
-            writeln!(f, "{}", padded.collect::<Vec<_>>().join("  "))?;
-        }
-        let (done, all) = (self.rows.len(), self.rows_in_all);
-        writeln!(f, "rows:        {done} of {all}, {} failed", self.failures)
+        write!(f, "{}{}", aligned(&self.head(), &rows), line("rows", &self.counted()))
     }
 }

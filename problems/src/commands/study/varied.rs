@@ -1,25 +1,9 @@
-//! What a study varies: options and their values.
+//! What a study varies: options of the scene or its fields, and their values.
 
+use crate::commands::scene_options::{find, options};
+use scene_file::check_path;
 use serde::{Deserialize, Serialize};
 
-/// The options that a study may vary: those of the scene, of its objective, of the contact solver, and of the error of a workshop.
-const ALLOWED: [&str; 15] = [
-    "mesh",
-    "subdomains",
-    "friction",
-    "surface",
-    "control-points",
-    "poisson-ratio",
-    "young-modulus",
-    "formulation",
-    "load-factor",
-    "solver",
-    "preconditioner",
-    "objective",
-    "exponent",
-    HEIGHT_ERROR,
-    SEED,
-];
 /// The option that says how far heights are off.
 pub const HEIGHT_ERROR: &str = "height-error";
 /// The option that says in which directions.
@@ -29,7 +13,7 @@ const MAX_VALUES: usize = 1000;
 /// Digits of the values between both ends of a range: 0.6 instead of 0.6000000000000001.
 const DIGITS: usize = 12;
 
-/// An option with its values, as they are typed.
+/// An option or a field with its values, as they are typed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Varied {
     name: String,
@@ -40,17 +24,25 @@ impl Varied {
     /// From `OPTION=a,b,c` or `OPTION=FIRST:LAST:COUNT`.
     ///
     /// # Errors
-    /// In words, for an option that cannot be varied.
+    /// In words, for what cannot be varied.
     pub fn parse(text: &str) -> Result<Self, String> {
         let shape = "allowed: OPTION=a,b,c or OPTION=FIRST:LAST:COUNT, such as friction=0:0.8:5";
         let (name, values) = text.split_once('=').ok_or(shape)?;
         let name = name.trim_start_matches("--");
-        if !ALLOWED.contains(&name) {
-            return Err(format!("option {name:?} cannot be varied; allowed: {}", ALLOWED.join(", ")));
+        if !is_option(name) {
+            let known = options(false).iter().map(|option| option.name).chain([HEIGHT_ERROR, SEED]);
+            let allowed = || known.clone().collect::<Vec<_>>().join(", ");
+            let no_field = check_path(name).err().map(|error| error.to_string());
+            if let Some(reason) = no_field.or(name.starts_with("output").then(|| "it is where results go".to_owned())) {
+                return Err(format!(
+                    "{name:?} cannot be varied; allowed: {}, and fields of the scene: {reason}",
+                    allowed()
+                ));
+            }
         }
         let values = match range(values) {
             Some(values) => values?,
-            None => values.split(',').map(str::to_owned).collect(),
+            None => listed(values),
         };
         Ok(Self { name: name.to_owned(), values })
     }
@@ -60,9 +52,15 @@ impl Varied {
         &self.name
     }
 
+    /// The field that it changes, or the option that changes none.
+    pub fn field(&self) -> &str {
+        let fields = find(&self.name).filter(|_| is_option(&self.name)).map_or(&[][..], |option| option.fields);
+        fields.first().unwrap_or(&&*self.name)
+    }
+
     /// Whether rows that differ in it have different shapes, though they are not optimized.
     pub fn changes_shapes(&self) -> bool {
-        ["surface", "control-points", HEIGHT_ERROR].contains(&self.name.as_str())
+        self.field().starts_with("surface") || self.name == HEIGHT_ERROR
     }
 
     /// Its values, as they are typed.
@@ -91,9 +89,33 @@ fn range(text: &str) -> Option<Result<Vec<String>, String>> {
     Some(Ok((0..count).map(|step| value(step).to_string()).collect()))
 }
 
-/// An option with its value, as an argument.
+/// Values between commas that stand in no bracket.
+fn listed(text: &str) -> Vec<String> {
+    let mut depth = 0_i32;
+    let outside = |character: char| {
+        depth += i32::from("[{".contains(character)) - i32::from("]}".contains(character));
+        character == ',' && depth == 0
+    };
+    text.split(outside).map(str::to_owned).collect()
+}
+
+/// Whether an option of this name can be varied; other names are those of fields.
+fn is_option(name: &str) -> bool {
+    [HEIGHT_ERROR, SEED].contains(&name) || options(false).iter().any(|option| option.name == name)
+}
+
+/// What comes before a field and its value in an argument.
+const FIELD: &str = "--set=";
+
+/// An option or a field with its value, as an argument.
 pub fn assignment(name: &str, value: &str) -> String {
-    format!("--{name}={value}")
+    format!("{}{name}={value}", if is_option(name) { "--" } else { FIELD })
+}
+
+/// Name and value in such an argument.
+pub fn parts(argument: &str) -> (&str, &str) {
+    let inner = argument.strip_prefix(FIELD).unwrap_or(argument.trim_start_matches("--"));
+    inner.split_once('=').unwrap_or((inner, ""))
 }
 
 /// The options of all rows; the last option changes fastest.

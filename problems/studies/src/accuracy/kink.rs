@@ -12,7 +12,6 @@ use contact::contact_shape::ContactState;
 use contact::equilibrium::ContactStatus;
 use nonsmooth::verify::seeded_direction;
 use nonsmooth::{Accuracy, NonsmoothObjective, Request, StateSolver, Vector};
-use problems::commands::processes::SharedState;
 use problems::commands::{ContactObjective, Failure};
 use problems::toy::{self, ToyObjective};
 use serde::Serialize;
@@ -64,7 +63,7 @@ impl Line<'_> {
         &self.start + &self.direction * t
     }
 
-    fn state(&self, t: f64) -> Result<ContactState<SharedState>, Failure> {
+    fn state(&self, t: f64) -> Result<ContactState, Failure> {
         Ok(self.objective.solver().solve(&self.at(t), None, Accuracy::TIGHTEST)?)
     }
 

@@ -3,7 +3,7 @@
 use crate::accuracy::extent::case;
 use crate::scaling::{SceneName, Variant};
 use contact::contact_shape::ContactShape;
-use contact::cost::{Measure, PressureMeasure};
+use contact::cost::{Measure, NodeWeight, PressureMeasure};
 use contact::equilibrium::ContactProblem;
 use contact::scene::Scene;
 use problems::commands::{ContactObjective, Failure};
@@ -41,5 +41,5 @@ pub fn objective_by(variant: Variant, scene: Scene, measure: PressureMeasure) ->
 
 /// Σσ⁴.
 pub fn norm() -> PressureMeasure {
-    PressureMeasure::Norm { exponent: EXPONENT }
+    PressureMeasure::Norm { exponent: EXPONENT, weight: NodeWeight::Nodes }
 }

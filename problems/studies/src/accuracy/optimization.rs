@@ -8,7 +8,7 @@ use crate::accuracy::extent::{Extent, case};
 use crate::accuracy::objective::{norm, objective_of};
 use crate::scaling::SceneName;
 use contact::contact_objective::mean_height_coordinates;
-use contact::cost::PressureMeasure;
+use contact::cost::{NodeWeight, PressureMeasure};
 use nonsmooth::{AccuracyPolicy, BundleTrust, BundleTrustConfig, VariableScaling, Vector};
 use problems::commands::{ContactObjective, Failure, SolvedShape};
 use serde::Serialize;
@@ -199,7 +199,8 @@ fn peaks(scene: SceneName, mesh: usize, evaluations: usize) -> Result<Vec<PeakRo
         let SolvedShape { value: norm, peak_pressure: peak, .. } = SolvedShape::at(&reference, controls)?;
         Ok(PeakRow { measure, evaluations, seconds, peak, norm })
     };
-    let norms = [4.0, 8.0, 16.0].map(|exponent| (format!("Σσ^{exponent}"), PressureMeasure::Norm { exponent }));
+    let norms = [4.0, 8.0, 16.0]
+        .map(|exponent| (format!("Σσ^{exponent}"), PressureMeasure::Norm { exponent, weight: NodeWeight::Nodes }));
     let mut rows = vec![row("nothing (start)".into(), 0, 0.0, &reference.solver().start())?];
     for (measure, kind) in norms.into_iter().chain([("max σ".to_owned(), PressureMeasure::Peak)]) {
         let objective = objective_of(scene, mesh, kind)?;

@@ -1,6 +1,5 @@
 //! The numbers of docs/tutorial_seat.md are those of today's build.
 
-use clap::Parser;
 use problems::commands::{Arguments, execute};
 use scene_file::SceneFile;
 use serde_json::Value;
@@ -12,7 +11,7 @@ const PEAKS: f64 = 0.02;
 
 fn seat(options: &[&str]) -> Value {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/jack_seat.toml");
-    let arguments = Arguments::try_parse_from([&["contact3d", "--json"], options].concat()).unwrap();
+    let arguments = Arguments::try_parse_from([&["contact3d"], options, &["--json"]].concat()).unwrap();
     let open = || Ok((SceneFile::read(&path)?, Some(path.clone())));
     serde_json::from_str(&execute(open, &arguments).unwrap()).unwrap()
 }

@@ -139,6 +139,11 @@ impl Block {
         [x1, x2, self.lower[column] + (self.upper[column] - self.lower[column]) * share]
     }
 
+    /// Coordinates of all nodes in index order, mm.
+    pub fn points(&self) -> impl Iterator<Item = [f64; 3]> {
+        lattice::points([0; 3], self.grid.nodes()).map(|node| self.coordinates(node))
+    }
+
     /// Coordinates of the eight nodes of brick (i, j, k), in the order of [`crate::body::elasticity::brick`].
     pub fn brick(&self, brick: [usize; 3]) -> Nodes<f64> {
         lattice::corners(brick).map(|node| self.coordinates(node))

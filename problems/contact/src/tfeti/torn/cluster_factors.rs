@@ -240,7 +240,7 @@ mod tests {
         let half = 0.5_f64.sqrt();
         let row =
             |node: usize| (0..3).map(move |c| vec![(3 * (2 * node + 1) + c, half), (24 + 3 * 2 * node + c, -half)]);
-        let rows: Vec<scene_rows::Row> = glued.iter().flat_map(|&node| row(node)).collect();
+        let rows: Vec<scene_rows::SparseRow> = glued.iter().flat_map(|&node| row(node)).collect();
         (ClusterRows::new(&rows, 0..48, 24), vec![first, second])
     }
 

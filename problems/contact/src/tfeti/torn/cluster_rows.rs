@@ -4,7 +4,7 @@
 //! B_c u = 0:   all Helmert rows of the chosen nodes whose copies all lie in the cluster;   such rows are none of B_E
 //! ```
 
-use crate::tfeti::torn::scene_rows::Row;
+use crate::tfeti::torn::scene_rows::SparseRow;
 use std::ops::Range;
 
 /// B_c of one cluster.
@@ -27,7 +27,7 @@ pub struct MemberRows {
 
 impl ClusterRows {
     /// The parts of `rows` on the subdomains of a cluster of torn dofs `dofs`, `size` per subdomain.
-    pub fn new(rows: &[Row], dofs: Range<usize>, size: usize) -> Self {
+    pub fn new(rows: &[SparseRow], dofs: Range<usize>, size: usize) -> Self {
         let member = |first: usize| {
             let own =
                 || rows.iter().enumerate().flat_map(|(index, row)| row.iter().map(move |&(dof, v)| (index, dof, v)));

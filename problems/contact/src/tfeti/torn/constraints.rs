@@ -19,7 +19,7 @@ use crate::scene::Scene;
 use crate::tfeti::torn::cluster_rows::ClusterRows;
 use crate::tfeti::torn::distribution::Distribution;
 use crate::tfeti::torn::interface::{Interface, InterfaceBuilder};
-use crate::tfeti::torn::scene_rows::{BodyRows, EqualityRow, Row, SceneRows, first_subdomain};
+use crate::tfeti::torn::scene_rows::{BodyRows, EqualityRow, SceneRows, SparseRow, first_subdomain};
 use crate::tfeti::torn::vectors::RowVector;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -73,8 +73,9 @@ impl Constraints {
         let owned = |owner: usize| subdomains.contains(&owner);
         let (equality_count, own) = (all.equality.len(), interface.owned_count());
         let place = |(dof, value): &(usize, f64)| interface.place(*dof).map(|place| (place, *value));
-        let whole = |row: &Row| row.iter().filter_map(place).collect::<Row>();
-        let within = |row: &Row| row.iter().filter_map(place).filter(|(place, _)| *place < own).collect::<Row>();
+        let whole = |row: &SparseRow| row.iter().filter_map(place).collect::<SparseRow>();
+        let within =
+            |row: &SparseRow| row.iter().filter_map(place).filter(|(place, _)| *place < own).collect::<SparseRow>();
         let matrices = |kind: usize| {
             let equality = || all.equality.iter().map(|row| &row.entries);
             let contact = all.contact.iter().zip(&owners);
@@ -209,7 +210,7 @@ fn interface(all: &SceneRows, owners: &[usize], distribution: &Distribution, siz
     let owned: Range<usize> = size * subdomains.start..size * subdomains.end;
     let mut builder = InterfaceBuilder::default();
     if !distribution.is_alone() {
-        let dofs = |row: &'_ Row| row.iter().map(|(dof, _)| *dof).collect::<Vec<usize>>();
+        let dofs = |row: &'_ SparseRow| row.iter().map(|(dof, _)| *dof).collect::<Vec<usize>>();
         for dofs in all.equality.iter().map(|row| dofs(&row.entries)) {
             builder.needs(&owned, dofs.iter().copied());
             let touched: BTreeSet<usize> = dofs.iter().map(|dof| distribution.owner(dof / size)).collect();

@@ -46,7 +46,7 @@ impl BodyRows<'_> {
 }
 
 /// Entries (torn dof, value) of one row.
-pub type Row = Vec<(usize, f64)>;
+pub type SparseRow = Vec<(usize, f64)>;
 
 /// A row of B_E.
 pub struct EqualityRow {
@@ -55,7 +55,7 @@ pub struct EqualityRow {
     /// Its place among the rows of its owner.
     pub index: usize,
     /// Its entries.
-    pub entries: Row,
+    pub entries: SparseRow,
 }
 
 /// The rows of a scene that concern a process, before their dofs are numbered.
@@ -63,13 +63,13 @@ pub struct SceneRows {
     /// Rows of B_E that touch its subdomains, by ascending owner.
     pub equality: Vec<EqualityRow>,
     /// Rows of B_c of its clusters.
-    pub joined: Vec<Vec<Row>>,
+    pub joined: Vec<Vec<SparseRow>>,
     /// Number of rows of B_E of every subdomain.
     pub counts: Vec<usize>,
     /// Number of gluing rows.
     pub gluing_count: usize,
     /// All contact rows of B and B_D.
-    pub contact: Vec<[Row; 2]>,
+    pub contact: Vec<[SparseRow; 2]>,
     /// ν of every contact node.
     pub normalisation: Vec<f64>,
 }
@@ -87,7 +87,7 @@ impl SceneRows {
         let clusters = own.start * size / bodies[0].cluster_size..own.end * size / bodies[0].cluster_size;
         let mut joined = vec![Vec::new(); clusters.len()];
         for body in bodies {
-            gluing_count += equality_rows(body, |cluster: Option<usize>, entries: Row| {
+            gluing_count += equality_rows(body, |cluster: Option<usize>, entries: SparseRow| {
                 if let Some(cluster) = cluster {
                     if clusters.contains(&cluster) {
                         joined[cluster - clusters.start].push(entries);
@@ -118,13 +118,13 @@ impl SceneRows {
 }
 
 /// The first subdomain that a row touches.
-pub fn first_subdomain(row: &Row, size: usize) -> usize {
+pub fn first_subdomain(row: &SparseRow, size: usize) -> usize {
     row.iter().map(|(dof, _)| dof / size).min().unwrap_or(0)
 }
 
 /// Visits the rows of supports and gluing of one body, with the cluster whose row of B_c they are; returns the number of gluing rows of
 /// B_E.
-fn equality_rows(body: &BodyRows<'_>, mut visit: impl FnMut(Option<usize>, Row)) -> usize {
+fn equality_rows(body: &BodyRows<'_>, mut visit: impl FnMut(Option<usize>, SparseRow)) -> usize {
     let mut gluing_count = 0;
     for node in lattice::points([0; 3], body.grid.nodes()) {
         let copies = body.copies(node);
@@ -136,7 +136,7 @@ fn equality_rows(body: &BodyRows<'_>, mut visit: impl FnMut(Option<usize>, Row))
             }
             for last in 1..copies.len() {
                 let scale = 1.0 / ((last * (last + 1)) as f64).sqrt();
-                let mut row: Row = copies[..last].iter().map(|first| (first + component, scale)).collect();
+                let mut row: SparseRow = copies[..last].iter().map(|first| (first + component, scale)).collect();
                 row.push((copies[last] + component, -(last as f64) * scale));
                 visit(joined, row);
                 gluing_count += usize::from(joined.is_none());
@@ -168,8 +168,8 @@ fn contact_parts(scene: &Scene, bodies: &[BodyRows<'_>], [i, j]: [usize; 2], com
 }
 
 /// A row of B and of B_D.
-fn contact_row(parts: &[ContactPart], nu: f64) -> [Row; 2] {
-    // Row entries s/(mν); weights ω s/(mν) with Σ ω/(mν²) = 1 and ω proportional to the body's compliance.
+fn contact_row(parts: &[ContactPart], nu: f64) -> [SparseRow; 2] {
+    // SparseRow entries s/(mν); weights ω s/(mν) with Σ ω/(mν²) = 1 and ω proportional to the body's compliance.
     let total: f64 = parts.iter().map(|part| part.compliance / (part.copies.len() as f64 * nu * nu)).sum();
     let (mut row, mut weights) = (Vec::new(), Vec::new());
     for part in parts {

@@ -84,3 +84,33 @@ fn complementarity_cone_and_dissipation_at_every_node() {
         }
     }
 }
+
+#[test]
+fn bodies_that_just_touch_without_a_load_have_no_forces_and_no_displacements() {
+    let material = Material::new(2.1e5, 0.3).unwrap();
+    // Overlaps by two roundings of the height, and a body that stands on supports alone.
+    let mut scene =
+        block([20.0; 2], 20.0, [4; 3], material, CounterSurface::Plane { height: 20.0 * (1.0 - 2.0 * f64::EPSILON) });
+    scene.subdomains = [2; 3];
+    scene.friction = 0.3;
+    scene.lower.supports = vec![support(Face::Bottom, ALL)];
+    let kinds = [SolverKind::Auto, SolverKind::Newton, SolverKind::Direct, SolverKind::AugmentedLagrangian];
+    for kind in kinds {
+        let (shape, state) = solve(&scene, kind);
+        let forces = &state.forces;
+        assert!(forces.normal.iter().all(|force| *force == 0.0), "{kind:?}: {:?}", forces.normal);
+        assert!(forces.tangential.iter().flatten().all(|force| *force == 0.0), "{kind:?}");
+        assert_eq!(forces.counts().open, forces.status.len(), "{kind:?}");
+        for body in shape.bodies(&state).unwrap() {
+            assert!(body.displacement.iter().flatten().all(|component| *component == 0.0), "{kind:?}");
+        }
+    }
+    // An overlap of a nanometre is one that the bodies feel: uniform compression between plane and support.
+    scene.counter_surface = CounterSurface::Plane { height: 20.0 - 1e-6 };
+    for kind in kinds {
+        let (_, state) = solve(&scene, kind);
+        let force = state.forces.total_normal_force();
+        let bar = 2.1e5 * 400.0 * 1e-6 / 20.0;
+        assert!(force > bar && force < 1.35 * bar, "{kind:?}: {force} N, a bar {bar} N");
+    }
+}

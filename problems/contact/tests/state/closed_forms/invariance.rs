@@ -2,8 +2,8 @@
 
 use contact::body::elasticity::Material;
 use contact::body::mesh::Face;
-use contact::contact_shape::{AnyState, ContactShape, ContactWarmStart, SolverKind};
-use contact::cost::{PressureCost, PressureMeasure};
+use contact::contact_shape::{ContactShape, ContactWarmStart, SolverKind};
+use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
 use contact::scene::{Load, Scene, hertz, signorini};
 use nonsmooth::{Accuracy, CompositeObjective, Evaluation, StateSolver, Vector};
@@ -18,14 +18,15 @@ struct Outcome {
 
 fn evaluate(scene: &Scene, control: &Vector, kind: SolverKind) -> Outcome {
     let shape = ContactShape::new(scene.clone(), kind).unwrap();
-    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
+    let cost = PressureCost::new(
+        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
+        &shape.problem().boundary,
+    )
+    .unwrap();
     let objective = CompositeObjective::new(shape, cost);
     let state = objective.solver().solve(control, None, Accuracy::TIGHTEST).unwrap();
     let evaluation = objective.differentiate(control, &state).unwrap();
-    let displacement = match &state.solution {
-        AnyState::Torn(state) => state.displacement().to_vec(),
-        AnyState::Direct(_) => Vec::new(),
-    };
+    let displacement = state.solution.torn().map_or_else(Vec::new, |state| state.displacement().to_vec());
     Outcome { evaluation, status: state.forces.status.clone(), opening: state.forces.opening.clone(), displacement }
 }
 

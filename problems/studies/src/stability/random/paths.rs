@@ -1,13 +1,12 @@
 //! The paths to a state of a random scene, and what is found of each.
 
 use contact::WorkEstimate;
-use contact::communication::InProcess;
-use contact::contact_shape::{AnySolver, SolverKind, Wanted};
+use contact::contact_shape::ContactState;
 use contact::direct::{CompliantContact, DirectSolver};
 use contact::equilibrium::{ContactForces, ContactProblem, ContactSolver};
 use contact::error::ContactError;
 use contact::linear::vector::norm;
-use contact::tfeti::PreconditionerKind;
+use contact::solvers::{AnySolver, Processes, SolverKind, SolverPlan};
 use scene_file::Case;
 use std::sync::Arc;
 
@@ -87,26 +86,9 @@ impl Examined {
     }
 
     fn at(&self, kind: SolverKind, controls: &[f64]) -> PathResult {
-        let solver = AnySolver::new(
-            Arc::clone(&self.problem),
-            kind,
-            PreconditionerKind::default(),
-            Wanted::States,
-            Arc::new(InProcess),
-        );
-        let solved = solver.and_then(|solver| {
-            let state = solver.solve(controls, None, TOLERANCE)?;
-            let friction = self.problem.boundary.has_friction();
-            let exponent = f64::from(EXPONENT);
-            let mut dual = vec![0.0; self.problem.boundary.row_count];
-            for (point, force) in self.problem.boundary.points.iter().zip(&state.forces.normal) {
-                dual[point.start] = exponent * (force.max(0.0) / point.area).powi(EXPONENT - 1) / point.area;
-            }
-            solver.sensitivities(&state.solution, &dual, 1e-11)?;
-            let contraction = if friction { solver.estimate_contraction(&state.solution, 20).ok() } else { None };
-            Ok((state, contraction))
-        });
-        let (state, contraction) = solved.map_err(|error| error.to_string())?;
+        let plan = SolverPlan::new(self.problem.scene.clone(), kind);
+        let solver = Processes::alone().solver(plan).map_err(|error| error.to_string())?;
+        let (state, contraction) = self.solved(&solver, controls).map_err(|error| error.to_string())?;
         Ok(Found {
             path: format!("{kind:?}, {:?}", state.solver),
             objective: self.objective(&state.forces.normal),
@@ -116,9 +98,22 @@ impl Examined {
         })
     }
 
-    /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without
-    /// its limit on work, and so is its residual; the residuals of the other paths are computed by a routine of the
-    /// study.
+    /// A state with all that a path asks of its solver: sensitivities, and the contraction where there is an estimate of it.
+    fn solved(&self, solver: &AnySolver, controls: &[f64]) -> Result<(ContactState, Option<f64>), ContactError> {
+        let state = solver.solve(controls, None, TOLERANCE)?;
+        let friction = self.problem.boundary.has_friction();
+        let exponent = f64::from(EXPONENT);
+        let mut dual = vec![0.0; self.problem.boundary.row_count];
+        for (point, force) in self.problem.boundary.points.iter().zip(&state.forces.normal) {
+            dual[point.start] = exponent * (force.max(0.0) / point.area).powi(EXPONENT - 1) / point.area;
+        }
+        solver.sensitivities(&state.solution, &dual, 1e-11)?;
+        let contraction = if friction { solver.estimate_contraction(&state.solution, 20).ok() } else { None };
+        Ok((state, contraction))
+    }
+
+    /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without its limit
+    /// on work, and so is its residual; the residuals of the other paths are computed by a routine of the study.
     pub fn by_cone_programs(&self) -> PathResult {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));

@@ -1,27 +1,30 @@
-//! A contact solver whose work all processes of a run share; in a single process, the solver itself.
+//! A contact solver whose kind is chosen when the program runs, and whose work all processes of a run share.
 
-use crate::commands::processes::announcement::{Id, Shape, Task};
-use crate::commands::processes::leader::Leader;
-use contact::contact_shape::{AnySolver, AnyState};
-use contact::equilibrium::{
+use crate::direct::DirectSolver;
+use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Sensitivities, SolvedBody, SolverState,
     Tangents,
 };
-use contact::error::ContactError;
+use crate::error::ContactError;
+use crate::solvers::announcement::{Id, Shape, Task};
+use crate::solvers::leader::Leader;
+use crate::solvers::own_solver::OwnSolver;
+use crate::solvers::own_state::OwnState;
+use crate::tfeti::{TornState, TotalFeti};
 use std::sync::Arc;
 
-/// A contact solver. Where there are several processes, this is the part of the first: each call is announced to the others, which
-/// make the same call.
+/// A contact solver of any kind. Where there are several processes, this is the part of the first: each call is announced to the
+/// others, which make the same call.
 #[derive(Debug)]
-pub struct SharedSolver {
-    own: AnySolver,
+pub struct AnySolver {
+    own: OwnSolver,
     shared: Option<Name>,
 }
 
-/// What a [`SharedSolver`] keeps of a solved shape.
+/// What an [`AnySolver`] keeps of a solved shape.
 #[derive(Debug)]
-pub struct SharedState {
-    own: AnyState,
+pub struct AnyState {
+    own: OwnState,
     shared: Option<Name>,
 }
 
@@ -38,25 +41,47 @@ impl Drop for Name {
     }
 }
 
-impl From<AnySolver> for SharedSolver {
+impl From<OwnSolver> for AnySolver {
     /// The solver of the only process.
-    fn from(own: AnySolver) -> Self {
+    fn from(own: OwnSolver) -> Self {
         Self { own, shared: None }
     }
 }
 
-impl SharedSolver {
+impl From<TotalFeti> for AnySolver {
+    fn from(solver: TotalFeti) -> Self {
+        OwnSolver::from(solver).into()
+    }
+}
+
+impl From<DirectSolver> for AnySolver {
+    fn from(solver: DirectSolver) -> Self {
+        OwnSolver::from(solver).into()
+    }
+}
+
+impl AnyState {
+    /// The state of total FETI; none of direct condensation.
+    pub fn torn(&self) -> Option<&TornState> {
+        match &self.own {
+            OwnState::Torn(state) => Some(state),
+            OwnState::Direct(_) => None,
+        }
+    }
+}
+
+impl AnySolver {
     /// The part of the first process of a solver that all processes have prepared.
-    pub fn led(own: AnySolver, id: Id, leader: Arc<Leader>) -> Self {
+    pub(super) fn led(own: OwnSolver, id: Id, leader: Arc<Leader>) -> Self {
         Self { own, shared: Some(Name { id, leader }) }
     }
 
     /// A call with a state of this solver.
     fn call<T>(
         &self,
-        state: &SharedState,
+        state: &AnyState,
         task: impl FnOnce(Id, Id) -> Task,
-        own: impl FnOnce(&AnySolver, &AnyState) -> Result<T, ContactError>,
+        own: impl FnOnce(&OwnSolver, &OwnState) -> Result<T, ContactError>,
         products: impl FnOnce(&T) -> usize,
     ) -> Result<T, ContactError> {
         match (&self.shared, &state.shared) {
@@ -67,7 +92,7 @@ impl SharedSolver {
     }
 }
 
-impl SolverState for SharedState {
+impl SolverState for AnyState {
     fn warm_start(&self) -> ContactWarmStart {
         match &self.shared {
             None => self.own.warm_start(),
@@ -79,8 +104,8 @@ impl SolverState for SharedState {
     }
 }
 
-impl ContactSolver for SharedSolver {
-    type State = SharedState;
+impl ContactSolver for AnySolver {
+    type State = AnyState;
 
     fn problem(&self) -> &ContactProblem {
         self.own.problem()
@@ -99,50 +124,50 @@ impl ContactSolver for SharedSolver {
         controls: &[f64],
         start: Option<&ContactWarmStart>,
         tolerance: f64,
-    ) -> Result<ContactState<SharedState>, ContactError> {
+    ) -> Result<ContactState<AnyState>, ContactError> {
         let own = || self.own.solve(controls, start, tolerance);
         let Some(Name { id, leader }) = &self.shared else {
-            return Ok(own()?.map(|own| SharedState { own, shared: None }));
+            return Ok(own()?.map(|own| AnyState { own, shared: None }));
         };
         let of = Name { id: leader.name(), leader: Arc::clone(leader) };
         let shape = Shape { controls: controls.to_vec(), start: start.cloned(), tolerance };
-        let products = |state: &ContactState<AnyState>| state.work().dual_operator_applications;
+        let products = |state: &ContactState<OwnState>| state.work().dual_operator_applications;
         let state = leader.agreed(Task::Solve(*id, of.id, Box::new(shape)), own, products)?;
-        Ok(state.map(|own| SharedState { own, shared: Some(of) }))
+        Ok(state.map(|own| AnyState { own, shared: Some(of) }))
     }
 
     fn sensitivities(
         &self,
-        state: &SharedState,
+        state: &AnyState,
         direction: &[f64],
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError> {
         let task = |solver, state| Task::Sensitivities(solver, state, direction.to_vec(), tolerance);
-        let own = |solver: &AnySolver, state: &AnyState| solver.sensitivities(state, direction, tolerance);
+        let own = |solver: &OwnSolver, state: &OwnState| solver.sensitivities(state, direction, tolerance);
         self.call(state, task, own, |result| result.applications)
     }
 
-    fn tangents(&self, state: &SharedState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
+    fn tangents(&self, state: &AnyState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
         let task = |solver, state| Task::Tangents(solver, state, changes.to_vec(), tolerance);
-        let own = |solver: &AnySolver, state: &AnyState| solver.tangents(state, changes, tolerance);
+        let own = |solver: &OwnSolver, state: &OwnState| solver.tangents(state, changes, tolerance);
         self.call(state, task, own, |result| result.applications)
     }
 
-    fn diagnose(&self, state: &SharedState) -> Result<Diagnosis, ContactError> {
-        self.call(state, Task::Diagnose, AnySolver::diagnose, |_| 0)
+    fn diagnose(&self, state: &AnyState) -> Result<Diagnosis, ContactError> {
+        self.call(state, Task::Diagnose, OwnSolver::diagnose, |_| 0)
     }
 
-    fn estimate_contraction(&self, state: &SharedState, max_products: usize) -> Result<f64, ContactError> {
+    fn estimate_contraction(&self, state: &AnyState, max_products: usize) -> Result<f64, ContactError> {
         let task = |solver, state| Task::Contraction(solver, state, max_products);
         self.call(state, task, |solver, state| solver.estimate_contraction(state, max_products), |_| 0)
     }
 
     /// Every process condenses whole bodies, so that none waits for another.
-    fn force_rounding(&self, state: &SharedState) -> Result<f64, ContactError> {
+    fn force_rounding(&self, state: &AnyState) -> Result<f64, ContactError> {
         self.own.force_rounding(&state.own)
     }
 
-    fn bodies(&self, state: &SharedState) -> Result<Vec<SolvedBody>, ContactError> {
-        self.call(state, Task::Bodies, AnySolver::bodies, |_| 0)
+    fn bodies(&self, state: &AnyState) -> Result<Vec<SolvedBody>, ContactError> {
+        self.call(state, Task::Bodies, OwnSolver::bodies, |_| 0)
     }
 }

@@ -1,22 +1,23 @@
 //! The objective Θ of a contact problem as the commands solve it, and shapes with their contact states.
 
 use crate::commands::arguments::Arguments;
+use crate::commands::facts::Fact;
 use crate::commands::failure::Failure;
-use crate::commands::processes::{Processes, SharedSolver, SharedState};
+use crate::commands::numbers::plain_unit;
 use contact::communication::InProcess;
-use contact::contact_objective::{self, ContactCost};
-use contact::contact_shape::{ContactState, SolverKind, Wanted};
+use contact::contact_objective::ContactCost;
+use contact::contact_shape::{ContactShape, ContactState};
 use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::fields::Fields;
 use contact::memory;
 use contact::plausibility::Warning;
-use contact::vtk::{Note, NoteValue};
+use contact::solvers::{Processes, SolverKind, Wanted};
+use exchange::vtk::{Note, NoteValue};
 use nonsmooth::{Accuracy, StateSolver, Vector};
 use scene_file::{Case, MethodName};
 
-/// Θ of a scene, by all processes together.
-pub type ContactObjective = contact_objective::ContactObjective<SharedSolver>;
+pub use contact::contact_objective::ContactObjective;
 
 /// Θ of a case, for single shapes.
 ///
@@ -43,7 +44,7 @@ pub fn wanted(case: &Case) -> Wanted {
 }
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
-    let shape = processes.shape(case, wanted)?;
+    let shape = ContactShape::by(processes.solver(case.plan(wanted))?);
     let measure = case.objective.measure(shape.problem())?;
     Ok(ContactObjective::new(shape, measure)?)
 }
@@ -55,20 +56,15 @@ fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<C
 /// [`SceneError`] naming the field.
 pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result<(), SceneError> {
     if processes.is_alone() {
-        let columns = if wanted == Wanted::Jacobians { case.scene.control_points.iter().product() } else { 0 };
-        memory::check(&case.scene, case.solver, case.preconditioner, columns, &InProcess)?;
+        memory::check(&case.plan(wanted), &InProcess)?;
     }
     let problem = ContactProblem::new(case.scene.clone())?;
     ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
 }
 
-/// What a file of fields says of the objective: its value, and the units of all that it holds.
-pub fn objective_notes(objective: &ContactObjective, value: f64) -> [Note; 2] {
-    let unit = objective.unit().replace(['{', '}'], "");
-    [
-        Note::new("objective", NoteValue::Number(value)),
-        Note::new("units", NoteValue::Text(format!("objective {unit}; lengths mm; stresses MPa"))),
-    ]
+/// What a file of fields says of the objective.
+pub fn objective_note(objective: &ContactObjective, value: f64) -> Note {
+    Note::new("objective", plain_unit(&objective.unit()), NoteValue::Number(value))
 }
 
 /// A shape, its state as accurate as rounding allows, and the objective there.
@@ -77,7 +73,7 @@ pub struct SolvedShape {
     /// Control heights, mm.
     pub controls: Vector,
     /// The contact state.
-    pub state: ContactState<SharedState>,
+    pub state: ContactState,
     /// Θ.
     pub value: f64,
     /// Largest contact pressure, MPa.
@@ -116,15 +112,19 @@ pub fn checks(
     shape: &SolvedShape,
     arguments: &Arguments,
 ) -> Result<Vec<Warning>, Failure> {
-    if arguments.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
+    if arguments.results.no_checks { Ok(Vec::new()) } else { Ok(objective.solver().warnings(&shape.state)?) }
 }
 
-/// A solver and why it was taken.
-pub fn solver_in_words(solver: SolverKind, reason: Option<&str>) -> String {
-    let name = match solver {
+/// The solver of a state and why it was taken.
+pub fn solver_facts(state: &ContactState) -> Result<Vec<Fact>, Failure> {
+    let name = match state.solver {
         SolverKind::Direct => "direct condensation",
         SolverKind::AugmentedLagrangian => "total FETI, successive approximations",
         _ => "total FETI, semismooth Newton",
     };
-    reason.map_or_else(|| name.into(), |reason| format!("{name}; {reason}"))
+    let words = state.reason.as_ref().map_or_else(|| name.into(), |reason| format!("{name}; {reason}"));
+    Ok(vec![
+        Fact::object("solver", "solver", &state.solver, words)?.detail(),
+        Fact::json("solver_reason", &state.reason)?,
+    ])
 }

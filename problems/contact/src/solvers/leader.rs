@@ -1,11 +1,14 @@
 //! The first process of several: it alone runs the command, and announces to the others what all do together.
 
-use crate::commands::failure::Failure;
-use crate::commands::processes::announcement::{Announcement, Id, Plan, Task};
-use crate::commands::processes::traffic::{Counted, Usage};
-use contact::communication::Communication;
-use contact::contact_shape::{AnySolver, ContactShape, SolverKind};
-use contact::error::{ContactError, SceneError};
+use crate::communication::Communication;
+use crate::equilibrium::ContactProblem;
+use crate::error::{ContactError, SceneError};
+use crate::memory;
+use crate::solvers::announcement::{Announcement, Id, Task};
+use crate::solvers::own_solver::OwnSolver;
+use crate::solvers::traffic::{Counted, Usage};
+use crate::solvers::{SolverKind, SolverPlan};
+use crate::tfeti::TornOptions;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The first process of several.
@@ -16,13 +19,13 @@ pub struct Leader {
     /// For the solvers.
     counted: Arc<Counted>,
     /// What is known of the others. Locked while a task is under way: tasks follow each other in all processes.
-    state: Mutex<State>,
+    state: Mutex<Progress>,
     /// What nobody needs any longer, to be told with the next task.
     released: Mutex<Vec<Id>>,
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct Progress {
     /// The last name that was given.
     last: Id,
     /// Products with the dual operator so far.
@@ -43,6 +46,11 @@ impl Leader {
         Self { announcing, counted, state: Mutex::default(), released: Mutex::default() }
     }
 
+    /// What the solvers communicate by.
+    fn connection(&self) -> Arc<dyn Communication> {
+        Arc::<Counted>::clone(&self.counted)
+    }
+
     /// A name for a solver or a state.
     pub fn name(&self) -> Id {
         let mut state = lock(&self.state);
@@ -56,7 +64,7 @@ impl Leader {
     }
 
     /// Announces a task and does the own part of it. No other task begins before it has ended.
-    fn announced<T>(&self, task: Task, own: impl FnOnce(&mut State) -> T) -> Result<T, String> {
+    fn announced<T>(&self, task: Task, own: impl FnOnce(&mut Progress) -> T) -> Result<T, String> {
         let mut state = lock(&self.state);
         let released = std::mem::take(&mut *lock(&self.released));
         Announcement { task, released }.tell(&*self.announcing)?;
@@ -99,12 +107,12 @@ impl Leader {
     /// Prepares a solver in all processes; its name goes with it.
     ///
     /// # Errors
-    /// As [`ContactShape::for_use`]; [`SceneError::OtherProcess`] if it fails in another process only.
-    pub fn prepare(&self, plan: Plan) -> Result<(AnySolver, Id), SceneError> {
+    /// As [`prepared`]; [`SceneError::OtherProcess`] if it fails in another process only.
+    pub fn prepare(&self, plan: SolverPlan) -> Result<(OwnSolver, Id), SceneError> {
         let id = self.name();
         let (own, other) = self
             .announced(Task::Prepare(id, Box::new(plan.clone())), |_| {
-                let own = prepared(plan, Arc::clone(&self.counted));
+                let own = prepared(plan, self.connection());
                 let other = self.agree(own.as_ref().err().map(ToString::to_string));
                 (own, other)
             })
@@ -123,13 +131,13 @@ impl Leader {
     /// What the processes have sent and used so far, in a run by a solver.
     ///
     /// # Errors
-    /// [`Failure::Computation`] if the task has no form in bytes.
-    pub fn measure(&self, solver: SolverKind) -> Result<Usage, Failure> {
+    /// [`ContactError::OtherProcess`] if the task has no form in bytes.
+    pub fn measure(&self, solver: SolverKind) -> Result<Usage, ContactError> {
         let measured = self.announced(Task::Measure, |state| {
             let figures = self.counted.figures().gather(&*self.announcing);
             Usage::new(&figures, state.products, solver)
         });
-        measured.map_err(Failure::Computation)
+        measured.map_err(|reason| ContactError::OtherProcess { reason })
     }
 
     /// Tells the other processes that the run has ended. They hear nothing after that.
@@ -141,10 +149,27 @@ impl Leader {
     }
 }
 
-/// A solver as a plan describes it.
-pub fn prepared(plan: Plan, communication: Arc<Counted>) -> Result<AnySolver, SceneError> {
-    let Plan { scene, kind, preconditioner, wanted } = plan;
-    ContactShape::for_use(scene, kind, preconditioner, wanted, communication).map(ContactShape::into_solver)
+/// The solver of a plan in this process. Where there are several processes, all of them prepare it: total FETI shares the subdomains
+/// among them, direct condensation is repeated by each.
+///
+/// # Errors
+/// [`SceneError`] for a bad field, a scene that needs more memory than there is, clusters that the subdomains do not make, or a size
+/// whose symbolic analysis fails.
+pub fn prepared(plan: SolverPlan, communication: Arc<dyn Communication>) -> Result<OwnSolver, SceneError> {
+    plan.scene.validate()?;
+    let clusters = plan.cluster_shape()?;
+    plan.check_processes(communication.size())?;
+    memory::check(&plan, &*communication)?;
+    let SolverPlan { scene, kind, preconditioner, wanted, clusters: count } = plan;
+    let problem = Arc::new(ContactProblem::new(scene)?);
+    let options = TornOptions { preconditioner, clusters, communication };
+    OwnSolver::new(problem, kind, options, wanted).map_err(|error| match error {
+        ContactError::Clusters { reason, .. } => {
+            let allowed = format!("clusters that are held together: {reason}");
+            SceneError::out_of_range("solver.clusters", count.unwrap_or_default(), allowed)
+        }
+        error => SceneError::out_of_range("mesh.bricks", error, "a size that can be factored"),
+    })
 }
 
 /// Sets the number of threads of this process.

@@ -1,19 +1,19 @@
-//! What a solver of any kind keeps of a solved shape.
+//! What the solver of one process keeps of a solved shape.
 
 use crate::direct::DirectState;
 use crate::equilibrium::{ContactWarmStart, SolverState};
 use crate::tfeti::TornState;
 
-/// What a solver of any kind keeps of a solved shape.
+/// What the solver of one process keeps of a solved shape.
 #[derive(Debug)]
-pub enum AnyState {
+pub enum OwnState {
     /// By total FETI.
     Torn(Box<TornState>),
     /// By direct condensation.
     Direct(Box<DirectState>),
 }
 
-impl SolverState for AnyState {
+impl SolverState for OwnState {
     fn warm_start(&self) -> ContactWarmStart {
         match self {
             Self::Torn(state) => state.warm_start(),
@@ -22,13 +22,13 @@ impl SolverState for AnyState {
     }
 }
 
-impl From<TornState> for AnyState {
+impl From<TornState> for OwnState {
     fn from(state: TornState) -> Self {
         Self::Torn(Box::new(state))
     }
 }
 
-impl From<DirectState> for AnyState {
+impl From<DirectState> for OwnState {
     fn from(state: DirectState) -> Self {
         Self::Direct(Box::new(state))
     }

@@ -1,7 +1,7 @@
 //! A series of grids: the PVD file that lists times, parts and files.
 
 use crate::vtk::VtkError;
-use crate::vtk::xml::attribute;
+use crate::vtk::xml::escaped;
 use std::fmt::Write;
 
 /// One line of the list.
@@ -28,7 +28,7 @@ pub fn collection(entries: &[Entry]) -> Result<String, VtkError> {
         if !time.is_finite() {
             return Err(VtkError::NotFinite { array: "times of the collection".to_owned(), index, value: *time });
         }
-        let (name, file) = (attribute("name of a part", name)?, attribute("file of a part", file)?);
+        let (name, file) = (escaped("name of a part", name)?, escaped("file of a part", file)?);
         // Writing to a string does not fail.
         let _ =
             writeln!(text, "<DataSet timestep=\"{time}\" group=\"\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>");

@@ -1,6 +1,6 @@
 //! One grid as the text of a VTU file.
 
-use crate::vtk::xml::{attribute, comment};
+use crate::vtk::xml::{comment, escaped};
 use crate::vtk::{Array, Note, NoteValue, UnstructuredGrid, Values, VtkError};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -35,18 +35,25 @@ pub fn unstructured(grid: &UnstructuredGrid) -> Result<String, VtkError> {
         let _ = writeln!(text, "</{section}>");
     }
     text += "<Points>\n";
-    write_bytes(&mut text, "Float64", "Points", 3, "", &float_bytes(grid.points.as_flattened()));
+    write_bytes(&mut text, "Float64", "Points", 3, [""; 2], &float_bytes(grid.points.as_flattened()));
     text += "</Points>\n<Cells>\n";
     // An index beyond 64 bits cannot occur: usize has at most as many.
     let connectivity = grid.cells.iter().flat_map(|cell| cell.points()).flat_map(|&point| (point as i64).to_le_bytes());
-    write_bytes(&mut text, "Int64", "connectivity", 1, "", &connectivity.collect::<Vec<u8>>());
+    write_bytes(&mut text, "Int64", "connectivity", 1, [""; 2], &connectivity.collect::<Vec<u8>>());
     let mut end = 0;
     let offsets = grid.cells.iter().flat_map(|cell| {
         end += cell.points().len() as i64;
         end.to_le_bytes()
     });
-    write_bytes(&mut text, "Int64", "offsets", 1, "", &offsets.collect::<Vec<u8>>());
-    write_bytes(&mut text, "UInt8", "types", 1, "", &grid.cells.iter().map(|cell| cell.kind()).collect::<Vec<u8>>());
+    write_bytes(&mut text, "Int64", "offsets", 1, [""; 2], &offsets.collect::<Vec<u8>>());
+    write_bytes(
+        &mut text,
+        "UInt8",
+        "types",
+        1,
+        [""; 2],
+        &grid.cells.iter().map(|cell| cell.kind()).collect::<Vec<u8>>(),
+    );
     text += "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
     Ok(text)
 }
@@ -58,41 +65,48 @@ fn active(arrays: &[Array]) -> Result<String, VtkError> {
         let fits =
             |array: &&Array| !matches!(array.values, Values::Integers(_)) && array.values.numbers().0 == components;
         if let Some(Array { name, .. }) = arrays.iter().find(fits) {
-            attributes += &format!(" {kind}=\"{}\"", attribute("name of an array", name)?);
+            attributes += &format!(" {kind}=\"{}\"", escaped("name of an array", name)?);
         }
     }
     Ok(attributes)
 }
 
-/// A field of one entry. A text is written by the numbers of its bytes with a zero at the end, the form of a string array.
-fn write_note(text: &mut String, Note { name, value }: &Note) -> Result<(), VtkError> {
-    let name = attribute("name of a note", name)?;
+/// A field of one entry.
+fn write_note(text: &mut String, Note { name, unit, value }: &Note) -> Result<(), VtkError> {
+    let (name, unit) = (escaped("name of a note", name)?, units_label(unit)?);
     let (kind, value) = match value {
         NoteValue::Integer(value) => ("Int32", value.to_string()),
         NoteValue::Number(value) => ("Float64", format!("{value:e}")),
-        NoteValue::Text(value) => {
-            ("String", value.bytes().chain([0]).map(|byte| byte.to_string()).collect::<Vec<_>>().join(" "))
-        }
     };
     // Writing to a string does not fail.
     let _ = writeln!(
         text,
-        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{value}</DataArray>"
+        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfTuples=\"1\" format=\"ascii\">{value}{unit}</DataArray>"
     );
     Ok(())
 }
 
-fn write_array(text: &mut String, Array { name, values }: &Array) -> Result<(), VtkError> {
-    let name = attribute("name of an array", name)?;
+/// VTK's key for the unit of an array. It stands after the numbers: meshio takes the text before the first key for the numbers.
+fn units_label(unit: &str) -> Result<String, VtkError> {
+    if unit.is_empty() {
+        return Ok(String::new());
+    }
+    let unit = escaped("unit", unit)?;
+    Ok(format!("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{unit}</InformationKey>"))
+}
+
+fn write_array(text: &mut String, Array { name, unit, values }: &Array) -> Result<(), VtkError> {
+    let (name, unit) = (escaped("name of an array", name)?, units_label(unit)?);
     if let Values::Integers(values) = values {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        write_bytes(text, "Int32", &name, 1, "", &bytes);
+        write_bytes(text, "Int32", &name, 1, ["", &unit], &bytes);
         return Ok(());
     }
     let (components, numbers) = values.numbers();
     let named = if components == 6 { &TENSOR_COMPONENTS[..] } else { &[] };
-    let names = named.iter().enumerate().map(|(index, name)| format!(" ComponentName{index}=\"{name}\""));
-    write_bytes(text, "Float64", &name, components, &names.collect::<String>(), &float_bytes(numbers));
+    let names: String =
+        named.iter().enumerate().map(|(index, name)| format!(" ComponentName{index}=\"{name}\"")).collect();
+    write_bytes(text, "Float64", &name, components, [&names, &unit], &float_bytes(numbers));
     Ok(())
 }
 
@@ -100,15 +114,17 @@ fn float_bytes(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// One DataArray element; `more`: further attributes, each with a blank before it.
-fn write_bytes(text: &mut String, kind: &str, name: &str, components: usize, more: &str, bytes: &[u8]) {
+/// One DataArray element; `more`: further attributes, each with a blank before it, and what stands after the numbers.
+fn write_bytes(text: &mut String, kind: &str, name: &str, components: usize, more: [&str; 2], bytes: &[u8]) {
     let mut block = Vec::with_capacity(8 + bytes.len());
     block.extend((bytes.len() as u64).to_le_bytes());
     block.extend_from_slice(bytes);
     // VTK leaves the number out where it is one; some readers make columns of what has it.
     let components = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+    let [attributes, keys] = more;
     // Writing to a string does not fail.
-    let _ = write!(text, "<DataArray type=\"{kind}\" Name=\"{name}\"{components}{more} format=\"binary\">");
+    let _ = write!(text, "<DataArray type=\"{kind}\" Name=\"{name}\"{components}{attributes} format=\"binary\">");
     STANDARD.encode_string(&block, text);
+    *text += keys;
     *text += "</DataArray>\n";
 }

@@ -6,7 +6,9 @@
 //! ```
 //! The first array of numbers and the first one of vectors on points or cells are the active ones: what viewers show at first.
 //! Formats: *VTK File Formats*, docs.vtk.org; hexahedra, quadrilaterals and the order of tensor components (XX, YY, ZZ, XY, YZ,
-//! XZ) as defined there. Floating-point values are written as they are, without rounding. Knows nothing of contact.
+//! XZ) as defined there. Floating-point values are written as they are, without rounding.
+//!
+//! Units are VTK's own key of an array, `UNITS_LABEL`. There are no arrays of text: meshio 5.3.5 refuses files that have one.
 
 mod collection;
 mod grid;

@@ -1,9 +1,8 @@
 //! What the first process announces to the others: the next task that all of them do together.
 
-use contact::communication::Communication;
-use contact::contact_shape::{ContactWarmStart, SolverKind, Wanted};
-use contact::scene::Scene;
-use contact::tfeti::PreconditionerKind;
+use crate::communication::Communication;
+use crate::equilibrium::ContactWarmStart;
+use crate::solvers::SolverPlan;
 use serde::{Deserialize, Serialize};
 
 /// Name of a solver or of a state, the same in all processes.
@@ -15,7 +14,7 @@ pub enum Task {
     /// Use so many threads.
     Threads(usize),
     /// Prepare the solver of a scene, which has this name from now on.
-    Prepare(Id, Box<Plan>),
+    Prepare(Id, Box<SolverPlan>),
     /// Solve a shape; its state has the second name from now on.
     Solve(Id, Id, Box<Shape>),
     /// Sensitivities of a state for a dual, to a tolerance.
@@ -34,19 +33,6 @@ pub enum Task {
     Measure,
     /// The run has ended.
     End,
-}
-
-/// A scene and how it is to be solved.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
-    /// The scene, with all that its file refers to.
-    pub scene: Scene,
-    /// The contact solver.
-    pub kind: SolverKind,
-    /// Its preconditioner.
-    pub preconditioner: PreconditionerKind,
-    /// What the solver will be asked for.
-    pub wanted: Wanted,
 }
 
 /// A shape to be solved.
@@ -106,8 +92,10 @@ impl Announcement {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use contact::communication::Parcel;
-    use contact::scene::{hertz, signorini};
+    use crate::communication::Parcel;
+    use crate::scene::{Scene, hertz, signorini};
+    use crate::solvers::{SolverKind, Wanted};
+    use crate::tfeti::PreconditionerKind;
     use std::sync::Mutex;
 
     /// A process that hears what was sent before.
@@ -141,8 +129,14 @@ mod tests {
         let start = Some(ContactWarmStart::Multipliers(vec![f64::NEG_INFINITY, -0.0, 5e-324, f64::MAX]));
         let shape = |controls| Shape { controls, start: start.clone(), tolerance: f64::INFINITY };
         let plan = |scene: Scene| {
-            let (kind, preconditioner) = (SolverKind::Newton, PreconditionerKind::Lumped);
-            Box::new(Plan { scene, kind, preconditioner, wanted: Wanted::Jacobians })
+            let preconditioner = PreconditionerKind::Lumped;
+            let wanted = Wanted::Jacobians;
+            Box::new(SolverPlan {
+                preconditioner,
+                clusters: Some(8),
+                wanted,
+                ..SolverPlan::new(scene, SolverKind::Newton)
+            })
         };
         let tasks = [
             Task::Threads(3),

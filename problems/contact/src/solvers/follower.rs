@@ -1,12 +1,13 @@
 //! Every process but the first: it does what the first announces, until the run ends.
 
-use crate::commands::processes::announcement::{Announcement, Id, Shape, Task};
-use crate::commands::processes::leader::{prepared, use_threads};
-use crate::commands::processes::traffic::Counted;
-use contact::communication::Communication;
-use contact::contact_shape::{AnySolver, AnyState};
-use contact::equilibrium::{ContactSolver, SolverState};
-use contact::error::ContactError;
+use crate::communication::Communication;
+use crate::equilibrium::{ContactSolver, SolverState};
+use crate::error::ContactError;
+use crate::solvers::announcement::{Announcement, Id, Shape, Task};
+use crate::solvers::leader::{prepared, use_threads};
+use crate::solvers::own_solver::OwnSolver;
+use crate::solvers::own_state::OwnState;
+use crate::solvers::traffic::Counted;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -14,8 +15,8 @@ use std::sync::Arc;
 struct Follower {
     announcing: Arc<Counted>,
     counted: Arc<Counted>,
-    solvers: BTreeMap<Id, AnySolver>,
-    states: BTreeMap<Id, AnyState>,
+    solvers: BTreeMap<Id, OwnSolver>,
+    states: BTreeMap<Id, OwnState>,
 }
 
 /// Does what the first process announces, until that says that the run has ended. It prints nothing, and reads and writes no file.
@@ -45,7 +46,7 @@ impl Follower {
         match task {
             Task::Threads(threads) => use_threads(threads),
             Task::Prepare(id, plan) => {
-                let solver = prepared(*plan, Arc::clone(&self.counted));
+                let solver = prepared(*plan, Arc::<Counted>::clone(&self.counted));
                 self.agree(solver.as_ref().err());
                 self.solvers.extend(solver.ok().map(|solver| (id, solver)));
             }
@@ -61,11 +62,11 @@ impl Follower {
             Task::Tangents(solver, state, changes, tolerance) => {
                 self.derives(solver, state, |solver, state| solver.tangents(state, &changes, tolerance))?;
             }
-            Task::Diagnose(solver, state) => self.derives(solver, state, AnySolver::diagnose)?,
+            Task::Diagnose(solver, state) => self.derives(solver, state, OwnSolver::diagnose)?,
             Task::Contraction(solver, state, products) => {
                 self.derives(solver, state, |solver, state| solver.estimate_contraction(state, products))?;
             }
-            Task::Bodies(solver, state) => self.derives(solver, state, AnySolver::bodies)?,
+            Task::Bodies(solver, state) => self.derives(solver, state, OwnSolver::bodies)?,
             Task::WarmStart(state) => {
                 let _ = self.state(state)?.warm_start();
             }
@@ -82,7 +83,7 @@ impl Follower {
         &self,
         solver: Id,
         state: Id,
-        compute: impl FnOnce(&AnySolver, &AnyState) -> Result<T, ContactError>,
+        compute: impl FnOnce(&OwnSolver, &OwnState) -> Result<T, ContactError>,
     ) -> Result<(), String> {
         let result = compute(self.solver(solver)?, self.state(state)?);
         self.agree(result.err().as_ref());
@@ -96,11 +97,11 @@ impl Follower {
         announcing.agree(error.map(|error| format!("process {rank}: {}", error.to_string())));
     }
 
-    fn solver(&self, id: Id) -> Result<&AnySolver, String> {
+    fn solver(&self, id: Id) -> Result<&OwnSolver, String> {
         self.solvers.get(&id).ok_or_else(|| format!("there is no solver {id}"))
     }
 
-    fn state(&self, id: Id) -> Result<&AnyState, String> {
+    fn state(&self, id: Id) -> Result<&OwnState, String> {
         self.states.get(&id).ok_or_else(|| format!("there is no state {id}"))
     }
 }

@@ -1,7 +1,7 @@
 //! What processes send each other, and what each of them uses.
 
-use contact::communication::{Communication, Parcel};
-use contact::contact_shape::SolverKind;
+use crate::communication::{Communication, Parcel};
+use crate::solvers::SolverKind;
 use serde::Serialize;
 use std::fmt;
 use std::fs::read_to_string;
@@ -188,7 +188,7 @@ fn thread_nanoseconds() -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use contact::communication::InProcess;
+    use crate::communication::InProcess;
 
     #[test]
     fn bytes_and_messages_are_counted_once_per_call() {

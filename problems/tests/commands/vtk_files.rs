@@ -1,54 +1,17 @@
-//! VTU and PVD files read back: by `vtkio` number by number, and what the writer refuses.
+//! Fields of solved shapes as VTU and PVD files, read back number by number.
 
 use contact::body::elasticity::brick;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{PressureCost, PressureMeasure};
+use contact::cost::{NodeWeight, PressureCost, PressureMeasure};
 use contact::equilibrium::ContactStatus;
-use contact::fields::{FieldState, Fields, FieldsError, vtk_files};
+use contact::fields::Fields;
 use contact::scene::{Scene, hertz, signorini};
-use contact::vtk::{Array, Cell, Entry, Note, NoteValue, UnstructuredGrid, Values, VtkError, collection, unstructured};
+use exchange::vtk::{Note, NoteValue};
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{Accuracy, OutputJacobian, StateSolver};
+use problems::vtk_files::{FieldState, FieldsError, vtk_files};
 use std::collections::HashMap;
-use vtkio::model::{Attribute, CellType, DataSet, Piece, VertexNumbers};
-
-/// One array as read: components per entry, all numbers.
-type Read = (u32, Vec<f64>);
-
-/// A grid as read.
-struct ReadGrid {
-    points: Vec<[f64; 3]>,
-    kinds: Vec<CellType>,
-    /// Points of every cell.
-    cells: Vec<Vec<usize>>,
-    point_data: HashMap<String, Read>,
-    cell_data: HashMap<String, Read>,
-}
-
-fn read(text: &str) -> ReadGrid {
-    let file = vtkio::Vtk::parse_xml(text.as_bytes()).unwrap();
-    let DataSet::UnstructuredGrid { mut pieces, .. } = file.data else { panic!("not an unstructured grid") };
-    assert_eq!(pieces.len(), 1);
-    let Some(Piece::Inline(piece)) = pieces.pop() else { panic!("no inline piece") };
-    let VertexNumbers::XML { connectivity, offsets } = piece.cells.cell_verts else { panic!("legacy cells") };
-    let starts = std::iter::once(&0).chain(&offsets);
-    let cell =
-        |(&start, &end): (&u64, &u64)| connectivity[start as usize..end as usize].iter().map(|&p| p as usize).collect();
-    let arrays = |attributes: Vec<Attribute>| {
-        let array = |attribute| {
-            let Attribute::DataArray(array) = attribute else { panic!("a field") };
-            (array.name.clone(), (array.elem.num_comp(), array.data.cast_into().unwrap()))
-        };
-        attributes.into_iter().map(array).collect()
-    };
-    ReadGrid {
-        points: piece.points.into_vec().unwrap().as_chunks::<3>().0.to_vec(),
-        cells: starts.zip(&offsets).map(cell).collect(),
-        kinds: piece.cells.types,
-        point_data: arrays(piece.data.point),
-        cell_data: arrays(piece.data.cell),
-    }
-}
+use testset::kit::vtu_file::{ReadGrid, read};
 
 /// Fields of the flat start of a small scene, with sensitivities.
 fn fields(mut scene: Scene) -> Fields {
@@ -57,7 +20,11 @@ fn fields(mut scene: Scene) -> Fields {
     let shape = ContactShape::new(scene, SolverKind::Newton).unwrap();
     let control = shape.start();
     let state = shape.solve(&control, None, Accuracy::TIGHTEST).unwrap();
-    let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0 }, &shape.problem().boundary).unwrap();
+    let cost = PressureCost::new(
+        PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes },
+        &shape.problem().boundary,
+    )
+    .unwrap();
     let dual = shape.output_dual(&state, &cost.subgradient(&shape.outputs(&state)));
     let (heights, _) = shape.height_sensitivity(&state, &dual).unwrap();
     let mut fields = shape.fields(&state).unwrap();
@@ -83,7 +50,7 @@ fn bodies_are_read_back_bit_by_bit() {
         let bricks: usize = bodies.iter().map(|body| body.block.grid.brick_count()).sum();
         assert_eq!((nodes, bricks), (bodies.len() * 5 * 7 * 3, bodies.len() * 4 * 6 * 2));
         assert_eq!((found.points.len(), found.cells.len()), (nodes, bricks));
-        assert!(found.kinds.iter().all(|&kind| kind == CellType::Hexahedron));
+        assert!(found.kinds.iter().all(|&kind| kind == 12));
         let expected = [
             ("displacement", 3, flat(bodies.iter().flat_map(|body| body.displacement.clone()))),
             ("von_mises_nodal", 1, bodies.iter().flat_map(|body| body.nodal_von_mises.clone()).collect()),
@@ -137,7 +104,7 @@ fn contact_boundary_is_read_back_bit_by_bit() {
         let found = read(&files(&fields)["start_contact.vtu"]);
         assert_eq!(found.points, contact.position);
         assert_eq!((found.points.len(), found.cells.len()), (5 * 7, 4 * 6));
-        assert!(found.kinds.iter().all(|&kind| kind == CellType::Quad));
+        assert!(found.kinds.iter().all(|&kind| kind == 9));
         let mut area = 0.0;
         for cell in &found.cells {
             let turn = |i: usize, j: usize| {
@@ -200,13 +167,24 @@ fn the_list_names_every_file_with_its_time() {
 }
 
 #[test]
+fn states_need_names_of_files_and_finite_fields() {
+    let mut fields = fields(signorini().unwrap());
+    let state = |name| FieldState { time: 0.0, name, fields: &fields, notes: &[] };
+    for name in ["", "a/b", "..", "ä", "a b"] {
+        let refused = vtk_files(&[state(name)]);
+        assert!(matches!(refused, Err(FieldsError::Name { index: 0, .. })), "{name}");
+    }
+    assert!(matches!(vtk_files(&[state("a"), state("a")]), Err(FieldsError::Name { index: 1, .. })));
+    fields.bodies[0].stress[5][2] = f64::NAN;
+    let error = vtk_files(&[FieldState { time: 0.0, name: "start", fields: &fields, notes: &[] }]).unwrap_err();
+    assert_eq!(error.to_string(), "fields of state `start`: array `stress`: value 32 is NaN, allowed: finite numbers");
+}
+
+#[test]
 fn notes_and_active_arrays_stand_in_every_file() {
     let fields = fields(signorini().unwrap());
-    let notes = [
-        Note::new("objective", NoteValue::Number(4.5e17)),
-        Note::new("evaluation", NoteValue::Integer(7)),
-        Note::new("units", NoteValue::Text("µm".into())),
-    ];
+    let notes =
+        [Note::new("objective", "µm", NoteValue::Number(4.5e17)), Note::new("evaluation", "", NoteValue::Integer(7))];
     let files = vtk_files(&[FieldState { time: 7.0, name: "start", fields: &fields, notes: &notes }]).unwrap();
     let active = [
         [(Some("von_mises_nodal"), Some("displacement")), (Some("von_mises"), None)],
@@ -223,101 +201,14 @@ fn notes_and_active_arrays_stand_in_every_file() {
                 [attribute("type"), attribute("Name"), attribute("format"), array.text().unwrap()]
             })
             .collect();
-        // µ is the bytes 194 and 181.
-        let expected_notes = [
-            ["Float64", "objective", "ascii", "4.5e17"],
-            ["Int32", "evaluation", "ascii", "7"],
-            ["String", "units", "ascii", "194 181 109 0"],
-        ];
+        let expected_notes = [["Float64", "objective", "ascii", "4.5e17"], ["Int32", "evaluation", "ascii", "7"]];
         assert_eq!(found, expected_notes);
+        let types =
+            document.descendants().filter(|node| node.has_tag_name("DataArray")).map(|node| node.attribute("type"));
+        assert!(types.into_iter().all(|kind| kind != Some("String")), "meshio reads no text");
         for (section, expected) in ["PointData", "CellData"].into_iter().zip(expected) {
             let node = document.descendants().find(|node| node.has_tag_name(section)).unwrap();
             assert_eq!((node.attribute("Scalars"), node.attribute("Vectors")), expected, "{section}");
         }
     }
-    let grid = UnstructuredGrid {
-        notes: vec![Note::new("a", NoteValue::Number(f64::NAN))],
-        ..small("p", Values::Scalars(vec![0.0; 4]))
-    };
-    assert!(matches!(unstructured(&grid), Err(VtkError::NotFinite { index: 0, .. })));
-}
-
-/// One quadrilateral with one array of data on its points.
-fn small(name: &str, values: Values) -> UnstructuredGrid {
-    UnstructuredGrid {
-        description: "a < b & c".to_owned(),
-        notes: vec![],
-        points: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
-        cells: vec![Cell::Quad([0, 1, 2, 3])],
-        point_data: vec![Array::new(name, values)],
-        cell_data: vec![],
-    }
-}
-
-#[test]
-fn names_are_escaped_and_extreme_numbers_survive() {
-    let name = "σ < \"µ\" & 'λ' > 0";
-    let values = vec![f64::MAX, -f64::MIN_POSITIVE, 5e-324, -0.0];
-    let text = unstructured(&small(name, Values::Scalars(values.clone()))).unwrap();
-    let found = read(&text);
-    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
-    assert_eq!(bits(&found.point_data[name].1), bits(&values));
-    let document = roxmltree::Document::parse(&text).unwrap();
-    assert!(document.descendants().any(|node| node.attribute("Name") == Some(name)));
-    let entry = Entry { time: 0.1, part: 3, name: "a&b".to_owned(), file: "<'\">.vtu".to_owned() };
-    let text = collection(&[entry]).unwrap();
-    let document = roxmltree::Document::parse(&text).unwrap();
-    let set = document.descendants().find(|node| node.has_tag_name("DataSet")).unwrap();
-    assert_eq!(["name", "file", "timestep"].map(|name| set.attribute(name).unwrap()), ["a&b", "<'\">.vtu", "0.1"]);
-}
-
-#[test]
-fn data_that_readers_would_misread_are_refused() {
-    let scalars = |count| Values::Scalars(vec![1.0; count]);
-    let error = |grid: &UnstructuredGrid| unstructured(grid).unwrap_err();
-    assert_eq!(
-        error(&small("p", scalars(3))),
-        VtkError::WrongLength { array: "p".to_owned(), place: "points", expected: 4, found: 3 }
-    );
-    let mut grid = small("p", scalars(4));
-    grid.cell_data.push(Array::new("q", Values::Integers(vec![1, 2])));
-    assert_eq!(error(&grid), VtkError::WrongLength { array: "q".to_owned(), place: "cells", expected: 1, found: 2 });
-    let mut vectors = vec![[0.0; 3]; 4];
-    vectors[2][1] = f64::INFINITY;
-    assert_eq!(
-        error(&small("u", Values::Vectors(vectors))),
-        VtkError::NotFinite { array: "u".to_owned(), index: 7, value: f64::INFINITY }
-    );
-    let mut grid = small("p", scalars(4));
-    grid.points[3][0] = f64::NAN;
-    assert!(matches!(error(&grid), VtkError::NotFinite { array, index: 9, .. } if array == "Points"));
-    let mut grid = small("p", scalars(4));
-    grid.cells.push(Cell::Quad([0, 1, 2, 4]));
-    assert_eq!(error(&grid), VtkError::NoSuchPoint { cell: 1, point: 4, points: 4 });
-    let mut grid = small("p", scalars(4));
-    grid.point_data.push(Array::new("p", scalars(4)));
-    assert_eq!(error(&grid), VtkError::Twice { array: "p".to_owned(), place: "points" });
-    for name in ["", "a\nb", "\u{0}"] {
-        assert!(matches!(error(&small(name, scalars(4))), VtkError::Text { .. }), "{name:?}");
-    }
-    for description in ["a -- b", "ends with -", "bell \u{7}"] {
-        let grid = UnstructuredGrid { description: description.to_owned(), ..small("p", scalars(4)) };
-        assert!(matches!(error(&grid), VtkError::Text { .. }), "{description:?}");
-    }
-    let entry = Entry { time: f64::NAN, part: 0, name: "a".to_owned(), file: "b".to_owned() };
-    assert!(matches!(collection(&[entry]), Err(VtkError::NotFinite { index: 0, .. })));
-}
-
-#[test]
-fn states_need_names_of_files_and_finite_fields() {
-    let mut fields = fields(signorini().unwrap());
-    let state = |name| FieldState { time: 0.0, name, fields: &fields, notes: &[] };
-    for name in ["", "a/b", "..", "ä", "a b"] {
-        let refused = vtk_files(&[state(name)]);
-        assert!(matches!(refused, Err(FieldsError::Name { index: 0, .. })), "{name}");
-    }
-    assert!(matches!(vtk_files(&[state("a"), state("a")]), Err(FieldsError::Name { index: 1, .. })));
-    fields.bodies[0].stress[5][2] = f64::NAN;
-    let error = vtk_files(&[FieldState { time: 0.0, name: "start", fields: &fields, notes: &[] }]).unwrap_err();
-    assert_eq!(error.to_string(), "fields of state `start`: array `stress`: value 32 is NaN, allowed: finite numbers");
 }

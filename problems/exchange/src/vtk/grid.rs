@@ -68,41 +68,43 @@ impl Values {
 pub struct Array {
     /// Name shown by readers; any text without control characters.
     pub name: String,
+    /// Unit of the values, such as `mm`; empty for numbers without unit.
+    pub unit: String,
     /// One entry per point or cell.
     pub values: Values,
 }
 
 impl Array {
     /// A named array.
-    pub fn new(name: impl Into<String>, values: Values) -> Self {
-        Self { name: name.into(), values }
+    pub fn new(name: impl Into<String>, unit: impl Into<String>, values: Values) -> Self {
+        Self { name: name.into(), unit: unit.into(), values }
     }
 }
 
-/// A number or a text about a grid as a whole.
+/// A number about a grid as a whole.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
     /// Name shown by readers; any text without control characters.
     pub name: String,
+    /// Unit of the number; empty for a number without unit.
+    pub unit: String,
     /// What it says.
     pub value: NoteValue,
 }
 
 /// What a [`Note`] says.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum NoteValue {
     /// An integer.
     Integer(i32),
     /// A number.
     Number(f64),
-    /// A text.
-    Text(String),
 }
 
 impl Note {
     /// A note of this name.
-    pub fn new(name: impl Into<String>, value: NoteValue) -> Self {
-        Self { name: name.into(), value }
+    pub fn new(name: impl Into<String>, unit: impl Into<String>, value: NoteValue) -> Self {
+        Self { name: name.into(), unit: unit.into(), value }
     }
 }
 
@@ -203,7 +205,7 @@ impl UnstructuredGrid {
 
 fn check_arrays(arrays: &[Array], place: &'static str, expected: usize) -> Result<(), VtkError> {
     let mut names = HashSet::new();
-    for Array { name, values } in arrays {
+    for Array { name, values, .. } in arrays {
         if !names.insert(name) {
             return Err(VtkError::Twice { array: name.clone(), place });
         }

@@ -1,4 +1,4 @@
-//! Fields as VTK files: per state one grid of the bodies and one of the contact boundary, and one list of all of them.
+//! Fields of solved shapes as VTK files: per state one grid of the bodies and one of the contact boundary, and one list of all of them.
 //!
 //! | array | where | unit | meaning |
 //! |---|---|---|---|
@@ -17,11 +17,10 @@
 //! | `remaining_gap` | points of contact | mm | gap under load |
 //! | `sensitivity` | points of contact | unit of J per mm | ∂J/∂(height of the node); only if asked for |
 
-use crate::body::mesh::Grid;
-use crate::equilibrium::ContactStatus;
-use crate::fields::{BodyFields, ContactFields, Fields};
-use crate::lattice;
-use crate::vtk::{Array, Cell, Entry, Note, UnstructuredGrid, Values, VtkError, collection, unstructured};
+use contact::body::mesh::Grid;
+use contact::equilibrium::ContactStatus;
+use contact::fields::{BodyFields, ContactFields, Fields};
+use exchange::vtk::{Array, Cell, Entry, Note, UnstructuredGrid, Values, VtkError, collection, unstructured};
 use thiserror::Error;
 
 /// A solved shape in a series.
@@ -128,7 +127,7 @@ fn unusable(index: usize, name: &str) -> FieldsError {
     FieldsError::Name { index, name: name.to_owned(), allowed }
 }
 
-/// Corners of a brick in the order of [`crate::body::elasticity::hex8`] that VTK's hexahedron takes one after the other.
+/// Corners of a brick in the order of [`contact::body::elasticity::brick`] that VTK's hexahedron takes one after the other.
 const HEXAHEDRON: [usize; 8] = [0, 4, 6, 2, 1, 5, 7, 3];
 
 /// All bodies as one grid; bodies share no points.
@@ -136,7 +135,7 @@ fn bodies(bodies: &[BodyFields]) -> UnstructuredGrid {
     let (mut points, mut cells, mut body_numbers) = (Vec::new(), Vec::new(), Vec::new());
     for (number, body) in (1..).zip(bodies) {
         let (grid, first) = (body.block.grid, points.len());
-        points.extend(lattice::points([0; 3], grid.nodes()).map(|node| body.block.coordinates(node)));
+        points.extend(body.block.points());
         cells.extend(grid.bricks().map(|brick| {
             let corners = grid.brick_nodes(brick);
             Cell::Hexahedron(HEXAHEDRON.map(|corner| first + corners[corner]))
@@ -152,14 +151,14 @@ fn bodies(bodies: &[BodyFields]) -> UnstructuredGrid {
         points,
         cells,
         point_data: vec![
-            Array::new("displacement", Values::Vectors(joined(bodies, |body| &body.displacement))),
-            Array::new("von_mises_nodal", Values::Scalars(joined(bodies, |body| &body.nodal_von_mises))),
+            Array::new("displacement", "mm", Values::Vectors(joined(bodies, |body| &body.displacement))),
+            Array::new("von_mises_nodal", "MPa", Values::Scalars(joined(bodies, |body| &body.nodal_von_mises))),
         ],
         cell_data: vec![
-            Array::new("body", Values::Integers(body_numbers)),
-            Array::new("subdomain", Values::Integers(subdomains)),
-            Array::new("stress", Values::Tensors(joined(bodies, |body| &body.stress))),
-            Array::new("von_mises", Values::Scalars(joined(bodies, |body| &body.von_mises))),
+            Array::new("body", "", Values::Integers(body_numbers)),
+            Array::new("subdomain", "", Values::Integers(subdomains)),
+            Array::new("stress", "MPa", Values::Tensors(joined(bodies, |body| &body.stress))),
+            Array::new("von_mises", "MPa", Values::Scalars(joined(bodies, |body| &body.von_mises))),
         ],
     }
 }
@@ -175,17 +174,19 @@ fn contact(contact: &ContactFields) -> UnstructuredGrid {
     let flat =
         |pairs: &[[f64; 2]]| Values::Vectors(pairs.iter().map(|&[first, second]| [first, second, 0.0]).collect());
     let mut point_data = vec![
-        Array::new("displacement", Values::Vectors(contact.displacement.clone())),
-        Array::new("pressure", Values::Scalars(contact.pressure.clone())),
-        Array::new("status", Values::Integers(status)),
-        Array::new("area", Values::Scalars(contact.area.clone())),
-        Array::new("gap", Values::Scalars(contact.gap.clone())),
-        Array::new("remaining_gap", Values::Scalars(contact.remaining_gap.clone())),
+        Array::new("displacement", "mm", Values::Vectors(contact.displacement.clone())),
+        Array::new("pressure", "MPa", Values::Scalars(contact.pressure.clone())),
+        Array::new("status", "", Values::Integers(status)),
+        Array::new("area", "mm^2", Values::Scalars(contact.area.clone())),
+        Array::new("gap", "mm", Values::Scalars(contact.gap.clone())),
+        Array::new("remaining_gap", "mm", Values::Scalars(contact.remaining_gap.clone())),
     ];
-    for (name, pairs) in [("traction", &contact.traction), ("slip", &contact.slip)] {
-        point_data.extend(pairs.as_deref().map(|pairs| Array::new(name, flat(pairs))));
+    for (name, unit, pairs) in [("traction", "MPa", &contact.traction), ("slip", "mm", &contact.slip)] {
+        point_data.extend(pairs.as_deref().map(|pairs| Array::new(name, unit, flat(pairs))));
     }
-    point_data.extend(contact.sensitivity.clone().map(|values| Array::new("sensitivity", Values::Scalars(values))));
+    // Its unit is that of the objective per mm, which the fields do not know.
+    let sensitivity = |values| Array::new("sensitivity", "", Values::Scalars(values));
+    point_data.extend(contact.sensitivity.clone().map(sensitivity));
     UnstructuredGrid {
         description: "Contact boundary of the lower body, undeformed. Lengths in mm, areas in mm^2, stresses in MPa.\n\
             status: 0 open, 1 stick, 2 slip. pressure times area: normal force of the node, N.\n\

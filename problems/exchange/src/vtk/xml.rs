@@ -2,11 +2,11 @@
 
 use crate::vtk::VtkError;
 
-/// A text as the value of an attribute between double quotes.
+/// A text as the value of an attribute between double quotes, or between two tags.
 ///
 /// # Errors
 /// [`VtkError::Text`] for an empty text and for control characters, which XML 1.0 forbids or readers change.
-pub fn attribute(what: &'static str, text: &str) -> Result<String, VtkError> {
+pub fn escaped(what: &'static str, text: &str) -> Result<String, VtkError> {
     if text.is_empty() || text.chars().any(forbidden) {
         let allowed = "at least one character, no control characters";
         return Err(VtkError::Text { what, text: text.to_owned(), allowed });

@@ -1,0 +1,341 @@
+//! The contact solver of one process: total FETI, direct condensation, or the choice between them.
+//!
+//! The choice takes total FETI first, for at most as many products with F as a state by direct condensation costs, and direct
+//! condensation where total FETI finds no state, or none that is clearly accurate. It begins with direct condensation where total
+//! FETI is known to be slow (nearly incompressible standard bricks, bricks of extreme shape, a shape similar to one that needed
+//! it) and where Jacobians are wanted that cost less there. Sizes and counted work alone decide, so that a resumed run repeats
+//! the choice. Where bodies are too large to be condensed, total FETI is alone.
+
+use crate::direct::{DirectSolver, DirectState};
+use crate::equilibrium::{
+    Configuration, ContactProblem, ContactSolver, ContactState, ContactWarmStart, Diagnosis, Failed, MAX_RESIDUAL,
+    Sensitivities, SolvedBody, Tangents,
+};
+use crate::error::ContactError;
+use crate::memory;
+use crate::solvers::own_state::OwnState;
+use crate::solvers::{SolverKind, Wanted};
+use crate::tfeti::{DualMethod, TornOptions, TornState, TotalFeti};
+use crate::work_estimate::WorkEstimate;
+use std::sync::{Arc, OnceLock};
+
+/// Estimated bytes up to which bodies are condensed without being asked for. A constant: what the machine has free must not
+/// change a result.
+const MAX_CONDENSED_BYTES: f64 = 4e9;
+/// Products with F that total FETI is always allowed: states of the smallest scenes take some tens.
+const MIN_PRODUCTS: usize = 100;
+/// Share of [`MAX_RESIDUAL`] above which a state of total FETI is found anew by direct condensation: the two solvers measure
+/// forces and lengths in different units, a defect of the gluing grows along a slender body, and bodies that a few nodes hold enlarge
+/// what is left by some 4000. States of ordinary scenes stand at 2e-13.
+const COMFORTABLE_SHARE: f64 = 1e-4;
+/// Cost of a state by direct condensation, in products with F of as many operations, up to which it takes less time with all its
+/// derivatives than one by total FETI: dense operations are the faster ones (docs/scaling.md).
+const MAX_PRODUCTS_WITH_JACOBIANS: usize = 1000;
+
+/// Total FETI and direct condensation, each prepared when it is needed.
+#[derive(Debug)]
+pub struct OwnSolver {
+    problem: Arc<ContactProblem>,
+    options: TornOptions,
+    torn: OnceLock<TotalFeti>,
+    direct: OnceLock<DirectSolver>,
+    order: Order,
+}
+
+/// Which solvers may work on a shape.
+#[derive(Debug)]
+enum Order {
+    /// Total FETI alone.
+    Torn(DualMethod),
+    /// Direct condensation alone.
+    Direct,
+    /// Total FETI for at most so many products with F, then direct condensation.
+    TornFirst(usize),
+    /// Direct condensation for a reason, then total FETI for at most so many products with F.
+    DirectFirst(usize, String),
+}
+
+impl Order {
+    /// The order of `auto`.
+    fn chosen(problem: &ContactProblem, options: &TornOptions, wanted: Wanted) -> Self {
+        let scene = &problem.scene;
+        if memory::estimate(scene, SolverKind::Direct, options.preconditioner, 0, 1) > MAX_CONDENSED_BYTES {
+            return Self::Torn(DualMethod::default());
+        }
+        let products = WorkEstimate::of(scene).products_per_condensed_state();
+        let max_products = products.max(MIN_PRODUCTS);
+        let cheaper = wanted == Wanted::Jacobians && products <= MAX_PRODUCTS_WITH_JACOBIANS;
+        let cheaper = cheaper.then(|| "Jacobians of all pressures cost least there".to_owned());
+        match problem.ill_conditioned().or(cheaper) {
+            Some(reason) => Self::DirectFirst(max_products, reason),
+            None => Self::TornFirst(max_products),
+        }
+    }
+}
+
+/// What a cell holds, built at the first call.
+fn prepared<T>(cell: &OnceLock<T>, build: impl FnOnce() -> Result<T, ContactError>) -> Result<&T, ContactError> {
+    if let Some(value) = cell.get() {
+        return Ok(value);
+    }
+    let value = build()?;
+    // Another thread may have been first; its value is the same.
+    Ok(cell.get_or_init(|| value))
+}
+
+impl From<TotalFeti> for OwnSolver {
+    fn from(solver: TotalFeti) -> Self {
+        let (problem, order) = (Arc::clone(&solver.model().problem), Order::Torn(DualMethod::default()));
+        let options = TornOptions::default();
+        Self { problem, options, torn: OnceLock::from(solver), direct: OnceLock::new(), order }
+    }
+}
+
+impl From<DirectSolver> for OwnSolver {
+    fn from(solver: DirectSolver) -> Self {
+        let (problem, options) = (Arc::clone(&solver.problem), TornOptions::default());
+        Self { problem, options, torn: OnceLock::new(), direct: OnceLock::from(solver), order: Order::Direct }
+    }
+}
+
+impl OwnSolver {
+    /// Prepares the solver of a kind, or the one that comes first.
+    ///
+    /// # Errors
+    /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`].
+    pub fn new(
+        problem: Arc<ContactProblem>,
+        kind: SolverKind,
+        options: TornOptions,
+        wanted: Wanted,
+    ) -> Result<Self, ContactError> {
+        let order = match kind {
+            SolverKind::Auto => Order::chosen(&problem, &options, wanted),
+            SolverKind::Newton => Order::Torn(DualMethod::default()),
+            SolverKind::AugmentedLagrangian => Order::Torn(DualMethod::SuccessiveApproximations),
+            SolverKind::Direct => Order::Direct,
+        };
+        let solver = Self { problem, options, torn: OnceLock::new(), direct: OnceLock::new(), order };
+        match solver.order {
+            Order::Direct | Order::DirectFirst(..) => solver.direct().map(|_| ())?,
+            Order::Torn(_) | Order::TornFirst(_) => solver.torn().map(|_| ())?,
+        }
+        Ok(solver)
+    }
+
+    fn torn(&self) -> Result<&TotalFeti, ContactError> {
+        let method = match self.order {
+            Order::Direct => return Err(ContactError::OtherSolver),
+            Order::Torn(method) => method,
+            Order::TornFirst(_) | Order::DirectFirst(..) => DualMethod::default(),
+        };
+        let build = || TotalFeti::new(Arc::clone(&self.problem), self.options.clone());
+        prepared(&self.torn, || Ok(build()?.with_method(method)))
+    }
+
+    fn direct(&self) -> Result<&DirectSolver, ContactError> {
+        match self.order {
+            Order::Torn(_) => Err(ContactError::OtherSolver),
+            _ => prepared(&self.direct, || DirectSolver::new(Arc::clone(&self.problem))),
+        }
+    }
+
+    fn directly(
+        &self,
+        controls: &[f64],
+        start: Option<&ContactWarmStart>,
+        tolerance: f64,
+        max_products: usize,
+        reason: String,
+    ) -> Result<ContactState<OwnState>, ContactError> {
+        match self.direct()?.solve(controls, start, tolerance) {
+            Ok(state) => Ok(condensed(state, reason)),
+            Err(error) if error.ends_the_search() && !proves_friction_too_weak(&error) => Err(error),
+            Err(error) => match self.torn()?.attempt(controls, None, tolerance, Some(max_products)) {
+                Ok(state) => {
+                    let reason = Some(format!("direct condensation failed: {error}"));
+                    Ok(ContactState { reason, ..state.map(OwnState::from) })
+                }
+                Err(_) if proves_friction_too_weak(&error) => Err(error),
+                Err(failed) => Err(unsolved(failed, error)),
+            },
+        }
+    }
+
+    fn torn_then_direct(
+        &self,
+        controls: &[f64],
+        start: Option<&ContactWarmStart>,
+        tolerance: f64,
+        max_products: usize,
+    ) -> Result<ContactState<OwnState>, ContactError> {
+        let mut found = false;
+        let failed = match self.torn()?.attempt(controls, start, tolerance, Some(max_products)) {
+            Ok(state) => {
+                found = true;
+                match state.forces.residuals.within(tolerance.max(COMFORTABLE_SHARE * MAX_RESIDUAL)) {
+                    Err(error) => Failed { error: Box::new(error), work: state.work() },
+                    Ok(_) => return Ok(state.map(OwnState::from)),
+                }
+            }
+            Err(failed) if failed.error.ends_the_search() => return Err(*failed.error),
+            Err(failed) => failed,
+        };
+        match self.direct()?.solve(controls, None, tolerance) {
+            Ok(state) => {
+                let work = state.work.after(failed.work);
+                // It may have found a state that the gate lets pass.
+                let what = if found { "is not clearly accurate" } else { "failed" };
+                Ok(ContactState { work, ..condensed(state, format!("total FETI {what}: {}", failed.error)) })
+            }
+            // Nothing proves that there is no state where one was found, be it to few digits.
+            Err(error) if error.ends_the_search() && !(found && proves_friction_too_weak(&error)) => Err(error),
+            Err(error) => Err(unsolved(failed, error)),
+        }
+    }
+
+    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on total FETI.
+    fn condensed(&self, state: &TornState) -> Result<(&DirectSolver, DirectState), ContactError> {
+        let configuration = Configuration::of(&self.problem, state.blocks.clone())?;
+        let direct = self.direct()?;
+        Ok((direct, direct.solve_configuration(configuration, None, 0.0)?.solution))
+    }
+
+    /// Sensitivities of a total FETI state, by direct condensation where total FETI does not find them for the products that a state
+    /// by direct condensation costs.
+    fn torn_sensitivities(
+        &self,
+        state: &TornState,
+        direction: &[f64],
+        tolerance: f64,
+    ) -> Result<Sensitivities, ContactError> {
+        let torn = self.torn()?;
+        let (Order::TornFirst(max_products) | Order::DirectFirst(max_products, _)) = self.order else {
+            return torn.sensitivities(state, direction, tolerance);
+        };
+        let failed = match torn.sensitivities_within(state, direction, tolerance, max_products) {
+            Ok(found) => return Ok(found),
+            Err(error) if error.ends_the_search() => return Err(error),
+            Err(error) => error,
+        };
+        let (direct, condensed) = self.condensed(state)?;
+        let found = direct.sensitivities(&condensed, direction, 0.0)?;
+        let applications = if let ContactError::NotConverged { iterations, .. } = failed { iterations } else { 0 };
+        Ok(Sensitivities { applications, ..found })
+    }
+
+    /// Tangents of a total FETI state, by direct condensation where total FETI does not find them.
+    fn torn_tangents(&self, state: &TornState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
+        match self.torn()?.tangents(state, changes, tolerance) {
+            Err(error) if !matches!(self.order, Order::Torn(_)) && !error.ends_the_search() => {
+                let (direct, condensed) = self.condensed(state)?;
+                direct.tangents(&condensed, changes, tolerance)
+            }
+            result => result,
+        }
+    }
+}
+
+impl ContactSolver for OwnSolver {
+    type State = OwnState;
+
+    fn problem(&self) -> &ContactProblem {
+        &self.problem
+    }
+
+    /// The sizes of a solver that is prepared, total FETI first.
+    fn sizes(&self) -> [usize; 2] {
+        let direct = || self.direct.get().map_or([0; 2], ContactSolver::sizes);
+        self.torn.get().map_or_else(direct, ContactSolver::sizes)
+    }
+
+    /// What the solver that comes first leaves out.
+    fn left_out(&self) -> Option<&'static str> {
+        match self.order {
+            Order::Direct | Order::DirectFirst(..) => self.direct.get()?.left_out(),
+            Order::Torn(_) | Order::TornFirst(_) => self.torn.get()?.left_out(),
+        }
+    }
+
+    fn solve(
+        &self,
+        controls: &[f64],
+        start: Option<&ContactWarmStart>,
+        tolerance: f64,
+    ) -> Result<ContactState<OwnState>, ContactError> {
+        let similar = matches!(start, Some(ContactWarmStart::Displacements(_)));
+        match &self.order {
+            Order::Torn(_) => Ok(self.torn()?.solve(controls, start, tolerance)?.map(OwnState::from)),
+            Order::Direct => Ok(self.direct()?.solve(controls, start, tolerance)?.map(OwnState::from)),
+            Order::TornFirst(max_products) | Order::DirectFirst(max_products, _) if similar => {
+                self.directly(controls, start, tolerance, *max_products, "a similar shape needed it".to_owned())
+            }
+            Order::DirectFirst(max_products, reason) => {
+                self.directly(controls, start, tolerance, *max_products, reason.clone())
+            }
+            Order::TornFirst(max_products) => self.torn_then_direct(controls, start, tolerance, *max_products),
+        }
+    }
+
+    fn sensitivities(
+        &self,
+        state: &OwnState,
+        direction: &[f64],
+        tolerance: f64,
+    ) -> Result<Sensitivities, ContactError> {
+        match state {
+            OwnState::Torn(state) => self.torn_sensitivities(state, direction, tolerance),
+            OwnState::Direct(state) => self.direct()?.sensitivities(state, direction, tolerance),
+        }
+    }
+
+    fn tangents(&self, state: &OwnState, changes: &[Vec<f64>], tolerance: f64) -> Result<Tangents, ContactError> {
+        match state {
+            OwnState::Torn(state) => self.torn_tangents(state, changes, tolerance),
+            OwnState::Direct(state) => self.direct()?.tangents(state, changes, tolerance),
+        }
+    }
+
+    fn diagnose(&self, state: &OwnState) -> Result<Diagnosis, ContactError> {
+        match state {
+            OwnState::Torn(state) => self.torn()?.diagnose(state),
+            OwnState::Direct(state) => self.direct()?.diagnose(state),
+        }
+    }
+
+    fn estimate_contraction(&self, state: &OwnState, max_products: usize) -> Result<f64, ContactError> {
+        match state {
+            OwnState::Torn(state) => self.torn()?.estimate_contraction(state, max_products),
+            OwnState::Direct(state) => self.direct()?.estimate_contraction(state, max_products),
+        }
+    }
+
+    fn force_rounding(&self, state: &OwnState) -> Result<f64, ContactError> {
+        match state {
+            OwnState::Torn(state) => self.torn()?.force_rounding(state),
+            OwnState::Direct(state) => self.direct()?.force_rounding(state),
+        }
+    }
+
+    fn bodies(&self, state: &OwnState) -> Result<Vec<SolvedBody>, ContactError> {
+        match state {
+            OwnState::Torn(state) => self.torn()?.bodies(state),
+            OwnState::Direct(state) => self.direct()?.bodies(state),
+        }
+    }
+}
+
+/// A state by direct condensation, with the reason for that solver before its own remark.
+fn condensed(state: ContactState<DirectState>, reason: String) -> ContactState<OwnState> {
+    let reason = std::iter::once(reason).chain(state.reason.clone()).collect::<Vec<_>>().join("; ");
+    ContactState { reason: Some(reason), ..state.map(OwnState::from) }
+}
+
+fn proves_friction_too_weak(error: &ContactError) -> bool {
+    matches!(error, ContactError::FrictionTooWeak { .. })
+}
+
+fn unsolved(torn: Failed, direct: ContactError) -> ContactError {
+    let products = torn.work.dual_operator_applications;
+    ContactError::Unsolved { torn: torn.error, products, direct: Box::new(direct) }
+}

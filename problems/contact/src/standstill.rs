@@ -1,0 +1,71 @@
+//! Why an optimization ended where it began.
+
+use crate::contact_objective::ContactObjective;
+use crate::contact_shape::ContactState;
+use crate::equilibrium::{ContactSolver, ContactStatus};
+use crate::plausibility::Warning;
+use nonsmooth::{OracleError, Report, Termination, Vector};
+
+/// Change of Θ over the first step, relative to Θ, up to which the derivative at a shape is rounding.
+const FLAT: f64 = 1e-9;
+/// Distance of Θ from its least value, relative to Θ, that is rounding.
+const LEAST: f64 = 1e-9;
+
+/// Why Θ is constant without loads.
+const IDLE: &str = "nothing loads the bodies; give loads to the scene";
+
+/// A warning about runs that gained no more than rounding because Θ is constant there, or at its least value; none for all other runs.
+/// `start` are the controls at which the last run began, `end` the controls at which it ended, with their state.
+///
+/// # Errors
+/// [`OracleError`] of the adjoint.
+pub fn standstill<'r, S: ContactSolver>(
+    reports: impl IntoIterator<Item = &'r Report>,
+    objective: &ContactObjective<S>,
+    start: &Vector,
+    end: (&Vector, &ContactState<S::State>),
+) -> Result<Option<Warning>, OracleError> {
+    let stood_still = |report: &Report| {
+        let termination = &report.termination;
+        let is_end = termination.is_stationary()
+            || matches!(termination, Termination::NoiseLimit { .. } | Termination::StepTooShort { .. });
+        is_end && report.start_value - report.value <= FLAT * report.start_value.abs()
+    };
+    if !reports.into_iter().all(stood_still) {
+        return Ok(None);
+    }
+    let (controls, state) = end;
+    let value = objective.value(controls, state);
+    // Without loads, what is left of forces is rounding of the gaps.
+    let idle = objective.solver().problem().scene.load() == 0.0;
+    let slope = objective.differentiate(controls, state)?.subgradient.lp_norm(1);
+    let is_flat = idle || slope * objective.first_step(start) <= FLAT * value.abs();
+    let flat = |reason: String| Warning {
+        code: "flat-objective",
+        text: format!("the objective does not change with the shape where the run begins: {reason}"),
+    };
+    let known = if idle { Some(IDLE.into()) } else { why_flat(objective, state) };
+    if let Some(reason) = known.filter(|_| is_flat) {
+        return Ok(Some(flat(reason)));
+    }
+    // At its least value, Θ is flat too where it is smooth.
+    let least = objective.lower_bound(state.forces.total_normal_force());
+    let least = least.filter(|least| value - least <= LEAST * value.abs()).map(|least| Warning {
+        code: "least-objective",
+        text: format!("the run begins at the least value that any shape has with this total force, {least:.4e}: nothing is to be gained"),
+    });
+    let unknown = "its derivative is zero; begin at another shape (--start-controls, --starts)";
+    Ok(least.or_else(|| is_flat.then(|| flat(unknown.into()))))
+}
+
+/// Why Θ does not change near a state, where more is known than that its derivative is zero.
+fn why_flat<S: ContactSolver>(objective: &ContactObjective<S>, state: &ContactState<S::State>) -> Option<String> {
+    if state.forces.status.iter().all(|status| *status == ContactStatus::Open) {
+        let reason = "the bodies do not touch there; bring them together by loads, the start or the counter surface";
+        return Some(reason.into());
+    }
+    match objective {
+        ContactObjective::Pressure(objective) => objective.cost().why_flat(state),
+        ContactObjective::Field(_) => None,
+    }
+}
