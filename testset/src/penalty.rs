@@ -20,7 +20,8 @@ pub fn rosen_suzuki_objective(x: &[Dual]) -> Dual {
     form(x, [1.0, 1.0, 2.0, 1.0], [-5.0, -5.0, -21.0, 7.0])
 }
 
-/// Rosen's and Suzuki's constraints; the weight of x₁² in the third is 2 in the original, and 1 in Lukšan's and Vlček's collection.
+/// Rosen's and Suzuki's constraints; the weight of x₁² in the third is 2 in Hock and Schittkowski 43, and 1 in the
+/// collection of Lukšan and Vlček.
 pub fn rosen_suzuki_constraints(x: &[Dual], weight: f64) -> [Dual; 3] {
     [
         form(x, [1.0, 1.0, 1.0, 1.0], [1.0, -1.0, 1.0, -1.0]) - 8.0,
@@ -65,12 +66,12 @@ impl Colville {
         self.d.len()
     }
 
-    /// Negative value of the dual at (y, w) where the multipliers of w ≥ 0 are zero: 2 Σ dⱼ yⱼ³ + yᵀ C y − bᵀ w.
+    /// The negative objective of the dual, 2 Σ dⱼ yⱼ³ + yᵀ C y − bᵀ w, at points that satisfy its constraints.
     pub fn dual_value(&self, y: &[Dual], w: &[Dual]) -> Dual {
         2.0 * self.cubic(y) + self.quadratic(y) - dot(&self.b, w)
     }
 
-    /// Aᵀ w − 2 C y − 3 d y² − e, which is at most zero at points of the dual.
+    /// The constraints of the dual, Aᵀ w − 2 C y − 3 d y² − e ≤ 0.
     pub fn stationarity(&self, y: &[Dual], w: &[Dual]) -> Vec<Dual> {
         let row = |j: usize| {
             let multipliers = Dual::combination(self.a.iter().zip(w).map(|(row, w)| (row[j], w)));

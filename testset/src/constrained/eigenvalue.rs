@@ -1,4 +1,4 @@
-//! Linear objectives with limits on the largest eigenvalue of A₀ + Σ xᵢ Aᵢ, which has a kink where eigenvalues coincide.
+//! Linear objectives with limits on the largest eigenvalue of A₀ + Σ xᵢ Aᵢ, which has kinks where eigenvalues coincide.
 
 use super::problem::{ConstrainedProblem, Kind, smooth};
 use crate::dual::Dual;
@@ -95,7 +95,8 @@ fn problem<const M: usize>(
     ConstrainedProblem::new(name, start, smooth(linear(cost)), [Kind::Nonsmooth; M], limits)
 }
 
-/// Bound of the largest cut of Petersen's graph: Σ xᵢ with L/4 − diag(x) negative semidefinite; an eigenvalue of multiplicity four.
+/// Bound of the largest cut of Petersen's graph: Σ xᵢ with L/4 − diag(x) negative semidefinite. The largest eigenvalue at
+/// the solution has multiplicity four.
 fn max_cut() -> ConstrainedProblem {
     let ring = (0..5).map(|i| (i, (i + 1) % 5));
     let edges = ring.chain((0..5).map(|i| (i, i + 5))).chain((0..5).map(|i| (5 + i, 5 + (i + 2) % 5)));
@@ -123,12 +124,12 @@ fn lovasz() -> ConstrainedProblem {
     )
 }
 
-/// Smallest sum of the weights of the cube's edges with algebraic connectivity one; an eigenvalue of multiplicity three.
+/// Smallest sum of the weights of the cube's edges with algebraic connectivity one, an eigenvalue of multiplicity three.
 fn connectivity() -> ConstrainedProblem {
     let pairs = (0..8_usize).flat_map(|i| (0..3).map(move |bit| (i, i ^ (1 << bit)))).filter(|(i, j)| i < j);
     let slopes = pairs.map(|pair| edge(8, pair, -1.0)).collect();
     let constant = matrix(8, |i, j| if i == j { 0.0 } else { -1.0 });
-    let source = "F. Göring, C. Helmberg, M. Wappler, Math. Program. 113 (2008), connectivity; the cube";
+    let source = "F. Göring, C. Helmberg, M. Wappler, SIAM J. Optim. 19 (2008), connectivity; the cube";
     problem(("ConnectivityCube", source), vec![1.0; 12], vec![1.0; 12], [Affine { constant, slopes }])
         .within([0.0; 12], [f64::INFINITY; 12])
         .solved(6.0, 1, 9.0)

@@ -1,5 +1,5 @@
-//! Smooth objectives with inequalities, nearly all from W. Hock, K. Schittkowski, Test Examples for Nonlinear Programming Codes (1981), and one
-//! classic with kinks.
+//! Smooth objectives with inequalities, nearly all from W. Hock, K. Schittkowski, Test Examples for Nonlinear Programming
+//! Codes (1981), and one example with kinks.
 
 use super::problem::{ConstrainedProblem, Kind, smooth, squares, variables};
 use crate::composition::{Composition, Outer, Term};
@@ -17,7 +17,7 @@ pub fn problems() -> Vec<ConstrainedProblem> {
     small.into_iter().chain(large).collect()
 }
 
-/// A smooth problem with inequalities, from Hock and Schittkowski.
+/// A smooth problem with inequalities.
 fn smooth_problem<const M: usize>(
     name: (&str, &'static str),
     start: impl Into<Vec<f64>>,
@@ -91,7 +91,7 @@ fn exponentials(x: &[Dual]) -> [Dual; 2] {
 fn hs34() -> ConstrainedProblem {
     smooth_problem(("HS34", "Hock, Schittkowski (1981), 34"), [0.0, 1.05, 2.9], |x| -&x[0], exponentials)
         .within([0.0; 3], [100.0, 100.0, 10.0])
-        .solved(-10_f64.ln().ln(), 2, 0.72)
+        .solved(-(10_f64.ln().ln()), 2, 0.72)
 }
 
 fn hs64() -> ConstrainedProblem {
@@ -144,7 +144,7 @@ fn hs83() -> ConstrainedProblem {
     };
     smooth_problem(("HS83", "Hock, Schittkowski (1981), 83"), [78.0, 33.0, 27.0, 27.0, 27.0], objective, limits)
         .within([78.0, 33.0, 27.0, 27.0, 27.0], [102.0, 45.0, 45.0, 45.0, 45.0])
-        .solved(-30_665.5386717833, 2, 1900.0)
+        .solved(-30_665.538_671_783_3, 2, 1900.0)
 }
 
 /// Design of a transformer.
@@ -220,7 +220,7 @@ fn hs113() -> ConstrainedProblem {
     let start = [2.0, 3.0, 5.0, 5.0, 1.0, 2.0, 7.0, 3.0, 6.0, 10.0];
     let limits = |x: &[Dual]| penalty::wong2_constraints(x).into_iter().chain(penalty::wong2_rows(x)).collect();
     ConstrainedProblem::new(("HS113", WONG[0]), start, smooth(penalty::wong_objective), [Kind::Smooth; 8], limits)
-        .solved(24.306209068180, 3, 6.3)
+        .solved(24.306_209_068_18, 3, 6.3)
 }
 
 fn wong3() -> ConstrainedProblem {

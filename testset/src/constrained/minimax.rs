@@ -7,14 +7,14 @@ use crate::table;
 
 /// The problems of this file.
 pub fn problems() -> Vec<ConstrainedProblem> {
-    vec![cb2(), evd52(), shor(), maxquad(), polak3(), davidon2(), tfi1(), tfi2(), tfi3()]
+    vec![cb2(), evd52(), shor(), maxquad(), maxquad_norms(), polak3(), davidon2(), tfi1(), tfi2(), tfi3()]
 }
 
 /// Both limits are active at (1 + √⅛, 1 − √⅛), where the second piece is the largest; the first limit excludes a disk.
 fn cb2() -> ConstrainedProblem {
     let limits = |x: &[Dual]| vec![2.25 - squares(x, 0.0), &x[0] + &x[1] - 2.0];
     let source =
-        "C. Charalambous, J. W. Bandler (1976), CB2; limits of tests of SQP methods for constrained minimax problems";
+        "C. Charalambous, J. W. Bandler, Int. J. Syst. Sci. 7 (1976), CB2; limits of later tests of SQP methods";
     ConstrainedProblem::new(("CB2Limited", source), [2.1, 1.9], maximum(minimax::cb2), [Kind::Smooth; 2], limits)
         .solved(2.25, 1, 7.5)
         .or_ends_at(4.05622996)
@@ -47,9 +47,23 @@ fn maxquad() -> ConstrainedProblem {
         .solved(-0.675413566357, 1, 7.7)
 }
 
+/// The largest magnitude at most 0.1, and the sum of magnitudes at most 0.4.
+fn maxquad_norms() -> ConstrainedProblem {
+    let limits = |x: &[Dual]| vec![Dual::max(x.iter().map(Dual::abs)) - 0.1, Dual::sum(x.iter().map(Dual::abs)) - 0.4];
+    let source = "C. Lemaréchal, Maxquad; limits on two norms added here";
+    ConstrainedProblem::new(
+        ("MaxquadNorms", source),
+        [1.0; 10],
+        maximum(minimax::maxquad()),
+        [Kind::Nonsmooth; 2],
+        limits,
+    )
+    .solved(-0.55212228164, 2, 4.1)
+}
+
 fn polak3() -> ConstrainedProblem {
     let limits = |x: &[Dual]| vec![squares(x, 0.5) - 1.0, x[0].square() + x[1].square() - &x[2]];
-    let source = "E. Polak, Optimization (1997), problem 3; two limits added here";
+    let source = "Lukšan, Vlček (2000), Polak 3; two limits added here";
     ConstrainedProblem::new(("Polak3Ball", source), [1.0; 11], maximum(minimax::polak3), [Kind::Smooth; 2], limits)
         .solved(4.111404280278, 2, 1.7)
 }

@@ -1,9 +1,9 @@
 //! Problems with nonlinear constraints: minimise f(x) over lower ≤ x ≤ upper with cⱼ(x) ≤ 0 or cⱼ(x) = 0.
 //!
-//! `testset/reference/constrained.py` states every problem a second time and solves it: IPOPT 3.14 by interior points, confirmed by SLSQP of
-//! SciPy; limits on eigenvalues by Clarabel's semidefinite programming, confirmed by IPOPT. `testset/reference/constrained.json` has the optimal
-//! values, minimisers and sums of multipliers; tests compare it with the problems here. A name of another function in the source is where the
-//! objective is published; a constraint "added here" is not published.
+//! `testset/reference` states every problem a second time and solves it: by IPOPT, confirmed by SLSQP of SciPy; with limits
+//! on eigenvalues, by Clarabel as a semidefinite program, confirmed by IPOPT. The file `constrained.json` there has optimal
+//! values, minimisers and sums of multipliers; tests compare it with the problems here. Where a source says that limits or
+//! data were added here, the objective or the kind of problem is published, and the optimal value is not.
 
 mod eigenvalue;
 mod equations;

@@ -40,8 +40,8 @@ pub struct ConstrainedProblem {
     pub other_optima: Vec<f64>,
     /// Constraints that are active at the solution and not linear, equations included.
     pub active: usize,
-    /// A weight ρ with which f + ρ max(0, cⱼ, |c_eq|) has the same minimiser: 1.5 times the sum of the multipliers, rounded up to two digits
-    /// and at least ½.
+    /// A weight ρ with which f + ρ max(0, cⱼ, |c_eq|) has the same minimiser: 1.5 times the sum of the multipliers, rounded
+    /// up to two digits, and at least ½.
     pub penalty: f64,
     objective: Composition,
     constraints: Outputs,

@@ -7,7 +7,9 @@ use crate::scalable;
 
 /// The problems of this file.
 pub fn problems() -> Vec<ConstrainedProblem> {
-    vec![maxq(50), chained_lq(200), chained_cb3(100), chained_lq_links(60), nesterov(200), largest_stress(60), tour(25)]
+    let published = [maxq(50), chained_lq(200), chained_cb3(100), chained_lq_links(60), nesterov(200)];
+    let further = [largest_stress(60), tour(25), total_variation(100), limited_lq(50)];
+    published.into_iter().chain(further).collect()
 }
 
 /// max xᵢ² with a limit on each pair of neighbours; solution ⅓ everywhere, where all limits are active.
@@ -89,8 +91,7 @@ fn largest_stress(n: usize) -> ConstrainedProblem {
     let objective = maximum(move |x| x.iter().enumerate().map(|(i, x)| load(i) * x.square()).collect());
     let limit = move |x: &[Dual]| vec![Dual::sum(x.iter().enumerate().map(|(i, x)| share(i) / x)) - 1.0];
     let optimum: f64 = (0..n).map(|i| share(i) * load(i).sqrt()).sum();
-    let name =
-        ("LargestStress60", "A largest norm with a limit on the volume, with its solution in closed form, added here");
+    let name = ("LargestStress60", "Largest square with a limit on a sum of reciprocals, added here; closed form");
     ConstrainedProblem::new(name, vec![3.0; n], objective, [Kind::Smooth], limit)
         .within(vec![0.01; n], vec![100.0; n])
         .solved(optimum.powi(2), 1, 3.0)
@@ -113,10 +114,43 @@ fn tour(k: usize) -> ConstrainedProblem {
         };
         x.chunks(2).enumerate().map(disk).collect()
     };
-    let source = "M. S. Lobo, L. Vandenberghe, S. Boyd, H. Lebret, Linear Algebra Appl. 284 (1998), sums of norms; data added here";
+    let source = "M. S. Lobo et al., Linear Algebra Appl. 284 (1998), sums of norms; data added here";
     ConstrainedProblem::new(("Tour25", source), start, smooth(objective), vec![Kind::Smooth; k], disks).solved(
         56.58961539717,
         k,
         74.0,
+    )
+}
+
+/// ½ Σ (xᵢ − centerᵢ)².
+fn half_squares(x: &[Dual], center: impl Fn(usize) -> f64) -> Dual {
+    0.5 * Dual::sum(x.iter().enumerate().map(|(i, x)| (x - center(i)).square()))
+}
+
+/// A noisy signal with a limit on its total variation; at the solution, most neighbours are equal.
+fn total_variation(n: usize) -> ConstrainedProblem {
+    let jump = |i: usize| f64::from(u8::from((30..60).contains(&i)));
+    let objective = smooth(move |x| half_squares(x, |i| jump(i) + 0.3 * (1.7 * i as f64).sin()));
+    let limit = |x: &[Dual]| vec![Dual::sum(x.windows(2).map(|pair| (&pair[1] - &pair[0]).abs())) - 2.0];
+    let source = "L. I. Rudin, S. Osher, E. Fatemi, Physica D 60 (1992), total variation; data added here";
+    ConstrainedProblem::new(("TotalVariation100", source), vec![0.0; n], objective, [Kind::Nonsmooth], limit).solved(
+        2.170826451838,
+        1,
+        0.5,
+    )
+}
+
+/// The nearest point where chained LQ is at most −45; twelve of its terms have their kink there.
+fn limited_lq(n: usize) -> ConstrainedProblem {
+    let objective = smooth(|x| half_squares(x, |i| 1.5 * (i as f64).cos()));
+    let limit = |x: &[Dual]| {
+        let terms = scalable::chained_lq(x);
+        vec![Dual::sum(terms.chunks(2).map(|pair| Dual::max(pair.iter().cloned()))) + 45.0]
+    };
+    let source = "Haarala, Miettinen, Mäkelä (2004), chained LQ as the constraint; objective added here";
+    ConstrainedProblem::new(("LimitedLQ50", source), vec![0.0; n], objective, [Kind::Nonsmooth], limit).solved(
+        20.65720144747,
+        1,
+        0.97,
     )
 }
