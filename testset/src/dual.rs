@@ -32,6 +32,11 @@ impl Dual {
         x.iter().enumerate().map(|(i, &value)| Self { value, gradient: unit(i), kink: f64::INFINITY }).collect()
     }
 
+    /// The value.
+    pub fn value(&self) -> f64 {
+        self.value
+    }
+
     /// Value, gradient and distance to the nearest kink.
     pub fn into_parts(self) -> (f64, Vec<f64>, f64) {
         (self.value, self.gradient, self.kink)

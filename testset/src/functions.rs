@@ -91,9 +91,9 @@ fn with_data(record: &Record) -> Option<Composition> {
         "Colville1" => Composition::new(Maximum, penalty::colville(Colville::new(record))),
         // The dual of Colville's problem shares its data, which the table holds once.
         "ShellDual" => {
-            let primal = crate::table::records().into_iter().find(|primal| primal.name == "Colville1")?;
-            let violations = primal.dimension + record.dimension;
-            Composition::new(penalty::shell_dual_outer(violations), penalty::shell_dual(Colville::new(&primal)))
+            let primal = Colville::published();
+            let violations = primal.dimension() + record.dimension;
+            Composition::new(penalty::shell_dual_outer(violations), penalty::shell_dual(primal))
         }
         _ => return None,
     })

@@ -15,6 +15,7 @@ use std::fmt;
 
 mod approximation;
 mod composition;
+pub mod constrained;
 mod dual;
 mod functions;
 mod geometry;

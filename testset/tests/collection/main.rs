@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 mod common;
+mod constrained;
 mod optimum;
 mod subgradients;
 mod table;
