@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 
 /// The symbols of this program and their ASCII forms.
-const FORMS: [(char, &str); 40] = [
+const FORMS: [(char, &str); 41] = [
     ('Θ', "Theta"),
     ('Σ', "sum "),
+    ('∫', "integral of "),
     ('σ', "sigma"),
     ('ξ', "xi"),
     ('α', "alpha"),

@@ -33,7 +33,8 @@ fn changed(name: &str, changes: &[(&str, &str)], options: &[&str]) -> Value {
     }
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, scene).unwrap();
-    json(CONTACT, &[&[kit::text(&path), "--json"], options].concat())
+    let (path, json_option) = (kit::text(&path), ["--json"]);
+    json(CONTACT, &[&[path], options, &json_option].concat())
 }
 
 fn codes(result: &Value) -> Vec<&str> {
