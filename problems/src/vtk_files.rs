@@ -1,4 +1,5 @@
-//! Fields of solved shapes as VTK files: per state one grid of the bodies and one of the contact boundary, and one list of all of them.
+//! Fields of solved shapes as VTK files: per state one grid of the bodies and one of the contact boundary, and one list
+//! of all of them.
 //!
 //! | array | where | unit | meaning |
 //! |---|---|---|---|
@@ -72,12 +73,12 @@ pub enum FieldsError {
 /// The list of all files of a series.
 const LIST: &str = "fields.pvd";
 
-/// Names and texts of the files of a series: for each state `NAME_bodies.vtu` and `NAME_contact.vtu`, then `fields.pvd`, the
-/// file to open.
+/// Names and texts of the files of a series: for each state `NAME_bodies.vtu` and `NAME_contact.vtu`, then
+/// `fields.pvd`, the file to open.
 ///
 /// # Errors
-/// [`FieldsError::Name`] for a name that is empty, has other characters or stands twice, [`FieldsError::File`] for fields that
-/// are not finite.
+/// [`FieldsError::Name`] for a name that is empty, has other characters or stands twice, [`FieldsError::File`] for
+/// fields that are not finite.
 pub fn vtk_files(states: &[FieldState<'_>]) -> Result<Vec<(String, String)>, FieldsError> {
     let mut files = Vec::with_capacity(2 * states.len() + 1);
     let mut entries = Vec::with_capacity(2 * states.len());
@@ -127,7 +128,8 @@ fn unusable(index: usize, name: &str) -> FieldsError {
     FieldsError::Name { index, name: name.to_owned(), allowed }
 }
 
-/// Corners of a brick in the order of [`contact::body::elasticity::brick`] that VTK's hexahedron takes one after the other.
+/// Corners of a brick in the order of [`contact::body::elasticity::brick`] that VTK's hexahedron takes one after the
+/// other.
 const HEXAHEDRON: [usize; 8] = [0, 4, 6, 2, 1, 5, 7, 3];
 
 /// All bodies as one grid; bodies share no points.

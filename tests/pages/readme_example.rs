@@ -1,4 +1,5 @@
-//! The code on the pages: that of README.md stands in this file and runs, that of docs/plug_in_your_problem.md in an example.
+//! The code on the pages: that of README.md stands in this file and runs, that of docs/plug_in_your_problem.md in an
+//! example.
 
 use nonsmooth::composite::Maximum;
 use nonsmooth::{

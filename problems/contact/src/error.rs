@@ -147,7 +147,8 @@ pub enum ContactError {
          contact cannot build up the normal forces for more than {largest:.6e} N"
     )]
     FrictionTooWeak {
-        /// The motion that the load does work on, in words; its slip is 1 in the root mean square over the contact nodes.
+        /// The motion that the load does work on, in words; its slip is 1 in the root mean square over the contact
+        /// nodes.
         direction: String,
         /// Work of the load on it per length, N.
         resultant: f64,
@@ -172,7 +173,8 @@ pub enum ContactError {
         /// Why, and what is allowed.
         reason: String,
     },
-    /// A symbolic analysis failed, a matrix is not positive definite, or a factorisation did not pass its residual check.
+    /// A symbolic analysis failed, a matrix is not positive definite, or a factorisation did not pass its residual
+    /// check.
     #[error("{what}: {reason}")]
     Factorization {
         /// Which matrix.
@@ -283,7 +285,8 @@ impl From<FactorizationError> for ContactError {
 }
 
 impl ContactError {
-    /// Whether every solver would say the same: the scene, the shape or the caller is at fault, or an end is wished for.
+    /// Whether every solver would say the same: the scene, the shape or the caller is at fault, or an end is wished
+    /// for.
     pub fn ends_the_search(&self) -> bool {
         matches!(
             self,

@@ -1,5 +1,5 @@
-//! Surfaces over a rectangle, and bodies below or above them, as STL and STEP files; matrices as Matrix Market files; grids
-//! with data as VTU files.
+//! Surfaces over a rectangle, and bodies below or above them, as STL and STEP files; matrices as Matrix Market files;
+//! grids with data as VTU files.
 //!
 //! ```text
 //! heights on lines ─ triangles ─ stl        chord error bounded by second derivatives (triangulation.rs)

@@ -12,6 +12,7 @@ use crate::commands::shape_facts;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, checks, solver_facts};
 use contact::contact_objective::PressureRoot;
 use contact::contact_shape::ContactState;
+use nonsmooth::Evaluation;
 use std::time::Instant;
 
 /// The command.
@@ -28,31 +29,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let clock = Instant::now();
     let evaluation = objective.differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
-    let root = objective.root();
-    // The norm of a root r is s r^p, with the derivative s p r^{p−1} ∂r.
-    let (size, norm_unit) = objective.norm_of_root().unwrap_or_else(|| (1.0, objective.unit()));
-    let (power, slope) = (size * evaluation.value.powf(root), size * root * evaluation.value.powf(root - 1.0));
-    let representable = power.is_normal() && (slope * evaluation.subgradient.amax()).is_finite();
-    let (value, slope, objective_root) =
-        if representable { (power, slope, 1.0) } else { (evaluation.value, 1.0, root) };
-    let subgradient = &evaluation.subgradient * slope;
-    // Squares of entries above 1e154 are no doubles.
-    let largest = subgradient.amax().max(f64::MIN_POSITIVE);
-    let unit = if objective_root == root { objective.unit() } else { norm_unit };
-    let mut result = vec![
-        shape_facts::peak_pressure(&[&shape]),
-        Fact::new("objective", "objective Θ", value, &raised(&unit)),
-        Fact::json("objective_unit", &plain_unit(&unit))?,
-        Fact::json("objective_root", &objective_root)?,
-    ];
-    result.extend(shape_facts::objective(objective, &[&shape]).into_iter().skip(1));
-    result.extend(shape_facts::contact_areas(objective, &[&shape]));
-    let logarithm = (evaluation.value > 0.0).then(|| size.log10() + root * evaluation.value.log10());
-    result.extend([
-        Fact::new("log10_objective", "log10 of Θ", logarithm, "").detail(),
-        Fact::new("", "norm of subgradient", largest * (&subgradient / largest).norm(), ""),
-        Fact::json("subgradient", &subgradient.as_slice())?,
-    ]);
+    let result = result(objective, &shape, &evaluation)?;
     let warnings = checks(objective, &shape, arguments)?;
     let states = shape_facts::states(objective, &[&shape], ["kink.smallest_margin", "kink.weakly_active"]);
     let diagnosis = arguments.diagnosis.diagnose.then(|| solver.diagnose(&shape.state)).transpose()?;
@@ -75,6 +52,40 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         |folder: &Folder| files::write_evaluation(folder, loaded, objective, &shape, (&facts, &object), &warnings);
     let printed = arguments.printed(facts.text(arguments.verbose), object.clone());
     printed_with_files(printed, arguments.json, folder.as_ref(), write)
+}
+
+/// Θ and its subgradient with the areas in contact.
+fn result<W>(
+    objective: &ContactObjective,
+    shape: &SolvedShape,
+    evaluation: &Evaluation<W>,
+) -> Result<Vec<Fact>, Failure> {
+    let root = objective.root();
+    // The norm of a root r is s r^p, with the derivative s p r^{p−1} ∂r.
+    let (size, norm_unit) = objective.norm_of_root().unwrap_or_else(|| (1.0, objective.unit()));
+    let (power, slope) = (size * evaluation.value.powf(root), size * root * evaluation.value.powf(root - 1.0));
+    let representable = power.is_normal() && (slope * evaluation.subgradient.amax()).is_finite();
+    let (value, slope, objective_root) =
+        if representable { (power, slope, 1.0) } else { (evaluation.value, 1.0, root) };
+    let subgradient = &evaluation.subgradient * slope;
+    // Squares of entries above 1e154 are no doubles.
+    let largest = subgradient.amax().max(f64::MIN_POSITIVE);
+    let unit = if objective_root == root { objective.unit() } else { norm_unit };
+    let mut result = vec![
+        shape_facts::peak_pressure(&[shape]),
+        Fact::new("objective", "objective Θ", value, &raised(&unit)),
+        Fact::json("objective_unit", &plain_unit(&unit))?,
+        Fact::json("objective_root", &objective_root)?,
+    ];
+    result.extend(shape_facts::objective(objective, &[shape]).into_iter().skip(1));
+    result.extend(shape_facts::contact_areas(objective, &[shape]));
+    let logarithm = (evaluation.value > 0.0).then(|| size.log10() + root * evaluation.value.log10());
+    result.extend([
+        Fact::new("log10_objective", "log10 of Θ", logarithm, "").detail(),
+        Fact::new("", "norm of subgradient", largest * (&subgradient / largest).norm(), ""),
+        Fact::json("subgradient", &subgradient.as_slice())?,
+    ]);
+    Ok(result)
 }
 
 /// What an engineer asks of a shape, in two lines: how it is loaded, and what is in contact.

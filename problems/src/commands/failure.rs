@@ -42,7 +42,7 @@ impl Failure {
         }
     }
 
-    /// The same failure after a text for stdout is there already, so that the text is not lost.
+    /// Adds a text for stdout that exists already to a failure, so that the text is not lost.
     #[must_use]
     pub fn after(self, printed: &str) -> Self {
         let status = self.status();

@@ -32,7 +32,7 @@ impl LoadedScene {
         Ok(Self { file, path, case })
     }
 
-    /// The same scene with changed fields.
+    /// A copy of the scene with changed fields.
     ///
     /// # Errors
     /// As [`new`](Self::new).

@@ -49,8 +49,8 @@ fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<C
     Ok(ContactObjective::new(shape, measure)?)
 }
 
-/// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without preparing a solver for it. What
-/// each of several processes needs is looked at when they begin the case.
+/// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without preparing
+/// a solver for it. What each of several processes needs is looked at when they begin the case.
 ///
 /// # Errors
 /// [`SceneError`] naming the field.
@@ -92,8 +92,8 @@ impl SolvedShape {
         Ok(Self { controls: controls.clone(), state, value, peak_pressure })
     }
 
-    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the height of every contact node, which takes an
-    /// adjoint, if it is asked for.
+    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the height of every contact node, which
+    /// takes an adjoint, if it is asked for.
     ///
     /// # Errors
     /// [`Failure`] of the adjoint.

@@ -96,7 +96,8 @@ fn rest(result: &VerificationJson) -> String {
     lines.into_iter().chain(usage).collect()
 }
 
-/// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the largest step.
+/// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the
+/// largest step.
 ///
 /// # Errors
 /// [`Failure`] of the contact solver.
@@ -116,8 +117,8 @@ pub fn taylor_steps(largest: f64) -> Vec<f64> {
     (0..STEP_COUNT).map(|index| largest * STEP_RATIO.powi(index)).collect()
 }
 
-/// A step along the direction and against it over which no contact node changes its status; the shortest step tried if there is
-/// none.
+/// A step along the direction and against it over which no contact node changes its status; the shortest step tried if
+/// there is none.
 fn smooth_step(
     objective: &ContactObjective,
     control: &Vector,

@@ -3,12 +3,12 @@
 //! ```text
 //! min ½ λᵀCλ − (d − 𝓕 s)ᵀλ,   λ in the friction cones,   Rᵀλ = e;     s := s + θ (|w_T| − s)     method.md (4.11)
 //! ```
-//! Without friction, this convex program is the contact problem. With friction, its solution fulfils the contact law but for
-//! openings of 𝓕(|w_T| − s) at the sliding nodes \[AcaryCadouxLemarechalMalick2011\]; so the fixed points of s are the equilibria. These are damped successive
-//! approximations on norms of slip in place of slip bounds: a Tresca problem has no solution where its bounds cannot carry the
-//! load, while every one of these programs has one where rigid statics have one. Newton's method finishes from the first
-//! minimiser that is near enough. After every program the bodies are moved to where it left them, since jumps that are
-//! differences of large numbers spoil the next one.
+//! Without friction, this convex program is the contact problem. With friction, its solution fulfils the contact law
+//! but for openings of 𝓕(|w_T| − s) at the sliding nodes \[AcaryCadouxLemarechalMalick2011\]; so the fixed points of s
+//! are the equilibria. These are damped successive approximations on norms of slip in place of slip bounds: a Tresca
+//! problem has no solution where its bounds cannot carry the load, while every one of these programs has one where
+//! rigid statics have one. Newton's method finishes from the first minimiser that is near enough. After every program
+//! the bodies are moved to where it left them, since jumps that are differences of large numbers spoil the next one.
 
 use crate::direct::compliant_contact::CompliantContact;
 #[cfg(feature = "interior-point")]
@@ -50,7 +50,8 @@ impl Programs {
 }
 
 impl CompliantContact {
-    /// The equilibrium from cone programs, to a relative residual, for at most so many factorisations. Large problems are left out.
+    /// The equilibrium from cone programs, to a relative residual, for at most so many factorisations. Large problems
+    /// are left out.
     pub fn by_cone_programs(&mut self, tolerance: f64, max_steps: usize) -> Programs {
         let before = self.placement.clone();
         let mut slips = vec![0.0; self.problem.boundary.points.len()];

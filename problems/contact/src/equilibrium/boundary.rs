@@ -1,7 +1,7 @@
 //! The contact nodes and the layout of their multipliers.
 //!
-//! A *packed* contact vector holds, node by node, the normal row and the tangential rows that exist: none without friction,
-//! and none for a tangential dof that supports hold on all bodies (method.md section 3).
+//! A *packed* contact vector holds, node by node, the normal row and the tangential rows that exist: none without
+//! friction, and none for a tangential dof that supports hold on all bodies (method.md section 3).
 
 use crate::body::mesh::Grid;
 use crate::equilibrium::ContactStatus;

@@ -131,7 +131,8 @@ mod tests {
 
         #[test]
         fn disc_projection_is_nonexpansive(
-            x in prop::array::uniform2(-10.0_f64..10.0), y in prop::array::uniform2(-10.0_f64..10.0), radius in 0.0_f64..5.0,
+            x in prop::array::uniform2(-10.0_f64..10.0), y in prop::array::uniform2(-10.0_f64..10.0),
+            radius in 0.0_f64..5.0,
         ) {
             let (mut px, mut py) = ([0.0; 2], [0.0; 2]);
             project_onto_disc(&x, radius, &mut px);
@@ -142,7 +143,8 @@ mod tests {
 
         #[test]
         fn linearization_equals_dual_numbers(
-            x in prop::array::uniform3(-10.0_f64..10.0), dx in prop::array::uniform3(-1.0_f64..1.0), friction in 0.01_f64..2.0,
+            x in prop::array::uniform3(-10.0_f64..10.0), dx in prop::array::uniform3(-1.0_f64..1.0),
+            friction in 0.01_f64..2.0,
         ) {
             let dual: [Dual; 3] = std::array::from_fn(|i| Dual::new(x[i], dx[i]));
             let mut exact = [Dual::constant(0.0); 3];

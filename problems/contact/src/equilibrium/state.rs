@@ -108,7 +108,8 @@ pub struct ContactState<S> {
     pub solver: SolverKind,
     /// Why that solver, where another would have been the first choice.
     pub reason: Option<String>,
-    /// Contraction factor observed by the successive approximations, where that method found the state and took enough steps.
+    /// Contraction factor observed by the successive approximations, where that method found the state and took enough
+    /// steps.
     pub contraction: Option<f64>,
     /// Seconds of the stages, where the solver takes them.
     pub stages: Option<StageSeconds>,
@@ -127,7 +128,7 @@ impl<S> ContactState<S> {
         }
     }
 
-    /// The same shape with another form of the solver's own part.
+    /// Replaces the solver's own part of the solution and keeps all else.
     pub fn map<T>(self, change: impl FnOnce(S) -> T) -> ContactState<T> {
         let Self { forces, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications } =
             self;

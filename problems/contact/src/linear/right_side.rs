@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 /// Entries of right sides.
 pub trait RightSide: Entry {
-    /// The same entry in double precision.
+    /// The type of these entries in double precision.
     type Double: RightSide;
 
     /// In double precision.

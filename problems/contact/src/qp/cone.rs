@@ -12,7 +12,8 @@ use nonsmooth::interruption::interrupted;
 /// Iterations of the interior-point method that are worth while: a program takes some twenty.
 pub const MAX_ITERATIONS: usize = 100;
 
-/// A cone over some entries of x in a row: |the others| ≤ slope · the first; the half-line of the first where it is alone.
+/// A cone over some entries of x in a row: |the others| ≤ slope · the first; the half-line of the first where it is
+/// alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cone {
     /// First entry.
@@ -66,7 +67,8 @@ fn sparse(rows: usize, columns: Vec<Vec<(usize, f64)>>) -> CscMatrix<f64> {
 }
 
 impl ConeProgram<'_> {
-    /// The minimiser x and the multipliers y, as nearly as the method gives them in so many iterations; none where it gives none.
+    /// The minimiser x and the multipliers y, as nearly as the method gives them in so many iterations; none where it
+    /// gives none.
     pub fn minimise(&self, max_iterations: usize) -> Option<Minimiser> {
         let (count, motions) = (self.linear.len(), self.right_side.len());
         let upper = (0..count).map(|j| (0..=j).map(|i| (i, self.hessian[(i, j)])).collect()).collect();

@@ -9,9 +9,10 @@
 //! expansion step      the end of a sweep that left Ω or slid along a circle: projection, gradient from x
 //! ```
 //! Two things differ from the textbook. Sliding along an active circle belongs to the face and sees its curvature (the
-//! textbook leaves it to proportioning, which then costs most of the products). And the sweep is accepted only if it lowers q
-//! by a fixed share of what the projected step x − αg̃ is certain to gain; otherwise that projected step is made. So every
-//! sweep gains at least a multiple of α|g̃|², which gives the R-linear rate of gradient projection whatever the face does.
+//! textbook leaves it to proportioning, which then costs most of the products). And the sweep is accepted only if it
+//! lowers q by a fixed share of what the projected step x − αg̃ is certain to gain; otherwise that projected step is
+//! made. So every sweep gains at least a multiple of α|g̃|², which gives the R-linear rate of gradient projection
+//! whatever the face does.
 
 use crate::linear::vector::{add_scaled, dot, norm};
 use crate::qp::{Face, QpError, SeparableSet, SymmetricOperator};
@@ -237,8 +238,8 @@ impl Mpgp<'_> {
         Ok(sweep)
     }
 
-    /// The minimising length along a direction of a sweep; where q is flat, the way to the boundary of Ω if the sweep begins
-    /// there, otherwise none.
+    /// The minimising length along a direction of a sweep; where q is flat, the way to the boundary of Ω if the sweep
+    /// begins there, otherwise none.
     fn step_length(
         &self,
         point: &Point,
@@ -341,7 +342,7 @@ const SUFFICIENT: f64 = 0.1;
 const REFRESH: usize = 100;
 /// Multiple of the rounding of the gradient below which |g̃| means nothing.
 const ROUNDED: f64 = 2.0;
-/// The same, if no progress was made for [`MAX_STALLED_ITERATIONS`] sweeps.
+/// Multiple of the rounding below which |g̃| means nothing once [`MAX_STALLED_ITERATIONS`] sweeps made no progress.
 const BLURRED: f64 = 1e7;
 /// Sweeps without a smaller |g̃| near the level of rounding.
 const MAX_STALLED_ITERATIONS: usize = 20;

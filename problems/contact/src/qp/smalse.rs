@@ -42,11 +42,12 @@ pub struct Smalse<'a> {
 }
 
 impl Smalse<'_> {
-    /// Solves to |g̃| ≤ tolerance·|H|·s and |C x − e| ≤ tolerance·s, where s = max(|b|/|H|, |e|, |P_Ω(0)|) is the size of
-    /// the solution that the data suggest.
+    /// Solves to |g̃| ≤ tolerance·|H|·s and |C x − e| ≤ tolerance·s, where s = max(|b|/|H|, |e|, |P_Ω(0)|) is the size
+    /// of the solution that the data suggest.
     ///
     /// # Errors
-    /// [`QpError`]; [`QpError::NotConverged`] also when rounding stops the iteration above a thousand times the tolerance.
+    /// [`QpError`]; [`QpError::NotConverged`] also when rounding stops the iteration above a thousand times the
+    /// tolerance.
     pub fn solve(&self, start: &WarmStart, tolerance: f64) -> Result<SmalseSolution, QpError> {
         self.check(start)?;
         let norm_h = self.norm(start)?;
@@ -68,12 +69,12 @@ impl Smalse<'_> {
         Err(QpError::NotConverged { solver: "SMALSE-M", residual, steps, history: vec![residual] })
     }
 
-    /// Runs until `enough` is satisfied after an inner solve or rounding stops all progress; `floor` is the smallest |g̃|
-    /// that is ever asked of the inner solver.
+    /// Runs until `enough` is satisfied after an inner solve or rounding stops all progress; `floor` is the
+    /// smallest |g̃| that is ever asked of the inner solver.
     ///
     /// # Errors
-    /// [`QpError::NotConverged`] with the history of |g̃| + ρ|C x − e| over |b| at the limit of outer steps, and what the
-    /// inner solver returns.
+    /// [`QpError::NotConverged`] with the history of |g̃| + ρ|C x − e| over |b| at the limit of outer steps, and what
+    /// the inner solver returns.
     pub fn run(
         &self,
         start: &WarmStart,

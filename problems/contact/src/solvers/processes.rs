@@ -24,12 +24,13 @@ impl Processes {
         self.0.is_none()
     }
 
-    /// The solver of a plan, prepared in all processes: total FETI shares the subdomains among them, direct condensation is repeated
-    /// by each.
+    /// The solver of a plan, prepared in all processes: total FETI shares the subdomains among them, direct
+    /// condensation is repeated by each.
     ///
     /// # Errors
-    /// [`SceneError`] for a bad field, a scene that needs more memory than there is, clusters that the subdomains do not make, or a
-    /// size whose symbolic analysis fails; [`SceneError::OtherProcess`] if the preparation fails in another process only.
+    /// [`SceneError`] for a bad field, a scene that needs more memory than there is, clusters that the subdomains do
+    /// not make, or a size whose symbolic analysis fails; [`SceneError::OtherProcess`] if the preparation fails in
+    /// another process only.
     pub fn solver(&self, plan: SolverPlan) -> Result<AnySolver, SceneError> {
         Ok(match &self.0 {
             None => AnySolver::from(prepared(plan, Arc::new(InProcess))?),

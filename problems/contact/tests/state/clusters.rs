@@ -1,4 +1,5 @@
-//! Hybrid total FETI: clusters of subdomains with six rigid motions each find the same states and derivatives as single subdomains.
+//! Hybrid total FETI: clusters of subdomains with six rigid motions each find the same states and derivatives as single
+//! subdomains.
 
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactProblem, ContactSolver};

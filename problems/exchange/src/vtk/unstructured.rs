@@ -86,7 +86,8 @@ fn write_note(text: &mut String, Note { name, unit, value }: &Note) -> Result<()
     Ok(())
 }
 
-/// VTK's key for the unit of an array. It stands after the numbers: meshio takes the text before the first key for the numbers.
+/// VTK's key for the unit of an array. It stands after the numbers: meshio takes the text before the first key for the
+/// numbers.
 fn units_label(unit: &str) -> Result<String, VtkError> {
     if unit.is_empty() {
         return Ok(String::new());

@@ -1,5 +1,5 @@
-//! `compare`: what friction is worth in the optimization (Example 5.3 of the paper). One optimization with friction and one
-//! without start from the same controls; both shapes found are solved with friction and without it.
+//! `compare`: what friction is worth in the optimization (Example 5.3 of the paper). One optimization with friction and
+//! one without start from the same controls; both shapes found are solved with friction and without it.
 
 pub mod comparison;
 

@@ -104,8 +104,8 @@ impl KeptRun {
     /// The shape of an evaluation, or the one that the run has found.
     ///
     /// # Errors
-    /// [`Failure::Input`] for an evaluation that the run does not have or that does not tell which part is meant; any [`Failure`]
-    /// of the files.
+    /// [`Failure::Input`] for an evaluation that the run does not have or that does not tell which part is meant; any
+    /// [`Failure`] of the files.
     pub fn shape(&self, evaluation: Option<usize>) -> Result<(Vector, Origin), Failure> {
         match evaluation {
             Some(evaluation) => self.evaluation(evaluation),

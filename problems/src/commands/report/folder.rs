@@ -85,8 +85,8 @@ impl<'a> ReportFolder<'a> {
         self.folder.within(FIGURES)?.draw(figure)
     }
 
-    /// Solved shapes, each with the beginning of its files' names and what it is called: the contact boundary as tables, fields for
-    /// ParaView, figures, and the numbers by which they are judged.
+    /// Solved shapes, each with the beginning of its files' names and what it is called: the contact boundary as
+    /// tables, fields for ParaView, figures, and the numbers by which they are judged.
     ///
     /// # Errors
     /// [`Failure`] of the fields and of the files.

@@ -136,8 +136,8 @@ fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'stati
     Ok(figures)
 }
 
-/// Objective, peak pressure and contact area over the first option whose values are numbers, one curve for all rows that agree in the
-/// others.
+/// Objective, peak pressure and contact area over the first option whose values are numbers, one curve for all rows
+/// that agree in the others.
 fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureError>> {
     let numbers = |values: &[String]| values.len() > 1 && values.iter().all(|value| value.parse::<f64>().is_ok());
     let Some(across) = study.vary().iter().position(|varied| numbers(varied.values())) else { return vec![] };

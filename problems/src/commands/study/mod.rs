@@ -1,4 +1,5 @@
-//! `study`: a table over values of parameters. Every row is the scene with some options, evaluated at one shape or optimized.
+//! `study`: a table over values of parameters. Every row is the scene with some options, evaluated at one shape or
+//! optimized.
 //!
 //! ```text
 //! DIR/scene.toml, start.json, study.json   the study as stated

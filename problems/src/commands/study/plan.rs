@@ -51,7 +51,7 @@ impl Plan {
         Self { vary, fixed, optimize, same_start }.checked()
     }
 
-    /// The same, unless options cannot be varied together.
+    /// The plan, unless its options cannot be varied together.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the option and a value that it does not take, or for more than [`MAX_ROWS`] rows.

@@ -115,8 +115,8 @@ impl Row {
         solved.optimization.as_ref().map(|run| run.most_evaluations)
     }
 
-    /// Whether a study that is continued computes it again: it failed, or, where there is a new limit, its optimization ended at the old
-    /// one.
+    /// Whether a study that is continued computes it again: it failed, or, where there is a new limit, its optimization
+    /// ended at the old one.
     pub fn is_to_be_continued(&self, new_limit: bool) -> bool {
         match &self.outcome {
             Outcome::Failed(_) => true,
@@ -125,8 +125,8 @@ impl Row {
     }
 }
 
-/// Computes a row: the scene with its options and those that all rows have, at controls that are given or at its own start; optimized if asked for, in a folder
-/// if there is one. The inner error says why the row was cut short.
+/// Computes a row: the scene with its options and those that all rows have, at controls that are given or at its own
+/// start; optimized if asked for, in a folder if there is one. The inner error says why the row was cut short.
 ///
 /// # Errors
 /// [`Failure::Incomplete`] if files of the row could not be written; every other failure is the row's outcome.

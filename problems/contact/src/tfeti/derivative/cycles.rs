@@ -1,4 +1,5 @@
-//! Iterative refinement in cycles: what follows a run of a Krylov method whose products were in single or double precision.
+//! Iterative refinement in cycles: what follows a run of a Krylov method whose products were in single or double
+//! precision.
 
 use crate::tfeti::dual::Precision;
 
@@ -22,7 +23,7 @@ pub enum NextCycle {
     Continue,
     /// Another cycle with products in double precision.
     Double,
-    /// The same, from the beginning: the cycle has made things worse.
+    /// A cycle from zero with products in double precision: this cycle has made the residual larger.
     DoubleFromZero,
     /// Rounding has stopped all progress.
     Stop,

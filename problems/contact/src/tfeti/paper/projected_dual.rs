@@ -3,7 +3,8 @@
 //! ```text
 //! C = L⁻¹G,  LLᵀ = GGᵀ in the elimination order,   Q = CᵀC,   P = I − Q        H = P F P,   preconditioner of H + ρQ:  P M P + Q/ρ
 //! ```
-//! Vectors of the QP solver go over the rows of all processes, and every process has them; products with F, M and G are shared.
+//! Vectors of the QP solver go over the rows of all processes, and every process has them; products with F, M and G are
+//! shared.
 
 use crate::error::ContactError;
 use crate::linear::cholesky::NumericFactor;

@@ -3,8 +3,9 @@
 //! ```text
 //! a box of clusters is halved across its longest axis, again and again;   cluster k of the lower body, k of the upper one, k + 1 …
 //! ```
-//! The subdomains of a cluster follow each other, in an order of the same kind; without clusters, every subdomain is one. The order does
-//! not depend on the number of processes. Every one of them gets a range of it: a recursive bisection.
+//! The subdomains of a cluster follow each other, in an order of the same kind; without clusters, every subdomain is
+//! one. The order does not depend on the number of processes. Every one of them gets a range of it: a recursive
+//! bisection.
 
 use crate::body::mesh::{Subdomain, Tearing};
 use crate::lattice;
@@ -23,8 +24,8 @@ pub struct Numbering {
 }
 
 impl Numbering {
-    /// Numbers the subdomains of bodies that are all torn alike, `counts` per axis, in clusters of `shape` subdomains per axis, which
-    /// divides `counts`.
+    /// Numbers the subdomains of bodies that are all torn alike, `counts` per axis, in clusters of `shape` subdomains
+    /// per axis, which divides `counts`.
     pub fn new(tearing: &Tearing, counts: [usize; 3], shape: [usize; 3], bodies: usize) -> Self {
         let boxes: [usize; 3] = std::array::from_fn(|axis| counts[axis] / shape[axis]);
         let (mut order, mut inner) = (Vec::new(), Vec::new());

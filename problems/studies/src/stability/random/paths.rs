@@ -98,7 +98,8 @@ impl Examined {
         })
     }
 
-    /// A state with all that a path asks of its solver: sensitivities, and the contraction where there is an estimate of it.
+    /// A state with all that a path asks of its solver: sensitivities, and the contraction where there is an estimate
+    /// of it.
     fn solved(&self, solver: &AnySolver, controls: &[f64]) -> Result<(ContactState, Option<f64>), ContactError> {
         let state = solver.solve(controls, None, TOLERANCE)?;
         let friction = self.problem.boundary.has_friction();
@@ -112,8 +113,9 @@ impl Examined {
         Ok((state, contraction))
     }
 
-    /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without its limit
-    /// on work, and so is its residual; the residuals of the other paths are computed by a routine of the study.
+    /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without
+    /// its limit on work, and so is its residual; the residuals of the other paths are computed by a routine of the
+    /// study.
     pub fn by_cone_programs(&self) -> PathResult {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));
