@@ -31,7 +31,7 @@ pub struct FieldState<'a> {
     pub time: f64,
     /// Name, the beginning of its files' names: letters, digits, `-` and `_`.
     pub name: &'a str,
-    /// Its fields.
+    /// The fields of the solved shape.
     pub fields: &'a Fields,
     /// What its files say of it as a whole.
     pub notes: &'a [Note],
@@ -40,7 +40,7 @@ pub struct FieldState<'a> {
 /// The files of one state, and their lines in the list of a series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StateFiles {
-    /// Names and texts.
+    /// Names of the files with their texts.
     pub files: Vec<(String, String)>,
     /// The lines of the list.
     pub entries: Vec<Entry>,
@@ -55,9 +55,9 @@ pub enum FieldsError {
     Name {
         /// Its place in the list.
         index: usize,
-        /// The name.
+        /// The name that was given.
         name: String,
-        /// What is allowed.
+        /// The names that are allowed.
         allowed: &'static str,
     },
     /// The data do not make a file.
@@ -65,7 +65,7 @@ pub enum FieldsError {
     File {
         /// Name of the state.
         state: String,
-        /// What is wrong.
+        /// The error of the file format.
         source: VtkError,
     },
 }

@@ -27,7 +27,6 @@ pub struct PythonOracle {
     pub jac_apart: bool,
     /// A smooth function that is added to that of the outputs.
     pub smooth: Option<Py<PyAny>>,
-    /// Number of variables.
     pub dimension: usize,
     /// Whether the function takes the keyword `accuracy`.
     pub takes_accuracy: bool,

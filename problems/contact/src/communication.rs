@@ -11,7 +11,7 @@ pub trait Communication: Debug + Send + Sync {
     /// The number of this process, from 0.
     fn rank(&self) -> usize;
 
-    /// Number of processes.
+    /// Number of connected processes.
     fn size(&self) -> usize;
 
     /// The values of all processes, one process after the other. `counts`: how many values each process gives, the same
@@ -26,9 +26,9 @@ pub trait Communication: Debug + Send + Sync {
 /// What this process exchanges with another one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parcel {
-    /// The other process.
+    /// The process to which the parcel goes and from which its answer comes.
     pub rank: usize,
-    /// Values for it.
+    /// Values sent to that process.
     pub outgoing: Vec<f64>,
     /// Values from it; their number is known beforehand.
     pub incoming: Vec<f64>,

@@ -35,7 +35,7 @@ pub enum ContactObjective<S: ContactSolver = AnySolver> {
 pub enum ContactCost {
     /// Of the contact pressures, normalised where it may lie outside the range of doubles.
     Pressure(PressureCost),
-    /// Of the displacements.
+    /// A function of the displacements.
     Field(FieldCost),
 }
 

@@ -73,12 +73,12 @@ impl<S: ContactSolver> ContactShape<S> {
         Self { displacements: true, ..self }
     }
 
-    /// The contact solver.
+    /// The contact solver behind the map.
     pub fn contact_solver(&self) -> &S {
         &self.solver
     }
 
-    /// The discrete problem.
+    /// The discrete problem that the solver solves.
     pub fn problem(&self) -> &ContactProblem {
         self.solver.problem()
     }

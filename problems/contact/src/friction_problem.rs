@@ -24,7 +24,7 @@ pub struct FrictionProblem {
     pub unknowns: Vec<[usize; 3]>,
     /// K by its lower triangle: (row, column, value in N/mm).
     pub stiffness: Vec<(usize, usize, f64)>,
-    /// f, N.
+    /// The loads f, N.
     pub load: Vec<f64>,
     /// H: (row, column, ±1). A row is empty where supports hold its direction on all bodies.
     pub contact: Vec<(usize, usize, f64)>,

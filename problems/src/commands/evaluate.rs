@@ -15,7 +15,6 @@ use contact::contact_shape::ContactState;
 use nonsmooth::Evaluation;
 use std::time::Instant;
 
-/// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let (objective, arguments) = (&solved_shape::objective(&loaded.case, &session.processes)?, session.arguments);
     let solver = objective.solver();

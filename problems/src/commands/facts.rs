@@ -14,15 +14,13 @@ const NAME_WIDTH: usize = 30;
 /// A value for people and for JSON.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// A quantity.
     Number(f64),
     /// An error, a residual or a time, of which few digits matter.
     Rough(f64),
     /// A number of things.
     Count(usize),
-    /// Words.
     Text(String),
-    /// There is none.
+    /// The value does not exist.
     Missing,
 }
 
@@ -81,7 +79,7 @@ pub struct Fact {
     /// Its name for people. Empty: in JSON only.
     name: String,
     values: Vec<Value>,
-    /// Empty: none.
+    /// Unit of the values; empty where there is none.
     unit: String,
     /// Empty: the name says it.
     meaning: &'static str,
@@ -169,11 +167,9 @@ impl Fact {
 /// Facts that belong together; a section of a page.
 #[derive(Debug, Clone, Default)]
 pub struct Group {
-    /// Heading.
     pub title: &'static str,
     /// What the values of a fact belong to, where there are several.
     pub columns: Vec<String>,
-    /// The facts.
     pub facts: Vec<Fact>,
     /// What is to be said about them.
     pub words: String,
@@ -261,7 +257,6 @@ impl Group {
 pub struct Facts {
     /// The first lines of a text: what was found, and whether it is proved.
     pub lead: Vec<String>,
-    /// The facts.
     pub groups: Vec<Group>,
 }
 

@@ -55,7 +55,6 @@ fn folder(path: Option<&Path>) -> &Path {
 /// What all parts of one invocation have in common.
 #[derive(Debug, Clone)]
 pub struct Session<'a> {
-    /// The command line.
     pub arguments: &'a Arguments,
     /// When the time limit began to count.
     pub clock: Instant,

@@ -61,7 +61,6 @@ struct RecheckJson {
     agrees: bool,
 }
 
-/// The command.
 pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
     let folder = arguments.certified.folder.as_path();
     if let Some(kind) = RunKind::of(folder)?.filter(|kind| *kind != RunKind::Optimization) {

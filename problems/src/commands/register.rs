@@ -11,7 +11,6 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// The list.
 pub const REGISTER: &str = "nonsmooth-files.txt";
 const HEADER: &str = "# The files that the program wrote here. It locks this list while it works.\n";
 /// The journal of a run; its restart data and Jacobians lie beside it.

@@ -70,11 +70,11 @@ pub fn objective_note(objective: &ContactObjective, value: f64) -> Note {
 /// A shape, its state as accurate as rounding allows, and the objective there.
 #[derive(Debug)]
 pub struct SolvedShape {
-    /// Control heights, mm.
+    /// Control heights of the shape, mm.
     pub controls: Vector,
-    /// The contact state.
+    /// The contact state of the shape.
     pub state: ContactState,
-    /// Θ.
+    /// The objective Θ at the shape.
     pub value: f64,
     /// Largest contact pressure, MPa.
     pub peak_pressure: f64,

@@ -41,7 +41,6 @@ struct VerificationJson {
     processes: Option<Usage>,
 }
 
-/// The command.
 pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
     let (objective, arguments) = (&solved_shape::objective(case, &session.processes)?, session.arguments);
     let shape = objective.solver();

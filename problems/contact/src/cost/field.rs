@@ -25,7 +25,7 @@ pub enum FieldMeasure {
     /// ((1/V₀) Σ V_e σ_vM,e^p)^{1/p}, MPa: a mean of the von Mises stress at the centres of the bricks of a region, the
     /// closer to its largest value the larger p is. V₀ is the volume of the region at the start height.
     StressNorm {
-        /// The region.
+        /// The bricks that count.
         region: Region,
         /// The exponent p > 1.
         exponent: f64,
@@ -42,7 +42,7 @@ pub struct FieldCost {
     measure: FieldMeasure,
     /// Bricks of the region per body; none for the compliance.
     bricks: Vec<Vec<[usize; 3]>>,
-    /// V₀, mm³.
+    /// The volume V₀ of the region, mm³.
     volume: f64,
     grid: Grid,
     bodies: Vec<BodyScene>,
@@ -206,7 +206,7 @@ impl FieldCost {
     }
 }
 
-/// uᵀ∂f/∂x₃ per node.
+/// The sensitivities uᵀ∂f/∂x₃ per node.
 fn load_sensitivities(block: &Block, scene: &BodyScene, displacement: &[[f64; 3]]) -> Vec<f64> {
     let grid = &block.grid;
     let mut nodes = vec![0.0; grid.node_count()];

@@ -65,7 +65,7 @@ pub struct ContactAreas {
 pub struct PressureRoot {
     /// What it is, such as `(Σσ^4)^(1/4)`.
     pub name: String,
-    /// Its value, MPa.
+    /// The root in MPa.
     pub value: f64,
 }
 

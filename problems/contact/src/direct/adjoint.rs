@@ -16,7 +16,6 @@ use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::add_scaled;
 use nalgebra::DVector;
 
-/// The adjoint state.
 #[derive(Debug)]
 pub(super) struct CondensedAdjoint {
     /// Contact displacements p of the lower body, unit of J per N.

@@ -27,7 +27,6 @@ pub struct CondensationPattern {
     held: Vec<bool>,
 }
 
-/// A condensed body.
 #[derive(Debug)]
 pub struct CondensedBody {
     /// S over contact dofs 3·node + component, N/mm.

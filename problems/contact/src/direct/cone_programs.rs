@@ -20,7 +20,7 @@ use crate::qp::{Cone, ConeProgram, MAX_ITERATIONS};
 const MAX_PROGRAMS: usize = 30;
 /// Decrease of the change of s below which the steps are halved.
 const SUFFICIENT_DECREASE: f64 = 0.7;
-/// Smallest θ.
+/// Smallest θ of the damping.
 const SMALLEST_SHARE: f64 = 1.0 / 64.0;
 /// Change of s, relative to its largest entry or to 1, below which another program says nothing new.
 const SETTLED: f64 = 1e-9;
@@ -34,7 +34,6 @@ const SHARE_OF_STEPS: usize = 4;
 pub struct Programs {
     /// Forces and amplitudes of the equilibrium, dimensionless; none where no program was near enough.
     pub unknowns: Option<Vec<f64>>,
-    /// Programs solved.
     pub count: usize,
     /// Interior-point iterations of all programs.
     pub iterations: usize,

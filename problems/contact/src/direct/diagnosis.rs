@@ -124,7 +124,7 @@ impl BoundChange {
         Self { sliding, factors, size, friction: boundary.friction }
     }
 
-    /// Φ′ dΨ.
+    /// The product Φ′ dΨ.
     fn apply(&self, bounds: &[f64]) -> Vec<f64> {
         let mut change = vec![0.0; self.size];
         for (Sliding { position, direction, tangents }, bound) in self.sliding.iter().zip(bounds) {

@@ -18,7 +18,7 @@ pub(super) struct CondensedLoad {
     pub(super) full: Vec<f64>,
     /// C l̂ over the contact dofs, unit of J per N.
     pub(super) response: Vec<f64>,
-    /// Nᵀ l̂.
+    /// The resultants Nᵀ l̂.
     pub(super) resultants: Vec<f64>,
 }
 

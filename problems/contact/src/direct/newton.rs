@@ -52,7 +52,6 @@ const ACCEPTABLE: f64 = 1e-9;
 pub(super) struct Reached {
     /// Forces and amplitudes, dimensionless.
     pub(super) unknowns: Vec<f64>,
-    /// Derivatives selected there.
     pub(super) linearizations: Vec<Linearization>,
     /// Whether they solve the problem without a compliance of the contact nodes (δ = 0).
     pub(super) solved: bool,
@@ -85,7 +84,6 @@ impl Reached {
         self.programs.as_ref().map_or(0, |programs| programs.count)
     }
 
-    /// What was spent.
     pub(super) fn work(&self) -> Work {
         let programs = self.programs.as_ref().map_or([0; 2], |programs| [programs.iterations, programs.newton_steps]);
         let newton_steps = self.history.len() + programs[1];

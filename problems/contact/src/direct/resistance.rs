@@ -48,7 +48,7 @@ const SETTLED: f64 = 0.01;
 pub struct Resistance {
     /// Amplitudes y of the rigid motions, with slip of length 1 in the root mean square.
     pub motion: Vec<f64>,
-    /// eᵀy, N.
+    /// The resultant eᵀy, N.
     pub resultant: f64,
     /// The largest eᵀy that contact forces can balance, N: an upper bound.
     pub largest: f64,
@@ -57,7 +57,7 @@ pub struct Resistance {
 /// What the bound is made of.
 struct Bound<'a> {
     contact: &'a CompliantContact,
-    /// 2 M.
+    /// The Hessian 2 M.
     hessian: Mat<f64>,
     /// Its Cholesky factor, less a shift.
     factor: DenseCholesky,

@@ -62,9 +62,7 @@ pub(super) struct CondensedSolution {
     pub(super) unknowns: Vec<f64>,
     /// Contact displacements of all bodies, mm.
     pub(super) displacement: Vec<f64>,
-    /// Packed multipliers, N.
     pub(super) forces: Vec<f64>,
-    /// Derivatives selected.
     pub(super) linearizations: Vec<Linearization>,
 }
 

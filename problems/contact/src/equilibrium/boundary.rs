@@ -8,7 +8,7 @@ use crate::equilibrium::ContactStatus;
 use crate::scene::Scene;
 use nonsmooth::Vector;
 
-/// One contact node.
+/// A node of the contact surface with its area and its rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactPoint {
     /// Column of nodes (i, j) of the grid.
@@ -48,7 +48,7 @@ pub struct ContactBoundary {
     pub points: Vec<ContactPoint>,
     /// Length of a packed contact vector.
     pub row_count: usize,
-    /// Friction coefficient 𝓕.
+    /// Friction coefficient 𝓕 of all nodes.
     pub friction: f64,
 }
 

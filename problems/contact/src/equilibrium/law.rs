@@ -13,11 +13,11 @@ use crate::scalar::Scalar;
 /// One element of the generalised derivative of Π at a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Linearization {
-    /// No contact.
+    /// The node carries no force.
     Open,
     /// All rows of the node held.
     Stick,
-    /// Sliding along `direction`.
+    /// The node slides along `direction`.
     Slip {
         /// e, the unit vector along x_T over the node's tangential rows (the second entry is 0 if there is one row).
         direction: [f64; 2],

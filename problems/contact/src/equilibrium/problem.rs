@@ -22,15 +22,15 @@ const LOCKING: f64 = 0.499;
 /// The discrete problem behind a scene.
 #[derive(Debug)]
 pub struct ContactProblem {
-    /// The scene.
+    /// The scene that was discretised.
     pub scene: Scene,
     /// Grid of both bodies.
     pub grid: Grid,
-    /// Contact nodes.
+    /// The nodes that can come into contact.
     pub boundary: ContactBoundary,
     /// From controls to heights of the contact nodes.
     pub height_map: HeightMap,
-    /// Admissible controls.
+    /// The set of controls that the scene admits.
     pub admissible: AdmissibleSet,
     counter_heights: Vec<f64>,
 }

@@ -21,9 +21,9 @@ pub enum Stage {
     CoarseSpace,
     /// The iteration for the contact forces.
     Contact,
-    /// Displacements and certificates.
+    /// The recovery of displacements and certificates from the forces.
     Recovery,
-    /// The adjoint system.
+    /// The solution of the adjoint system.
     Adjoint,
     /// The element sums of the shape derivative.
     ShapeDerivative,

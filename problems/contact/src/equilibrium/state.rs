@@ -72,7 +72,7 @@ pub struct StageSeconds {
     pub coarse_space: f64,
     /// Iteration for the contact forces, whatever its method, without the coarse space: Krylov spaces, products with F.
     pub newton: f64,
-    /// Displacements and certificates.
+    /// Time for displacements and certificates.
     pub recovery: f64,
 }
 
@@ -95,7 +95,7 @@ pub enum ContactWarmStart {
 /// A solved shape; `S` is what its solver keeps ([`ContactSolver::State`](crate::equilibrium::ContactSolver::State)).
 #[derive(Debug)]
 pub struct ContactState<S> {
-    /// Forces, status, certificates.
+    /// Contact forces with status and certificates.
     pub forces: ContactForces,
     /// What derivative, diagnosis and displacements are computed from.
     pub solution: S,
@@ -148,9 +148,9 @@ pub struct ContactForces {
     pub opening: Vec<f64>,
     /// Tangential jump per node, mm; empty without friction.
     pub slip: Vec<[f64; 2]>,
-    /// Status per node.
+    /// Contact status per contact node.
     pub status: Vec<ContactStatus>,
-    /// Certificates.
+    /// Residuals that certify the equilibrium.
     pub residuals: Residuals,
     /// Distance to the nearest kink.
     pub kink: Kink,
@@ -181,7 +181,7 @@ impl ContactForces {
         Self { normal, tangential: pair(forces), opening, slip: pair(jumps), status, residuals, kink }
     }
 
-    /// Σλ_N, N.
+    /// Total normal force Σλ_N, N.
     pub fn total_normal_force(&self) -> f64 {
         self.normal.iter().sum()
     }

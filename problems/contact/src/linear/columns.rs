@@ -52,7 +52,6 @@ pub fn norms<E: Real, const N: usize>(sums: &dyn Sums, a: &[Row<E, N>]) -> Row<f
     rows(&numbers)[0].map(f64::sqrt)
 }
 
-/// Numbers as rows.
 fn rows<const N: usize>(numbers: &[f64]) -> Vec<Row<f64, N>> {
     let row = |numbers: &[f64]| {
         let mut row = Row::ZERO;

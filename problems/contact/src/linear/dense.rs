@@ -90,7 +90,7 @@ impl DenseLu {
         }
     }
 
-    /// A⁻¹.
+    /// The inverse A⁻¹.
     pub fn inverse(&self) -> Mat<f64> {
         let size = self.factors.nrows();
         let mut inverse = Mat::<f64>::identity(size, size);

@@ -19,13 +19,13 @@ pub trait Entry: Copy + Send + Sync + PartialEq {
     /// Number of columns, padding included.
     const WIDTH: usize;
 
-    /// self += factor·other.
+    /// Adds a multiple: self += factor·other.
     fn add_scaled(&mut self, factor: f64, other: &Self);
 
     /// self += factor·other inside [`vectorized`], where blocks take the instruction with one rounding.
     fn accumulate(&mut self, factor: f64, other: &Self);
 
-    /// self ← factor·self.
+    /// Multiplies: self ← factor·self.
     fn scale(&mut self, factor: f64);
 
     /// The number in a column.

@@ -15,7 +15,7 @@ use nonsmooth::interruption::interrupted;
 
 /// Directions, payloads and their coefficients: X = Σ coefficients∘directions.
 pub struct ColumnCombination<E, P, const N: usize> {
-    /// Preconditioned residuals z_k.
+    /// The preconditioned residuals z_k.
     pub directions: Vec<Vec<Row<E, N>>>,
     /// What the operator attached to A z_k.
     pub payloads: Vec<P>,

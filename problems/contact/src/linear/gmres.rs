@@ -17,7 +17,6 @@ pub struct Combination<P> {
     pub directions: Vec<Vec<f64>>,
     /// What the operator attached to A z_k.
     pub payloads: Vec<P>,
-    /// Minimising coefficients.
     pub coefficients: Vec<f64>,
     /// Norm of the residual by the recurrence.
     pub residual: f64,

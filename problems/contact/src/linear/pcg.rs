@@ -6,11 +6,9 @@ use crate::linear::vector::add_scaled;
 /// Solution of a run of [`pcg`].
 #[derive(Debug)]
 pub struct PcgSolution {
-    /// x.
     pub solution: Vec<f64>,
     /// Norm of the residual by the recurrence.
     pub residual: f64,
-    /// Iterations done.
     pub iterations: usize,
 }
 

@@ -12,7 +12,7 @@ pub trait RightSide: Entry {
     /// The type of these entries in double precision.
     type Double: RightSide;
 
-    /// In double precision.
+    /// Converts the entry to double precision.
     fn double(&self) -> Self::Double;
 
     /// Rounded from double precision.

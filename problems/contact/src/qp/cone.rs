@@ -16,11 +16,11 @@ pub const MAX_ITERATIONS: usize = 100;
 /// alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cone {
-    /// First entry.
+    /// Index of the normal entry, the first one of the cone.
     pub first: usize,
-    /// Number of entries.
+    /// Number of entries, the normal one included.
     pub size: usize,
-    /// Slope, > 0.
+    /// Slope of the cone, > 0.
     pub slope: f64,
 }
 
@@ -29,11 +29,11 @@ pub struct Cone {
 pub struct ConeProgram<'a> {
     /// H, symmetric and positive semidefinite.
     pub hessian: &'a Mat<f64>,
-    /// q.
+    /// The linear term q.
     pub linear: Vec<f64>,
     /// R, one column per equality.
     pub equalities: &'a Mat<f64>,
-    /// e.
+    /// The right side e of the equalities.
     pub right_side: Vec<f64>,
     /// The cones, which cover all entries.
     pub cones: Vec<Cone>,
@@ -42,9 +42,9 @@ pub struct ConeProgram<'a> {
 /// Where the method ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Minimiser {
-    /// x.
+    /// The minimiser x.
     pub entries: Vec<f64>,
-    /// y.
+    /// The multipliers y of the equalities.
     pub multipliers: Vec<f64>,
     /// Whether the method calls it a solution.
     pub solved: bool,

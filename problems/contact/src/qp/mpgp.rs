@@ -29,7 +29,7 @@ pub struct FacePreconditioner<'a> {
 /// Products with H by the kind of step that needed them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StepCounts {
-    /// Conjugate gradient steps.
+    /// Number of conjugate gradient steps.
     pub cg_steps: usize,
     /// Projected ends of sweeps, and projected gradient steps.
     pub expansion_steps: usize,
@@ -58,7 +58,7 @@ impl std::ops::AddAssign for StepCounts {
 /// A feasible point with its gradient.
 #[derive(Debug, Clone, Default)]
 pub struct Point {
-    /// x ∈ Ω.
+    /// The iterate x ∈ Ω.
     pub x: Vec<f64>,
     /// g = H x − b.
     pub gradient: Vec<f64>,
@@ -66,17 +66,17 @@ pub struct Point {
 
 /// The solver: operator, set, preconditioner and work so far.
 pub struct Mpgp<'a> {
-    /// H.
+    /// The matrix H.
     pub hessian: &'a dyn SymmetricOperator,
-    /// Ω.
+    /// The feasible set Ω.
     pub set: &'a SeparableSet,
-    /// Preconditioner inside faces.
+    /// The preconditioner inside faces of Ω.
     pub preconditioner: Option<FacePreconditioner<'a>>,
     /// Upper estimate of |H|; raised when a step shows that it is too small.
     pub norm: f64,
     /// Products with H allowed.
     pub max_products: usize,
-    /// Work so far.
+    /// The steps done so far.
     pub counts: StepCounts,
 }
 

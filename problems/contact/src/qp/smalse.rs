@@ -33,11 +33,11 @@ use crate::qp::{
 /// ```
 #[derive(Clone, Copy)]
 pub struct Smalse<'a> {
-    /// The program.
+    /// The program to solve.
     pub program: QuadraticProgram<'a>,
     /// Preconditioner of H + ρCᵀC inside faces.
     pub preconditioner: Option<FacePreconditioner<'a>>,
-    /// Work allowed.
+    /// Limits on the work.
     pub limits: QpLimits,
 }
 
@@ -127,7 +127,6 @@ impl Smalse<'_> {
         }
     }
 
-    /// Checks sizes.
     fn check(&self, start: &WarmStart) -> Result<(), QpError> {
         let expected = self.program.hessian.dimension();
         let sizes = [

@@ -31,7 +31,7 @@ pub struct ShapeBounds {
     pub minimum_height: f64,
     /// C₁, bound of the slope between neighbouring controls.
     pub slope: f64,
-    /// [C₂₁, C₂₂], mm³.
+    /// Least and largest volume [C₂₁, C₂₂], mm³.
     pub volume: [f64; 2],
 }
 

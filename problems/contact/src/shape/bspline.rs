@@ -30,7 +30,6 @@ impl Basis {
         Ok(Self { degree, count, knots })
     }
 
-    /// Degree p.
     pub fn degree(&self) -> usize {
         self.degree
     }

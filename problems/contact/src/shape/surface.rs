@@ -48,7 +48,7 @@ impl SplineSurface {
         [self.bases[0].count(), self.bases[1].count()]
     }
 
-    /// Number of controls.
+    /// The number of controls of the surface.
     pub fn control_count(&self) -> usize {
         self.bases[0].count() * self.bases[1].count()
     }

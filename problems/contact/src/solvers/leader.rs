@@ -16,7 +16,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 pub struct Leader {
     /// For announcements; what they send is not counted.
     announcing: Arc<Counted>,
-    /// For the solvers.
     counted: Arc<Counted>,
     /// What is known of the others. Locked while a task is under way: tasks follow each other in all processes.
     state: Mutex<Progress>,

@@ -46,9 +46,7 @@ pub struct OwnSolver {
 /// Which solvers may work on a shape.
 #[derive(Debug)]
 enum Order {
-    /// Total FETI alone.
     Torn(DualMethod),
-    /// Direct condensation alone.
     Direct,
     /// Total FETI for at most so many products with F, then direct condensation.
     TornFirst(usize),

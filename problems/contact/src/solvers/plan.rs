@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// What a solver will be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Wanted {
-    /// States and adjoints.
+    /// States and their adjoints.
     States,
     /// The Jacobian of all contact forces too.
     Jacobians,
@@ -20,7 +20,7 @@ pub enum Wanted {
 pub struct SolverPlan {
     /// The scene, with all that its file refers to.
     pub scene: Scene,
-    /// The contact solver.
+    /// The contact solver by name.
     pub kind: SolverKind,
     /// The preconditioner of total FETI.
     pub preconditioner: PreconditionerKind,

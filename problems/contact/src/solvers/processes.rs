@@ -14,7 +14,7 @@ pub use crate::solvers::follower::follow;
 pub struct Processes(Option<Arc<Leader>>);
 
 impl Processes {
-    /// A single process.
+    /// The connection of a single process.
     pub fn alone() -> Self {
         Self(None)
     }

@@ -20,7 +20,7 @@ use std::time::Instant;
 /// How the dual problem is solved. The state is the same, whichever method found it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DualMethod {
-    /// Semismooth Newton.
+    /// The semismooth Newton method.
     Newton(Recycling),
     /// Successive approximations of the slip bound, dual QPs by SMALSE-M and MPGP.
     SuccessiveApproximations,
@@ -86,7 +86,7 @@ impl TotalFeti {
         Self { precision, ..self }
     }
 
-    /// The torn model.
+    /// The torn model of all shapes.
     pub fn model(&self) -> &TornModel {
         &self.model
     }

@@ -17,7 +17,7 @@ fn solver(scene: &Scene, clusters: [usize; 3], method: DualMethod) -> TotalFeti 
     TotalFeti::new(problem, TornOptions { clusters, ..TornOptions::default() }).unwrap().with_method(method)
 }
 
-/// |found − expected|/|expected|.
+/// The relative difference |found − expected|/|expected|.
 fn error(found: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(found.len(), expected.len());
     let difference: Vec<f64> = found.iter().zip(expected).map(|(found, expected)| found - expected).collect();

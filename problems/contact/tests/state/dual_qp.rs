@@ -106,7 +106,7 @@ impl Instance {
         }
     }
 
-    /// ½xᵀHx − xᵀb.
+    /// The value ½xᵀHx − xᵀb.
     fn objective(&self, x: &[f64]) -> f64 {
         let dot = |a: &[f64]| a.iter().zip(x).map(|(a, x)| a * x).sum::<f64>();
         self.rows.iter().zip(x).map(|(row, x)| 0.5 * x * dot(row)).sum::<f64>() - dot(&self.linear)

@@ -19,7 +19,6 @@ use crate::commands::solved_shape::{SolvedShape, optimized_objective};
 use contact::error::SceneError;
 use std::path::Path;
 
-/// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let friction = loaded.case.scene.friction;
     if friction == 0.0 {

@@ -21,7 +21,7 @@ const SURFACES: [&str; 6] =
 /// The fields of a scene on which the friction problem of a shape does not depend; the mesh may be that of a stage.
 const NO_FRICTION_PROBLEM: [&str; 8] =
     ["name", "mesh", "solver", "optimizer", "output", "surface.start", "objective", "admissible"];
-/// Largest report, bytes.
+/// Largest report that is read, bytes.
 const LARGEST_REPORT: u64 = 256 << 20;
 
 /// The folder of an optimization, ended or not, or of one of its parts: a mesh or a start.

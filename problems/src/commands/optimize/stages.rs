@@ -7,7 +7,6 @@ use std::path::Path;
 /// What a run is within its optimization.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// All of it.
     Whole,
     /// One of several growing meshes, by its bricks along the axis that has most.
     Mesh(usize),

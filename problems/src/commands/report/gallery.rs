@@ -19,7 +19,6 @@ pub struct ShownShape<'a> {
     pub caption: String,
     /// The beginning of the names of its files.
     pub name: &'static str,
-    /// The shape.
     pub solved: &'a SolvedShape,
     /// Its displacements and stresses, if a picture, a file or the page shows them.
     pub fields: Option<Fields>,

@@ -8,7 +8,6 @@ use clap::Parser;
 use contact::error::SceneError;
 use serde::{Deserialize, Serialize};
 
-/// Most rows.
 const MAX_ROWS: usize = 1000;
 
 /// The options of a row.

@@ -20,7 +20,6 @@ pub struct AlgebraRow {
     pub seconds: f64,
     /// Products with the dual operator; 0 for direct condensation.
     pub products: usize,
-    /// Relative residual reached.
     pub residual: f64,
     /// Largest error of a pressure over the largest pressure.
     pub pressure: f64,
@@ -38,7 +37,6 @@ pub struct AlgebraRow {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AlgebraStudy {
     pub scene: SceneName,
-    /// Bricks per edge.
     pub bricks: usize,
     /// The rows, by solver, tolerances descending.
     pub rows: Vec<AlgebraRow>,

@@ -17,7 +17,6 @@ pub const QUANTITIES: [&str; 5] = ["∫σ⁴", "peak pressure", "Σλ_N x₁", "
 /// Errors on a mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshRow {
-    /// Bricks per edge.
     pub bricks: usize,
     /// Torn dofs of all bodies.
     pub dofs: usize,

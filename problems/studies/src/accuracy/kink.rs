@@ -23,11 +23,11 @@ pub struct KinkRow {
     pub scene: String,
     /// Statuses that change at the kink, and how.
     pub change: String,
-    /// t*, mm.
+    /// The position t* of the kink, mm.
     pub position: f64,
-    /// Θ′(t*−).
+    /// The derivative Θ′(t*−).
     pub before: f64,
-    /// Θ′(t*+).
+    /// The derivative Θ′(t*+).
     pub after: f64,
     /// ⟨ξ, d⟩ with the element returned at t*.
     pub product: f64,

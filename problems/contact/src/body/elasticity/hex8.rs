@@ -144,7 +144,7 @@ mod tests {
         std::array::from_fn(|i| (seed * (i as f64 + 1.0)).sin())
     }
 
-    /// K u.
+    /// The product K u.
     fn product(matrix: &[[f64; DOFS]; DOFS], u: &[f64; DOFS]) -> [f64; DOFS] {
         std::array::from_fn(|i| matrix[i].iter().zip(u).map(|(k, u)| k * u).sum())
     }

@@ -68,7 +68,7 @@ impl Material {
         self.young_modulus
     }
 
-    /// Poisson's ratio ν.
+    /// Poisson's ratio ν of the law in use.
     pub fn poisson_ratio(&self) -> f64 {
         self.poisson_ratio
     }

@@ -123,7 +123,7 @@ impl Grid {
 /// A grid with its two surfaces: the geometry of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {
-    /// Topology and plan.
+    /// Numbers of bricks and the plan of the block.
     pub grid: Grid,
     /// Height of the lower surface per column of nodes, mm.
     pub lower: Vec<f64>,

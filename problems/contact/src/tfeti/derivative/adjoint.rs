@@ -21,10 +21,9 @@ use crate::tfeti::derivative::displacement_load::DisplacementLoad;
 use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
 use crate::tfeti::torn::{RowVector, TornVector};
 
-/// The adjoint state.
 #[derive(Debug, Clone)]
 pub struct TornAdjoint {
-    /// p.
+    /// The adjoint displacement p.
     pub(crate) displacement: TornVector,
     /// Q q over all rows: the adjoint of the gap.
     pub(crate) multipliers: RowVector,

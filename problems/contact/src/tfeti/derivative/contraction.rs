@@ -15,7 +15,7 @@ use crate::linear::sums::Whole;
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::{ActiveSet, Friction, TornContact, TornSolution};
 
-/// Arnoldi steps.
+/// Number of Arnoldi steps after which the estimate stands.
 const MAX_STEPS: usize = 12;
 /// Relative length of a new basis vector that counts as zero: the space is invariant.
 const INVARIANT: f64 = 1e-4;

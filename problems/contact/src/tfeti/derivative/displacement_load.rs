@@ -13,7 +13,7 @@ use crate::tfeti::torn::{RowVector, TornVector, torn_loads};
 pub struct DisplacementLoad {
     /// K⁺ l over the torn dofs, unit of J per N.
     pub response: TornVector,
-    /// B K⁺ l.
+    /// The jumps B K⁺ l.
     pub jumps: RowVector,
     /// Rᵀ l of all clusters, unit of J per mm.
     pub resultants: Vec<f64>,

@@ -28,7 +28,6 @@ use std::cell::RefCell;
 /// The surface that moves, and the state that it moves in.
 #[derive(Debug, Clone, Copy)]
 pub struct MovedSurface<'a> {
-    /// The lower body.
     pub lower: &'a Block,
     /// u over torn dofs, mm.
     pub displacement: &'a TornVector,

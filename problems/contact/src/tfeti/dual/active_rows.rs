@@ -32,7 +32,7 @@ pub struct ActiveRows<'a> {
     starts: Vec<usize>,
     dimension: usize,
     stiffness: f64,
-    /// 𝓕 in T.
+    /// The friction coefficient 𝓕 in T.
     trial_friction: f64,
 }
 
@@ -78,22 +78,22 @@ impl<'a> ActiveRows<'a> {
         }
     }
 
-    /// T y.
+    /// The product T y.
     pub fn trial<V: Entry>(&self, unknowns: &[V]) -> RowVector<V> {
         self.expand(unknowns, self.trial_friction)
     }
 
-    /// Q y.
+    /// The product Q y.
     pub fn test<V: Entry>(&self, unknowns: &[V]) -> RowVector<V> {
         self.expand(unknowns, 0.0)
     }
 
-    /// Tᵀ r.
+    /// The product Tᵀ r.
     pub fn trial_transposed<V: Entry>(&self, rows: &RowVector<V>) -> Vec<V> {
         self.restrict(rows, self.trial_friction)
     }
 
-    /// Qᵀ r.
+    /// The product Qᵀ r.
     pub fn test_transposed<V: Entry>(&self, rows: &RowVector<V>) -> Vec<V> {
         self.restrict(rows, 0.0)
     }

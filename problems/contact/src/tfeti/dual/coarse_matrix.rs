@@ -71,7 +71,7 @@ impl CondensedCoarse {
 #[derive(Debug)]
 pub struct CoarseFactor<'a> {
     constant: &'a CondensedCoarse,
-    /// S + U.
+    /// The factors of S + U.
     contact: DenseLu,
 }
 

@@ -92,7 +92,7 @@ impl CoarseSpace {
         self.rows.count()
     }
 
-    /// e.
+    /// The resultants e of the loads.
     pub fn resultants(&self) -> &[f64] {
         &self.resultants
     }
@@ -154,7 +154,7 @@ impl CoarseSpace {
         defect
     }
 
-    /// Gᵀ a.
+    /// The jumps Gᵀ a of rigid amplitudes.
     pub fn jumps<V: Entry>(&self, amplitudes: &[V]) -> RowVector<V> {
         RowVector::new(self.rows.jumps(amplitudes), self.equality_count)
     }

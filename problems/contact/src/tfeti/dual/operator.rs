@@ -27,7 +27,7 @@ pub enum Precision {
 pub struct DualOperator<'a> {
     /// What does not depend on the shape.
     pub model: &'a TornModel,
-    /// The factored subdomains.
+    /// The factored subdomains with their loads.
     pub system: &'a TornSystem,
     applications: AtomicUsize,
 }
@@ -43,7 +43,7 @@ impl<'a> DualOperator<'a> {
         self.applications.load(Ordering::Relaxed)
     }
 
-    /// F λ.
+    /// The product F λ.
     pub fn apply(&self, multipliers: &RowVector) -> RowVector {
         self.apply_with(multipliers, |factors, part| factors.solve(part))
     }
@@ -153,7 +153,7 @@ impl<'a> DualOperator<'a> {
         }
     }
 
-    /// B u.
+    /// The jumps B u.
     pub fn gather(&self, mut torn: TornVector) -> RowVector {
         self.gather_columns(&mut torn.0)
     }
@@ -176,7 +176,7 @@ impl<'a> DualOperator<'a> {
         (torn, resultants)
     }
 
-    /// K⁺ f.
+    /// The displacements K⁺ f under the loads.
     pub fn loaded_displacement(&self) -> TornVector {
         let mut torn = self.model.zeros();
         let size = self.model.pattern.pattern.dimension();

@@ -22,7 +22,7 @@ pub struct RigidRows {
 const LISTS_AT_ONCE: usize = 512;
 
 impl RigidRows {
-    /// Without rows.
+    /// An empty list of rows.
     pub fn new() -> Self {
         Self { starts: vec![0], others: Vec::new(), values: Vec::new() }
     }
@@ -38,7 +38,6 @@ impl RigidRows {
         }
     }
 
-    /// Number of rows.
     pub fn count(&self) -> usize {
         self.starts.len() - 1
     }

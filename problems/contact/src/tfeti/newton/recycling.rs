@@ -45,7 +45,6 @@ pub struct Recycled {
 }
 
 impl Recycled {
-    /// Number of directions.
     pub fn len(&self) -> usize {
         self.directions.len()
     }
@@ -127,7 +126,7 @@ impl Recycled {
         solve_scaled(&normal, &right)
     }
 
-    /// (dw_k)_E · (dw_l)_E.
+    /// The inner product (dw_k)_E · (dw_l)_E.
     fn product(&self, k: usize, l: usize) -> f64 {
         self.products[k.max(l)][k.min(l)]
     }

@@ -9,7 +9,6 @@ pub struct NewtonSettings {
     pub tolerance: f64,
     /// Relative residual that is accepted when rounding stops all progress.
     pub acceptable: f64,
-    /// Newton steps allowed.
     pub max_steps: usize,
     /// Krylov iterations allowed per Newton step; the descent ends with twice as many directions.
     pub max_krylov: usize,

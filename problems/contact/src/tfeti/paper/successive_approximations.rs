@@ -47,7 +47,7 @@ impl AugmentedLagrangianSettings {
 /// Work of the paper's path.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AugmentedLagrangianCounts {
-    /// Tresca problems.
+    /// Number of Tresca problems solved.
     pub fixed_point_steps: usize,
     /// Multiplier updates of SMALSE-M.
     pub outer: usize,
@@ -263,7 +263,7 @@ impl TornContact<'_> {
     }
 }
 
-/// |a − b|₂.
+/// The distance |a − b|₂.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }

@@ -63,7 +63,7 @@ fn motions(coordinates: &[Vec<[f64; 3]>], modes: &[&[Vec<f64>]]) -> Vec<Vec<f64>
     motions
 }
 
-/// G_c.
+/// The rows G_c of a cluster.
 fn rigid_rows(rows: &ClusterRows, modes: &[&[Vec<f64>]]) -> Mat<f64> {
     let mut matrix = Mat::<f64>::zeros(MOTIONS * modes.len(), rows.count);
     for (index, (member, modes)) in rows.members.iter().zip(modes).enumerate() {
@@ -76,7 +76,7 @@ fn rigid_rows(rows: &ClusterRows, modes: &[&[Vec<f64>]]) -> Mat<f64> {
     matrix
 }
 
-/// N Nᵀ.
+/// The matrix N Nᵀ of the held motions.
 fn held(motions: &[Vec<f64>]) -> Mat<f64> {
     let size = motions[0].len();
     Mat::from_fn(size, size, |row, column| motions.iter().map(|motion| motion[row] * motion[column]).sum())

@@ -11,7 +11,6 @@ use std::ops::Range;
 /// B_c of one cluster.
 #[derive(Debug)]
 pub struct ClusterRows {
-    /// Number of rows.
     pub count: usize,
     /// Their parts by subdomain.
     pub members: Vec<MemberRows>,

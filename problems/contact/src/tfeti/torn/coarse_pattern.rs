@@ -24,7 +24,6 @@ use std::sync::Arc;
 pub struct CoarsePattern {
     /// Lower triangle of the coarse matrix.
     pub lower: Arc<LowerPattern>,
-    /// Its symbolic factor.
     pub symbolic: Arc<SymbolicFactor>,
     /// Amplitudes in elimination order.
     order: Vec<usize>,

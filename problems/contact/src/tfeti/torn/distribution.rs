@@ -77,7 +77,6 @@ impl Distribution {
         self.bounds.partition_point(|&bound| bound <= subdomain) - 1
     }
 
-    /// Number of subdomains.
     pub fn count(&self) -> usize {
         self.bounds[self.bounds.len() - 1]
     }
@@ -232,7 +231,7 @@ fn total<'a, P: Iterator<Item = (&'a Range<usize>, &'a [f64])>>(
     }
 }
 
-/// a + b.
+/// The sum a + b.
 fn added(mut a: Vec<f64>, b: &[f64]) -> Vec<f64> {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
     a

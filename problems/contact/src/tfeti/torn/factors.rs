@@ -37,11 +37,11 @@ pub struct InteriorClass {
     pub symbolic: Option<Arc<SymbolicFactor>>,
     /// Dofs with rows of B or B_c, ascending.
     pub boundary: Vec<usize>,
-    /// K_BB.
+    /// The block K_BB.
     pub boundary_block: SymmetricBlock,
-    /// K_IB.
+    /// The block K_IB.
     pub coupling: SymmetricBlock,
-    /// K_BI.
+    /// The block K_BI.
     pub coupling_transposed: SymmetricBlock,
 }
 
@@ -138,7 +138,7 @@ impl SubdomainFactors {
         Ok(factors)
     }
 
-    /// Rᵀ x.
+    /// The resultants Rᵀ x.
     pub(crate) fn resultants_of<V: Entry>(&self, x: &[V]) -> [V; MOTIONS] {
         let mut resultants = [V::ZERO; MOTIONS];
         vectorized(

@@ -57,7 +57,7 @@ pub struct TornModel {
     pub distribution: Arc<Distribution>,
     /// Which process works on which clusters of subdomains: what has rigid motions of its own.
     pub clusters: Arc<Distribution>,
-    /// Rows of B.
+    /// The rows of B.
     pub constraints: Arc<Constraints>,
     /// Dofs that this process shares with others.
     pub interface: Interface,
@@ -314,7 +314,6 @@ fn distributions(communication: Arc<dyn Communication>, numbering: &Numbering) -
     [clusters, subdomains]
 }
 
-/// Clusters per axis.
 fn cluster_counts(counts: [usize; 3], shape: [usize; 3]) -> Result<[usize; 3], ContactError> {
     if (0..3).any(|axis| shape[axis] == 0 || !counts[axis].is_multiple_of(shape[axis])) {
         let reason = format!("their numbers have to divide the {counts:?} subdomains of a body");

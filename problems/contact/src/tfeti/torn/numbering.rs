@@ -19,7 +19,6 @@ pub struct Numbering {
     numbers: Vec<Vec<usize>>,
     /// Numbers of the clusters of every body, by their index in the box of clusters.
     clusters: Vec<Vec<usize>>,
-    /// Subdomains per cluster.
     members: usize,
 }
 
@@ -53,7 +52,6 @@ impl Numbering {
         self.members
     }
 
-    /// Number of clusters.
     pub fn cluster_count(&self) -> usize {
         self.count() / self.members
     }
@@ -63,12 +61,10 @@ impl Numbering {
         self.clusters[body][index]
     }
 
-    /// Number of subdomains.
     pub fn count(&self) -> usize {
         self.places.len()
     }
 
-    /// Number of bodies.
     pub fn body_count(&self) -> usize {
         self.numbers.len()
     }

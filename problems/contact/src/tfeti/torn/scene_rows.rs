@@ -8,11 +8,8 @@ use std::ops::Range;
 
 /// What the rows need to know of one body.
 pub struct BodyRows<'a> {
-    /// The grid.
     pub grid: &'a Grid,
-    /// Its subdomains.
     pub tearing: &'a Tearing,
-    /// Its supports.
     pub scene: &'a BodyScene,
     /// First torn dof of every subdomain of the tearing, of all processes.
     pub offsets: Vec<usize>,
@@ -54,7 +51,6 @@ pub struct EqualityRow {
     pub owner: usize,
     /// Its place among the rows of its owner.
     pub index: usize,
-    /// Its entries.
     pub entries: SparseRow,
 }
 

@@ -37,7 +37,7 @@ pub struct Machine {
     pub sparse_rate: f64,
     /// Operations per second of a dense factorisation.
     pub dense_rate: f64,
-    /// Bytes per subdomain.
+    /// Memory per subdomain, bytes.
     pub bytes: f64,
     /// Bytes of a process without subdomains.
     pub base_bytes: f64,
