@@ -104,7 +104,7 @@ impl PythonOracle {
         }
         outer.check(outputs.len())?;
         let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
-        // Before the outer function sees outputs that are no numbers.
+        // Before the outer function receives outputs that are no numbers.
         if let Err(error) = linearization.check(self.dimension) {
             return Ok(Err(error.into()));
         }

@@ -67,7 +67,7 @@ impl dyn Communication + '_ {
     }
 }
 
-/// The only process of a run: nothing has to travel.
+/// The only process of a run: nothing is sent.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct InProcess;
 

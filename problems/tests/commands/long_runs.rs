@@ -1,4 +1,4 @@
-//! Long runs: killed, interrupted and limited runs continue to the same bits; runs outlive their failing folders.
+//! Long runs: killed, interrupted and limited runs continue to the same bits; failing folders end no run.
 
 #![cfg(unix)]
 use nonsmooth::Journal;

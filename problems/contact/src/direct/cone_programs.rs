@@ -23,7 +23,7 @@ const SUFFICIENT_DECREASE: f64 = 0.7;
 /// Smallest θ of the damping.
 const SMALLEST_SHARE: f64 = 1.0 / 64.0;
 /// Change of s, relative to its largest entry or to 1, below which another program says nothing new.
-const SETTLED: f64 = 1e-9;
+const SMALLEST_CHANGE: f64 = 1e-9;
 
 /// Of so many steps of direct condensation, one is kept for cone programs where they can be solved.
 #[cfg(feature = "interior-point")]
@@ -55,7 +55,7 @@ impl CompliantContact {
         let before = self.placement.clone();
         let mut slips = vec![0.0; self.problem.boundary.points.len()];
         let mut found = Programs { unknowns: None, count: 0, iterations: 0, newton_steps: 0 };
-        let (mut share, mut last, mut settled) = (1.0, f64::INFINITY, false);
+        let (mut share, mut last, mut converged) = (1.0, f64::INFINITY, false);
         while found.count < MAX_PROGRAMS && found.steps() < max_steps {
             let Some((mut unknowns, iterations)) = self.program(&slips, max_steps - found.steps()) else { break };
             found.count += 1;
@@ -69,11 +69,11 @@ impl CompliantContact {
             }
             let next = self.slip_norms(&unknowns);
             let change = next.iter().zip(&slips).map(|(next, slip)| (next - slip).abs()).fold(0.0, f64::max);
-            if settled || share < SMALLEST_SHARE {
+            if converged || share < SMALLEST_SHARE {
                 break;
             }
             // Once more where the bodies have been moved to: the program has more digits there.
-            settled = change <= SETTLED * next.iter().copied().fold(1.0, f64::max);
+            converged = change <= SMALLEST_CHANGE * next.iter().copied().fold(1.0, f64::max);
             share *= if change > SUFFICIENT_DECREASE * last { 0.5 } else { 1.0 };
             last = change;
             slips.iter_mut().zip(&next).for_each(|(slip, next)| *slip += share * (next - *slip));

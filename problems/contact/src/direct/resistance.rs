@@ -41,7 +41,7 @@ pub(super) const MAX_ROWS: usize = 900;
 /// Programs for one bound, each for the share of the load that the last one allows.
 const MAX_PROGRAMS: usize = 2;
 /// Relative decrease of the share that ends them.
-const SETTLED: f64 = 0.01;
+const SMALLEST_DECREASE: f64 = 0.01;
 
 /// A motion that the load drives, and what friction can hold against it.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,11 +80,11 @@ impl CompliantContact {
         for _program in 0..MAX_PROGRAMS {
             let Some(found) = bound.at(share) else { break };
             let new = found.largest / found.resultant;
-            let settled = new >= (1.0 - SETTLED) * share;
+            let converged = new >= (1.0 - SMALLEST_DECREASE) * share;
             if best.as_ref().is_none_or(|best| new < best.largest / best.resultant) {
                 best = Some(found);
             }
-            if settled || new <= 0.0 {
+            if converged || new <= 0.0 {
                 break;
             }
             share = new;

@@ -13,7 +13,7 @@ const GAP_ROUNDING: f64 = 32.0 * f64::EPSILON;
 pub struct Configuration {
     /// The bodies, lower first.
     pub blocks: Vec<Block>,
-    /// The scene as the rigid body analysis sees it.
+    /// The scene as the rigid body analysis takes it.
     pub rigid: RigidScene,
     /// Motions that nothing holds and that the load does not drive.
     pub grounded: Vec<Motion>,

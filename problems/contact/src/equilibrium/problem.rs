@@ -151,7 +151,7 @@ impl ContactProblem {
         self.counter_heights.iter().zip(&lower.upper).map(|(counter, height)| counter - height).collect()
     }
 
-    /// The scene as a rigid body analysis sees it.
+    /// The scene as a rigid body analysis takes it.
     pub fn rigid_scene(&self, blocks: &[Block]) -> RigidScene {
         let (mut held, mut loads) = (Vec::new(), Vec::new());
         for (body, (block, scene)) in blocks.iter().zip(self.bodies()).enumerate() {

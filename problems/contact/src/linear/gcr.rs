@@ -31,7 +31,7 @@ fn reached<const N: usize>(residuals: &Row<f64, N>, targets: &Row<f64, N>) -> bo
 }
 
 /// Minimises |r − A x| per column over growing Krylov spaces until every norm is at most its target, `max_iterations`
-/// is reached, or the largest ratio of a norm to its target does not halve in 40 iterations; the caller judges the
+/// is reached, or the largest ratio of a norm to its target does not halve in 40 iterations; the caller checks the
 /// residuals.
 ///
 /// `sums`: inner products; `precondition(r)` returns M r; `apply(z)` returns (A z, payload).

@@ -26,7 +26,7 @@ pub struct Combination<P> {
 pub const MAX_STALLED_ITERATIONS: usize = 40;
 
 /// Minimises |r − A x| over growing Krylov spaces until the norm falls to `target`, `max_iterations` is reached, or the
-/// norm does not halve in `patience` iterations, or nobody waits for it any more; the caller judges the residual.
+/// norm does not halve in `patience` iterations, or nobody waits for it any more; the caller checks the residual.
 ///
 /// `sums`: inner products; `precondition(v)` returns z = M v; `apply(z)` returns (A z, payload).
 pub fn gmres<P>(

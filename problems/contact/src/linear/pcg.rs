@@ -15,7 +15,7 @@ pub struct PcgSolution {
 /// Solves A x = r until the residual norm falls to `target` or `max_iterations` is reached.
 ///
 /// `sums`: inner products; `precondition(v)` returns z = M v; `apply(z)` returns A z, projected. Stops early when a
-/// direction has no positive curvature left (rounding); the caller judges the residual.
+/// direction has no positive curvature left (rounding); the caller checks the residual.
 pub fn pcg(
     sums: &dyn Sums,
     residual: &[f64],

@@ -183,7 +183,7 @@ impl OwnSolver {
         match self.direct()?.solve(controls, None, tolerance) {
             Ok(state) => {
                 let work = state.work.after(failed.work);
-                // It may have found a state that the gate lets pass.
+                // Total FETI may have found a state whose residuals are near the limit.
                 let what = if found { "is not clearly accurate" } else { "failed" };
                 Ok(ContactState { work, ..condensed(state, format!("total FETI {what}: {}", failed.error)) })
             }

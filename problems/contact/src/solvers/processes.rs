@@ -1,4 +1,4 @@
-//! The processes of a run, as the first sees them, and what the others do.
+//! The processes of a run: what the first needs of them, and what the others do.
 
 use crate::communication::{Communication, InProcess};
 use crate::error::{ContactError, SceneError};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 pub use crate::solvers::follower::follow;
 
-/// The processes of a run, as the one sees them that runs the command.
+/// The processes of a run, for the one that runs the command.
 #[derive(Debug, Clone)]
 pub struct Processes(Option<Arc<Leader>>);
 

@@ -54,12 +54,12 @@ impl StatusLine {
         Self(Some(shown))
     }
 
-    /// A line that nobody sees.
+    /// A line that is not drawn.
     pub fn hidden() -> Self {
         Self(None)
     }
 
-    /// Whether anybody sees the line.
+    /// Whether the line is drawn.
     pub fn is_visible(&self) -> bool {
         self.0.is_some()
     }

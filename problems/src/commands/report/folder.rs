@@ -37,7 +37,7 @@ pub struct ReportFolder<'a> {
 /// Parts of the page that are made with the files.
 #[derive(Debug, Default)]
 pub struct Parts {
-    /// The numbers by which shapes are judged.
+    /// The key numbers of shapes.
     pub numbers: Section,
     /// The pictures with their captions.
     pub pictures: Vec<Block>,
@@ -86,7 +86,7 @@ impl<'a> ReportFolder<'a> {
     }
 
     /// Solved shapes, each with the beginning of its files' names and what it is called: the contact boundary as
-    /// tables, fields for ParaView, figures, and the numbers by which they are judged.
+    /// tables, fields for ParaView, figures, and their key numbers.
     ///
     /// # Errors
     /// [`Failure`] of the fields and of the files.

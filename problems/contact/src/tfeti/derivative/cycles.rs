@@ -29,7 +29,7 @@ pub enum NextCycle {
     Stop,
 }
 
-/// Judges a cycle by the residual before and after it.
+/// What follows a cycle, by the residual before and after it.
 pub fn next_cycle(precision: Precision, previous: f64, residual: f64, goal: f64) -> NextCycle {
     let within = |share: f64| residual <= share * previous;
     if residual <= goal || within(SLOW_REDUCTION) {

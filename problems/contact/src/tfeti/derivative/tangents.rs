@@ -118,7 +118,7 @@ impl TornContact<'_> {
         Ok(())
     }
 
-    /// Whether single precision alone reaches a tolerance, judged by the condition of the subdomains.
+    /// Whether single precision alone reaches a tolerance, estimated from the condition of the subdomains.
     fn single_is_enough(&self, tolerance: f64) -> bool {
         self.precision == Precision::Mixed
             && tolerance >= TIGHTEST_SINGLE

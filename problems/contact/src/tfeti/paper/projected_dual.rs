@@ -1,4 +1,4 @@
-//! The orthonormalised projected dual operator, as the QP solver sees it.
+//! The orthonormalised projected dual operator, as an operator of the QP solver.
 //!
 //! ```text
 //! C = L⁻¹G,  LLᵀ = GGᵀ in the elimination order,   Q = CᵀC,   P = I − Q        H = P F P,   preconditioner of H + ρQ:  P M P + Q/ρ

@@ -76,7 +76,7 @@ const SUM_GATHERS: f64 = 4.0;
 const SUMS: f64 = 60.0;
 /// Dual vectors that a solve keeps.
 const DUAL_VECTORS: f64 = 140.0;
-/// Dense matrices of the contact units that are alive at once.
+/// Dense matrices of the contact units that are in memory at once.
 const DENSE_MATRICES: f64 = 6.0;
 /// Entries of the coarse matrix per subdomain: six columns of some fourteen neighbours.
 const COARSE_COLUMNS: f64 = 525.0;
