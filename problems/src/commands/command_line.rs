@@ -72,9 +72,6 @@ fn run_parsed(
 
 /// Computes what the arguments ask for, on the scene that `open` reads unless a run is resumed. The text belongs on
 /// stdout.
-///
-/// # Errors
-/// [`Failure`] with its exit status.
 pub fn execute(
     open: impl FnOnce() -> Result<(SceneFile, Option<PathBuf>), Failure>,
     arguments: &Arguments,
@@ -83,9 +80,6 @@ pub fn execute(
 }
 
 /// As [`execute`], in the first of several processes.
-///
-/// # Errors
-/// [`Failure`] with its exit status.
 pub fn execute_among(
     open: impl FnOnce() -> Result<(SceneFile, Option<PathBuf>), Failure>,
     arguments: &Arguments,

@@ -91,9 +91,6 @@ impl Folder {
     }
 
     /// The folder for the results of a command that is not a long run, if one is asked for.
-    ///
-    /// # Errors
-    /// As [`create`](Self::create).
     pub fn of_command(case: &Case, arguments: &Arguments) -> Result<Option<Self>, Failure> {
         let create = |path: &String| Self::create(Path::new(path), 1, arguments.files.overwrite);
         case.output.folder.as_ref().map(create).transpose()
@@ -194,9 +191,6 @@ impl Folder {
     }
 
     /// Writes one file atomically: at any time it holds the old content or the new one, never a part.
-    ///
-    /// # Errors
-    /// As [`claim`](Self::claim).
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         self.claim(name)?;
         let (path, temporary) = (self.path.join(name), self.path.join(format!("{name}{UNFINISHED}")));

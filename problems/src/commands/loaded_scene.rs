@@ -33,9 +33,6 @@ impl LoadedScene {
     }
 
     /// A copy of the scene with changed fields.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
     pub fn changed(&self, change: impl FnOnce(&mut SceneFile)) -> Result<Self, SceneError> {
         let mut file = self.file.clone();
         change(&mut file);

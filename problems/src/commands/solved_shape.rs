@@ -82,9 +82,6 @@ pub struct SolvedShape {
 
 impl SolvedShape {
     /// Solves the contact problem of a shape.
-    ///
-    /// # Errors
-    /// [`Failure`] of the contact solver.
     pub fn at(objective: &ContactObjective, controls: &Vector) -> Result<Self, Failure> {
         let state = objective.solver().solve(controls, None, Accuracy::TIGHTEST)?;
         let value = objective.value(controls, &state);
@@ -94,9 +91,6 @@ impl SolvedShape {
 
     /// Displacements, stresses and contact fields; with the sensitivity of Θ to the height of every contact node, which
     /// takes an adjoint, if it is asked for.
-    ///
-    /// # Errors
-    /// [`Failure`] of the adjoint.
     pub fn fields(&self, objective: &ContactObjective, sensitivities: bool) -> Result<Fields, Failure> {
         let mut fields = objective.solver().fields(&self.state)?;
         if sensitivities {

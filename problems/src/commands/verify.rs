@@ -97,9 +97,6 @@ fn rest(result: &VerificationJson) -> String {
 
 /// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the
 /// largest step.
-///
-/// # Errors
-/// [`Failure`] of the contact solver.
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,

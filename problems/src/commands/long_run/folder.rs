@@ -105,9 +105,6 @@ impl RunFolder {
 
     /// Begins a run in a folder, with what it is, its scene and its initial controls. `claimed` are further files that
     /// will be written there.
-    ///
-    /// # Errors
-    /// As [`Folder::create`].
     pub fn begin(
         folder: Folder,
         loaded: &LoadedScene,
@@ -152,9 +149,6 @@ impl RunFolder {
 
     /// Goes on with the run: from here on a folder without report is that of a run that has not ended. What the run has
     /// found so far stays until its end replaces it.
-    ///
-    /// # Errors
-    /// [`Failure`] if a file cannot be written.
     pub fn proceed(&self, loaded: &LoadedScene) -> Result<(), Failure> {
         if !self.resumed {
             return Ok(());

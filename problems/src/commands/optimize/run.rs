@@ -73,9 +73,6 @@ fn ran_out_of_time(run: &MeshRun) -> bool {
 
 /// Optimizes a scene, on its meshes in turn, from controls that are given, or else named by the command line or the
 /// scene. A run that its folder holds is continued if the command line asks for that.
-///
-/// # Errors
-/// [`Failure`] with its exit status.
 pub fn optimize(
     loaded: &LoadedScene,
     given: Option<&Vector>,

@@ -28,9 +28,6 @@ impl<'a> ShownShape<'a> {
     /// A solved shape with the beginning of its files' names and what it is called, and with as many fields as the
     /// outputs show. Files for ParaView hold the sensitivity of the objective to the height of every contact node as
     /// well, which takes an adjoint.
-    ///
-    /// # Errors
-    /// [`Failure`] of the adjoint.
     pub fn new(
         objective: &ContactObjective,
         (name, label): (&'static str, &'static str),

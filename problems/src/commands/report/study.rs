@@ -27,9 +27,6 @@ const SURFACES: &str = "The contact surface of each row without load, its height
     scale.";
 
 /// Writes table, figures and page of a study.
-///
-/// # Errors
-/// [`Failure`] of the figures and of the folder.
 pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> Result<(), Failure> {
     let mut files = vec![File { path: "study.csv".into(), what: "the table with all digits".into() }];
     folder.write("study.csv", study.csv())?;

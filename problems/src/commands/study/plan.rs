@@ -37,9 +37,6 @@ pub struct Plan {
 
 impl Plan {
     /// The study that the command line states.
-    ///
-    /// # Errors
-    /// As [`Plan::checked`].
     pub fn stated(arguments: &Arguments) -> Result<Self, Failure> {
         let same_start = arguments.shape.controls.is_some() || arguments.course.start_controls.is_some();
         let HeightError { height_error, seed } = arguments.error;

@@ -58,9 +58,6 @@ struct Exact {
 }
 
 /// Runs all solvers.
-///
-/// # Errors
-/// [`Failure`] from a scene or a solver.
 pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<AlgebraStudy, Failure> {
     let objective = |variant| objective_by(variant, scene.scene(case(bricks))?, norm());
     let reference = objective(Variant::Direct)?;

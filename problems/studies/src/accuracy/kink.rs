@@ -122,9 +122,6 @@ struct Change {
 }
 
 /// `count` kinks of a scene, on lines from a perturbed shape in random directions.
-///
-/// # Errors
-/// [`Failure`] from the scene or a solver.
 pub fn of_scene(scene: SceneName, count: usize) -> Result<Vec<KinkRow>, Failure> {
     let objective = objective_of(scene, MESH, norm())?;
     let start = crate::accuracy::algebra::perturbed(&objective);

@@ -135,9 +135,6 @@ pub struct StressErrors {
 }
 
 /// Solves on `bricks`³ bricks of a formulation and compares the fields of the body with the exact stress.
-///
-/// # Errors
-/// As [`manufactured_errors`].
 pub fn manufactured_stress_errors(bricks: usize, formulation: Formulation) -> Result<StressErrors, Failure> {
     let material = Material::new(1.0, 0.3)?.with_formulation(formulation);
     let Smooth { block, u, .. } = smooth(bricks, &material)?;

@@ -47,9 +47,6 @@ pub struct Machine {
 
 impl Machine {
     /// Measures this machine, on one thread.
-    ///
-    /// # Errors
-    /// [`Failure`] if a state cannot be found.
     pub fn measure(scene: SceneName) -> Result<Self, Failure> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.map_err(|error| Failure::Computation(format!("one thread: {error}")))?;
