@@ -163,8 +163,7 @@ pub struct Course {
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
     /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks,
-    /// --new-version,
-    /// --verbose, --json only).
+    /// --new-version, --verbose, --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
     /// With --resume: continue a run that another version of the program has begun.
