@@ -1,8 +1,8 @@
-//! What people run on the [`nonsmooth`] framework: the commands that optimize contact shapes, and two small state problems, a
-//! membrane over an obstacle and a 2D toy with closed forms.
+//! What people run on the [`nonsmooth`] framework: the commands that optimize contact shapes, and two small state
+//! problems, a membrane over an obstacle and a 2D toy with closed forms.
 //!
-//! The front page of the package [`contact`] shows how to evaluate Θ of a scene from Rust; the package [`scene_file`] reads
-//! scenes from TOML files.
+//! The front page of the package [`contact`] shows how to evaluate Θ of a scene from Rust; the package [`scene_file`]
+//! reads scenes from TOML files.
 //!
 //! # The contact binaries
 //!
@@ -18,8 +18,8 @@
 //! * `verify` makes a Taylor test of the subgradient at one shape;
 //! * `recheck` computes norm and error of an optimization's certificate again, from the files in its folder.
 //!
-//! `--help` lists the options. Exit status: 0 success, 1 the computation failed or a certificate does not agree, 2 bad input,
-//! 130 interrupted. `toy2d` and `membrane2d` run the small problems.
+//! `--help` lists the options. Exit status: 0 success, 1 the computation failed or a certificate does not agree, 2 bad
+//! input, 130 interrupted. `toy2d` and `membrane2d` run the small problems.
 //!
 //! # Modules
 //!

@@ -1,4 +1,5 @@
-//! Fields of solved shapes as VTK files: per state one grid of the bodies and one of the contact boundary, and one list of all of them.
+//! Fields of solved shapes as VTK files: per state one grid of the bodies and one of the contact boundary, and one list
+//! of all of them.
 //!
 //! | array | where | unit | meaning |
 //! |---|---|---|---|
@@ -30,7 +31,7 @@ pub struct FieldState<'a> {
     pub time: f64,
     /// Name, the beginning of its files' names: letters, digits, `-` and `_`.
     pub name: &'a str,
-    /// Its fields.
+    /// The fields of the solved shape.
     pub fields: &'a Fields,
     /// What its files say of it as a whole.
     pub notes: &'a [Note],
@@ -39,7 +40,7 @@ pub struct FieldState<'a> {
 /// The files of one state, and their lines in the list of a series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StateFiles {
-    /// Names and texts.
+    /// Names of the files with their texts.
     pub files: Vec<(String, String)>,
     /// The lines of the list.
     pub entries: Vec<Entry>,
@@ -54,9 +55,9 @@ pub enum FieldsError {
     Name {
         /// Its place in the list.
         index: usize,
-        /// The name.
+        /// The name that was given.
         name: String,
-        /// What is allowed.
+        /// The names that are allowed.
         allowed: &'static str,
     },
     /// The data do not make a file.
@@ -64,7 +65,7 @@ pub enum FieldsError {
     File {
         /// Name of the state.
         state: String,
-        /// What is wrong.
+        /// The error of the file format.
         source: VtkError,
     },
 }
@@ -72,12 +73,12 @@ pub enum FieldsError {
 /// The list of all files of a series.
 const LIST: &str = "fields.pvd";
 
-/// Names and texts of the files of a series: for each state `NAME_bodies.vtu` and `NAME_contact.vtu`, then `fields.pvd`, the
-/// file to open.
+/// Names and texts of the files of a series: for each state `NAME_bodies.vtu` and `NAME_contact.vtu`, then
+/// `fields.pvd`, the file to open.
 ///
 /// # Errors
-/// [`FieldsError::Name`] for a name that is empty, has other characters or stands twice, [`FieldsError::File`] for fields that
-/// are not finite.
+/// [`FieldsError::Name`] for a name that is empty, has other characters or stands twice, [`FieldsError::File`] for
+/// fields that are not finite.
 pub fn vtk_files(states: &[FieldState<'_>]) -> Result<Vec<(String, String)>, FieldsError> {
     let mut files = Vec::with_capacity(2 * states.len() + 1);
     let mut entries = Vec::with_capacity(2 * states.len());
@@ -127,7 +128,8 @@ fn unusable(index: usize, name: &str) -> FieldsError {
     FieldsError::Name { index, name: name.to_owned(), allowed }
 }
 
-/// Corners of a brick in the order of [`contact::body::elasticity::brick`] that VTK's hexahedron takes one after the other.
+/// Corners of a brick in the order of [`contact::body::elasticity::brick`] that VTK's hexahedron takes one after the
+/// other.
 const HEXAHEDRON: [usize; 8] = [0, 4, 6, 2, 1, 5, 7, 3];
 
 /// All bodies as one grid; bodies share no points.

@@ -1,4 +1,5 @@
-//! States whose optima lie on kinks: with the composite model, toy and membrane take what cuts alone take, and a tenth at most.
+//! States whose optima lie on kinks: with the composite model, toy and membrane take what cuts alone take, and a tenth
+//! at most.
 #![allow(clippy::unwrap_used, reason = "a test stops at the first surprise")]
 
 use nonsmooth::composite::{OuterFunction, weighted_gram};

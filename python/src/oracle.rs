@@ -27,7 +27,6 @@ pub struct PythonOracle {
     pub jac_apart: bool,
     /// A smooth function that is added to that of the outputs.
     pub smooth: Option<Py<PyAny>>,
-    /// Number of variables.
     pub dimension: usize,
     /// Whether the function takes the keyword `accuracy`.
     pub takes_accuracy: bool,
@@ -105,7 +104,7 @@ impl PythonOracle {
         }
         outer.check(outputs.len())?;
         let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
-        // Before the outer function sees outputs that are no numbers.
+        // Before the outer function receives outputs that are no numbers.
         if let Err(error) = linearization.check(self.dimension) {
             return Ok(Err(error.into()));
         }

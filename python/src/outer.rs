@@ -16,7 +16,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct OuterSetup {
     /// A name, or a Python function.
     pub function: Py<PyAny>,
-    /// Exponent of `power`.
+    /// The exponent of `power`.
     pub exponent: f64,
     /// Numbers of outputs in the groups of `norm`; none: a single group.
     pub groups: Option<Vec<usize>>,

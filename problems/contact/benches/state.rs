@@ -1,9 +1,9 @@
-//! Median times of what a state and its derivatives are made of: factorisation, product with F, state, adjoint, tangents for
-//! 36 changes of the heights.
+//! Median times of what a state and its derivatives are made of: factorisation, product with F, state, adjoint,
+//! tangents for 36 changes of the heights.
 //!
-//! The scene is Signorini (the paper's Example 5.1) at the flat start: total FETI runs on 12³ bricks in 2³ subdomains and on 24³
-//! bricks in 4³, direct condensation on 12³. The last column is relative: factorisations to one product with F, states and
-//! derivatives to a cold state with its adjoint.
+//! The scene is Signorini (the paper's Example 5.1) at the flat start: total FETI runs on 12³ bricks in 2³ subdomains
+//! and on 24³ bricks in 4³, direct condensation on 12³. The last column is relative: factorisations to one product with
+//! F, states and derivatives to a cold state with its adjoint.
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::equilibrium::{ContactProblem, ContactSolver};

@@ -1,8 +1,8 @@
 //! What passes between the processes of a run, and nothing else does.
 //!
 //! All processes run the same program and call the same functions of [`Communication`] in the same order. Sums over all
-//! subdomains are formed from gathered pieces in an order that does not depend on the number of processes, so that results are
-//! the same to the last bit for any number of them.
+//! subdomains are formed from gathered pieces in an order that does not depend on the number of processes, so that
+//! results are the same to the last bit for any number of them.
 
 use std::fmt::Debug;
 
@@ -11,24 +11,24 @@ pub trait Communication: Debug + Send + Sync {
     /// The number of this process, from 0.
     fn rank(&self) -> usize;
 
-    /// Number of processes.
+    /// Number of connected processes.
     fn size(&self) -> usize;
 
-    /// The values of all processes, one process after the other. `counts`: how many values each process gives, the same list
-    /// everywhere.
+    /// The values of all processes, one process after the other. `counts`: how many values each process gives, the same
+    /// list everywhere.
     fn gather(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
 
-    /// Sends every parcel to its process and fills it with what that process sends here. Two processes that exchange values
-    /// have one parcel for each other.
+    /// Sends every parcel to its process and fills it with what that process sends here. Two processes that exchange
+    /// values have one parcel for each other.
     fn exchange(&self, parcels: &mut [Parcel]);
 }
 
 /// What this process exchanges with another one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parcel {
-    /// The other process.
+    /// The process to which the parcel goes and from which its answer comes.
     pub rank: usize,
-    /// Values for it.
+    /// Values sent to that process.
     pub outgoing: Vec<f64>,
     /// Values from it; their number is known beforehand.
     pub incoming: Vec<f64>,
@@ -43,7 +43,8 @@ impl dyn Communication + '_ {
         counts.iter().map(|&count| values.by_ref().take(count).collect()).collect()
     }
 
-    /// The values that process 0 has; what the others give is ignored. What depends on time, files or the user is decided there.
+    /// The values that process 0 has; what the others give is ignored. What depends on time, files or the user is
+    /// decided there.
     pub fn all_of_first(&self, values: Vec<f64>) -> Vec<f64> {
         let counts = |count: usize| (0..self.size()).map(|rank| if rank == 0 { count } else { 0 }).collect::<Vec<_>>();
         let own: fn(&[f64]) -> &[f64] = if self.rank() == 0 { |values| values } else { |_| &[] };
@@ -51,8 +52,8 @@ impl dyn Communication + '_ {
         self.gather(own(&values), &counts(count))
     }
 
-    /// The failure of the first process that reports one, known to all; none if no process has failed. A process that fails
-    /// and goes on alone would leave the others waiting.
+    /// The failure of the first process that reports one, known to all; none if no process has failed. A process that
+    /// fails and goes on alone would leave the others waiting.
     pub fn agree(&self, failure: Option<String>) -> Option<String> {
         let failed = self.gather(&[f64::from(failure.is_some())], &vec![1; self.size()]);
         if failed.iter().all(|&failed| failed == 0.0) {
@@ -66,7 +67,7 @@ impl dyn Communication + '_ {
     }
 }
 
-/// The only process of a run: nothing has to travel.
+/// The only process of a run: nothing is sent.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct InProcess;
 

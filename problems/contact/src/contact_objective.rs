@@ -1,4 +1,5 @@
-//! The objective Θ of a contact problem: a measure of the states that control heights lead to, and how far its first step goes.
+//! The objective Θ of a contact problem: a measure of the states that control heights lead to, and how far its first
+//! step goes.
 
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 pub use crate::cost::PressureRoot;
@@ -12,13 +13,15 @@ use nonsmooth::{
     ReducedObjective, Request, StateSolver, Vector,
 };
 
-/// Least first step over the smallest edge of the body. Ten times as much takes more evaluations on flat bodies that touch everywhere.
+/// Least first step over the smallest edge of the body. Ten times as much takes more evaluations on flat bodies that
+/// touch everywhere.
 const LEAST_FIRST_STEP: f64 = 1e-3;
-/// Largest first step over the smallest edge of the body: bodies close larger gaps by moving as a whole, which says nothing about their shape.
+/// Largest first step over the smallest edge of the body: bodies close larger gaps by moving as a whole, which says
+/// nothing about their shape.
 const LARGEST_FIRST_STEP: f64 = 0.5;
 
-/// Θ of a scene: a measure of the contact state that the control heights lead to. Where a pressure norm may lie outside the range of
-/// doubles, Θ is its p-th root.
+/// Θ of a scene: a measure of the contact state that the control heights lead to. Where a pressure norm may lie outside
+/// the range of doubles, Θ is its p-th root.
 #[derive(Debug)]
 pub enum ContactObjective<S: ContactSolver = AnySolver> {
     /// A convex function of the contact pressures.
@@ -32,7 +35,7 @@ pub enum ContactObjective<S: ContactSolver = AnySolver> {
 pub enum ContactCost {
     /// Of the contact pressures, normalised where it may lie outside the range of doubles.
     Pressure(PressureCost),
-    /// Of the displacements.
+    /// A function of the displacements.
     Field(FieldCost),
 }
 
@@ -189,8 +192,9 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
-    /// Half of the mean distance between a surface and its counterpart, the length on which contact changes, but at least a thousandth and
-    /// at most half of the smallest edge of the body, mm: bodies that touch everywhere have no distance, and deform.
+    /// Half of the mean distance between a surface and its counterpart, the length on which contact changes, but at
+    /// least a thousandth and at most half of the smallest edge of the body, mm: bodies that touch everywhere have no
+    /// distance, and deform.
     pub fn first_step(&self, start: &Vector) -> f64 {
         let problem = self.solver().problem();
         let gaps = problem.lower_block(start.as_slice()).map(|block| problem.gaps(&block)).unwrap_or_default();
@@ -223,10 +227,11 @@ impl<S: ContactSolver> NonsmoothObjective for ContactObjective<S> {
     }
 }
 
-/// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first step:
-/// bodies that contact holds follow the surface as a whole, so that Θ hardly depends on its mean height.
+/// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first
+/// step: bodies that contact holds follow the surface as a whole, so that Θ hardly depends on its mean height.
 ///
-/// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and leaves differences alone.
+/// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and leaves differences
+/// alone.
 pub fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
     let count = start.len();
     let stretch = (start.mean().abs() / first_step).max(1.0);

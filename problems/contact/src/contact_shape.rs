@@ -3,10 +3,11 @@
 //! ```text
 //! S: α ↦ y = (λ_N; λ_T; u),    D*S(α)(y*):  one adjoint solve + one pass over the elements          method.md (5.1)
 //! ```
-//! Contact solvers use no trait of the framework: this module and [`crate::cost`] implement them. A dual of the state has one
-//! entry per normal force, then, with friction, two per node for the tangential forces
-//! ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries). A cost of the displacements adds three entries per node of
-//! every body, lower first ([`ContactProblem::displacement_count`]); other costs leave them out, and nothing is computed for them.
+//! Contact solvers use no trait of the framework: this module and [`crate::cost`] implement them. A dual of the state
+//! has one entry per normal force, then, with friction, two per node for the tangential forces
+//! ([`crate::equilibrium::ContactBoundary::dual_dimension`] entries). A cost of the displacements adds three entries
+//! per node of every body, lower first ([`ContactProblem::displacement_count`]); other costs leave them out, and
+//! nothing is computed for them.
 
 use crate::equilibrium::{
     ContactProblem, ContactSolver, ContactStatus, Diagnosis, SolvedBody, SolverState, ValueError,
@@ -40,8 +41,8 @@ pub struct ContactShape<S: ContactSolver = AnySolver> {
 /// Share of a state's products that its checks may take.
 const CHECKS_SHARE: f64 = 0.1;
 
-/// Relative residual of the state per relative accuracy asked of Θ: a safety factor, since single pressures are less accurate
-/// than the residual.
+/// Relative residual of the state per relative accuracy asked of Θ: a safety factor, since single pressures are less
+/// accurate than the residual.
 const RESIDUAL_SHARE: f64 = 0.1;
 
 /// Relative residual of the adjoint per relative residual of the state.
@@ -66,18 +67,18 @@ impl<S: ContactSolver> ContactShape<S> {
         Self { solver, displacements: false }
     }
 
-    /// The same map, whose states hold the displacements of all bodies as well: for costs of the displacements.
+    /// Lets the states hold the displacements of all bodies as well: for costs of the displacements.
     #[must_use]
     pub fn with_displacements(self) -> Self {
         Self { displacements: true, ..self }
     }
 
-    /// The contact solver.
+    /// The contact solver behind the map.
     pub fn contact_solver(&self) -> &S {
         &self.solver
     }
 
-    /// The discrete problem.
+    /// The discrete problem that the solver solves.
     pub fn problem(&self) -> &ContactProblem {
         self.solver.problem()
     }
@@ -95,7 +96,8 @@ impl<S: ContactSolver> ContactShape<S> {
         self.solver.diagnose(&state.solution).map_err(oracle)
     }
 
-    /// What is implausible about a state; the check for uniqueness takes at most a tenth of the state's products with F.
+    /// What is implausible about a state; the check for uniqueness takes at most a tenth of the state's products with
+    /// F.
     ///
     /// # Errors
     /// [`OracleError::Failed`] for a state of another mesh.
@@ -129,8 +131,8 @@ impl<S: ContactSolver> ContactShape<S> {
         left_out
     }
 
-    /// One element of D*S(α)(y*), method.md (5.1), and the error that the residual of the state causes in a function whose
-    /// gradient there is y*, method.md (5.3).
+    /// One element of D*S(α)(y*), method.md (5.1), and the error that the residual of the state causes in a function
+    /// whose gradient there is y*, method.md (5.3).
     ///
     /// # Errors
     /// [`OracleError`] on wrong sizes, and when the adjoint does not converge.
@@ -145,9 +147,9 @@ impl<S: ContactSolver> ContactShape<S> {
         Ok((Vector::from_vec(self.problem().height_map.pull_back(&heights)), error))
     }
 
-    /// As [`ContactShape::pull_back`], for the heights of the contact nodes instead of the controls: with y* = ∂J/∂y of a cost,
-    /// ∂J/∂(height) per contact node, unit of J per mm. A shape may move every node on its own here; the controls move them
-    /// together.
+    /// As [`ContactShape::pull_back`], for the heights of the contact nodes instead of the controls: with y* = ∂J/∂y of
+    /// a cost, ∂J/∂(height) per contact node, unit of J per mm. A shape may move every node on its own here; the
+    /// controls move them together.
     ///
     /// # Errors
     /// As [`ContactShape::pull_back`].
@@ -242,7 +244,8 @@ impl<S: ContactSolver> Coderivative for ContactShape<S> {
     }
 }
 
-/// The outputs are the contact pressures σ = λ_N/A per contact node, MPa; the slacks are the gaps of the open nodes, mm.
+/// The outputs are the contact pressures σ = λ_N/A per contact node, MPa; the slacks are the gaps of the open nodes,
+/// mm.
 impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
     fn outputs(&self, state: &Self::State) -> Vector {
         self.problem().boundary.pressures(&state.forces.normal)

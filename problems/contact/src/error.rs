@@ -17,27 +17,27 @@ pub enum SceneError {
     OutOfRange {
         /// Name of the field or option.
         field: String,
-        /// Value found.
+        /// The value as it was found.
         value: String,
-        /// What is allowed.
+        /// The values that are allowed.
         allowed: String,
     },
     /// A field of a scene file is missing, of another type or outside its range.
     #[error("{file}: {path} {}; allowed: {allowed}", found(value))]
     Field {
-        /// The file.
+        /// Path of the file.
         file: String,
         /// Path of the field in the file.
         path: String,
         /// Value found, or `missing`.
         value: String,
-        /// What is allowed.
+        /// The values that are allowed.
         allowed: String,
     },
     /// A scene file has a field that no scene has.
     #[error("{file}: there is no field `{path}`{suggestion}; allowed: {allowed}")]
     UnknownField {
-        /// The file.
+        /// Path of the file.
         file: String,
         /// Path of the field in the file.
         path: String,
@@ -49,9 +49,9 @@ pub enum SceneError {
     /// What a scene file says cannot be computed.
     #[error("{file}: {source}")]
     InFile {
-        /// The file.
+        /// Path of the file.
         file: String,
-        /// What is wrong.
+        /// The error inside the file.
         source: Box<SceneError>,
     },
     /// A list has the wrong length.
@@ -61,17 +61,17 @@ pub enum SceneError {
         what: String,
         /// Length it must have.
         expected: usize,
-        /// Length it has.
+        /// The length of the list as it was found.
         found: usize,
     },
     /// Controls outside the admissible set.
     #[error("controls lie outside the admissible set: {constraint} = {value}, allowed: {allowed}")]
     NotAdmissible {
-        /// The violated constraint.
+        /// The constraint that is violated.
         constraint: String,
         /// Value of its expression.
         value: f64,
-        /// Admissible interval.
+        /// The interval that is admissible.
         allowed: String,
     },
     /// A file cannot be read or written, or does not hold what it should.
@@ -79,7 +79,7 @@ pub enum SceneError {
     File {
         /// Path as given by the user.
         path: String,
-        /// What went wrong.
+        /// What the system or the parser reported.
         reason: String,
     },
     /// Another process refuses what this one would accept: less memory is free where it runs.
@@ -119,11 +119,11 @@ pub enum ContactError {
     InvertedElement {
         /// 1 for the lower, 2 for the upper body.
         body: usize,
-        /// Position along x₁.
+        /// Index of the brick along x₁.
         i: usize,
-        /// Position along x₂.
+        /// Index of the brick along x₂.
         j: usize,
-        /// Position along x₃.
+        /// Index of the brick along x₃.
         k: usize,
         /// Jacobian determinant at the first such column of nodes, from the unit cube, mm³.
         determinant: f64,
@@ -147,7 +147,8 @@ pub enum ContactError {
          contact cannot build up the normal forces for more than {largest:.6e} N"
     )]
     FrictionTooWeak {
-        /// The motion that the load does work on, in words; its slip is 1 in the root mean square over the contact nodes.
+        /// The motion that the load does work on, in words; its slip is 1 in the root mean square over the contact
+        /// nodes.
         direction: String,
         /// Work of the load on it per length, N.
         resultant: f64,
@@ -172,12 +173,13 @@ pub enum ContactError {
         /// Why, and what is allowed.
         reason: String,
     },
-    /// A symbolic analysis failed, a matrix is not positive definite, or a factorisation did not pass its residual check.
+    /// A symbolic analysis failed, a matrix is not positive definite, or a factorisation did not pass its residual
+    /// check.
     #[error("{what}: {reason}")]
     Factorization {
-        /// Which matrix.
+        /// The matrix that was to be factored.
         what: String,
-        /// What went wrong.
+        /// What the factorisation reported.
         reason: String,
     },
     /// An iteration ended above its tolerance.
@@ -187,11 +189,11 @@ pub enum ContactError {
     NotConverged {
         /// Name of the iteration.
         solver: &'static str,
-        /// Relative residual reached.
+        /// The relative residual that was reached.
         residual: f64,
-        /// Tolerance asked for.
+        /// The relative residual that was asked for.
         tolerance: f64,
-        /// Iterations spent.
+        /// The number of iterations spent.
         iterations: usize,
         /// Relative residual after every iteration.
         history: Vec<f64>,
@@ -226,7 +228,7 @@ pub enum ContactError {
         what: &'static str,
         /// Relative residual that rounding alone causes.
         floor: f64,
-        /// Relative residual reached.
+        /// The relative residual that was reached.
         residual: f64,
         /// Relative residual that would have been accepted.
         tolerance: f64,
@@ -234,7 +236,7 @@ pub enum ContactError {
     /// A state was handed to the solver of another mesh.
     #[error("the state was found on another mesh: {found} {what}, {expected} expected")]
     ForeignState {
-        /// What was counted.
+        /// What the two numbers count.
         what: &'static str,
         /// How many this solver has.
         expected: usize,
@@ -256,7 +258,7 @@ pub enum ContactError {
     /// A result is not finite.
     #[error("{what} is not finite")]
     NotFinite {
-        /// Which quantity.
+        /// The quantity that is not finite.
         what: &'static str,
     },
     /// The map from slip bounds to slip bounds does not contract: friction is too large for successive approximations.
@@ -266,7 +268,7 @@ pub enum ContactError {
         history.len()
     )]
     NoContraction {
-        /// Estimated contraction factor.
+        /// The estimated contraction factor.
         factor: f64,
         /// Relative change of the slip bound in every step.
         history: Vec<f64>,
@@ -283,7 +285,8 @@ impl From<FactorizationError> for ContactError {
 }
 
 impl ContactError {
-    /// Whether every solver would say the same: the scene, the shape or the caller is at fault, or an end is wished for.
+    /// Whether every solver would say the same: the scene, the shape or the caller is at fault, or an end is wished
+    /// for.
     pub fn ends_the_search(&self) -> bool {
         matches!(
             self,

@@ -4,8 +4,9 @@
 //! K u = f + Hᵀ r,   w = H u + (g, 0, 0) per contact node,
 //! 0 ≤ r_N ⊥ w_N ≥ 0,   |r_T| ≤ 𝓕 r_N,   w_T = −κ r_T with κ ≥ 0, and κ = 0 where |r_T| < 𝓕 r_N
 //! ```
-//! Node by node, r = (λ_N, λ_T) are the contact forces of method.md section 3, and H u is minus the jump, lower body less upper: w_N
-//! is the gap under load, w_T minus the slip. The bodies are not torn; dofs that supports hold are eliminated.
+//! Node by node, r = (λ_N, λ_T) are the contact forces of method.md section 3, and H u is minus the jump, lower body
+//! less upper: w_N is the gap under load, w_T minus the slip. The bodies are not torn; dofs that supports hold are
+//! eliminated.
 
 use crate::body::local_pattern::LocalPattern;
 use crate::body::mesh::Subdomain;
@@ -23,7 +24,7 @@ pub struct FrictionProblem {
     pub unknowns: Vec<[usize; 3]>,
     /// K by its lower triangle: (row, column, value in N/mm).
     pub stiffness: Vec<(usize, usize, f64)>,
-    /// f, N.
+    /// The loads f, N.
     pub load: Vec<f64>,
     /// H: (row, column, ±1). A row is empty where supports hold its direction on all bodies.
     pub contact: Vec<(usize, usize, f64)>,

@@ -16,7 +16,8 @@
 //! // The paper's Example 5.1, a block against a wavy obstacle, on 4 × 4 × 4 bricks.
 //! let scene = Scene { mesh: [4; 3], ..signorini()? };
 //! let shape = ContactShape::new(scene, SolverKind::Newton)?;
-//! let cost = PressureCost::new(PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes }, &shape.problem().boundary)?;
+//! let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
+//! let cost = PressureCost::new(measure, &shape.problem().boundary)?;
 //! let start = shape.start();
 //! let theta = CompositeObjective::new(shape, cost);
 //!

@@ -13,10 +13,11 @@ const NUMBER: f64 = 8.0;
 const DUAL_VECTORS: f64 = 140.0;
 /// Bytes of one number in single precision.
 const SINGLE: f64 = 4.0;
-/// Dual vectors and torn vectors that each column of a Jacobian keeps while it advances, in single precision: directions, their images,
-/// subdomain solutions.
+/// Dual vectors and torn vectors that each column of a Jacobian keeps while it advances, in single precision:
+/// directions, their images, subdomain solutions.
 const TANGENT_VECTORS: (f64, f64) = (36.0, 8.0);
-/// Size of the factor of the interior matrix, which the Dirichlet preconditioner needs, over that of a subdomain's factor.
+/// Size of the factor of the interior matrix, which the Dirichlet preconditioner needs, over that of a subdomain's
+/// factor.
 const INTERIOR_SHARE: f64 = 0.45;
 /// Share of a subdomain's factor that its copy in single precision adds.
 const SINGLE_PRECISION_SHARE: f64 = 0.5;
@@ -25,8 +26,9 @@ const STIFFNESS_PER_DOF: f64 = 41.0;
 /// Share of the available memory that may be used.
 const USABLE: f64 = 0.9;
 
-/// Estimated bytes for a scene, with `columns` of the Jacobian of its forces (0: states and adjoints only), on that of so many
-/// `processes` which owns most subdomains. The kind `auto` counts as total FETI: it condenses what takes little memory only.
+/// Estimated bytes for a scene, with `columns` of the Jacobian of its forces (0: states and adjoints only), on that of
+/// so many `processes` which owns most subdomains. The kind `auto` counts as total FETI: it condenses what takes little
+/// memory only.
 pub(crate) fn estimate(
     scene: &Scene,
     kind: SolverKind,
@@ -39,8 +41,8 @@ pub(crate) fn estimate(
     let mesh = scene.mesh.map(|cells| cells as f64);
     let contact = 3.0 * (mesh[0] + 1.0) * (mesh[1] + 1.0);
     if kind == SolverKind::Direct {
-        // Factor with the contact dofs last (some 1.3 times the fill), Schur complements and compliances, the Newton matrix and
-        // its LU.
+        // Factor with the contact dofs last (some 1.3 times the fill), Schur complements and compliances, the Newton
+        // matrix and its LU.
         let dofs = 3.0 * nodes(mesh);
         let dense = (bodies * 2.0 + 3.0) * contact * contact;
         return NUMBER * (bodies * (1.3 * factor_values(dofs) + STIFFNESS_PER_DOF * dofs) + dense);
@@ -54,12 +56,13 @@ pub(crate) fn estimate(
     let per_piece =
         factor_values(dofs) * (1.0 + SINGLE_PRECISION_SHARE + interior) + (matrices * STIFFNESS_PER_DOF + 6.0) * dofs;
     let glued = (pieces * dofs - bodies * 3.0 * nodes(mesh)).max(0.0);
-    // The factor of the coarse matrix has blocks of six where that of a brick mesh has blocks of three; those of the contact
-    // subdomains take six dense matrices: constant part, its factor, two active sets with their LU.
+    // The factor of the coarse matrix has blocks of six where that of a brick mesh has blocks of three; those of the
+    // contact subdomains take six dense matrices: constant part, its factor, two active sets with their LU.
     let held = 6.0 * bodies * (scene.subdomains[0] * scene.subdomains[1]) as f64;
     let coarse = 1.3 * 4.0 * factor_values(3.0 * pieces) + 6.0 * held * held;
     let (dual, torn) = TANGENT_VECTORS;
-    // Factors, torn vectors and rows of B_E are shared among the processes; every process has the contact rows and the coarse problem.
+    // Factors, torn vectors and rows of B_E are shared among the processes; every process has the contact rows and the
+    // coarse problem.
     let owned = (pieces / processes as f64).ceil();
     let rows = glued * owned / pieces + contact;
     let tangents = SINGLE * columns.min(MAX_COLUMNS) as f64 * (dual * rows + torn * owned * dofs);
@@ -126,7 +129,8 @@ mod tests {
 
     #[test]
     fn estimates_are_near_the_measured_peaks() {
-        // Measured (docs/scaling.md): 0.65, 3.6, 8.5 and 2.4 GiB; 1.22 GiB with a Jacobian of 64 columns (docs/results.md).
+        // Measured (docs/scaling.md): 0.65, 3.6, 8.5 and 2.4 GiB; 1.22 GiB with a Jacobian of 64 columns
+        // (docs/results.md).
         for (mesh, subdomains, kind, columns, measured) in [
             (35, 5, SolverKind::Newton, 0, 0.72e9),
             (35, 5, SolverKind::Newton, 64, 1.31e9),
@@ -145,8 +149,8 @@ mod tests {
 
     #[test]
     fn several_processes_share_the_factors_and_no_process_needs_more_than_one_alone() {
-        // Measured at 24 bricks and 4 subdomains per edge: 236 MB on one process, 86 MB on each of four, of which some 30 MB are those of
-        // a process without a scene.
+        // Measured at 24 bricks and 4 subdomains per edge: 236 MB on one process, 86 MB on each of four, of which some
+        // 30 MB are those of a process without a scene.
         let scene = Scene { mesh: [24; 3], subdomains: [4; 3], ..signorini().expect("a preset") };
         let needed = |processes| estimate(&scene, SolverKind::Newton, PreconditionerKind::Dirichlet, 0, processes);
         let shares = [2, 4, 64].map(|processes| needed(processes) / needed(1));

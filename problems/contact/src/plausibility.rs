@@ -1,7 +1,7 @@
 //! Whether a state means what it seems to mean: linear elasticity, the mesh, the contact zone, uniqueness.
 //!
-//! A warning does not say that the state is wrong: the state solves the discrete problem to its accuracy. It says that the
-//! discrete problem may be far from the body it stands for. Every warning has a code that does not change.
+//! A warning does not say that the state is wrong: the state solves the discrete problem to its accuracy. It says that
+//! the discrete problem may be far from the body it stands for. Every warning has a code that does not change.
 
 use crate::body::elasticity::Formulation;
 use crate::deformation::Deformation;
@@ -29,8 +29,9 @@ const SAMPLES: usize = 8;
 const FLAT: f64 = 1e-9;
 /// Pressures that differ by less than this share are equal: the residual of a state moves them.
 const UNIFORM: f64 = 1e-6;
-/// Poisson's ratio above which standard bricks lock. On a bonded layer of four bricks under a sphere (`thin_layer.toml`), their peak pressure
-/// is 1 % above that of mean-dilatation bricks at 0.45, 4 % at 0.47, 10 % at 0.49, 71 % at 0.499, and four times as large at 0.4999.
+/// Poisson's ratio above which standard bricks lock. On a bonded layer of four bricks under a sphere
+/// (`thin_layer.toml`), their peak pressure is 1 % above that of mean-dilatation bricks at 0.45, 4 % at 0.47, 10 % at
+/// 0.49, 71 % at 0.499, and four times as large at 0.4999.
 const MAX_STANDARD_RATIO: f64 = 0.47;
 /// Strain that the rounding of coordinates causes between bodies that just touch.
 const ROUNDED_STRAIN: f64 = 1e-12;
@@ -180,14 +181,15 @@ fn obstacle(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Wa
     });
 }
 
-/// Places of samples between 0 and `last`, in steps: moved by up to half a step, so that no wave repeats itself from sample to sample.
+/// Places of samples between 0 and `last`, in steps: moved by up to half a step, so that no wave repeats itself from
+/// sample to sample.
 fn uneven(sample: usize, last: usize) -> f64 {
     let ends = sample == 0 || sample == last;
     sample as f64 + if ends { 0.0 } else { 0.5 * (sample as f64 * 0.618_033_988_749_895).fract() }
 }
 
-/// The shortest wave of heights with these slopes between the places: from an extremum to the next but one, or twice the distance of the
-/// only two; ∞ where there are fewer, since a single one is a hump.
+/// The shortest wave of heights with these slopes between the places: from an extremum to the next but one, or twice
+/// the distance of the only two; ∞ where there are fewer, since a single one is a hump.
 fn shortest_wave(places: &[f64], slopes: &[f64]) -> f64 {
     let flat = FLAT * slopes.iter().fold(0.0, |steepest, slope| slope.abs().max(steepest));
     let middles = places.windows(2).map(|x| 0.5 * (x[0] + x[1]));

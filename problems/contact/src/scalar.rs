@@ -12,9 +12,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Sub};
 pub trait Scalar:
     Zero + One + Sub<Output = Self> + Div<Output = Self> + AddAssign + Copy + Debug + Send + Sync
 {
-    /// The constant `value`.
     fn constant(value: f64) -> Self;
-    /// The real part.
     fn value(self) -> f64;
     /// Square root; the argument is positive.
     fn sqrt(self) -> Self;
@@ -35,14 +33,13 @@ impl Scalar for f64 {
 /// Value and one directional derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual {
-    /// Real part.
     pub value: f64,
-    /// Coefficient of ε.
+    /// The coefficient of ε.
     pub derivative: f64,
 }
 
 impl Dual {
-    /// `value + derivative·ε`.
+    /// The number `value + derivative·ε`.
     pub fn new(value: f64, derivative: f64) -> Self {
         Self { value, derivative }
     }

@@ -14,8 +14,9 @@ const LEAST: f64 = 1e-9;
 /// Why Θ is constant without loads.
 const IDLE: &str = "nothing loads the bodies; give loads to the scene";
 
-/// A warning about runs that gained no more than rounding because Θ is constant there, or at its least value; none for all other runs.
-/// `start` are the controls at which the last run began, `end` the controls at which it ended, with their state.
+/// A warning about runs that gained no more than rounding because Θ is constant there, or at its least value; none for
+/// all other runs. `start` are the controls at which the last run began, `end` the controls at which it ended, with
+/// their state.
 ///
 /// # Errors
 /// [`OracleError`] of the adjoint.

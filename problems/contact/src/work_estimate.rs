@@ -4,14 +4,15 @@
 //! sparse factor of n dofs of a box in nested dissection:   values v ≈ 268 000·(n/1536)^1.48,   2 v²/n operations, 4 v per solve
 //! dense matrix of n rows:                                  ⅔ n³ operations per factor, 2 n³ per inverse
 //! ```
-//! The law of v was measured from 7³ to 10³ nodes. The decision must not depend on time or load, so that a run can be repeated.
+//! The law of v was measured from 7³ to 10³ nodes. The decision must not depend on time or load, so that a run can be
+//! repeated.
 
 use crate::equilibrium::Work;
 use crate::scene::Scene;
 use crate::solvers::SolverKind;
 
-/// Products with F after which total FETI gives up where bodies are too large to be condensed. The Newton steps of direct
-/// condensation may cost as many operations.
+/// Products with F after which total FETI gives up where bodies are too large to be condensed. The Newton steps of
+/// direct condensation may cost as many operations.
 pub(crate) const MAX_PRODUCTS: usize = 20_000;
 /// Fill of a factor with the contact dofs last, relative to one in free order.
 const CONTACT_LAST: f64 = 1.3;
@@ -63,7 +64,8 @@ impl WorkEstimate {
         ((self.condensation + EXPECTED_STEPS * self.condensed_step) / self.product) as usize
     }
 
-    /// Newton steps on condensed bodies that cost as much as so many products with F; at least those of an ordinary state.
+    /// Newton steps on condensed bodies that cost as much as so many products with F; at least those of an ordinary
+    /// state.
     pub(crate) fn condensed_steps_per_products(&self, products: usize) -> usize {
         ((products as f64 * self.product / self.condensed_step) as usize).max(MIN_STEPS)
     }

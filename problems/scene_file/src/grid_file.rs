@@ -35,8 +35,8 @@ pub(super) fn read(file: &Path, size: [f64; 2], unit: &str) -> Result<HeightGrid
 /// Numbers of lines and columns, and the numbers of a text line by line.
 ///
 /// # Errors
-/// [`SceneError::OutOfRange`] naming line, column and text of an entry that is no finite number, a line of another length, or the
-/// number of lines or columns.
+/// [`SceneError::OutOfRange`] naming line, column and text of an entry that is no finite number, a line of another
+/// length, or the number of lines or columns.
 fn numbers(text: &str, unit: &str) -> Result<([usize; 2], Vec<f64>), SceneError> {
     let (mut heights, mut lines, mut first) = (Vec::new(), 0, None);
     let filled = |(_, line): &(usize, &str)| !line.trim().is_empty() && !line.trim().starts_with('#');

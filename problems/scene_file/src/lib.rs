@@ -3,8 +3,8 @@
 //! ```text
 //! text → table → checked against the schema (unknown, missing, type, range) → [`SceneFile`] → [`Case`]
 //! ```
-//! The documentation of the fields below, with their units and ranges, is the only source of the JSON schema, of the checks,
-//! of the comments that `--print-scene` writes and of the table in `docs/scenes.md`.
+//! The documentation of the fields below, with their units and ranges, is the only source of the JSON schema, of the
+//! checks, of the comments that `--print-scene` writes and of the table in `docs/scenes.md`.
 
 mod allowed;
 mod bodies;
@@ -46,8 +46,8 @@ pub const GRIDS: [&str; 3] = ["counter_surface.csv", "start.csv", "wanted_pressu
 /// Largest scene file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// A contact shape optimization problem: an elastic body with an optimized upper surface below a rigid obstacle or a second
-/// elastic body. Units: N, mm, MPa. x1, x2 span the base, x3 points upwards; the lower body stands on x3 = 0.
+/// A contact shape optimization problem: an elastic body with an optimized upper surface below a rigid obstacle or a
+/// second elastic body. Units: N, mm, MPa. x1, x2 span the base, x3 points upwards; the lower body stands on x3 = 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
@@ -127,8 +127,8 @@ impl SceneFile {
         grids
     }
 
-    /// The value of the field at a path such as `mesh.bricks`, as it stands in a file; for a field that is not set, what its
-    /// documentation says of that.
+    /// The value of the field at a path such as `mesh.bricks`, as it stands in a file; for a field that is not set,
+    /// what its documentation says of that.
     pub fn value(&self, path: &str) -> String {
         let table = toml::Table::try_from(self).unwrap_or_default();
         let mut names = path.split('.');

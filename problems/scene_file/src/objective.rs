@@ -18,23 +18,28 @@ const DEFAULT_STRESS_EXPONENT: f64 = 8.0;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectiveSection {
-    /// Of the contact pressures: integral or sum of powers, largest value, mean squared deviation from a wanted pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region, compliance.
+    /// Of the contact pressures: integral or sum of powers, largest value, mean squared deviation from a wanted
+    /// pressure, area that lacks pressure. Of the displacements: p-norm of the von Mises stress in a region,
+    /// compliance.
     pub measure: MeasureName,
     /// Exponent p of the pressure norm and of the stress norm. Default 4 for the pressure norm, 8 for the stress norm.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 64.0), extend("x-unit" = "1", "exclusiveMinimum" = 1.0))]
     pub exponent: Option<f64>,
-    /// For `pressure-norm`, what a contact node counts: its area, so that the objective is the integral of the power over the contact boundary, or 1 each, which gives the paper's sum. Default "area".
+    /// For `pressure-norm`, what a contact node counts: its area, so that the objective is the integral of the power
+    /// over the contact boundary, or 1 each, which gives the paper's sum. Default "area".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weight: Option<NodeWeight>,
-    /// For `open-area`: the pressure from which a contact node counts with its whole area. Default none: required there.
+    /// For `open-area`: the pressure from which a contact node counts with its whole area. Default none: required
+    /// there.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e15), extend("x-unit" = "MPa", "exclusiveMinimum" = 0.0))]
     pub pressure: Option<f64>,
     /// For `pressure-deviation`, and required there: the wanted pressure.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wanted: Option<WantedSection>,
-    /// For `stress-norm`: the bricks whose centres lie in this box while the lower body has its start height, faces included; all bricks without it.
+    /// For `stress-norm`: the bricks whose centres lie in this box while the lower body has its start height, faces
+    /// included; all bricks without it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub region: Option<RegionSection>,
 }
@@ -65,12 +70,15 @@ pub enum MeasureName {
 pub enum WantedSection {
     /// A formula.
     Formula {
-        /// The pressure in MPa over x1, x2 in mm, such as "120*exp(-(x1/20)^2) + 5": numbers, + - * / ^, parentheses, functions and PI, as docs/scenes.md lists them. A sign binds less than a power: -x1^2 is -(x1^2); powers count from the right: 2^3^2 is 2^9.
+        /// The pressure in MPa over x1, x2 in mm, such as "120*exp(-(x1/20)^2) + 5": numbers, + - * / ^, parentheses,
+        /// functions and PI, as docs/scenes.md lists them. A sign binds less than a power: -x1^2 is -(x1^2); powers
+        /// count from the right: 2^3^2 is 2^9.
         pressure: String,
     },
     /// Pressures on a uniform grid over the base, bilinear in between.
     Grid {
-        /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; MPa. Lines that begin with # are comments.
+        /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; MPa. Lines that
+        /// begin with # are comments.
         file: String,
     },
 }

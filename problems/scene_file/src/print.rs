@@ -21,7 +21,8 @@ pub(super) fn print(file: &SceneFile) -> Result<String, SceneError> {
     Ok(text)
 }
 
-/// The fields of a table: plain values first, as TOML wants them, then tables. Comments stand at the first of several alike.
+/// The fields of a table: plain values first, as TOML wants them, then tables. Comments stand at the first of several
+/// alike.
 fn fields(text: &mut String, node: &Node<'_>, table: &Table, path: &str, commented: bool) {
     let Some(names) = node.fields() else { return };
     let all: Vec<(&String, Node<'_>)> = names.iter().map(|(name, field)| (name, Node::new(field))).collect();

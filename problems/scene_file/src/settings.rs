@@ -12,7 +12,8 @@ pub struct MeshSection {
     /// Bricks along x1, x2, x3 of each body.
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub bricks: [usize; 3],
-    /// Subdomains along x1, x2, x3 of each body; divisors of the bricks. Default 2 per edge, or, where 2 does not divide the bricks, the divisor that leaves closest to 6 bricks.
+    /// Subdomains along x1, x2, x3 of each body; divisors of the bricks. Default 2 per edge, or, where 2 does not
+    /// divide the bricks, the divisor that leaves closest to 6 bricks.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub subdomains: Option<[usize; 3]>,
@@ -28,11 +29,13 @@ impl Default for MeshSection {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct SolverSection {
-    /// Total FETI with direct condensation where that is needed, or one method alone: Newton on total FETI, direct condensation, successive approximations on total FETI.
+    /// Total FETI with direct condensation where that is needed, or one method alone: Newton on total FETI, direct
+    /// condensation, successive approximations on total FETI.
     pub kind: SolverKind,
     /// Preconditioner of the dual operator of total FETI.
     pub preconditioner: PreconditionerKind,
-    /// Clusters into which the subdomains of all bodies are joined, equal boxes with six unknowns each in the coarse problem of total FETI; at least as many as processes. Default none: every subdomain by itself.
+    /// Clusters into which the subdomains of all bodies are joined, equal boxes with six unknowns each in the coarse
+    /// problem of total FETI; at least as many as processes. Default none: every subdomain by itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1_000_000), extend("x-unit" = "1"))]
     pub clusters: Option<usize>,
@@ -42,7 +45,8 @@ pub struct SolverSection {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OptimizerSection {
-    /// With the composite model of pressure measure and pressures, or by cuts alone. Default composite for measures of the pressures, bundle for the others, which have no composite model.
+    /// With the composite model of pressure measure and pressures, or by cuts alone. Default composite for measures of
+    /// the pressures, bundle for the others, which have no composite model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<MethodName>,
     /// Largest number of evaluations of objective and subgradient, on every mesh.
@@ -55,7 +59,8 @@ pub struct OptimizerSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "s", "exclusiveMinimum" = 0.0))]
     pub time_limit: Option<f64>,
-    /// Length of the first step; a fifth of it on the later meshes of a continuation. Default half of the mean gap at the start, at least a thousandth and at most half of the smallest edge.
+    /// Length of the first step; a fifth of it on the later meshes of a continuation. Default half of the mean gap at
+    /// the start, at least a thousandth and at most half of the smallest edge.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(max = 1e9), extend("x-unit" = "mm", "exclusiveMinimum" = 0.0))]
     pub first_step: Option<f64>,
@@ -63,12 +68,16 @@ pub struct OptimizerSection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 3, max = 10_000), extend("x-unit" = "1"))]
     pub bundle_size: Option<usize>,
-    /// Accuracy asked of the contact solver: always the tightest, or as the predicted decrease demands. The latter is relative to the objective and therefore refused with `pressure-deviation`, `open-area` and `compliance`, which can reach or cross 0.
+    /// Accuracy asked of the contact solver: always the tightest, or as the predicted decrease demands. The latter is
+    /// relative to the objective and therefore refused with `pressure-deviation`, `open-area` and `compliance`, which
+    /// can reach or cross 0.
     pub accuracy: AccuracyName,
-    /// Growing meshes of a coarse-to-fine optimization, bricks along the axis that has most, the others in proportion; empty for one run on the mesh of the scene.
+    /// Growing meshes of a coarse-to-fine optimization, bricks along the axis that has most, the others in proportion;
+    /// empty for one run on the mesh of the scene.
     #[schemars(inner(range(min = 1, max = 400)), extend("x-unit" = "1"))]
     pub continuation: Vec<usize>,
-    /// Optimizations from so many starts on one mesh: the start of the scene, then random surfaces near it, always the same ones.
+    /// Optimizations from so many starts on one mesh: the start of the scene, then random surfaces near it, always the
+    /// same ones.
     #[schemars(range(min = 1, max = 1000), extend("x-unit" = "1"))]
     pub starts: usize,
 }
@@ -115,7 +124,8 @@ pub enum AccuracyName {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct OutputSection {
-    /// Folder for the files of a run, relative to where the program is started, made if it does not exist. Default none: nothing is written.
+    /// Folder for the files of a run, relative to where the program is started, made if it does not exist. Default
+    /// none: nothing is written.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub folder: Option<String>,
     /// Whether pictures are drawn into the folder, as SVG and, by a program built with the feature `png`, as PNG.

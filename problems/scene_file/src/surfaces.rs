@@ -39,7 +39,8 @@ pub enum CounterSection {
     },
     /// Heights on a uniform grid over the base, bilinear in between.
     Grid {
-        /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; mm. Lines that begin with # are comments.
+        /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; mm. Lines that
+        /// begin with # are comments.
         file: String,
     },
 }
@@ -74,8 +75,8 @@ pub enum SplineName {
     Bezier,
 }
 
-/// The shape at the start. All forms but `controls` are sampled at the places of the control points, which are spread evenly
-/// over the base.
+/// The shape at the start. All forms but `controls` are sampled at the places of the control points, which are spread
+/// evenly over the base.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "form", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum StartSection {
@@ -102,7 +103,8 @@ pub enum StartSection {
     },
     /// Heights on a uniform grid over the base, bilinear in between.
     Grid {
-        /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; mm. Lines that begin with # are comments.
+        /// CSV file beside the scene file: one line per x1, one column per x2, both edges included; mm. Lines that
+        /// begin with # are comments.
         file: String,
     },
     /// Control heights one by one.

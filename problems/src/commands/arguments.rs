@@ -163,8 +163,7 @@ pub struct Course {
     #[arg(long, value_name = "FILE")]
     pub start_controls: Option<PathBuf>,
     /// Continue the run that DIR holds (with --max-evaluations, --time-limit, --threads, --vtk-history, --no-checks,
-    /// --new-version,
-    /// --verbose, --json only).
+    /// --new-version, --verbose, --json only).
     #[arg(long, value_name = "DIR")]
     pub resume: Option<PathBuf>,
     /// With --resume: continue a run that another version of the program has begun.
@@ -271,9 +270,6 @@ impl Arguments {
     }
 
     /// Reads the words of a command line by this parser; the scene too, where it has an argument [`SCENE`].
-    ///
-    /// # Errors
-    /// As [`try_parse_from`](Self::try_parse_from).
     pub fn parse_by(
         mut parser: clap::Command,
         words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
@@ -305,9 +301,6 @@ impl Arguments {
     }
 
     /// The scene file with all changes; checked further when it becomes a case.
-    ///
-    /// # Errors
-    /// As [`SceneChanges::apply`].
     pub fn apply(&self, file: SceneFile) -> Result<SceneFile, SceneError> {
         let mut file = self.changes().apply(file)?;
         if let Some(folder) = &self.files.out {

@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 
 /// The symbols of this program and their ASCII forms.
-const FORMS: [(char, &str); 40] = [
+const FORMS: [(char, &str); 41] = [
     ('Θ', "Theta"),
     ('Σ', "sum "),
+    ('∫', "integral of "),
     ('σ', "sigma"),
     ('ξ', "xi"),
     ('α', "alpha"),
@@ -46,8 +47,8 @@ const FORMS: [(char, &str); 40] = [
     ('”', "\""),
 ];
 
-/// A text for people in a form that the locale can show: the symbols of this program have ASCII forms where the locale has no UTF-8.
-/// All other letters stay as they are.
+/// A text for people in a form that the locale can show: the symbols of this program have ASCII forms where the locale
+/// has no UTF-8. All other letters stay as they are.
 pub fn shown(text: &str) -> Cow<'_, str> {
     let variable = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
     let locale = variable("LC_ALL").or_else(|| variable("LC_CTYPE")).or_else(|| variable("LANG"));

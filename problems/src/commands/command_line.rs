@@ -70,10 +70,8 @@ fn run_parsed(
     finish(execute_among(|| open(scene), &arguments, processes), arguments.kept())
 }
 
-/// Computes what the arguments ask for, on the scene that `open` reads unless a run is resumed. The text belongs on stdout.
-///
-/// # Errors
-/// [`Failure`] with its exit status.
+/// Computes what the arguments ask for, on the scene that `open` reads unless a run is resumed. The text belongs on
+/// stdout.
 pub fn execute(
     open: impl FnOnce() -> Result<(SceneFile, Option<PathBuf>), Failure>,
     arguments: &Arguments,
@@ -82,9 +80,6 @@ pub fn execute(
 }
 
 /// As [`execute`], in the first of several processes.
-///
-/// # Errors
-/// [`Failure`] with its exit status.
 pub fn execute_among(
     open: impl FnOnce() -> Result<(SceneFile, Option<PathBuf>), Failure>,
     arguments: &Arguments,
@@ -128,8 +123,8 @@ pub fn execute_among(
     result
 }
 
-/// Listens to the events of the solvers: for a log on stderr if the environment variable RUST_LOG asks for it, else for a status
-/// line if stderr is a terminal.
+/// Listens to the events of the solvers: for a log on stderr if the environment variable RUST_LOG asks for it, else for
+/// a status line if stderr is a terminal.
 fn listen() -> Result<StatusLine, Failure> {
     // A program that has its own subscriber keeps it.
     let Ok(filter) = std::env::var("RUST_LOG") else {

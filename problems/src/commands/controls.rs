@@ -16,9 +16,8 @@ pub const START_OPTION: &str = "--start-controls";
 /// Largest control file, bytes.
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// The controls of a file that an option names, or those the case starts from. Where an optimization starts they lie
-/// in the admissible
-/// set; of shapes that are only looked at, heights and slopes do.
+/// The controls of a file that an option names, or those the case starts from. Where an optimization starts they lie in
+/// the admissible set; of shapes that are only looked at, heights and slopes do.
 ///
 /// # Errors
 /// [`SceneError`] for an unreadable file, another grid or count, numbers that are not finite, controls outside U.
@@ -51,8 +50,7 @@ pub fn read(file: &Path, counts: [usize; 2]) -> Result<Vector, SceneError> {
 }
 
 /// The controls in a text, for so many control points along x₁ and x₂; `name` stands in messages. Rows say the grid
-/// that they are made
-/// for; a plain array of numbers does not.
+/// that they are made for; a plain array of numbers does not.
 ///
 /// # Errors
 /// [`SceneError`] for a text that holds neither, another grid, a wrong count, numbers that are not finite.
@@ -122,8 +120,7 @@ fn check_count(found: usize, expected: usize, name: &str) -> Result<(), SceneErr
 }
 
 /// Controls with the error of a workshop, if one is asked for: every height is off by the same amount, with signs that
-/// depend
-/// on the seed alone. The admissible set binds what is designed, not what is made of it.
+/// depend on the seed alone. The admissible set binds what is designed, not what is made of it.
 pub fn as_made(controls: Vector, error: &HeightError) -> Vector {
     let Some(size) = error.height_error else { return controls };
     let signs = seeded_direction(controls.len(), error.seed.unwrap_or(1));

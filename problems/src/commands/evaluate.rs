@@ -15,7 +15,6 @@ use contact::contact_shape::ContactState;
 use nonsmooth::Evaluation;
 use std::time::Instant;
 
-/// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let (objective, arguments) = (&solved_shape::objective(&loaded.case, &session.processes)?, session.arguments);
     let solver = objective.solver();
@@ -29,7 +28,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let clock = Instant::now();
     let evaluation = objective.differentiate(&controls, &shape.state).map_err(Failure::from).inspect_err(abandon)?;
     let subgradient_seconds = clock.elapsed().as_secs_f64();
-    let result = value(objective, &shape, &evaluation)?;
+    let result = result(objective, &shape, &evaluation)?;
     let warnings = checks(objective, &shape, arguments)?;
     let states = shape_facts::states(objective, &[&shape], ["kink.smallest_margin", "kink.weakly_active"]);
     let diagnosis = arguments.diagnosis.diagnose.then(|| solver.diagnose(&shape.state)).transpose()?;
@@ -54,8 +53,8 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     printed_with_files(printed, arguments.json, folder.as_ref(), write)
 }
 
-/// Θ and its subgradient, as a norm or, where that is no double, as its root.
-fn value<W>(
+/// Θ and its subgradient with the areas in contact.
+fn result<W>(
     objective: &ContactObjective,
     shape: &SolvedShape,
     evaluation: &Evaluation<W>,

@@ -14,15 +14,13 @@ const NAME_WIDTH: usize = 30;
 /// A value for people and for JSON.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// A quantity.
     Number(f64),
     /// An error, a residual or a time, of which few digits matter.
     Rough(f64),
     /// A number of things.
     Count(usize),
-    /// Words.
     Text(String),
-    /// There is none.
+    /// The value does not exist.
     Missing,
 }
 
@@ -75,12 +73,13 @@ impl From<String> for Value {
 /// One fact of a result: a value, or one per shape.
 #[derive(Debug, Clone)]
 pub struct Fact {
-    /// Its name in JSON, which does not change; a name `a.b` stands for the key `b` of the object `a`. Empty: not in JSON.
+    /// Its name in JSON, which does not change; a name `a.b` stands for the key `b` of the object `a`. Empty: not in
+    /// JSON.
     key: &'static str,
     /// Its name for people. Empty: in JSON only.
     name: String,
     values: Vec<Value>,
-    /// Empty: none.
+    /// Unit of the values; empty where there is none.
     unit: String,
     /// Empty: the name says it.
     meaning: &'static str,
@@ -143,7 +142,8 @@ impl Fact {
         self.values.iter().map(Value::shown)
     }
 
-    /// From the first value to the second, in per cent of the first; none for other numbers of values and where the first is zero.
+    /// From the first value to the second, in per cent of the first; none for other numbers of values and where the
+    /// first is zero.
     fn change_percent(&self) -> Option<f64> {
         match self.values[..] {
             [Value::Number(first), Value::Number(second)] if first != 0.0 => {
@@ -167,11 +167,9 @@ impl Fact {
 /// Facts that belong together; a section of a page.
 #[derive(Debug, Clone, Default)]
 pub struct Group {
-    /// Heading.
     pub title: &'static str,
     /// What the values of a fact belong to, where there are several.
     pub columns: Vec<String>,
-    /// The facts.
     pub facts: Vec<Fact>,
     /// What is to be said about them.
     pub words: String,
@@ -259,7 +257,6 @@ impl Group {
 pub struct Facts {
     /// The first lines of a text: what was found, and whether it is proved.
     pub lead: Vec<String>,
-    /// The facts.
     pub groups: Vec<Group>,
 }
 
@@ -275,7 +272,8 @@ impl Facts {
     }
 }
 
-/// A text table: a line per row, columns side by side; the last cell of a row that has fewer runs over the columns behind it.
+/// A text table: a line per row, columns side by side; the last cell of a row that has fewer runs over the columns
+/// behind it.
 pub fn aligned(head: &[String], rows: &[Vec<String>]) -> String {
     let count = |cell: &String| cell.chars().count();
     let mut widths: Vec<usize> = head.iter().map(count).collect();
@@ -298,7 +296,8 @@ pub fn line(name: &str, words: &str) -> String {
     format!("{name:<NAME_WIDTH$}{}{}\n", if name.chars().count() < NAME_WIDTH { "" } else { "  " }, words.trim_end())
 }
 
-/// One JSON object. Facts with several values have arrays; objects of such facts become an array of objects, one per shape.
+/// One JSON object. Facts with several values have arrays; objects of such facts become an array of objects, one per
+/// shape.
 impl Serialize for Facts {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let keyed: Vec<&Fact> = self.all().filter(|fact| !fact.key.is_empty()).collect();

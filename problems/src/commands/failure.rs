@@ -5,7 +5,7 @@ use nonsmooth::verify::VerifyError;
 use nonsmooth::{InputError, JournalError, OptimizeError, OracleError, Termination};
 use thiserror::Error;
 
-/// A failed command.
+/// The reason for which a command failed.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Failure {
@@ -18,11 +18,11 @@ pub enum Failure {
     /// The result for stdout is there, but something is to be said about it.
     #[error("{reason}")]
     Incomplete {
-        /// The result.
+        /// The result for stdout.
         text: String,
         /// The message about it.
         reason: String,
-        /// Exit status.
+        /// The exit status of the program.
         status: u8,
     },
 }
@@ -42,7 +42,7 @@ impl Failure {
         }
     }
 
-    /// The same failure after a text for stdout is there already, so that the text is not lost.
+    /// Adds a text for stdout that exists already to a failure, so that the text is not lost.
     #[must_use]
     pub fn after(self, printed: &str) -> Self {
         let status = self.status();

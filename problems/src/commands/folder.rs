@@ -36,7 +36,8 @@ pub const STUDY: &str = "study.json";
 /// Bytes that stand for those of a run, while it is tried out whether they fit.
 const PROBE: &str = "room";
 
-/// An output folder, or a folder inside one, that was found writable before the work began. No other process works in it.
+/// An output folder, or a folder inside one, that was found writable before the work began. No other process works in
+/// it.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -48,13 +49,13 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// A folder for new results, in which files of so many bytes can be written. With `overwrite`, a folder that holds results is
-    /// renamed to the first free `DIR.1`, `DIR.2`, …
+    /// A folder for new results, in which files of so many bytes can be written. With `overwrite`, a folder that holds
+    /// results is renamed to the first free `DIR.1`, `DIR.2`, …
     ///
     /// # Errors
-    /// [`Failure::Input`] for a folder with a file that the program did not write, with results (unless `overwrite`), or in
-    /// which another process works; [`Failure::Computation`] with the system's reason if it cannot be written. Nothing is
-    /// changed then.
+    /// [`Failure::Input`] for a folder with a file that the program did not write, with results (unless `overwrite`),
+    /// or in which another process works; [`Failure::Computation`] with the system's reason if it cannot be written.
+    /// Nothing is changed then.
     pub fn create(path: &Path, bytes: u64, overwrite: bool) -> Result<Self, Failure> {
         let held = Register::lock(path, false)?;
         let names = held.as_ref().map(Register::names).unwrap_or_default();
@@ -90,9 +91,6 @@ impl Folder {
     }
 
     /// The folder for the results of a command that is not a long run, if one is asked for.
-    ///
-    /// # Errors
-    /// As [`create`](Self::create).
     pub fn of_command(case: &Case, arguments: &Arguments) -> Result<Option<Self>, Failure> {
         let create = |path: &String| Self::create(Path::new(path), 1, arguments.files.overwrite);
         case.output.folder.as_ref().map(create).transpose()
@@ -186,15 +184,13 @@ impl Folder {
     /// Says that the program is about to write a file, by its path below this folder.
     ///
     /// # Errors
-    /// [`Failure::Computation`] for a file that is there and was not written by the program, and with the system's reason.
+    /// [`Failure::Computation`] for a file that is there and was not written by the program, and with the system's
+    /// reason.
     pub fn claim(&self, name: &str) -> Result<(), Failure> {
         self.register.claim(&format!("{}{name}", self.prefix)).map_err(unwritable(&self.path.join(name)))
     }
 
     /// Writes one file atomically: at any time it holds the old content or the new one, never a part.
-    ///
-    /// # Errors
-    /// As [`claim`](Self::claim).
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> Result<(), Failure> {
         self.claim(name)?;
         let (path, temporary) = (self.path.join(name), self.path.join(format!("{name}{UNFINISHED}")));
@@ -221,8 +217,8 @@ impl Folder {
     }
 }
 
-/// The text for stdout after the files of a command were written into its folder, if it has one. A text for people names them;
-/// files that could not be written do not lose the text.
+/// The text for stdout after the files of a command were written into its folder, if it has one. A text for people
+/// names them; files that could not be written do not lose the text.
 ///
 /// # Errors
 /// [`Failure::Incomplete`] with the text if a file could not be written.
@@ -277,7 +273,7 @@ pub fn resume_command(folder: &Path, kind: RunKind) -> String {
     format!("{program}{}--resume {}", kind.command(), quoted(folder.display().to_string()))
 }
 
-/// The same with the options of this command that its folder does not hold.
+/// The command that continues a run, with the options of the present command that the folder does not hold.
 pub fn continuation(folder: &Path, arguments: &Arguments) -> String {
     let mut command = resume_command(folder, arguments.command.kind());
     for (given, option) in

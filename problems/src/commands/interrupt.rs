@@ -1,4 +1,5 @@
-//! Ctrl-C and requests to terminate. A hangup is none: it ends the program, or nothing happens where `nohup` started it.
+//! Ctrl-C and requests to terminate. A hangup is none: it ends the program, or nothing happens where `nohup` started
+//! it.
 
 use crate::commands::output::notice;
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -14,8 +15,8 @@ pub const STATUS: u8 = 130;
 
 /// The signals that ask for an end.
 const REQUESTS: [i32; 2] = [SIGINT, SIGTERM];
-/// Further requests within one to two of these times after the first one are the same: what sends a request twice at once, as `timeout`
-/// does, sends one.
+/// Further requests within one to two of these times after the first one are the same: what sends a request twice at
+/// once, as `timeout` does, sends one.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Whether an end was asked for.
@@ -23,7 +24,8 @@ static REQUESTED: AtomicBool = AtomicBool::new(false);
 /// Whether the next request ends the program at once.
 static ANSWERED: AtomicBool = AtomicBool::new(false);
 
-/// From now on a request to end is remembered, and another one ends the program at once. `said`: what happens next is said.
+/// From now on a request to end is remembered, and another one ends the program at once. `said`: what happens next is
+/// said.
 pub fn watch_interrupts(said: bool) {
     // Several runs of one process share what watches.
     static WATCHED: Once = Once::new();

@@ -32,10 +32,7 @@ impl LoadedScene {
         Ok(Self { file, path, case })
     }
 
-    /// The same scene with changed fields.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
+    /// A copy of the scene with changed fields.
     pub fn changed(&self, change: impl FnOnce(&mut SceneFile)) -> Result<Self, SceneError> {
         let mut file = self.file.clone();
         change(&mut file);
@@ -55,7 +52,6 @@ fn folder(path: Option<&Path>) -> &Path {
 /// What all parts of one invocation have in common.
 #[derive(Debug, Clone)]
 pub struct Session<'a> {
-    /// The command line.
     pub arguments: &'a Arguments,
     /// When the time limit began to count.
     pub clock: Instant,

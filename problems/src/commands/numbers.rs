@@ -25,7 +25,8 @@ pub fn rounded(value: f64, digits: usize) -> String {
     }
 }
 
-/// A number with all its digits, at most 17, and without a sign before zero: what a table of comma-separated values holds.
+/// A number with all its digits, at most 17, and without a sign before zero: what a table of comma-separated values
+/// holds.
 pub fn exact(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
@@ -42,8 +43,8 @@ pub fn percent(change: f64) -> String {
     }
 }
 
-/// How many times less the end is than the start; none where the ratio says nothing: a compliance may change its sign, and a deviation may
-/// vanish up to rounding.
+/// How many times less the end is than the start; none where the ratio says nothing: a compliance may change its sign,
+/// and a deviation may vanish up to rounding.
 pub fn reduction(start: f64, end: f64) -> Option<f64> {
     /// Reduction from which on the rest is rounding.
     const MEANINGLESS_REDUCTION: f64 = 1e12;

@@ -8,8 +8,8 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Prints the text of a command on stdout and the message of its failure on stderr; the exit status that belongs to them.
-/// `kept`: the folder that holds the result too, if there is one.
+/// Prints the text of a command on stdout and the message of its failure on stderr; the exit status that belongs to
+/// them. `kept`: the folder that holds the result too, if there is one.
 pub fn finish(result: Result<String, Failure>, kept: Option<&Path>) -> ExitCode {
     let (text, mut status) = match &result {
         Ok(text) => (text.as_str(), 0),
@@ -59,8 +59,8 @@ pub fn notice(line: &str) {
     let _ = writeln!(io::stderr(), "{}", shown(line));
 }
 
-/// Whether stdout was closed when the program began. What starts a program then opens /dev/null in its place, for reading and
-/// writing, while `> /dev/null` opens it for writing alone.
+/// Whether stdout was closed when the program began. What starts a program then opens /dev/null in its place, for
+/// reading and writing, while `> /dev/null` opens it for writing alone.
 #[cfg(target_os = "linux")]
 fn is_closed() -> bool {
     let null = std::fs::read_link("/proc/self/fd/1").is_ok_and(|target| target == Path::new("/dev/null"));

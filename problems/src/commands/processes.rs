@@ -5,13 +5,13 @@ use contact::communication::Communication;
 use contact::solvers::{Processes, follow, lead};
 use std::sync::Arc;
 
-/// Runs a command in one of several processes: the first does what `run` says, with the others at its hands, and the others follow
-/// it. `build` names the program; all processes must have the same name for it. The first process gets the result of `run`, the
-/// others get none.
+/// Runs a command in one of several processes: the first does what `run` says, with the others at its hands, and the
+/// others follow it. `build` names the program; all processes must have the same name for it. The first process gets
+/// the result of `run`, the others get none.
 ///
 /// # Errors
-/// [`Failure::Input`] in the first process if the others run another program; [`Failure::Computation`] in another one that does
-/// not understand the first.
+/// [`Failure::Input`] in the first process if the others run another program; [`Failure::Computation`] in another one
+/// that does not understand the first.
 pub fn run_together<T>(
     communication: &Arc<dyn Communication>,
     build: &str,

@@ -16,8 +16,8 @@ use scene_file::{SceneFile, read_text};
 use serde::Serialize;
 use std::path::Path;
 
-/// Largest difference of the norm, in norms of the subgradients behind it, and of the error, in values of Θ, that counts as
-/// rounding.
+/// Largest difference of the norm, in norms of the subgradients behind it, and of the error, in values of Θ, that
+/// counts as rounding.
 const MAX_ROUNDING: f64 = 1e-8;
 
 /// Largest certificate file, bytes.
@@ -47,21 +47,20 @@ impl Number {
 struct RecheckJson {
     aggregate_norm: Number,
     aggregate_error: Number,
-    /// Whether the multipliers are those of a convex combination and of closed sides of the admissible set, and whether the
-    /// point lies in that set.
+    /// Whether the multipliers are those of a convex combination and of closed sides of the admissible set, and whether
+    /// the point lies in that set.
     multipliers_and_point_admissible: bool,
     multiplier_defect: f64,
     open_side_multiplier: f64,
     violation: f64,
     /// Whether the point of the certificate is that of controls.json.
     point_equals_controls: bool,
-    /// Differences of the cuts from those that outputs, Jacobian and pressure measure give, where the composite model proved the
-    /// point stationary.
+    /// Differences of the cuts from those that outputs, Jacobian and pressure measure give, where the composite model
+    /// proved the point stationary.
     composite: Option<ProofCheck>,
     agrees: bool,
 }
 
-/// The command.
 pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
     let folder = arguments.certified.folder.as_path();
     if let Some(kind) = RunKind::of(folder)?.filter(|kind| *kind != RunKind::Optimization) {
@@ -108,8 +107,8 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
 /// The scene of the run in a folder, if the folder tells it.
 ///
 /// # Errors
-/// [`Failure::Computation`] if it is another one than that of the command, in more than its name, its tearing, its start, its solver,
-/// its optimizer, and its outputs.
+/// [`Failure::Computation`] if it is another one than that of the command, in more than its name, its tearing, its
+/// start, its solver, its optimizer, and its outputs.
 fn own_scene(here: &LoadedScene, folder: &Path) -> Result<Option<LoadedScene>, Failure> {
     let path = folder.join(SCENE);
     if !path.exists() {

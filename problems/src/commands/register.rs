@@ -1,7 +1,8 @@
 //! Which files of a folder the program wrote, and which process works there.
 //!
-//! A folder of results holds a list of the files in it. A name is on the list before its file exists, so that a file that is not
-//! on it was not written by the program, whenever the program ended. The process that works in the folder locks the list.
+//! A folder of results holds a list of the files in it. A name is on the list before its file exists, so that a file
+//! that is not on it was not written by the program, whenever the program ended. The process that works in the folder
+//! locks the list.
 
 use crate::commands::failure::Failure;
 use std::collections::BTreeSet;
@@ -10,7 +11,6 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// The list.
 pub const REGISTER: &str = "nonsmooth-files.txt";
 const HEADER: &str = "# The files that the program wrote here. It locks this list while it works.\n";
 /// The journal of a run; its restart data and Jacobians lie beside it.
@@ -34,8 +34,8 @@ struct Kept {
 }
 
 impl Register {
-    /// Locks the list of a folder. With `begun`, a list that does not exist is made; without, there is none then. A file that is
-    /// no list is none either.
+    /// Locks the list of a folder. With `begun`, a list that does not exist is made; without, there is none then. A
+    /// file that is no list is none either.
     ///
     /// # Errors
     /// [`Failure::Input`] if another process holds it; [`Failure::Computation`] with the system's reason.

@@ -15,7 +15,6 @@ const LARGEST_FILE: u64 = 1 << 16;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RunKind {
-    /// One optimization.
     Optimization,
     /// Two optimizations, with and without friction.
     Comparison,

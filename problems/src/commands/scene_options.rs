@@ -1,6 +1,5 @@
 //! The options that stand for fields of the scene. Each is declared once, in [`OPTIONS`] or [`OPTIMIZER_OPTIONS`];
-//! parser, help with
-//! defaults, messages, and the changes of a scene derive from that.
+//! parser, help with defaults, messages, and the changes of a scene derive from that.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::Error;
@@ -283,8 +282,7 @@ pub struct SceneChanges {
     #[command(flatten)]
     options: SceneOptions<false>,
     /// Any field of the scene, after the other options, several times: lower.material.young_modulus=2e5,
-    /// mesh.bricks=[6,6,3],
-    /// upper.loads[0].traction=[0,0,-1500]. --print-scene shows all fields.
+    /// mesh.bricks=[6,6,3], upper.loads[0].traction=[0,0,-1500]. --print-scene shows all fields.
     #[arg(long, value_name = "FIELD=VALUE", value_parser = Setting::parse, help_heading = BODIES)]
     set: Vec<Setting>,
 }

@@ -39,8 +39,8 @@ pub fn contact_areas(objective: &ContactObjective, shapes: &[&SolvedShape]) -> V
     ]
 }
 
-/// The bound of the objective, the force, the numbers of nodes per status, and residuals. `kinks`: the names in JSON of the two facts on
-/// the nearest kink.
+/// The bound of the objective, the force, the numbers of nodes per status, and residuals. `kinks`: the names in JSON of
+/// the two facts on the nearest kink.
 pub fn states(objective: &ContactObjective, shapes: &[&SolvedShape], kinks: [&'static str; 2]) -> Vec<Fact> {
     let force = |shape: &SolvedShape| shape.state.forces.total_normal_force();
     let bound = |shape: &SolvedShape| objective.lower_bound(force(shape));

@@ -1,4 +1,5 @@
-//! What a shell and `man` can know of a contact binary: `completions SHELL` and `man`, from the description behind the help.
+//! What a shell and `man` can know of a contact binary: `completions SHELL` and `man`, from the description behind the
+//! help.
 
 use crate::commands::failure::Failure;
 use clap::ValueEnum;
@@ -40,7 +41,8 @@ pub fn asked(command: &clap::Command, arguments: &[String]) -> Option<Result<Str
     }
 }
 
-/// The page for `man`: that of the program, and for every command the options that the program without a command does not take.
+/// The page for `man`: that of the program, and for every command the options that the program without a command does
+/// not take.
 fn manual(command: &clap::Command) -> Result<String, Failure> {
     let mut bytes = Vec::new();
     Man::new(command.clone()).render(&mut bytes).map_err(Failure::computation)?;

@@ -49,8 +49,8 @@ fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<C
     Ok(ContactObjective::new(shape, measure)?)
 }
 
-/// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without preparing a solver for it. What
-/// each of several processes needs is looked at when they begin the case.
+/// Refuses a case that needs more memory than there is, or whose objective has no value on its mesh, without preparing
+/// a solver for it. What each of several processes needs is looked at when they begin the case.
 ///
 /// # Errors
 /// [`SceneError`] naming the field.
@@ -70,11 +70,11 @@ pub fn objective_note(objective: &ContactObjective, value: f64) -> Note {
 /// A shape, its state as accurate as rounding allows, and the objective there.
 #[derive(Debug)]
 pub struct SolvedShape {
-    /// Control heights, mm.
+    /// Control heights of the shape, mm.
     pub controls: Vector,
-    /// The contact state.
+    /// The contact state of the shape.
     pub state: ContactState,
-    /// Θ.
+    /// The objective Θ at the shape.
     pub value: f64,
     /// Largest contact pressure, MPa.
     pub peak_pressure: f64,
@@ -82,9 +82,6 @@ pub struct SolvedShape {
 
 impl SolvedShape {
     /// Solves the contact problem of a shape.
-    ///
-    /// # Errors
-    /// [`Failure`] of the contact solver.
     pub fn at(objective: &ContactObjective, controls: &Vector) -> Result<Self, Failure> {
         let state = objective.solver().solve(controls, None, Accuracy::TIGHTEST)?;
         let value = objective.value(controls, &state);
@@ -92,11 +89,8 @@ impl SolvedShape {
         Ok(Self { controls: controls.clone(), state, value, peak_pressure })
     }
 
-    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the height of every contact node, which takes an
-    /// adjoint, if it is asked for.
-    ///
-    /// # Errors
-    /// [`Failure`] of the adjoint.
+    /// Displacements, stresses and contact fields; with the sensitivity of Θ to the height of every contact node, which
+    /// takes an adjoint, if it is asked for.
     pub fn fields(&self, objective: &ContactObjective, sensitivities: bool) -> Result<Fields, Failure> {
         let mut fields = objective.solver().fields(&self.state)?;
         if sensitivities {

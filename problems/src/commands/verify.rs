@@ -41,7 +41,6 @@ struct VerificationJson {
     processes: Option<Usage>,
 }
 
-/// The command.
 pub fn run(case: &Case, session: &Session<'_>) -> Result<String, Failure> {
     let (objective, arguments) = (&solved_shape::objective(case, &session.processes)?, session.arguments);
     let shape = objective.solver();
@@ -96,10 +95,8 @@ fn rest(result: &VerificationJson) -> String {
     lines.into_iter().chain(usage).collect()
 }
 
-/// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the largest step.
-///
-/// # Errors
-/// [`Failure`] of the contact solver.
+/// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the
+/// largest step.
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,
@@ -116,8 +113,8 @@ pub fn taylor_steps(largest: f64) -> Vec<f64> {
     (0..STEP_COUNT).map(|index| largest * STEP_RATIO.powi(index)).collect()
 }
 
-/// A step along the direction and against it over which no contact node changes its status; the shortest step tried if there is
-/// none.
+/// A step along the direction and against it over which no contact node changes its status; the shortest step tried if
+/// there is none.
 fn smooth_step(
     objective: &ContactObjective,
     control: &Vector,

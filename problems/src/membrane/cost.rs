@@ -8,7 +8,7 @@ use crate::membrane::active_set::MembraneState;
 use crate::membrane::grid::MembraneGrid;
 use nonsmooth::{Cost, CostGradient, Vector};
 
-/// The cost J.
+/// The cost J of the membrane.
 #[derive(Debug, Clone)]
 pub struct MembraneCost {
     wanted: Vec<f64>,

@@ -9,7 +9,7 @@
 use super::solver::ToyState;
 use nonsmooth::{Cost, CostGradient, Vector};
 
-/// The cost J.
+/// The cost J of the toy problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToyCost {
     /// Loads (P, t) of the nodes, N.

@@ -48,9 +48,9 @@ pub type ToyObjective = ReducedObjective<ToyContact, ToyCost>;
 pub const LOWER: f64 = -4.0;
 /// Upper bound of both controls.
 pub const UPPER: f64 = 6.0;
-/// The minimiser α*.
+/// The minimiser α* of Θ.
 pub const MINIMISER: [f64; 2] = [0.25, 1.25];
-/// Θ* = Θ(α*).
+/// The minimum Θ* = Θ(α*).
 pub const MINIMUM: f64 = 1.539_062_5;
 
 /// Loads (P, t) of the two nodes.

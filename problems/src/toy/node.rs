@@ -74,7 +74,7 @@ impl std::fmt::Display for NodeStatus {
 /// State of a node, or its derivative with respect to the height of the support.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct NodeValues {
-    /// λ_N, compression positive.
+    /// Normal force λ_N, positive under compression.
     pub normal_force: f64,
     /// λ_T, the tangential force of the node on the support; the node feels −λ_T, see the equilibrium in the module
     /// head.
@@ -254,7 +254,7 @@ impl Node {
         }
     }
 
-    /// Λ_σ.
+    /// The rate Λ_σ.
     fn slip_rate(&self, sign: f64) -> f64 {
         let NodeData { stiffness: k, coupling: c, friction_coefficient: f, .. } = self.data;
         (k * k - c * c) / (k + sign * f * c)

@@ -28,7 +28,7 @@ pub struct NodeState {
     pub support: f64,
     /// Contact status; on a kink open or stick.
     pub status: NodeStatus,
-    /// Forces and displacements.
+    /// Forces and displacements of the node.
     pub values: NodeValues,
 }
 

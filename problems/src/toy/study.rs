@@ -12,7 +12,7 @@ pub const SUCCESS: f64 = 1e-8;
 /// One run of the engine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ToyRun {
-    /// The initial controls.
+    /// The controls at which the run starts.
     pub start: [f64; 2],
     /// The controls that it found.
     pub solution: [f64; 2],
@@ -29,9 +29,9 @@ pub struct ToyRun {
 /// All runs, and the kinks on which the best one ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ToyStudy {
-    /// The known minimiser.
+    /// The minimiser in closed form.
     pub minimiser: [f64; 2],
-    /// The known minimum.
+    /// The minimum in closed form.
     pub minimum: f64,
     /// The run that ended nearest to the minimiser.
     pub best: ToyRun,

@@ -20,9 +20,6 @@ struct Options {
 }
 
 /// Runs a command of the binary of a scene; its JSON.
-///
-/// # Errors
-/// [`Failure`] of the command.
 pub fn run(scene: SceneName, options: &[&str]) -> Result<Value, Failure> {
     let (name, text) = match scene {
         SceneName::Signorini => ("signorini.toml", include_str!("../../scenes/signorini.toml")),
@@ -69,9 +66,6 @@ fn short(value: f64, digits: usize) -> String {
 pub const LEVELS: [&str; 2] = ["1.4835e16", "1.8272e16"];
 
 /// The line of an optimization in README.md: Example 5.1 (0) or 5.2 (1) on 12³ bricks per body.
-///
-/// # Errors
-/// [`Failure`] of the command.
 pub fn optimization_line(example: usize) -> Result<String, Failure> {
     let (scene, name, paper) = match example {
         0 => (SceneName::Signorini, "Signorini (Example 5.1)", "35.9 at 35³ bricks"),
@@ -88,9 +82,6 @@ pub fn optimization_line(example: usize) -> Result<String, Failure> {
 
 /// A line of the table of states in README.md: Example 5.1 at its flat start. Peak memory is that of the process so
 /// far.
-///
-/// # Errors
-/// [`Failure`] of the command.
 pub fn state_line(case: Case) -> Result<String, Failure> {
     let Case { mesh, subdomains } = case;
     let (bricks, pieces) = (mesh.to_string(), subdomains.to_string());
@@ -110,9 +101,6 @@ pub fn state_line(case: Case) -> Result<String, Failure> {
 }
 
 /// The table of Example 5.3 in docs/results.md, and how many times the objective the shape found without friction has.
-///
-/// # Errors
-/// [`Failure`] of the command.
 pub fn friction_table() -> Result<(String, f64), Failure> {
     let report = run(SceneName::Signorini, &["compare"])?;
     let rows = report["shapes"].as_array().into_iter().flatten().map(|shape| {

@@ -22,7 +22,6 @@ pub fn seconds(seconds: f64) -> String {
     if seconds < 0.1 { format!("{seconds:.4}") } else { format!("{seconds:.2}") }
 }
 
-/// "yes" or "no".
 pub fn yes_or_no(value: bool) -> String {
     if value { "yes" } else { "no" }.into()
 }

@@ -33,14 +33,16 @@ fn changed(name: &str, changes: &[(&str, &str)], options: &[&str]) -> Value {
     }
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, scene).unwrap();
-    json(CONTACT, &[&[kit::text(&path), "--json"], options].concat())
+    let (path, json_option) = (kit::text(&path), ["--json"]);
+    json(CONTACT, &[&[path], options, &json_option].concat())
 }
 
 fn codes(result: &Value) -> Vec<&str> {
     result["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].as_str().unwrap()).collect()
 }
 
-/// Loaded evenly, the flat foot has its peak in the corners. Over the nodes, those on edges count twice as much as their area.
+/// Loaded evenly, the flat foot has its peak in the corners. Over the nodes, those on edges count twice as much as
+/// their area.
 #[test]
 fn an_even_load_is_spread_by_the_integral_and_not_by_the_sum_over_nodes() {
     let load = "[[lower.loads]]\nface = \"x1-max\"\ntraction = [0, 0, 5]\n";

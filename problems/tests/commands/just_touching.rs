@@ -1,4 +1,5 @@
-//! A contact scene whose optimum lies on kinks of the state: the composite model must not cost more than the cuts alone.
+//! A contact scene whose optimum lies on kinks of the state: the composite model must not cost more than the cuts
+//! alone.
 
 use crate::binary;
 use serde_json::Value;
@@ -6,9 +7,9 @@ use testset::kit::{self, json, text};
 
 const SCENE: &str = include_str!("../../scenes/just_touching.toml");
 
-/// Evaluations to the best value of the cuts alone, up to 1e-6, and to the end.
+/// Evaluations with the composite model: to the best value of the cuts alone, up to 1e-6, and to the end.
 const COMPOSITE: [u64; 2] = [32, 66];
-/// The same with the cuts alone.
+/// Evaluations with the cuts alone: to their best value, up to 1e-6, and to the end.
 const BUNDLE: [u64; 2] = [28, 48];
 /// Amplitudes of the obstacle, in mm; that of the scene is the seventh.
 const AMPLITUDES: [&str; 9] = ["0.100", "0.105", "0.110", "0.115", "0.120", "0.125", "0.13", "0.135", "0.140"];

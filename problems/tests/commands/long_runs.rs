@@ -1,4 +1,4 @@
-//! Long runs: killed, interrupted and limited runs continue to the same bits; folders that fail do not take a run along.
+//! Long runs: killed, interrupted and limited runs continue to the same bits; failing folders end no run.
 
 #![cfg(unix)]
 use nonsmooth::Journal;

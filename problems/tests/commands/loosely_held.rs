@@ -1,6 +1,7 @@
 //! Scenes that few nodes hold, found wrong or refused by an independent check: the default finds their states.
 //!
-//! Θ comes from other programs, with residuals ≤ 5e-10: a convex program without friction, a contact-dynamics solver with it.
+//! Θ comes from other programs, with residuals ≤ 5e-10: a convex program without friction, a contact-dynamics solver
+//! with it.
 
 use std::path::Path;
 use testset::kit::{errors, json, run};
@@ -43,8 +44,9 @@ fn the_default_finds_the_states_of_loosely_held_bodies() {
     }
 }
 
-/// The coarse problem of total FETI is ill conditioned here: its forces used to be in equilibrium to 2e-11 where ordinary ones are to
-/// 1e-15, the few nodes at a corner that hold the upper body enlarged that, and Θ was wrong by 2e-7.
+/// The coarse problem of total FETI is ill conditioned here: its forces used to be in equilibrium to 2e-11 where
+/// ordinary ones are to 1e-15, the few nodes at a corner that hold the upper body enlarged that, and Θ was wrong by
+/// 2e-7.
 #[test]
 fn every_solver_is_as_accurate_at_a_corner() {
     let file = scene_file("corner");
@@ -57,8 +59,8 @@ fn every_solver_is_as_accurate_at_a_corner() {
     }
 }
 
-/// Bending raises the mean compliance of these bodies far above that of single nodes. The continuation in the contact compliance used to
-/// end at a millionth of that mean, and found no state. Θ by total FETI without a limit on products.
+/// Bending raises the mean compliance of these bodies far above that of single nodes. The continuation in the contact
+/// compliance used to end at a millionth of that mean, and found no state. Θ by total FETI without a limit on products.
 #[test]
 fn the_default_finds_the_states_of_thin_bodies_that_bend() {
     for (name, value) in [("sheet", 1.2896164e-32), ("plate", 2.2287528e-25)] {
@@ -68,8 +70,8 @@ fn the_default_finds_the_states_of_thin_bodies_that_bend() {
     }
 }
 
-/// A column leans along an obstacle that it does not touch. Friction times its slip exceeds the opening, so that it may be wedged in as
-/// well; 1 mm farther away it cannot be.
+/// A column leans along an obstacle that it does not touch. Friction times its slip exceeds the opening, so that it may
+/// be wedged in as well; 1 mm farther away it cannot be.
 #[test]
 fn a_state_without_contact_is_said_to_be_one_of_several_where_friction_could_wedge() {
     let near = std::fs::read_to_string(scene_file("wedged")).unwrap();
@@ -86,8 +88,8 @@ fn a_state_without_contact_is_said_to_be_one_of_several_where_friction_could_wed
     }
 }
 
-/// Total FETI alone used to return a state with a resultant of 5e-3 of the load. Whether it finds the state of this scene hangs on
-/// rounding; what it returns is the state, or a refusal.
+/// Total FETI alone used to return a state with a resultant of 5e-3 of the load. Whether it finds the state of this
+/// scene hangs on rounding; what it returns is the state, or a refusal.
 #[test]
 fn total_feti_alone_finds_the_state_of_two_loosely_held_bodies_or_refuses() {
     let (name, values) = SCENES[0];
@@ -104,8 +106,8 @@ fn total_feti_alone_finds_the_state_of_two_loosely_held_bodies_or_refuses() {
     assert!(refusals.iter().any(|words| message.contains(words)), "{message}");
 }
 
-/// The adjoint of a loosely held state took 1172 and 634 products, where a state by direct condensation costs as much as 213 and 156:
-/// what total FETI does not find for that price, direct condensation does.
+/// The adjoint of a loosely held state took 1172 and 634 products, where a state by direct condensation costs as much
+/// as 213 and 156: what total FETI does not find for that price, direct condensation does.
 #[test]
 fn the_adjoint_costs_no_more_than_a_condensed_state() {
     for (name, budget, least) in [("slow_adjoint", 213, 212), ("slow_adjoint_without_friction", 156, 1)] {

@@ -1,4 +1,5 @@
-//! What the commands say to people: errors name the option or the field as it was written, its value, and what is allowed.
+//! What the commands say to people: errors name the option or the field as it was written, its value, and what is
+//! allowed.
 
 use std::path::Path;
 use testset::kit::{self, text};
@@ -145,8 +146,8 @@ fn files_may_begin_with_a_byte_order_mark_and_must_not_be_endless() {
     }
 }
 
-/// A stdout that is full, closed by its reader, or closed from the beginning; with results that are in a folder too, the latter is no
-/// failure, for programs give others a /dev/null that looks the same.
+/// A stdout that is full, closed by its reader, or closed from the beginning; with results that are in a folder too,
+/// the latter is no failure, for programs give others a /dev/null that looks the same.
 #[test]
 #[cfg(target_os = "linux")]
 fn what_cannot_be_printed_is_never_a_success() {

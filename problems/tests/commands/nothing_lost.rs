@@ -1,8 +1,9 @@
-//! Runs that are killed at random moments, processes that meet in one folder, and disks that fill: no evaluation is lost, no
-//! file is replaced, and every run ends at the bits of one that was left alone.
+//! Runs that are killed at random moments, processes that meet in one folder, and disks that fill: no evaluation is
+//! lost, no file is replaced, and every run ends at the bits of one that was left alone.
 //!
-//! `NOTHING_LOST=all cargo test --release -p problems --test commands nothing_lost -- --nocapture` makes 200 kills, 50 meetings and
-//! fills 20 disks; without the variable a few of each. Moments are drawn from a seed, in parts of the time that a run takes.
+//! `NOTHING_LOST=all cargo test --release -p problems --test commands nothing_lost -- --nocapture` makes 200 kills, 50
+//! meetings and fills 20 disks; without the variable a few of each. Moments are drawn from a seed, in parts of the time
+//! that a run takes.
 
 #![cfg(target_os = "linux")]
 use serde_json::Value;
@@ -185,8 +186,8 @@ fn limit(child: &Child, bytes: &str) {
     assert!(Command::new("prlimit").args(arguments).status().unwrap().success());
 }
 
-/// The disk fills at some moment, and in every third case has room again later: the run goes on, says what is missing, and is
-/// resumed to the same bits.
+/// The disk fills at some moment, and in every third case has room again later: the run goes on, says what is missing,
+/// and is resumed to the same bits.
 #[test]
 fn full_disks_are_reported_and_lose_nothing() {
     let (writers, mut random) = (writers(), Random(56));

@@ -1,5 +1,5 @@
-//! Objectives beside pressure norm and peak, from the command line to the report: the example scenes with their numbers, refusals,
-//! resumption.
+//! Objectives beside pressure norm and peak, from the command line to the report: the example scenes with their
+//! numbers, refusals, resumption.
 
 use crate::binary;
 use serde_json::Value;

@@ -1,5 +1,5 @@
-//! Θ and ξ, pinned: a change of the code's order must not change a bit of them. Of optimizations, the best of 60 values may lie a tenth above
-//! the pinned one: rounding leads two courses apart.
+//! Θ and ξ, pinned: a change of the code's order must not change a bit of them. Of optimizations, the best of 60 values
+//! may lie a tenth above the pinned one: rounding leads two courses apart.
 
 use crate::binary;
 use serde_json::Value;

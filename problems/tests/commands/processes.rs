@@ -1,5 +1,5 @@
-//! Several processes, played by threads: the first runs a command, the others follow it. The package `problems-mpi` tests the same
-//! with real ones.
+//! Several processes, played by threads: the first runs a command, the others follow it. The package `problems-mpi`
+//! tests the same with real ones.
 
 use contact::communication::{Communication, Parcel};
 use problems::commands::processes::run_together;
@@ -46,7 +46,7 @@ fn open() -> Opened {
     Ok((SceneFile::parse(include_str!("../../scenes/signorini.toml"), "signorini.toml")?, None))
 }
 
-/// The same scene with eight clusters of subdomains.
+/// The scene of [`open`] with eight clusters of subdomains.
 fn clustered() -> Opened {
     let (mut file, path) = open()?;
     file.solver.clusters = Some(8);

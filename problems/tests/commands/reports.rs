@@ -26,8 +26,8 @@ fn names(folder: &Path) -> BTreeSet<String> {
     entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }
 
-/// Every figure exists as SVG (and as PNG, if the program can), is well-formed, and stands in the page, which loads nothing else; every
-/// file that the page names exists, and so does every name inside it, once.
+/// Every figure exists as SVG (and as PNG, if the program can), is well-formed, and stands in the page, which loads
+/// nothing else; every file that the page names exists, and so does every name inside it, once.
 fn check_page(scratch: &Path, folder: &str, figures: &[&str]) -> String {
     let found = names(&scratch.join(folder).join("figures"));
     let endings: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
@@ -146,7 +146,8 @@ fn the_table_of_the_result_says_what_the_files_say() {
         assert!((number(&shown[2]) - change).abs() < 0.051, "{row}: {}", shown[2]);
     }
     let values = |key: &str| &rows.iter().find(|row| row["key"] == key).unwrap()["values"];
-    // The states of the table are solved anew, without the start that the run had: they agree up to rounding, as it happens not to the bit.
+    // The states of the table are solved anew, without the start that the run had: they agree up to rounding, as it
+    // happens not to the bit.
     let agree = |a: &Value, b: &Value| (a.as_f64().unwrap() / b.as_f64().unwrap() - 1.0).abs() < 1e-13;
     assert!(agree(&values("objective")[0], &result["objective_start"]), "{}", values("objective"));
     assert!(agree(&values("objective")[1], &result["objective"]), "{} {}", values("objective"), result["objective"]);

@@ -1,5 +1,5 @@
-//! Columns 1000 times as high as wide, of nearly incompressible bricks: the condensation of such bodies loses digits that no residual
-//! formed with the condensed matrix knows of.
+//! Columns 1000 times as high as wide, of nearly incompressible bricks: the condensation of such bodies loses digits
+//! that no residual formed with the condensed matrix knows of.
 
 use serde_json::Value;
 use std::path::Path;
@@ -20,7 +20,8 @@ fn warns_of_few_digits(result: &Value) -> bool {
     result["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "few-digits")
 }
 
-/// Heights that differ by rounding change Θ by 6e-6 with direct condensation, which the default takes, and by 1.3e-8 with total FETI.
+/// Heights that differ by rounding change Θ by 6e-6 with direct condensation, which the default takes, and by 1.3e-8
+/// with total FETI.
 #[test]
 fn digits_that_condensation_has_lost_are_named() {
     let change = |solver: &str| {
@@ -35,7 +36,8 @@ fn digits_that_condensation_has_lost_are_named() {
     assert!(!warns_of_few_digits(&torn) && by_tearing < 5e-8, "{by_tearing:e} {}", torn["warnings"]);
 }
 
-/// A body 3e5 times as high as the lower one, free along x3: its load must arrive at the contact. Condensed loads had lost 5e-5 of it.
+/// A body 3e5 times as high as the lower one, free along x3: its load must arrive at the contact. Condensed loads had
+/// lost 5e-5 of it.
 #[test]
 fn loads_on_free_bodies_arrive() {
     for solver in ["auto", "direct"] {
@@ -45,7 +47,8 @@ fn loads_on_free_bodies_arrive() {
     }
 }
 
-/// One free body on a tall one: equilibrium alone determines the single contact force, so that the compliance may have lost all its digits.
+/// One free body on a tall one: equilibrium alone determines the single contact force, so that the compliance may have
+/// lost all its digits.
 #[test]
 fn forces_that_equilibrium_determines_have_all_digits() {
     let direct = evaluated("statically_determined", &["--solver", "direct"]);
@@ -55,8 +58,9 @@ fn forces_that_equilibrium_determines_have_all_digits() {
     assert!((objective(&perturbed) / objective(&direct) - 1.0).abs() < 1e-13);
 }
 
-/// A column 1e6 times as high as wide: its foot carries half of what pulls along its height, as in a bar held at both ends, and bending by the
-/// eccentric load changes that by two per cent. It was taken for free to move, and contact carried all.
+/// A column 1e6 times as high as wide: its foot carries half of what pulls along its height, as in a bar held at both
+/// ends, and bending by the eccentric load changes that by two per cent. It was taken for free to move, and contact
+/// carried all.
 #[test]
 fn a_column_held_at_its_foot_is_held_however_high() {
     for name in ["held_at_its_foot", "held_at_foot_and_side"] {

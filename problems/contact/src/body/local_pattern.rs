@@ -23,8 +23,8 @@ pub struct LocalPattern {
 }
 
 impl LocalPattern {
-    /// The pattern of a box of `cells` bricks; `coupled` lists local nodes whose dofs are all coupled with each other in
-    /// addition (the fixing nodes).
+    /// The pattern of a box of `cells` bricks; `coupled` lists local nodes whose dofs are all coupled with each other
+    /// in addition (the fixing nodes).
     pub fn new(cells: [usize; 3], coupled: &[usize]) -> Self {
         let shape = Subdomain { first_cell: [0; 3], cells };
         let nodes = shape.nodes();

@@ -13,8 +13,8 @@ use crate::body::shape_load::{loaded_faces, weight_derivatives};
 use crate::lattice;
 use crate::scene::Load;
 
-/// The forces over the dofs of one subdomain of the lower body, N, one vector per change of the column heights (mm, all columns
-/// of the body) of `changes`; `u`: displacement over the subdomain's dofs.
+/// The forces over the dofs of one subdomain of the lower body, N, one vector per change of the column heights (mm, all
+/// columns of the body) of `changes`; `u`: displacement over the subdomain's dofs.
 pub fn shape_forces(
     block: &Block,
     place: &Subdomain,

@@ -1,10 +1,11 @@
-//! Costs of the displacements: p-norm of the von Mises stress in a region, compliance; method.md (3.7), (3.8), (5.5) to (5.7).
+//! Costs of the displacements: p-norm of the von Mises stress in a region, compliance; method.md (3.7), (3.8), (5.5) to
+//! (5.7).
 //!
 //! ```text
 //! J = ((1/V₀) Σ_e V_e σ_vM,e^p)^{1/p}      or      J = f·u            l = ∂J/∂u: a load in the adjoint problem
 //! ```
-//! What J depends on the shape at fixed displacements is ∇₁J of the framework: volumes and stresses of bricks whose nodes move, and
-//! loads on faces whose area changes. Only the lower body changes its shape.
+//! What J depends on the shape at fixed displacements is ∇₁J of the framework: volumes and stresses of bricks whose
+//! nodes move, and loads on faces whose area changes. Only the lower body changes its shape.
 
 use crate::body::elasticity::brick::DOFS;
 use crate::body::elasticity::von_mises::{StressedBrick, stress_and_volume};
@@ -21,10 +22,10 @@ use rayon::prelude::*;
 /// A function of the displacements of the bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FieldMeasure {
-    /// ((1/V₀) Σ V_e σ_vM,e^p)^{1/p}, MPa: a mean of the von Mises stress at the centres of the bricks of a region, the closer to its
-    /// largest value the larger p is. V₀ is the volume of the region at the start height.
+    /// ((1/V₀) Σ V_e σ_vM,e^p)^{1/p}, MPa: a mean of the von Mises stress at the centres of the bricks of a region, the
+    /// closer to its largest value the larger p is. V₀ is the volume of the region at the start height.
     StressNorm {
-        /// The region.
+        /// The bricks that count.
         region: Region,
         /// The exponent p > 1.
         exponent: f64,
@@ -34,13 +35,14 @@ pub enum FieldMeasure {
 }
 
 /// J(α, u) as a measure of the displacements, for states of a map
-/// [with displacements](crate::contact_shape::ContactShape::with_displacements). The value at another state is not a number.
+/// [with displacements](crate::contact_shape::ContactShape::with_displacements). The value at another state is not a
+/// number.
 #[derive(Debug, Clone)]
 pub struct FieldCost {
     measure: FieldMeasure,
     /// Bricks of the region per body; none for the compliance.
     bricks: Vec<Vec<[usize; 3]>>,
-    /// V₀, mm³.
+    /// The volume V₀ of the region, mm³.
     volume: f64,
     grid: Grid,
     bodies: Vec<BodyScene>,
@@ -121,7 +123,8 @@ impl FieldCost {
         }
     }
 
-    /// What `compute` makes of every brick of the region, per body: its nodes, its shear modulus and its displacements are given.
+    /// What `compute` makes of every brick of the region, per body: its nodes, its shear modulus and its displacements
+    /// are given.
     fn map_bricks<T: Send>(
         &self,
         bodies: &[SolvedBody],
@@ -203,7 +206,7 @@ impl FieldCost {
     }
 }
 
-/// uᵀ∂f/∂x₃ per node.
+/// The sensitivities uᵀ∂f/∂x₃ per node.
 fn load_sensitivities(block: &Block, scene: &BodyScene, displacement: &[[f64; 3]]) -> Vec<f64> {
     let grid = &block.grid;
     let mut nodes = vec![0.0; grid.node_count()];

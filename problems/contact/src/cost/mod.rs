@@ -13,7 +13,7 @@ pub use field::{FieldCost, FieldGradient, FieldMeasure};
 pub use pressure::{ContactAreas, NodeWeight, PressureCost, PressureMeasure, PressureRoot};
 pub use region::{Region, RegionBricks};
 
-/// What is minimised.
+/// The function of a contact state that is minimised.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Measure {
     /// A function of the contact pressures.

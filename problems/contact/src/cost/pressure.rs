@@ -19,7 +19,8 @@ pub enum NodeWeight {
     /// Its area A_i: the sum is ∫σ^p dA, MPa^p mm², which meshes of one scene agree on.
     #[default]
     Area,
-    /// 1, as in the paper: the sum Σσ^p, MPa^p, grows with the number of nodes, and nodes on edges count as much as those inside.
+    /// 1, as in the paper: the sum Σσ^p, MPa^p, grows with the number of nodes, and nodes on edges count as much as
+    /// those inside.
     Nodes,
 }
 
@@ -40,8 +41,8 @@ pub enum PressureMeasure {
         /// w per contact node, MPa, in the order of [`ContactBoundary::points`].
         wanted: Vec<f64>,
     },
-    /// Σ A max(1 − σ/σ₀, 0), mm²: the area that lacks contact pressure. A node counts with its whole area where it is open, with none of it
-    /// from σ = σ₀ on. The least open area is the largest smoothed contact area Σ A min(σ/σ₀, 1).
+    /// Σ A max(1 − σ/σ₀, 0), mm²: the area that lacks contact pressure. A node counts with its whole area where it is
+    /// open, with none of it from σ = σ₀ on. The least open area is the largest smoothed contact area Σ A min(σ/σ₀, 1).
     OpenArea {
         /// σ₀ > 0, MPa.
         pressure: f64,
@@ -64,11 +65,12 @@ pub struct ContactAreas {
 pub struct PressureRoot {
     /// What it is, such as `(Σσ^4)^(1/4)`.
     pub name: String,
-    /// Its value, MPa.
+    /// The root in MPa.
     pub value: f64,
 }
 
-/// A measure of the contact pressures σ, a function of these outputs of [`ContactShape`](crate::contact_shape::ContactShape).
+/// A measure of the contact pressures σ, a function of these outputs of
+/// [`ContactShape`](crate::contact_shape::ContactShape).
 #[derive(Debug, Clone)]
 pub struct PressureCost {
     measure: PressureMeasure,
@@ -81,8 +83,8 @@ pub struct PressureCost {
     areas: Vec<f64>,
 }
 
-/// Decades of a pressure norm at the typical pressure of a scene beyond which its root is taken. Squares of subgradients at pressures far
-/// above that must still be doubles, which end at 308 decades.
+/// Decades of a pressure norm at the typical pressure of a scene beyond which its root is taken. Squares of
+/// subgradients at pressures far above that must still be doubles, which end at 308 decades.
 const MAX_DECADES: f64 = 100.0;
 /// Largest pressure over the mean pressure, roughly: those of the paper's scenes are at 4 to 10.
 const TYPICAL_PEAK: f64 = 10.0;
@@ -91,8 +93,8 @@ impl PressureCost {
     /// The cost on a contact boundary.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, wanted pressures are finite, and σ₀ is finite and > 0;
-    /// [`SceneError::WrongCount`] unless there is one wanted pressure per contact node.
+    /// [`SceneError::OutOfRange`] unless the exponent is finite and > 1, wanted pressures are finite, and σ₀ is finite
+    /// and > 0; [`SceneError::WrongCount`] unless there is one wanted pressure per contact node.
     pub fn new(measure: PressureMeasure, boundary: &ContactBoundary) -> Result<Self, SceneError> {
         match &measure {
             PressureMeasure::Peak => {}
@@ -127,8 +129,8 @@ impl PressureCost {
         Ok(Self { measure, is_root: false, weights, boundary: boundary.clone(), areas })
     }
 
-    /// The same cost in a form that can be computed for the pressures of a scene: where a pressure norm may leave the range of doubles, its
-    /// root in MPa, which has the same minimisers. The choice depends neither on the mesh nor on the shape.
+    /// The cost in a form that can be computed for the pressures of a scene: where a pressure norm may leave the range
+    /// of doubles, its root in MPa, which has the same minimisers. The choice depends on neither mesh nor shape.
     #[must_use]
     pub fn normalised_for(self, scene: &Scene) -> Self {
         let PressureMeasure::Norm { exponent, .. } = self.measure else { return self };
@@ -153,8 +155,8 @@ impl PressureCost {
         }
     }
 
-    /// The root of a norm in MPa from a value of this cost: (Σσ^p)^{1/p}, or (∫σ^p dA / ΣA)^{1/p}, the power mean of the pressures. None for
-    /// the other measures.
+    /// The root of a norm in MPa from a value of this cost: (Σσ^p)^{1/p}, or (∫σ^p dA / ΣA)^{1/p}, the power mean of
+    /// the pressures. None for the other measures.
     pub fn norm_in_mpa(&self, value: f64) -> Option<f64> {
         let PressureMeasure::Norm { exponent, .. } = self.measure else { return None };
         Some(if self.is_root { value } else { (value / self.root_size()).powf(1.0 / exponent) })
@@ -186,7 +188,8 @@ impl PressureCost {
         Some(PressureRoot { name, value: self.norm_in_mpa(value)? })
     }
 
-    /// Where the value is the root of a norm, the factor and the unit of the norm: it is the factor times the value to the power p.
+    /// Where the value is the root of a norm, the factor and the unit of the norm: it is the factor times the value to
+    /// the power p.
     pub fn norm_of_root(&self) -> Option<(f64, String)> {
         match self.measure {
             PressureMeasure::Norm { exponent, weight } if self.is_root => {
@@ -215,8 +218,9 @@ impl PressureCost {
         Some(ContactAreas { closed, smoothed: whole - open, whole })
     }
 
-    /// Why the value does not change with the pressures near those of a state, in words with a remedy: where σ₀ of the open area lies above
-    /// all pressures, or below those of all closed nodes. None for the other measures, and for other σ₀.
+    /// Why the value does not change with the pressures near those of a state, in words with a remedy: where σ₀ of the
+    /// open area lies above all pressures, or below those of all closed nodes. None for the other measures, and for
+    /// other σ₀.
     pub fn why_flat<S>(&self, state: &ContactState<S>) -> Option<String> {
         let PressureMeasure::OpenArea { pressure: bound } = self.measure else { return None };
         let pressures = self.boundary.pressures(&state.forces.normal);
@@ -231,11 +235,11 @@ impl PressureCost {
             .then(|| format!("{reason}: choose more than the least pressure of a closed node, {least:.4e} MPa"))
     }
 
-    /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that carries
-    /// this force is below it.
+    /// The least value that any distribution of a total normal force over the contact nodes can have: no shape that
+    /// carries this force is below it.
     ///
-    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1}, ΣAσ^p ≥ Λ^p / (ΣA)^{p−1}, max σ ≥ Λ/ΣA, Σ A max(1 − σ/σ₀, 0) ≥ max(ΣA − Λ/σ₀, 0), with
-    /// Λ = Σλ_N ≥ 0 in N; method.md (9.1) to (9.5).
+    /// Σσ^p ≥ Λ^p / (ΣA^{p/(p−1)})^{p−1}, ΣAσ^p ≥ Λ^p / (ΣA)^{p−1}, max σ ≥ Λ/ΣA, Σ A max(1 − σ/σ₀, 0) ≥ max(ΣA − Λ/σ₀,
+    /// 0), with Λ = Σλ_N ≥ 0 in N; method.md (9.1) to (9.5).
     pub fn lower_bound(&self, total_force: f64) -> f64 {
         let whole = || self.areas.iter().sum::<f64>();
         match &self.measure {
@@ -322,9 +326,9 @@ impl OuterFunction for PressureCost {
         }
     }
 
-    /// Σmσ^p has the curvature p(p−1)mσ^{p−2} per node; its root N has (p−1)/N (m(σ/N)^{p−2} − g gᵀ) with g = m(σ/N)^{p−1}, which is formed
-    /// from the rows of G − (σ/N) gᵀG. The deviation has 2A/ΣA. None for the peak and the open area, which have kinks, and for p < 2, where
-    /// the curvature grows without bound as a node opens.
+    /// Σmσ^p has the curvature p(p−1)mσ^{p−2} per node; its root N has (p−1)/N (m(σ/N)^{p−2} − g gᵀ) with g =
+    /// m(σ/N)^{p−1}, which is formed from the rows of G − (σ/N) gᵀG. The deviation has 2A/ΣA. None for the peak and the
+    /// open area, which have kinks, and for p < 2, where the curvature grows without bound as a node opens.
     fn curvature(&self, pressures: &Vector, jacobian: &Matrix) -> Option<Matrix> {
         let exponent = match self.measure {
             PressureMeasure::Norm { exponent, .. } if exponent >= 2.0 => exponent,
@@ -358,11 +362,13 @@ fn norm_unit(exponent: f64, weight: NodeWeight) -> String {
     }
 }
 
-/// The least Σ A (σ − w)² / Σ A of pressures σ ≥ 0 with Σ A σ = Λ: σ = max(w + t, 0) with the t that gives this force; method.md (9.3).
+/// The least Σ A (σ − w)² / Σ A of pressures σ ≥ 0 with Σ A σ = Λ: σ = max(w + t, 0) with the t that gives this force;
+/// method.md (9.3).
 fn least_deviation(areas: &[f64], wanted: &[f64], total_force: f64) -> f64 {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by(|a, b| wanted[*b].total_cmp(&wanted[*a]));
-    // With the first nodes of this order under pressure, t follows from the force; the next node is added while w + t is positive there.
+    // With the first nodes of this order under pressure, t follows from the force; the next node is added while w + t
+    // is positive there.
     let (mut area, mut force, mut shift) = (0.0, 0.0, f64::INFINITY);
     for index in order {
         if area > 0.0 && wanted[index] + shift <= 0.0 {

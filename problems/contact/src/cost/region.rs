@@ -24,16 +24,19 @@ pub struct RegionBricks {
     pub volume: f64,
 }
 
-/// Share of the size of the scene by which a centre may lie outside of a box and count as inside: the rounding of its coordinates.
+/// Share of the size of the scene by which a centre may lie outside of a box and count as inside: the rounding of its
+/// coordinates.
 const ROUNDING: f64 = 1e-12;
 
 impl Region {
     /// The bricks whose centres lie in the box.
     ///
-    /// The lower body is taken as a block of the start height, so that no brick enters or leaves the region as the shape changes.
+    /// The lower body is taken as a block of the start height, so that no brick enters or leaves the region as the
+    /// shape changes.
     ///
     /// # Errors
-    /// [`SceneError::OutOfRange`] if there is none, for a body that the scene does not have, and for an upper body that is inverted.
+    /// [`SceneError::OutOfRange`] if there is none, for a body that the scene does not have, and for an upper body that
+    /// is inverted.
     pub fn bricks(&self, problem: &ContactProblem) -> Result<RegionBricks, SceneError> {
         let (grid, scene) = (&problem.grid, &problem.scene);
         let inverted = |error: ContactError| {

@@ -5,8 +5,8 @@
 //! dJ = −pᵀ (∂K u − ∂f) + ηᵀ ∂g,            J − J* = ψᵀ (λ − Π(λ + w)) + bᵀ (Rᵀλ − e) + O(|r|²)
 //! with l = ∂J/∂u (displacement_load.rs):   j − B C l̂ for j,   Rᵀ l̂ for 0,   p_b + C_b l̂_b for p_b
 //! ```
-//! Where the closed nodes leave a motion free, M is singular: a proximal spring regularises its factor, and refinement against
-//! M itself takes the spring off again wherever M determines the answer.
+//! Where the closed nodes leave a motion free, M is singular: a proximal spring regularises its factor, and refinement
+//! against M itself takes the spring off again wherever M determines the answer.
 
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::displacement_load::CondensedLoad;
@@ -16,7 +16,6 @@ use crate::linear::dense::{DenseLu, multiply};
 use crate::linear::vector::add_scaled;
 use nalgebra::DVector;
 
-/// The adjoint state.
 #[derive(Debug)]
 pub(super) struct CondensedAdjoint {
     /// Contact displacements p of the lower body, unit of J per N.

@@ -28,9 +28,9 @@ pub struct CompliantBody {
 }
 
 impl CompliantBody {
-    /// The compliance of a condensed body; `motions`: the rigid motions that its supports leave free, `held`: its held contact dofs,
-    /// `sign`: 1 for the lower body, −1 for the upper one. The condensed load takes over the resultants of the loads, of which
-    /// condensation keeps fewer digits.
+    /// The compliance of a condensed body; `motions`: the rigid motions that its supports leave free, `held`: its held
+    /// contact dofs, `sign`: 1 for the lower body, −1 for the upper one. The condensed load takes over the resultants
+    /// of the loads, of which condensation keeps fewer digits.
     pub fn new(
         mut condensed: CondensedBody,
         motions: Vec<OwnMotion>,
@@ -81,8 +81,8 @@ impl CompliantBody {
         self.motions.iter().map(|motion| dot(motion, &self.condensed.load))
     }
 
-    /// Displacements of the contact dofs, mm, under packed multipliers and with given amplitudes of the free motions; with or
-    /// without the loads.
+    /// Displacements of the contact dofs, mm, under packed multipliers and with given amplitudes of the free motions;
+    /// with or without the loads.
     pub(super) fn displacement(&self, multipliers: &[f64], amplitudes: &[f64], loaded: bool) -> Vec<f64> {
         let mut u = multiply(&self.compliance, &self.contact_forces(multipliers));
         if loaded {

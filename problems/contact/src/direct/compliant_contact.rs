@@ -3,8 +3,8 @@
 //! ```text
 //! w(λ, a) = d − C λ + R a,   Rᵀ λ = e,   λ = Π(λ + w)          C in units of its mean normal diagonal, forces in units of the load
 //! ```
-//! C is the sum of the bodies' compliances over the packed rows, R a the jumps of their free rigid motions. Motions that no
-//! contact node feels are left out: no force depends on them.
+//! C is the sum of the bodies' compliances over the packed rows, R a the jumps of their free rigid motions. Motions
+//! that no contact node feels are left out: no force depends on them.
 
 use crate::direct::compliant_body::CompliantBody;
 use crate::equilibrium::ContactProblem;
@@ -15,12 +15,12 @@ use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 use std::sync::Arc;
 
-/// Singular value of R up to which a motion counts as untouched by contact. The motions of a body have length 1; the largest singular
-/// value is no measure, since it is rounding where contact touches no motion.
+/// Singular value of R up to which a motion counts as untouched by contact. The motions of a body have length 1; the
+/// largest singular value is no measure, since it is rounding where contact touches no motion.
 const UNTOUCHED: f64 = 1e-10;
 
-/// The contact problem in forces and rigid motions, dimensionless. Its unknowns are one vector: the packed forces λ over the
-/// load, then the amplitudes a of the rigid motions that contact feels.
+/// The contact problem in forces and rigid motions, dimensionless. Its unknowns are one vector: the packed forces λ
+/// over the load, then the amplitudes a of the rigid motions that contact feels.
 #[derive(Debug)]
 pub struct CompliantContact {
     /// The discrete problem: contact nodes, friction, layout of the packed rows.
@@ -125,8 +125,8 @@ impl CompliantContact {
         (residual, arguments)
     }
 
-    /// Moves the bodies by the rigid motions of given unknowns: d := d + R a, a := 0. Jumps of nodes in contact are small
-    /// numbers then, and no longer differences of large ones. Returns the placement before.
+    /// Moves the bodies by the rigid motions of given unknowns: d := d + R a, a := 0. Jumps of nodes in contact are
+    /// small numbers then, and no longer differences of large ones. Returns the placement before.
     pub(super) fn recentre(&mut self, unknowns: &mut [f64]) -> Placement {
         let before = self.placement.clone();
         let (_, amplitudes) = unknowns.split_at_mut(self.compliance.nrows());
@@ -195,8 +195,8 @@ impl CompliantContact {
     }
 }
 
-/// R with orthonormal columns, the map from its amplitudes to those of the bodies' own motions, and the map back. Singular
-/// values come from the triangular factor, which keeps the small ones.
+/// R with orthonormal columns, the map from its amplitudes to those of the bodies' own motions, and the map back.
+/// Singular values come from the triangular factor, which keeps the small ones.
 fn touched_motions(bodies: &[Arc<CompliantBody>], rows: usize) -> [DMatrix<f64>; 3] {
     let columns = bodies.iter().map(|body| body.motions.len()).sum();
     let mut motions = DMatrix::<f64>::zeros(rows, columns);

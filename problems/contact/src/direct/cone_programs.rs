@@ -3,12 +3,12 @@
 //! ```text
 //! min ½ λᵀCλ − (d − 𝓕 s)ᵀλ,   λ in the friction cones,   Rᵀλ = e;     s := s + θ (|w_T| − s)     method.md (4.11)
 //! ```
-//! Without friction, this convex program is the contact problem. With friction, its solution fulfils the contact law but for
-//! openings of 𝓕(|w_T| − s) at the sliding nodes \[AcaryCadouxLemarechalMalick2011\]; so the fixed points of s are the equilibria. These are damped successive
-//! approximations on norms of slip in place of slip bounds: a Tresca problem has no solution where its bounds cannot carry the
-//! load, while every one of these programs has one where rigid statics have one. Newton's method finishes from the first
-//! minimiser that is near enough. After every program the bodies are moved to where it left them, since jumps that are
-//! differences of large numbers spoil the next one.
+//! Without friction, this convex program is the contact problem. With friction, its solution fulfils the contact law
+//! but for openings of 𝓕(|w_T| − s) at the sliding nodes \[AcaryCadouxLemarechalMalick2011\]; so the fixed points of s
+//! are the equilibria. These are damped successive approximations on norms of slip in place of slip bounds: a Tresca
+//! problem has no solution where its bounds cannot carry the load, while every one of these programs has one where
+//! rigid statics have one. Newton's method finishes from the first minimiser that is near enough. After every program
+//! the bodies are moved to where it left them, since jumps that are differences of large numbers spoil the next one.
 
 use crate::direct::compliant_contact::CompliantContact;
 #[cfg(feature = "interior-point")]
@@ -20,10 +20,10 @@ use crate::qp::{Cone, ConeProgram, MAX_ITERATIONS};
 const MAX_PROGRAMS: usize = 30;
 /// Decrease of the change of s below which the steps are halved.
 const SUFFICIENT_DECREASE: f64 = 0.7;
-/// Smallest θ.
+/// Smallest θ of the damping.
 const SMALLEST_SHARE: f64 = 1.0 / 64.0;
 /// Change of s, relative to its largest entry or to 1, below which another program says nothing new.
-const SETTLED: f64 = 1e-9;
+const SMALLEST_CHANGE: f64 = 1e-9;
 
 /// Of so many steps of direct condensation, one is kept for cone programs where they can be solved.
 #[cfg(feature = "interior-point")]
@@ -34,7 +34,6 @@ const SHARE_OF_STEPS: usize = 4;
 pub struct Programs {
     /// Forces and amplitudes of the equilibrium, dimensionless; none where no program was near enough.
     pub unknowns: Option<Vec<f64>>,
-    /// Programs solved.
     pub count: usize,
     /// Interior-point iterations of all programs.
     pub iterations: usize,
@@ -50,12 +49,13 @@ impl Programs {
 }
 
 impl CompliantContact {
-    /// The equilibrium from cone programs, to a relative residual, for at most so many factorisations. Large problems are left out.
+    /// The equilibrium from cone programs, to a relative residual, for at most so many factorisations. Large problems
+    /// are left out.
     pub fn by_cone_programs(&mut self, tolerance: f64, max_steps: usize) -> Programs {
         let before = self.placement.clone();
         let mut slips = vec![0.0; self.problem.boundary.points.len()];
         let mut found = Programs { unknowns: None, count: 0, iterations: 0, newton_steps: 0 };
-        let (mut share, mut last, mut settled) = (1.0, f64::INFINITY, false);
+        let (mut share, mut last, mut converged) = (1.0, f64::INFINITY, false);
         while found.count < MAX_PROGRAMS && found.steps() < max_steps {
             let Some((mut unknowns, iterations)) = self.program(&slips, max_steps - found.steps()) else { break };
             found.count += 1;
@@ -69,11 +69,11 @@ impl CompliantContact {
             }
             let next = self.slip_norms(&unknowns);
             let change = next.iter().zip(&slips).map(|(next, slip)| (next - slip).abs()).fold(0.0, f64::max);
-            if settled || share < SMALLEST_SHARE {
+            if converged || share < SMALLEST_SHARE {
                 break;
             }
             // Once more where the bodies have been moved to: the program has more digits there.
-            settled = change <= SETTLED * next.iter().copied().fold(1.0, f64::max);
+            converged = change <= SMALLEST_CHANGE * next.iter().copied().fold(1.0, f64::max);
             share *= if change > SUFFICIENT_DECREASE * last { 0.5 } else { 1.0 };
             last = change;
             slips.iter_mut().zip(&next).for_each(|(slip, next)| *slip += share * (next - *slip));

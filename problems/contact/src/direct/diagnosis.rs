@@ -44,9 +44,9 @@ impl CompliantContact {
         spectral_radius(count, &map)
     }
 
-    /// 𝓕 ‖∂λ_N/∂λ_T‖₂ over the closed nodes by power iteration: it bounds the contraction of the slip bounds as long as the same
-    /// nodes are closed, whichever of them slide and in whatever direction. Where no node is closed, over those that friction could
-    /// wedge in; 0 without friction or where there are none of these either.
+    /// 𝓕 ‖∂λ_N/∂λ_T‖₂ over the closed nodes by power iteration: it bounds the contraction of the slip bounds as long as
+    /// the same nodes are closed, whichever of them slide and in whatever direction. Where no node is closed, over
+    /// those that friction could wedge in; 0 without friction or where there are none of these either.
     pub(super) fn estimate_contraction(&self, unknowns: &[f64], linearizations: &[Linearization]) -> f64 {
         let boundary = &self.problem.boundary;
         let mut closed: Vec<bool> = linearizations.iter().map(|l| *l != Linearization::Open).collect();
@@ -124,7 +124,7 @@ impl BoundChange {
         Self { sliding, factors, size, friction: boundary.friction }
     }
 
-    /// Φ′ dΨ.
+    /// The product Φ′ dΨ.
     fn apply(&self, bounds: &[f64]) -> Vec<f64> {
         let mut change = vec![0.0; self.size];
         for (Sliding { position, direction, tangents }, bound) in self.sliding.iter().zip(bounds) {

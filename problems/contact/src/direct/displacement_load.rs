@@ -1,4 +1,5 @@
-//! What a function of the displacements adds to the adjoint: its gradient l = ∂J/∂u acts on the condensed bodies like a load.
+//! What a function of the displacements adds to the adjoint: its gradient l = ∂J/∂u acts on the condensed bodies like a
+//! load.
 //!
 //! ```text
 //! l̂ = l_c − K_ci K_ii⁻¹ l_i,   u_c = C (f̂ ∓ Bᵀλ) + N a   ⇒   l·du = l̂·du_c = Σ_bodies ∓ (C l̂)·Bᵀdλ + (Nᵀ l̂)·da
@@ -17,7 +18,7 @@ pub(super) struct CondensedLoad {
     pub(super) full: Vec<f64>,
     /// C l̂ over the contact dofs, unit of J per N.
     pub(super) response: Vec<f64>,
-    /// Nᵀ l̂.
+    /// The resultants Nᵀ l̂.
     pub(super) resultants: Vec<f64>,
 }
 

@@ -3,11 +3,12 @@
 //! ```text
 //! λ = Π(λ + ρ w),  w = d − (C + δ) λ + R a,  Rᵀ λ = e,   ρ = 1/(1 + δ)            δ = 0, else 1, 10², … brought down to 0
 //! ```
-//! From the bonded state, δ = 0 is enough in most scenes. With a large compliance δ of its own every contact node yields, and
-//! Newton's method converges from the bonded guess also where few nodes hold the bodies; the state of every δ is the start of
-//! the next. A proximal spring in the rigid block of the derivative keeps it regular where the closed nodes leave a motion
-//! free; the residual does not contain it, so that the state does not depend on it. Open nodes are eliminated from every step.
-//! Once the residual comes near the rounding of d + R a, the bodies are moved by these motions: d := d + R a, a := 0.
+//! From the bonded state, δ = 0 is enough in most scenes. With a large compliance δ of its own every contact node
+//! yields, and Newton's method converges from the bonded guess also where few nodes hold the bodies; the state of every
+//! δ is the start of the next. A proximal spring in the rigid block of the derivative keeps it regular where the closed
+//! nodes leave a motion free; the residual does not contain it, so that the state does not depend on it. Open nodes are
+//! eliminated from every step. Once the residual comes near the rounding of d + R a, the bodies are moved by these
+//! motions: d := d + R a, a := 0.
 
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::cone_programs::Programs;
@@ -20,8 +21,8 @@ use nonsmooth::interruption::interrupted;
 
 /// Compliances that the first problem is tried with, one after the other until Newton's method converges.
 const FIRST_COMPLIANCES: [f64; 6] = [0.0, 1.0, 1e2, 1e4, 1e6, 1e8];
-/// Compliance below which it is set to 0: rounding. Where bodies bend, their compliances are far above those of single nodes, and states
-/// change down to 1e-8.
+/// Compliance below which it is set to 0: rounding. Where bodies bend, their compliances are far above those of single
+/// nodes, and states change down to 1e-8.
 const LAST_COMPLIANCE: f64 = 1e-12;
 /// Factor of the compliance in the first step that lowers it.
 const SHRINKAGE: f64 = 0.25;
@@ -51,7 +52,6 @@ const ACCEPTABLE: f64 = 1e-9;
 pub(super) struct Reached {
     /// Forces and amplitudes, dimensionless.
     pub(super) unknowns: Vec<f64>,
-    /// Derivatives selected there.
     pub(super) linearizations: Vec<Linearization>,
     /// Whether they solve the problem without a compliance of the contact nodes (δ = 0).
     pub(super) solved: bool,
@@ -84,7 +84,6 @@ impl Reached {
         self.programs.as_ref().map_or(0, |programs| programs.count)
     }
 
-    /// What was spent.
     pub(super) fn work(&self) -> Work {
         let programs = self.programs.as_ref().map_or([0; 2], |programs| [programs.iterations, programs.newton_steps]);
         let newton_steps = self.history.len() + programs[1];
@@ -93,8 +92,8 @@ impl Reached {
 }
 
 impl CompliantContact {
-    /// The equilibrium from given unknowns, from the bonded problem, or from cone programs, to a relative residual; or, after at
-    /// most so many factorisations, the last state on the way.
+    /// The equilibrium from given unknowns, from the bonded problem, or from cone programs, to a relative residual; or,
+    /// after at most so many factorisations, the last state on the way.
     pub(super) fn equilibrium(&mut self, start: Option<&[f64]>, tolerance: f64, max_steps: usize) -> Reached {
         let mut history = Vec::new();
         let tolerance = tolerance.max(TIGHTEST);
@@ -126,7 +125,8 @@ impl CompliantContact {
         Reached { unknowns, linearizations, solved, history, programs }
     }
 
-    /// Newton's method from unknowns near an equilibrium, in so many steps; none where it does not converge. Also its steps.
+    /// Newton's method from unknowns near an equilibrium, in so many steps; none where it does not converge. Also its
+    /// steps.
     pub(super) fn newton_near(
         &mut self,
         unknowns: &[f64],
@@ -257,8 +257,8 @@ impl CompliantContact {
         step
     }
 
-    /// The derivative over the rows of the nodes that are not open, then the motions; `friction`: 𝓕 for Coulomb's law, 0 for
-    /// slip bounds that do not follow λ_N (Tresca).
+    /// The derivative over the rows of the nodes that are not open, then the motions; `friction`: 𝓕 for Coulomb's law,
+    /// 0 for slip bounds that do not follow λ_N (Tresca).
     pub(super) fn active_system(&self, linearizations: &[Linearization], delta: f64, friction: f64) -> ActiveSystem {
         let points = || self.problem.boundary.points.iter().zip(linearizations);
         let closed = || points().filter(|(_, linearization)| **linearization != Linearization::Open);

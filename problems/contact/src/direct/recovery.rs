@@ -9,7 +9,8 @@ impl DirectSolver {
     /// All bodies of a solved shape, lower first. Nothing is torn: each body is one subdomain.
     ///
     /// # Errors
-    /// [`ContactError::ForeignState`] for a state of another mesh, [`ContactError::InvertedElement`] never for a solved one.
+    /// [`ContactError::ForeignState`] for a state of another mesh, [`ContactError::InvertedElement`] never for a solved
+    /// one.
     pub(super) fn whole_bodies(&self, state: &DirectState) -> Result<Vec<SolvedBody>, ContactError> {
         self.check(state)?;
         let blocks: Vec<Block> = std::iter::once(state.block.clone()).chain(self.problem.upper_block()?).collect();
@@ -27,8 +28,8 @@ impl DirectSolver {
 }
 
 impl DirectState {
-    /// Displacements of a whole body of the state. They are solved for when they are first asked for, and kept: fields, adjoint and tangents
-    /// need the same ones.
+    /// Displacements of a whole body of the state. They are solved for when they are first asked for, and kept: fields,
+    /// adjoint and tangents need the same ones.
     pub(super) fn displacement(&self, body: usize) -> &[f64] {
         self.displacements[body].get_or_init(|| {
             let size = 3 * self.contact.problem.boundary.points.len();
@@ -38,8 +39,8 @@ impl DirectState {
         })
     }
 
-    /// Displacements of a whole body under a load over it, from those of its contact nodes and packed multipliers, which push the lower
-    /// body (0) down and the upper one (1) up.
+    /// Displacements of a whole body under a load over it, from those of its contact nodes and packed multipliers,
+    /// which push the lower body (0) down and the upper one (1) up.
     pub(super) fn extend_under(&self, body: usize, contact: &[f64], multipliers: &[f64], load: &[f64]) -> Vec<f64> {
         let body = &self.contact.bodies[body];
         body.condensed.extend(contact, &body.contact_forces(multipliers), load)

@@ -1,14 +1,16 @@
-//! The largest force that friction can build up: a proof that bodies which only friction could hold have no equilibrium.
+//! The largest force that friction can build up: a proof that bodies which only friction could hold have no
+//! equilibrium.
 //!
 //! ```text
 //! λ in the friction cones,   Rᵀ λ = e,   λ_Nᵀ w_N = 0   ⇒   q(λ) := λ_Nᵀ (C λ)_N − d_Nᵀ λ_N = 0
 //! T ≥ 0 entry by entry       ⇒   λᵀ M λ ≤ d_Nᵀ λ_N,   λᵀ M λ := λ_Nᵀ (C λ)_N + Σ T_ij (λ_T,i·λ_T,j − 𝓕² λ_N,i λ_N,j)
 //! 2 M v − d_N − R y in the dual cones   ⇒   eᵀ y ≤ vᵀ M v
 //! ```
-//! The implications hold at every equilibrium, provided that no free motion moves contact nodes along their normals and, for the last
-//! one, that M is positive definite: 2vᵀMλ − vᵀMv ≤ λᵀMλ ≤ d_Nᵀλ_N. A motion y with eᵀ y > vᵀ M v is therefore a proof that
-//! there is no equilibrium, whatever the solvers tried: the load drives y by more than contact can build up. y and v are
-//! multipliers and minimiser of λᵀMλ − d_Nᵀλ_N over the cones with Rᵀλ = e; what they prove is computed again from C, R, d and e.
+//! The implications hold at every equilibrium, provided that no free motion moves contact nodes along their normals
+//! and, for the last one, that M is positive definite: 2vᵀMλ − vᵀMv ≤ λᵀMλ ≤ d_Nᵀλ_N. A motion y with eᵀ y > vᵀ M v is
+//! therefore a proof that there is no equilibrium, whatever the solvers tried: the load drives y by more than contact
+//! can build up. y and v are multipliers and minimiser of λᵀMλ − d_Nᵀλ_N over the cones with Rᵀλ = e; what they prove
+//! is computed again from C, R, d and e.
 
 use crate::direct::compliant_contact::CompliantContact;
 use crate::error::ContactError;
@@ -19,7 +21,8 @@ use faer::Mat;
 
 /// Normal part of an orthonormal motion that is rounding.
 const TANGENTIAL: f64 = 1e-12;
-/// Share of the largest row sum of M by which M must be positive definite: what condensation of badly conditioned bodies may lose.
+/// Share of the largest row sum of M by which M must be positive definite: what condensation of badly conditioned
+/// bodies may lose.
 const DEFINITE: f64 = 1e-8;
 /// Shares 𝓕²T/C_NN⁺ that are tried until M is positive definite.
 const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
@@ -27,23 +30,25 @@ const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
 const MAX_SHARE: f64 = 0.999;
 /// Rounding of the products that a proof consists of, relative to their terms.
 const ROUNDING: f64 = 1e-11;
-/// Least work on a motion, in units of the load: below it the resultant may be what condensation left of loads in equilibrium.
+/// Least work on a motion, in units of the load: below it the resultant may be what condensation left of loads in
+/// equilibrium.
 const LEAST_WORK: f64 = 1e-6;
-/// Largest difference of C_ij and C_ji, relative to the largest entry: more says that condensation has lost half of the digits.
+/// Largest difference of C_ij and C_ji, relative to the largest entry: more says that condensation has lost half of the
+/// digits.
 const LARGEST_SKEW: f64 = 1e-6;
 /// Most rows of a program: beyond, it would cost far more than the solvers that failed.
 pub(super) const MAX_ROWS: usize = 900;
 /// Programs for one bound, each for the share of the load that the last one allows.
 const MAX_PROGRAMS: usize = 2;
 /// Relative decrease of the share that ends them.
-const SETTLED: f64 = 0.01;
+const SMALLEST_DECREASE: f64 = 0.01;
 
 /// A motion that the load drives, and what friction can hold against it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resistance {
     /// Amplitudes y of the rigid motions, with slip of length 1 in the root mean square.
     pub motion: Vec<f64>,
-    /// eᵀy, N.
+    /// The resultant eᵀy, N.
     pub resultant: f64,
     /// The largest eᵀy that contact forces can balance, N: an upper bound.
     pub largest: f64,
@@ -52,7 +57,7 @@ pub struct Resistance {
 /// What the bound is made of.
 struct Bound<'a> {
     contact: &'a CompliantContact,
-    /// 2 M.
+    /// The Hessian 2 M.
     hessian: Mat<f64>,
     /// Its Cholesky factor, less a shift.
     factor: DenseCholesky,
@@ -63,8 +68,9 @@ struct Bound<'a> {
 }
 
 impl CompliantContact {
-    /// The motion by which the load exceeds most what friction can build up, with the largest resistance to it. None without
-    /// friction or free motions, where free motions open the contact, for large problems, and where the bound is not found.
+    /// The motion by which the load exceeds most what friction can build up, with the largest resistance to it. None
+    /// without friction or free motions, where free motions open the contact, for large problems, and where the bound
+    /// is not found.
     ///
     /// There is an equilibrium only if `resultant ≤ largest`.
     pub fn resistance(&self) -> Option<Resistance> {
@@ -74,11 +80,11 @@ impl CompliantContact {
         for _program in 0..MAX_PROGRAMS {
             let Some(found) = bound.at(share) else { break };
             let new = found.largest / found.resultant;
-            let settled = new >= (1.0 - SETTLED) * share;
+            let converged = new >= (1.0 - SMALLEST_DECREASE) * share;
             if best.as_ref().is_none_or(|best| new < best.largest / best.resultant) {
                 best = Some(found);
             }
-            if settled || new <= 0.0 {
+            if converged || new <= 0.0 {
                 break;
             }
             share = new;

@@ -26,9 +26,9 @@ use std::sync::atomic::AtomicUsize;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// How states are found.
+/// How states are found by Newton's method.
 const BY_NEWTON: &str = "semismooth Newton on condensed bodies, with continuation in the contact compliance";
-/// The same with its last resort.
+/// How states are found where Newton's method fails.
 const BY_PROGRAMS: &str =
     "semismooth Newton on condensed bodies, with continuation in the contact compliance, then from cone programs,";
 
@@ -62,9 +62,7 @@ pub(super) struct CondensedSolution {
     pub(super) unknowns: Vec<f64>,
     /// Contact displacements of all bodies, mm.
     pub(super) displacement: Vec<f64>,
-    /// Packed multipliers, N.
     pub(super) forces: Vec<f64>,
-    /// Derivatives selected.
     pub(super) linearizations: Vec<Linearization>,
 }
 
@@ -87,7 +85,8 @@ impl DirectSolver {
         Ok(Self { problem, lower, upper, fixed: OnceLock::new(), held })
     }
 
-    /// The contact problem in the forces of given controls: what the state is computed from, for other methods to solve.
+    /// The contact problem in the forces of given controls: what the state is computed from, for other methods to
+    /// solve.
     ///
     /// # Errors
     /// [`ContactError`]: inverted elements, no equilibrium of rigid bodies, a failing factorisation.
@@ -115,8 +114,8 @@ impl DirectSolver {
         CompliantBody::new(condensed, rigid.own_motions(body), &self.problem.boundary, &self.held[body], sign)
     }
 
-    /// The upper body, which keeps its shape: it is factored at the first call and shared afterwards. Also the number of
-    /// factorisations done.
+    /// The upper body, which keeps its shape: it is factored at the first call and shared afterwards. Also the number
+    /// of factorisations done.
     fn upper_body(&self, configuration: &Configuration) -> Result<(Option<Arc<CompliantBody>>, usize), ContactError> {
         let (Some(pattern), Some(scene)) = (&self.upper, &self.problem.scene.upper) else { return Ok((None, 0)) };
         if let Some(body) = self.fixed.get() {

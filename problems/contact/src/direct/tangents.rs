@@ -4,8 +4,8 @@
 //! r = −∂(K u − f),   r_c: what it puts on the contact dofs,   δd = B C r_c − ∂g,   δe = Nᵀ r_c
 //! M (δλ; δa) = (D δd; δe),   M = ∂(λ − Π(λ + w), Rᵀλ − e)/∂(λ, a),   δw = δd − C δλ + R δa
 //! ```
-//! The adjoint solves with Mᵀ what is solved here with M. Rigid motions of the upper body are those of its reference shape, so
-//! that the change of the lower body's own motions is the only one; it is part of r.
+//! The adjoint solves with Mᵀ what is solved here with M. Rigid motions of the upper body are those of its reference
+//! shape, so that the change of the lower body's own motions is the only one; it is part of r.
 
 use crate::direct::compliant_contact::CompliantContact;
 use crate::direct::newton::SPRINGS;
@@ -17,8 +17,8 @@ use faer::Mat;
 use nalgebra::DVector;
 
 impl CompliantContact {
-    /// Tangents at given derivatives, for forces on the contact dofs of the lower body (N, one column per change) and changes of
-    /// the heights of the contact nodes, mm.
+    /// Tangents at given derivatives, for forces on the contact dofs of the lower body (N, one column per change) and
+    /// changes of the heights of the contact nodes, mm.
     pub(super) fn tangents(
         &self,
         linearizations: &[Linearization],

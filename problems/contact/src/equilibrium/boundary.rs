@@ -1,14 +1,14 @@
 //! The contact nodes and the layout of their multipliers.
 //!
-//! A *packed* contact vector holds, node by node, the normal row and the tangential rows that exist: none without friction,
-//! and none for a tangential dof that supports hold on all bodies (method.md section 3).
+//! A *packed* contact vector holds, node by node, the normal row and the tangential rows that exist: none without
+//! friction, and none for a tangential dof that supports hold on all bodies (method.md section 3).
 
 use crate::body::mesh::Grid;
 use crate::equilibrium::ContactStatus;
 use crate::scene::Scene;
 use nonsmooth::Vector;
 
-/// One contact node.
+/// A node of the contact surface with its area and its rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactPoint {
     /// Column of nodes (i, j) of the grid.
@@ -48,7 +48,7 @@ pub struct ContactBoundary {
     pub points: Vec<ContactPoint>,
     /// Length of a packed contact vector.
     pub row_count: usize,
-    /// Friction coefficient 𝓕.
+    /// Friction coefficient 𝓕 of all nodes.
     pub friction: f64,
 }
 

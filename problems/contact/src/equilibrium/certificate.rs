@@ -6,7 +6,8 @@ use crate::error::ContactError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Factor by which other residuals of an iterate may exceed its Newton residual, since they are measured in other norms.
+/// Factor by which other residuals of an iterate may exceed its Newton residual, since they are measured in other
+/// norms.
 const OTHER_NORMS: f64 = 4.0;
 
 /// Largest residual of a state that any solver returns, unless a coarser one is asked for.
@@ -21,8 +22,8 @@ pub struct Residuals {
     pub complementarity: f64,
     /// Largest excess of |λ_T| over 𝓕λ_N, over the total load.
     pub friction_cone: f64,
-    /// Largest defect of the dissipation, c·|𝓕λ_N|slip| − λ_T·slip| over the square of the load: zero in stick (no slip) and
-    /// in aligned slip.
+    /// Largest defect of the dissipation, c·|𝓕λ_N|slip| − λ_T·slip| over the square of the load: zero in stick (no
+    /// slip) and in aligned slip.
     pub dissipation: f64,
     /// |(c (B_E u − c_E), λ − Π(λ + c(B u − g)))|₂ over the total load: what the Newton iteration drives to zero.
     pub newton: f64,
@@ -37,8 +38,8 @@ impl Residuals {
         )
     }
 
-    /// Refuses a state whose largest residual is above both [`MAX_RESIDUAL`] and four times `allowed`, the Newton residual asked
-    /// for: the other residuals are measured in other norms.
+    /// Refuses a state whose largest residual is above both [`MAX_RESIDUAL`] and four times `allowed`, the Newton
+    /// residual asked for: the other residuals are measured in other norms.
     ///
     /// # Errors
     /// [`ContactError::Inaccurate`] with the residuals.
@@ -71,8 +72,8 @@ impl fmt::Display for Residuals {
 /// How far the state is from the nearest point where S is not differentiable.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Kink {
-    /// Smallest over all nodes of |x_N|/max|x_N| and, for closed nodes with friction, ||x_T| − 𝓕x_N|/max(|x_T|, 𝓕x_N), with
-    /// x = λ + c(B u − g).
+    /// Smallest over all nodes of |x_N|/max|x_N| and, for closed nodes with friction, ||x_T| − 𝓕x_N|/max(|x_T|, 𝓕x_N),
+    /// with x = λ + c(B u − g).
     pub smallest_margin: f64,
     /// Nodes whose margin is at most [`WEAKLY_ACTIVE`]; their derivative is a selection.
     pub weakly_active: usize,
@@ -114,8 +115,9 @@ pub fn projection_residual(boundary: &ContactBoundary, forces: &[f64], jumps: &[
     residual
 }
 
-/// 𝓕|w_T| + w_N of every contact node, in the unit of the jumps, for the packed jumps w = B u − g of a state in which no node is closed.
-/// Any other equilibrium λ satisfies λᵀCλ ≤ Σ λ_N (𝓕|w_T| + w_N), method.md (4.12): only nodes where this is positive can wedge a body in.
+/// 𝓕|w_T| + w_N of every contact node, in the unit of the jumps, for the packed jumps w = B u − g of a state in which
+/// no node is closed. Any other equilibrium λ satisfies λᵀCλ ≤ Σ λ_N (𝓕|w_T| + w_N), method.md (4.12): only nodes where
+/// this is positive can wedge a body in.
 pub(crate) fn wedging(boundary: &ContactBoundary, jumps: &[f64]) -> Vec<f64> {
     let of_node = |jump: &[f64]| boundary.friction * tangential_norm(jump) + jump[0];
     boundary.points.iter().map(|point| of_node(&jumps[point.rows()])).collect()

@@ -13,7 +13,7 @@ const GAP_ROUNDING: f64 = 32.0 * f64::EPSILON;
 pub struct Configuration {
     /// The bodies, lower first.
     pub blocks: Vec<Block>,
-    /// The scene as the rigid body analysis sees it.
+    /// The scene as the rigid body analysis takes it.
     pub rigid: RigidScene,
     /// Motions that nothing holds and that the load does not drive.
     pub grounded: Vec<Motion>,
@@ -49,8 +49,8 @@ impl Configuration {
         Ok(Self { blocks, rigid, grounded, gaps })
     }
 
-    /// Force that residuals are relative to, N: the loads, and what a contact stiffness (N/mm) makes of the penetration.
-    /// Zero for bodies at rest.
+    /// Force that residuals are relative to, N: the loads, and what a contact stiffness (N/mm) makes of the
+    /// penetration. Zero for bodies at rest.
     pub fn load(&self, stiffness: f64) -> f64 {
         let penetration: f64 = self.gaps.iter().map(|gap| (-gap).max(0.0)).sum();
         self.rigid.total_load() + stiffness * penetration

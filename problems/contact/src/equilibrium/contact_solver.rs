@@ -8,8 +8,8 @@ use std::fmt;
 
 /// A solver of one contact problem.
 ///
-/// A state belongs to the solver that found it. That of another mesh is refused with [`ContactError::ForeignState`]; a solver whose kind is
-/// chosen when the program runs refuses that of another kind with [`ContactError::OtherSolver`].
+/// A state belongs to the solver that found it. That of another mesh is refused with [`ContactError::ForeignState`]; a
+/// solver whose kind is chosen when the program runs refuses that of another kind with [`ContactError::OtherSolver`].
 pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// What the solver keeps of a solved shape for derivative, diagnosis and displacements.
     type State: SolverState;
@@ -23,8 +23,8 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// What this solver did not need for its scene, in words.
     fn left_out(&self) -> Option<&'static str>;
 
-    /// Solves one shape to a relative residual, from nothing or from a state of a similar shape. A start of another kind of
-    /// solver is not used.
+    /// Solves one shape to a relative residual, from nothing or from a state of a similar shape. A start of another
+    /// kind of solver is not used.
     ///
     /// # Errors
     /// [`ContactError`]: inverted elements, no equilibrium, no convergence.
@@ -35,9 +35,9 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
         tolerance: f64,
     ) -> Result<ContactState<Self::State>, ContactError>;
 
-    /// Sensitivities of the heights of the contact nodes for a dual: j = ∂J/∂λ in packed rows, then, where J depends on the
-    /// displacements, l = ∂J/∂u with three entries per node of every body, lower first. What J depends on the shape itself is not
-    /// part of them. `tolerance`: relative residual of the adjoint, for solvers that iterate.
+    /// Sensitivities of the heights of the contact nodes for a dual: j = ∂J/∂λ in packed rows, then, where J depends on
+    /// the displacements, l = ∂J/∂u with three entries per node of every body, lower first. What J depends on the shape
+    /// itself is not part of them. `tolerance`: relative residual of the adjoint, for solvers that iterate.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] from the adjoint, [`ContactError::NotFinite`] when it is singular,
@@ -49,9 +49,9 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
         tolerance: f64,
     ) -> Result<Sensitivities, ContactError>;
 
-    /// Forward derivative of the contact state for changes of the heights of the contact nodes, mm, one vector per change:
-    /// columns of the generalized Jacobian that [`sensitivities`](Self::sensitivities) has rows of. `tolerance`: relative
-    /// residual of the linearized contact problems, for solvers that iterate.
+    /// Forward derivative of the contact state for changes of the heights of the contact nodes, mm, one vector per
+    /// change: columns of the generalized Jacobian that [`sensitivities`](Self::sensitivities) has rows of.
+    /// `tolerance`: relative residual of the linearized contact problems, for solvers that iterate.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] from the linearized problems, [`ContactError::NotFinite`] when they are singular,
@@ -64,15 +64,16 @@ pub trait ContactSolver: fmt::Debug + Send + Sync {
     /// [`ContactError`] from the linear systems.
     fn diagnose(&self, state: &Self::State) -> Result<Diagnosis, ContactError>;
 
-    /// A rough estimate of the contraction of the slip bounds at a solved shape, for at most so many products with the dual
-    /// operator; 0 where no closed node has a friction force (total FETI) or no node is closed (direct condensation). See method.md section 4.
+    /// A rough estimate of the contraction of the slip bounds at a solved shape, for at most so many products with the
+    /// dual operator; 0 where no closed node has a friction force (total FETI) or no node is closed (direct
+    /// condensation). See method.md section 4.
     ///
     /// # Errors
     /// [`ContactError`] from the linear system.
     fn estimate_contraction(&self, state: &Self::State, max_products: usize) -> Result<f64, ContactError>;
 
-    /// What the solver has lost of the contact forces by the rounding of its own matrices, as a share of the load, to first order
-    /// (method.md section 4); zero for a solver whose residuals know of it.
+    /// What the solver has lost of the contact forces by the rounding of its own matrices, as a share of the load, to
+    /// first order (method.md section 4); zero for a solver whose residuals know of it.
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for a state of another mesh, where it says anything of the state.

@@ -13,11 +13,11 @@ use crate::scalar::Scalar;
 /// One element of the generalised derivative of Π at a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Linearization {
-    /// No contact.
+    /// The node carries no force.
     Open,
     /// All rows of the node held.
     Stick,
-    /// Sliding along `direction`.
+    /// The node slides along `direction`.
     Slip {
         /// e, the unit vector along x_T over the node's tangential rows (the second entry is 0 if there is one row).
         direction: [f64; 2],
@@ -131,7 +131,8 @@ mod tests {
 
         #[test]
         fn disc_projection_is_nonexpansive(
-            x in prop::array::uniform2(-10.0_f64..10.0), y in prop::array::uniform2(-10.0_f64..10.0), radius in 0.0_f64..5.0,
+            x in prop::array::uniform2(-10.0_f64..10.0), y in prop::array::uniform2(-10.0_f64..10.0),
+            radius in 0.0_f64..5.0,
         ) {
             let (mut px, mut py) = ([0.0; 2], [0.0; 2]);
             project_onto_disc(&x, radius, &mut px);
@@ -142,7 +143,8 @@ mod tests {
 
         #[test]
         fn linearization_equals_dual_numbers(
-            x in prop::array::uniform3(-10.0_f64..10.0), dx in prop::array::uniform3(-1.0_f64..1.0), friction in 0.01_f64..2.0,
+            x in prop::array::uniform3(-10.0_f64..10.0), dx in prop::array::uniform3(-1.0_f64..1.0),
+            friction in 0.01_f64..2.0,
         ) {
             let dual: [Dual; 3] = std::array::from_fn(|i| Dual::new(x[i], dx[i]));
             let mut exact = [Dual::constant(0.0); 3];

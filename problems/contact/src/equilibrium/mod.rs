@@ -1,5 +1,5 @@
-//! Unilateral contact with Coulomb friction: boundary, law, rigid motions, certificates; what a contact solver solves and
-//! returns.
+//! Unilateral contact with Coulomb friction: boundary, law, rigid motions, certificates; what a contact solver solves
+//! and returns.
 
 mod boundary;
 pub(crate) mod certificate;

@@ -4,7 +4,8 @@
 //! equilibrium needs   Zᵀ (f − Bᵀλ) = 0   for the motions Z that supports leave free, with λ in the friction cone
 //! ```
 //! A load outside that cone has no equilibrium and is refused before any iteration; a motion that neither supports nor
-//! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero, so λ does not change).
+//! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero, so λ does not
+//! change).
 
 use crate::equilibrium::ContactBoundary;
 use crate::error::ContactError;
@@ -44,8 +45,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame of a body by its held nodes and all its nodes: the mean of the first ones, or of all where none is held; the largest distance
-    /// along an axis, so that no motion moves a node by more than one.
+    /// The frame of a body by its held nodes and all its nodes: the mean of the first ones, or of all where none is
+    /// held; the largest distance along an axis, so that no motion moves a node by more than one.
     pub(crate) fn new(held: &[[f64; 3]], nodes: &[[f64; 3]]) -> Self {
         let points = if held.is_empty() { nodes } else { held };
         let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
@@ -133,8 +134,8 @@ impl RigidScene {
         free.iter().map(along).collect()
     }
 
-    /// Checks that contact within its friction cone can carry the load; returns the motions that nothing holds, which are
-    /// to be grounded.
+    /// Checks that contact within its friction cone can carry the load; returns the motions that nothing holds, which
+    /// are to be grounded.
     ///
     /// # Errors
     /// [`ContactError::NoEquilibrium`] naming the motion and the resultant that cannot be carried.
@@ -191,8 +192,8 @@ impl RigidScene {
     }
 }
 
-/// Orthonormal basis of the common kernel of some rows of this length, whose entries for translations are 1 before any projection. Every
-/// motion counts in units of its own restraint: lever arms differ by the proportions of the bodies.
+/// Orthonormal basis of the common kernel of some rows of this length, whose entries for translations are 1 before any
+/// projection. Every motion counts in units of its own restraint: lever arms differ by the proportions of the bodies.
 ///
 /// ```text
 /// (rows · units) P = Q [R₁₁ R₁₂]   (columns of least new restraint last),   kernel = units · P [−R₁₁⁻¹ R₁₂; I]
@@ -226,8 +227,8 @@ fn kernel(rows: &[DVector<f64>], size: usize) -> Vec<DVector<f64>> {
     DMatrix::from_columns(&free).qr().q().column_iter().map(|column| column.into_owned()).collect()
 }
 
-/// Projection of a resultant onto the cone of contact resultants, by a nonnegative least squares active set whose columns
-/// are generated from the exact friction cones.
+/// Projection of a resultant onto the cone of contact resultants, by a nonnegative least squares active set whose
+/// columns are generated from the exact friction cones.
 struct ConeProjection<'a> {
     /// Per node: the normal row and its tangential rows, in coordinates of the free motions.
     rows: &'a [Vec<DVector<f64>>],
@@ -235,10 +236,11 @@ struct ConeProjection<'a> {
 }
 
 impl ConeProjection<'_> {
-    /// What remains of `load` after a near resultant of the cone is taken off, and what may remain of a load within the cone.
+    /// What remains of `load` after a near resultant of the cone is taken off, and what may remain of a load within the
+    /// cone.
     ///
-    /// With unit forces c of the cone, weights w and rest r = load − Σ w c, a load within the cone has |r|² = r·load ≤ Σ w* max c·r for the
-    /// weights w* that balance it.
+    /// With unit forces c of the cone, weights w and rest r = load − Σ w c, a load within the cone has |r|² = r·load ≤
+    /// Σ w* max c·r for the weights w* that balance it.
     fn residual(&self, load: &DVector<f64>) -> (DVector<f64>, f64) {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let mut weights: Vec<f64> = Vec::new();
@@ -264,7 +266,8 @@ impl ConeProjection<'_> {
         (rest, doubt)
     }
 
-    /// The extreme force of unit normal part whose resultant has the largest product with `direction` for its length, with that product.
+    /// The extreme force of unit normal part whose resultant has the largest product with `direction` for its length,
+    /// with that product.
     fn support(&self, direction: &DVector<f64>) -> Option<(f64, DVector<f64>)> {
         let mut best: Option<(f64, DVector<f64>)> = None;
         for rows in self.rows {
@@ -318,7 +321,8 @@ mod tests {
     /// Supports of two bodies, friction, expected numbers.
     type Stack<'a> = ([&'a [Support]; 2], f64, [usize; 3]);
 
-    /// Numbers of motions that supports leave free to the lower body and to all, and of those that contact leaves free as well.
+    /// Numbers of motions that supports leave free to the lower body and to all, and of those that contact leaves free
+    /// as well.
     fn counts(mut scene: Scene, supports: [&[Support]; 2], height: f64, friction: f64) -> [usize; 3] {
         (scene.size, scene.mesh, scene.friction) = ([1.0; 2], [4; 3], friction);
         (scene.lower.supports, scene.lower.loads) = (supports[0].to_vec(), Vec::new());

@@ -11,25 +11,26 @@ use crate::lattice;
 use crate::scene::{BodyScene, Scene};
 use crate::shape::{AdmissibleSet, HeightMap};
 
-/// Ratio of the edges of a brick from which it is extreme: total FETI may take hundreds of products and more, above all for plates and
-/// for bricks that are long in the plan.
+/// Ratio of the edges of a brick from which it is extreme: total FETI may take hundreds of products and more, above all
+/// for plates and for bricks that are long in the plan.
 const EXTREME_BRICK: f64 = 30.0;
 
-/// Poisson's ratio of standard bricks from which they are nearly incompressible: total FETI takes hundreds of products and more.
+/// Poisson's ratio of standard bricks from which they are nearly incompressible: total FETI takes hundreds of products
+/// and more.
 const LOCKING: f64 = 0.499;
 
 /// The discrete problem behind a scene.
 #[derive(Debug)]
 pub struct ContactProblem {
-    /// The scene.
+    /// The scene that was discretised.
     pub scene: Scene,
     /// Grid of both bodies.
     pub grid: Grid,
-    /// Contact nodes.
+    /// The nodes that can come into contact.
     pub boundary: ContactBoundary,
     /// From controls to heights of the contact nodes.
     pub height_map: HeightMap,
-    /// Admissible controls.
+    /// The set of controls that the scene admits.
     pub admissible: AdmissibleSet,
     counter_heights: Vec<f64>,
 }
@@ -62,7 +63,8 @@ impl ContactProblem {
         3 * self.grid.node_count() * self.bodies().count()
     }
 
-    /// The parts of ∂J/∂(state): ∂J/∂λ in packed rows, and ∂J/∂u over the displacements of all bodies, where J depends on them.
+    /// The parts of ∂J/∂(state): ∂J/∂λ in packed rows, and ∂J/∂u over the displacements of all bodies, where J depends
+    /// on them.
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for entries of another mesh.
@@ -96,7 +98,8 @@ impl ContactProblem {
         std::array::from_fn(|axis| lengths[axis] / self.scene.mesh[axis] as f64)
     }
 
-    /// Why linear systems of the problem are ill conditioned, if material or bricks make them so: total FETI is slow then.
+    /// Why linear systems of the problem are ill conditioned, if material or bricks make them so: total FETI is slow
+    /// then.
     pub(crate) fn ill_conditioned(&self) -> Option<String> {
         let locking = self.bodies().map(|body| body.material).filter(|m| m.formulation() == Formulation::Standard);
         let ratio = locking.map(|material| material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);
@@ -108,8 +111,8 @@ impl ContactProblem {
         (aspect >= EXTREME_BRICK).then(|| format!("bricks have edges 1 : {aspect:.0}"))
     }
 
-    /// The height of the bricks over both edges of their plan, or both edges over the height, where that is extreme: bricks
-    /// are plates or rods along x₃ then.
+    /// The height of the bricks over both edges of their plan, or both edges over the height, where that is extreme:
+    /// bricks are plates or rods along x₃ then.
     pub(crate) fn flat_or_tall(&self) -> Option<f64> {
         let [a, b, height] = self.brick_edges();
         let ratio = (height / a.max(b)).max(a.min(b) / height);
@@ -148,7 +151,7 @@ impl ContactProblem {
         self.counter_heights.iter().zip(&lower.upper).map(|(counter, height)| counter - height).collect()
     }
 
-    /// The scene as a rigid body analysis sees it.
+    /// The scene as a rigid body analysis takes it.
     pub fn rigid_scene(&self, blocks: &[Block]) -> RigidScene {
         let (mut held, mut loads) = (Vec::new(), Vec::new());
         for (body, (block, scene)) in blocks.iter().zip(self.bodies()).enumerate() {

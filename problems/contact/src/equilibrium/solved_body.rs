@@ -13,8 +13,8 @@ pub struct SolvedBody {
     pub block: Block,
     /// Displacement per node of the grid, mm; the mean over the torn copies of a node.
     pub displacement: Vec<[f64; 3]>,
-    /// Largest over the nodes of √(Σ |copy − mean|²) over the copies, mm: how far the gluing is from being exact. Zero for a
-    /// body that was not torn.
+    /// Largest over the nodes of √(Σ |copy − mean|²) over the copies, mm: how far the gluing is from being exact. Zero
+    /// for a body that was not torn.
     pub gluing_defect: f64,
     /// Subdomain per brick, counted through all bodies, lower body first.
     pub subdomains: Vec<usize>,

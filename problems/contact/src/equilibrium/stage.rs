@@ -1,6 +1,6 @@
-//! What a contact solver is doing, told as `tracing` events: a log or a status line follows them, and without a listener they
-//! cost nothing. These are also the places where a state that nobody waits for any more is given up. Of several processes that work on one
-//! state, none may be watched: one that gives up leaves the others waiting.
+//! What a contact solver is doing, told as `tracing` events: a log or a status line follows them, and without a
+//! listener they cost nothing. These are also the places where a state that nobody waits for any more is given up. Of
+//! several processes that work on one state, none may be watched: one that gives up leaves the others waiting.
 
 use crate::error::ContactError;
 use nonsmooth::interruption::interrupted;
@@ -21,9 +21,9 @@ pub enum Stage {
     CoarseSpace,
     /// The iteration for the contact forces.
     Contact,
-    /// Displacements and certificates.
+    /// The recovery of displacements and certificates from the forces.
     Recovery,
-    /// The adjoint system.
+    /// The solution of the adjoint system.
     Adjoint,
     /// The element sums of the shape derivative.
     ShapeDerivative,

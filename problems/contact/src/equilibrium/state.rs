@@ -72,7 +72,7 @@ pub struct StageSeconds {
     pub coarse_space: f64,
     /// Iteration for the contact forces, whatever its method, without the coarse space: Krylov spaces, products with F.
     pub newton: f64,
-    /// Displacements and certificates.
+    /// Time for displacements and certificates.
     pub recovery: f64,
 }
 
@@ -95,7 +95,7 @@ pub enum ContactWarmStart {
 /// A solved shape; `S` is what its solver keeps ([`ContactSolver::State`](crate::equilibrium::ContactSolver::State)).
 #[derive(Debug)]
 pub struct ContactState<S> {
-    /// Forces, status, certificates.
+    /// Contact forces with status and certificates.
     pub forces: ContactForces,
     /// What derivative, diagnosis and displacements are computed from.
     pub solution: S,
@@ -108,7 +108,8 @@ pub struct ContactState<S> {
     pub solver: SolverKind,
     /// Why that solver, where another would have been the first choice.
     pub reason: Option<String>,
-    /// Contraction factor observed by the successive approximations, where that method found the state and took enough steps.
+    /// Contraction factor observed by the successive approximations, where that method found the state and took enough
+    /// steps.
     pub contraction: Option<f64>,
     /// Seconds of the stages, where the solver takes them.
     pub stages: Option<StageSeconds>,
@@ -127,7 +128,7 @@ impl<S> ContactState<S> {
         }
     }
 
-    /// The same shape with another form of the solver's own part.
+    /// Replaces the solver's own part of the solution and keeps all else.
     pub fn map<T>(self, change: impl FnOnce(S) -> T) -> ContactState<T> {
         let Self { forces, solution, bodies, load, solver, reason, contraction, stages, work, adjoint_applications } =
             self;
@@ -147,9 +148,9 @@ pub struct ContactForces {
     pub opening: Vec<f64>,
     /// Tangential jump per node, mm; empty without friction.
     pub slip: Vec<[f64; 2]>,
-    /// Status per node.
+    /// Contact status per contact node.
     pub status: Vec<ContactStatus>,
-    /// Certificates.
+    /// Residuals that certify the equilibrium.
     pub residuals: Residuals,
     /// Distance to the nearest kink.
     pub kink: Kink,
@@ -180,7 +181,7 @@ impl ContactForces {
         Self { normal, tangential: pair(forces), opening, slip: pair(jumps), status, residuals, kink }
     }
 
-    /// Σλ_N, N.
+    /// Total normal force Σλ_N, N.
     pub fn total_normal_force(&self) -> f64 {
         self.normal.iter().sum()
     }

@@ -16,11 +16,11 @@ pub enum ContactStatus {
 /// Numbers of nodes per status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct StatusCounts {
-    /// No contact.
+    /// Nodes without contact.
     pub open: usize,
-    /// Closed, no sliding.
+    /// Closed nodes that do not slide.
     pub stick: usize,
-    /// Closed, sliding.
+    /// Closed nodes that slide.
     pub slip: usize,
 }
 

@@ -4,13 +4,14 @@
 //! J − J* = Σ t_i + remainder,    t_i = weight by the adjoint × residual, per node or row
 //! bound = |Σ t_i| + ¼ Σ|t_i| + 1e-14 (Σ|∂J/∂λ_i λ_i| + Σ|∂J/∂u_i u_i|)
 //! ```
-//! The sum is the error to first order. The remainder is of second order: nodes whose status differs between λ and λ*, the
-//! curvature of J and of the slip circle. The bound holds whenever the remainder is at most a quarter of Σ|t_i|; the residual has
-//! to be so small that few nodes change their status on the way to the solution. The last term is rounding.
+//! The sum is the error to first order. The remainder is of second order: nodes whose status differs between λ and λ*,
+//! the curvature of J and of the slip circle. The bound holds whenever the remainder is at most a quarter of Σ|t_i|;
+//! the residual has to be so small that few nodes change their status on the way to the solution. The last term is
+//! rounding.
 //!
-//! It is an estimate for the peak pressure, whose largest node may change; for the deviation from a wanted pressure near that pressure,
-//! where ∂J/∂σ and with it every t_i vanishes but the curvature stays; for the open area where a node has σ = σ₀, a kink of
-//! J; and for the compliance, where it was exceeded up to three times (method.md (5.3)).
+//! It is an estimate for the peak pressure, whose largest node may change; for the deviation from a wanted pressure
+//! near that pressure, where ∂J/∂σ and with it every t_i vanishes but the curvature stays; for the open area where a
+//! node has σ = σ₀, a kink of J; and for the compliance, where it was exceeded up to three times (method.md (5.3)).
 
 use crate::linear::vector::dot;
 use serde::{Deserialize, Serialize};
@@ -20,7 +21,8 @@ use serde::{Deserialize, Serialize};
 pub struct ValueError {
     /// Σ t_i, with its sign: J less this is more accurate than J.
     pub first_order: f64,
-    /// Bound of the absolute error; an estimate for peak pressure, deviation near the wanted pressure, open area where σ = σ₀ and compliance.
+    /// Bound of the absolute error; an estimate for peak pressure, deviation near the wanted pressure, open area where
+    /// σ = σ₀ and compliance.
     pub bound: f64,
 }
 

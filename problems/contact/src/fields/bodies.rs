@@ -20,8 +20,8 @@ pub struct BodyFields {
     pub stress: Vec<SymmetricTensor>,
     /// Von Mises stress per brick at its centre, MPa.
     pub von_mises: Vec<f64>,
-    /// Von Mises stress per node: mean over the adjoining bricks, weighted by their volumes, MPa. On the boundary of the body,
-    /// where the bricks lie on one side, it is of first order only.
+    /// Von Mises stress per node: mean over the adjoining bricks, weighted by their volumes, MPa. On the boundary of
+    /// the body, where the bricks lie on one side, it is of first order only.
     pub nodal_von_mises: Vec<f64>,
     /// Subdomain per brick, counted through all bodies, lower body first.
     pub subdomain: Vec<usize>,

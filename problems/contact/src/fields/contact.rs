@@ -16,8 +16,8 @@ pub struct ContactFields {
     pub area: Vec<f64>,
     /// Pressure λ_N/A, MPa; compression positive.
     pub pressure: Vec<f64>,
-    /// Tangential traction λ_T/A along x₁, x₂, MPa: what the lower body exerts on the upper one or the obstacle. None without
-    /// friction.
+    /// Tangential traction λ_T/A along x₁, x₂, MPa: what the lower body exerts on the upper one or the obstacle. None
+    /// without friction.
     pub traction: Option<Vec<[f64; 2]>>,
     /// Tangential jump, displacement of the lower body less that of the upper one, mm. None without friction.
     pub slip: Option<Vec<[f64; 2]>>,
@@ -25,8 +25,8 @@ pub struct ContactFields {
     pub status: Vec<ContactStatus>,
     /// Gap before loading, mm; negative where the shapes overlap.
     pub gap: Vec<f64>,
-    /// Gap that is left under load, mm; ≥ 0 up to the accuracy of the state. It is minus the `opening` of [`ContactForces`], the
-    /// normal jump less the gap.
+    /// Gap that is left under load, mm; ≥ 0 up to the accuracy of the state. It is minus the `opening` of
+    /// [`ContactForces`], the normal jump less the gap.
     pub remaining_gap: Vec<f64>,
     /// ∂J/∂(height of the contact node), unit of J per mm, where it was asked for: see
     /// [`ContactShape::height_sensitivity`](crate::contact_shape::ContactShape::height_sensitivity).

@@ -8,7 +8,7 @@ use crate::fields::{BodyFields, ContactFields};
 pub struct Fields {
     /// The bodies, lower first.
     pub bodies: Vec<BodyFields>,
-    /// The contact boundary.
+    /// Fields over the contact boundary.
     pub contact: ContactFields,
 }
 

@@ -145,8 +145,8 @@ impl NumericFactor {
         self.symbolic.solve(&self.values, b.as_mut());
     }
 
-    /// As [`NumericFactor::solve_in_place`], with factor and vector in single precision. The rounded factor is made at the
-    /// first call and kept.
+    /// As [`NumericFactor::solve_in_place`], with factor and vector in single precision. The rounded factor is made at
+    /// the first call and kept.
     pub(crate) fn solve_in_place_single(&self, b: &mut [f32]) {
         self.symbolic.solve(self.single_values(), column(b));
     }
@@ -196,14 +196,14 @@ impl NumericFactor {
         &self.symbolic.order
     }
 
-    /// Eliminates the first `count` indices of the elimination order from a right side in this order: x ← L₁₁⁻¹ b₁ there, and
-    /// b₂ − L₂₁ x₁ in the others. With all indices it solves L x = b.
+    /// Eliminates the first `count` indices of the elimination order from a right side in this order: x ← L₁₁⁻¹ b₁
+    /// there, and b₂ − L₂₁ x₁ in the others. With all indices it solves L x = b.
     pub(crate) fn eliminate<V: Entry>(&self, count: usize, b: &mut [V]) {
         supernodal::eliminate(self.supernodes(), &self.values, count, b);
     }
 
-    /// Solves L₁₁ᵀ x₁ = y₁ − L₂₁ᵀ x₂ for the first `count` indices of the elimination order, in place; x₂ is given. With all indices
-    /// it solves Lᵀ x = y.
+    /// Solves L₁₁ᵀ x₁ = y₁ − L₂₁ᵀ x₂ for the first `count` indices of the elimination order, in place; x₂ is given.
+    /// With all indices it solves Lᵀ x = y.
     pub(crate) fn substitute<V: Entry>(&self, count: usize, y: &mut [V]) {
         supernodal::substitute(self.supernodes(), &self.values, count, y);
     }

@@ -5,7 +5,8 @@ use crate::linear::real::Real;
 use crate::linear::sums::Sums;
 use rayon::prelude::*;
 
-/// Rows that are worked on together: their numbers stay in the cache of one core, and sums in single precision stay short.
+/// Rows that are worked on together: their numbers stay in the cache of one core, and sums in single precision stay
+/// short.
 const CHUNK: usize = 256;
 
 /// aᵀb per column, for every a of a list.
@@ -51,7 +52,6 @@ pub fn norms<E: Real, const N: usize>(sums: &dyn Sums, a: &[Row<E, N>]) -> Row<f
     rows(&numbers)[0].map(f64::sqrt)
 }
 
-/// Numbers as rows.
 fn rows<const N: usize>(numbers: &[f64]) -> Vec<Row<f64, N>> {
     let row = |numbers: &[f64]| {
         let mut row = Row::ZERO;

@@ -35,12 +35,10 @@ impl Csr {
         }
     }
 
-    /// Number of rows.
     pub fn row_count(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Number of columns.
     pub fn column_count(&self) -> usize {
         self.column_count
     }
@@ -51,7 +49,6 @@ impl Csr {
         self.columns[range.clone()].iter().zip(&self.values[range]).map(|(&column, &value)| (column as usize, value))
     }
 
-    /// The transposed matrix.
     pub fn transpose(&self) -> Self {
         let mut starts = vec![0; self.column_count + 1];
         for &column in &self.columns {

@@ -73,8 +73,8 @@ impl DenseLu {
         lu::solve::solve_in_place_with_conj(factors, factors, permutation, Conj::No, b, SEQUENTIAL, stack);
     }
 
-    /// Solves A x = b in place with one step of iterative refinement against the matrix that was factored; the correction is
-    /// taken if it lowers the residual.
+    /// Solves A x = b in place with one step of iterative refinement against the matrix that was factored; the
+    /// correction is taken if it lowers the residual.
     pub fn solve_refined(&self, matrix: &Mat<f64>, b: &mut [f64]) {
         let right = b.to_vec();
         self.solve_in_place(b);
@@ -90,7 +90,7 @@ impl DenseLu {
         }
     }
 
-    /// A⁻¹.
+    /// The inverse A⁻¹.
     pub fn inverse(&self) -> Mat<f64> {
         let size = self.factors.nrows();
         let mut inverse = Mat::<f64>::identity(size, size);
@@ -179,8 +179,8 @@ pub fn multiply_columns(matrix: &Mat<f64>, columns: &Mat<f64>) -> Mat<f64> {
     product
 }
 
-/// Largest over smallest singular value of a square matrix after the rows are brought to equal length; infinite for a singular
-/// matrix, none when the singular values cannot be found.
+/// Largest over smallest singular value of a square matrix after the rows are brought to equal length; infinite for a
+/// singular matrix, none when the singular values cannot be found.
 pub fn spectral_condition(matrix: &Mat<f64>) -> Option<f64> {
     let mut scaled = matrix.clone();
     for row in 0..scaled.nrows() {

@@ -3,8 +3,8 @@
 //! ```text
 //! vector of n numbers:   [f64]            block of n × 8N numbers by rows:   [Row<E, N>],   E single or double
 //! ```
-//! A block holds what belongs to one row side by side, so that whatever is read for a row (an entry of a sparse matrix, of a
-//! factor) serves all columns.
+//! A block holds what belongs to one row side by side, so that whatever is read for a row (an entry of a sparse matrix,
+//! of a factor) serves all columns.
 
 use crate::linear::real::Real;
 use faer::traits::pulp::Arch;
@@ -19,13 +19,13 @@ pub trait Entry: Copy + Send + Sync + PartialEq {
     /// Number of columns, padding included.
     const WIDTH: usize;
 
-    /// self += factor·other.
+    /// Adds a multiple: self += factor·other.
     fn add_scaled(&mut self, factor: f64, other: &Self);
 
-    /// The same inside [`vectorized`], where blocks take the instruction with one rounding.
+    /// self += factor·other inside [`vectorized`], where blocks take the instruction with one rounding.
     fn accumulate(&mut self, factor: f64, other: &Self);
 
-    /// self ← factor·self.
+    /// Multiplies: self ← factor·self.
     fn scale(&mut self, factor: f64);
 
     /// The number in a column.
@@ -70,7 +70,7 @@ impl Entry for f64 {
 pub struct Row<E, const N: usize>(pub [[E; LANES]; N]);
 
 impl<E: Real, const N: usize> Row<E, N> {
-    /// The same row in another precision.
+    /// Converts the row to another precision.
     #[inline(always)]
     pub fn to<F: Real>(self) -> Row<F, N> {
         Row(self.0.map(|lanes| lanes.map(|entry| F::of(entry.double()))))
@@ -148,7 +148,8 @@ impl<E: Real, const N: usize> Entry for Row<E, N> {
     }
 }
 
-/// Runs `work`, compiled for the widest registers of this processor that are known to faer; what it calls must be inlined.
+/// Runs `work`, compiled for the widest registers of this processor that are known to faer; what it calls must be
+/// inlined.
 #[inline(always)]
 pub fn vectorized<R>(work: impl FnOnce() -> R) -> R {
     Arch::new().dispatch(work)

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{what}: {reason}")]
 pub struct FactorizationError {
-    /// Which step failed.
+    /// The step of the algorithm that failed.
     pub what: &'static str,
     /// What was found, and what is allowed.
     pub reason: String,

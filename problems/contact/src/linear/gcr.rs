@@ -1,5 +1,5 @@
-//! Generalised conjugate residuals for many right sides in lockstep: every column has its own Krylov space, and every product is
-//! taken for all columns at once.
+//! Generalised conjugate residuals for many right sides in lockstep: every column has its own Krylov space, and every
+//! product is taken for all columns at once.
 //!
 //! ```text
 //! per column:   z_k = M r,   q_k = A z_k made orthogonal to q_0 … q_{k−1},   α_k = q_kᵀr/q_kᵀq_k,   r ← r − α_k q_k
@@ -15,7 +15,7 @@ use nonsmooth::interruption::interrupted;
 
 /// Directions, payloads and their coefficients: X = Σ coefficients∘directions.
 pub struct ColumnCombination<E, P, const N: usize> {
-    /// Preconditioned residuals z_k.
+    /// The preconditioned residuals z_k.
     pub directions: Vec<Vec<Row<E, N>>>,
     /// What the operator attached to A z_k.
     pub payloads: Vec<P>,
@@ -30,8 +30,9 @@ fn reached<const N: usize>(residuals: &Row<f64, N>, targets: &Row<f64, N>) -> bo
     residuals.iter().zip(targets.iter()).all(|(residual, target)| residual <= target)
 }
 
-/// Minimises |r − A x| per column over growing Krylov spaces until every norm is at most its target, `max_iterations` is
-/// reached, or the largest ratio of a norm to its target does not halve in 40 iterations; the caller judges the residuals.
+/// Minimises |r − A x| per column over growing Krylov spaces until every norm is at most its target, `max_iterations`
+/// is reached, or the largest ratio of a norm to its target does not halve in 40 iterations; the caller checks the
+/// residuals.
 ///
 /// `sums`: inner products; `precondition(r)` returns M r; `apply(z)` returns (A z, payload).
 pub fn gcr<E: Real, P, const N: usize>(

@@ -3,8 +3,8 @@
 //! ```text
 //! min |r₀ − A Z y|,   Z = [M v₁, M v₂, …],   A Z = V H
 //! ```
-//! The operator may attach a payload to every product (the dual operator's product before projection), so that the caller
-//! can recombine it without a further application.
+//! The operator may attach a payload to every product (the dual operator's product before projection), so that the
+//! caller can recombine it without a further application.
 
 use crate::linear::sums::Sums;
 use crate::linear::vector::norm;
@@ -17,7 +17,6 @@ pub struct Combination<P> {
     pub directions: Vec<Vec<f64>>,
     /// What the operator attached to A z_k.
     pub payloads: Vec<P>,
-    /// Minimising coefficients.
     pub coefficients: Vec<f64>,
     /// Norm of the residual by the recurrence.
     pub residual: f64,
@@ -26,8 +25,8 @@ pub struct Combination<P> {
 /// Iterations in which the residual usually halves, if rounding does not stop it.
 pub const MAX_STALLED_ITERATIONS: usize = 40;
 
-/// Minimises |r − A x| over growing Krylov spaces until the norm falls to `target`, `max_iterations` is reached, or the norm
-/// does not halve in `patience` iterations, or nobody waits for it any more; the caller judges the residual.
+/// Minimises |r − A x| over growing Krylov spaces until the norm falls to `target`, `max_iterations` is reached, or the
+/// norm does not halve in `patience` iterations, or nobody waits for it any more; the caller checks the residual.
 ///
 /// `sums`: inner products; `precondition(v)` returns z = M v; `apply(z)` returns (A z, payload).
 pub fn gmres<P>(

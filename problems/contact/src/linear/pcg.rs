@@ -6,18 +6,16 @@ use crate::linear::vector::add_scaled;
 /// Solution of a run of [`pcg`].
 #[derive(Debug)]
 pub struct PcgSolution {
-    /// x.
     pub solution: Vec<f64>,
     /// Norm of the residual by the recurrence.
     pub residual: f64,
-    /// Iterations done.
     pub iterations: usize,
 }
 
 /// Solves A x = r until the residual norm falls to `target` or `max_iterations` is reached.
 ///
-/// `sums`: inner products; `precondition(v)` returns z = M v; `apply(z)` returns A z, projected. Stops early when a direction has no
-/// positive curvature left (rounding); the caller judges the residual.
+/// `sums`: inner products; `precondition(v)` returns z = M v; `apply(z)` returns A z, projected. Stops early when a
+/// direction has no positive curvature left (rounding); the caller checks the residual.
 pub fn pcg(
     sums: &dyn Sums,
     residual: &[f64],

@@ -5,13 +5,12 @@ use std::fmt::Debug;
 
 /// A precision of block computations.
 pub trait Real: Float + Debug + Send + Sync + 'static {
-    /// Zero.
     const ZERO: Self;
 
     /// Rounded from double precision.
     fn of(value: f64) -> Self;
 
-    /// In double precision.
+    /// Converts the number to double precision.
     fn double(self) -> f64;
 
     /// The numbers of this precision, of numbers that are there in both.

@@ -9,10 +9,10 @@ use rayon::prelude::*;
 
 /// Entries of right sides.
 pub trait RightSide: Entry {
-    /// The same entry in double precision.
+    /// The type of these entries in double precision.
     type Double: RightSide;
 
-    /// In double precision.
+    /// Converts the entry to double precision.
     fn double(&self) -> Self::Double;
 
     /// Rounded from double precision.

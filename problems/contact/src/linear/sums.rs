@@ -31,12 +31,12 @@ impl Whole {
 }
 
 impl dyn Sums + '_ {
-    /// aᵀb.
+    /// The inner product aᵀb.
     pub fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
         self.dots(&[a], b)[0]
     }
 
-    /// |a|₂.
+    /// The Euclidean norm |a|₂.
     pub fn norm(&self, a: &[f64]) -> f64 {
         self.dot(a, a).sqrt()
     }

@@ -1,12 +1,12 @@
-//! Triangular solves supernode by supernode: both sweeps of L Lᵀ X = B for a block of columns, and single sweeps that may end
-//! before the last columns of L.
+//! Triangular solves supernode by supernode: both sweeps of L Lᵀ X = B for a block of columns, and single sweeps that
+//! may end before the last columns of L.
 //!
 //! ```text
 //! forward, supernodes ascending:     X_s ← L_ss⁻¹ X_s,                X_p ← X_p − L_ps X_s        (p: rows below the supernode)
 //! backward, supernodes descending:   X_s ← X_s − L_psᵀ X_p,           X_s ← L_ss⁻ᵀ X_s
 //! ```
-//! A tile of rows (forward) or columns (backward) of a panel is worked on at once, with its sums in registers; every value of L
-//! is read once per sweep for all columns.
+//! A tile of rows (forward) or columns (backward) of a panel is worked on at once, with its sums in registers; every
+//! value of L is read once per sweep for all columns.
 
 use crate::linear::entry::{Entry, Row, vectorized};
 use crate::linear::real::Real;

@@ -71,7 +71,7 @@ impl LowerPattern {
 /// A principal submatrix: its pattern and where each of its values sits in the full matrix.
 #[derive(Debug, Clone)]
 pub struct Submatrix {
-    /// Kept indices, ascending.
+    /// Indices that were kept, in ascending order.
     pub kept: Vec<usize>,
     /// Pattern over the kept indices.
     pub pattern: Arc<LowerPattern>,

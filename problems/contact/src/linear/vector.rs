@@ -1,6 +1,6 @@
 //! Sums in a fixed order: results do not depend on the number of threads.
 
-/// aᵀb.
+/// The inner product aᵀb.
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     debug_assert_eq!(a.len(), b.len());
     let mut lanes = [0.0; 8];
@@ -14,12 +14,12 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     lanes.iter().sum::<f64>() + rest
 }
 
-/// |a|₂.
+/// The Euclidean norm |a|₂.
 pub fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// y += factor·x.
+/// Adds a multiple: y += factor·x.
 pub fn add_scaled(y: &mut [f64], factor: f64, x: &[f64]) {
     debug_assert_eq!(x.len(), y.len());
     for (y, x) in y.iter_mut().zip(x) {

@@ -12,14 +12,15 @@ use nonsmooth::interruption::interrupted;
 /// Iterations of the interior-point method that are worth while: a program takes some twenty.
 pub const MAX_ITERATIONS: usize = 100;
 
-/// A cone over some entries of x in a row: |the others| ≤ slope · the first; the half-line of the first where it is alone.
+/// A cone over some entries of x in a row: |the others| ≤ slope · the first; the half-line of the first where it is
+/// alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cone {
-    /// First entry.
+    /// Index of the normal entry, the first one of the cone.
     pub first: usize,
-    /// Number of entries.
+    /// Number of entries, the normal one included.
     pub size: usize,
-    /// Slope, > 0.
+    /// Slope of the cone, > 0.
     pub slope: f64,
 }
 
@@ -28,11 +29,11 @@ pub struct Cone {
 pub struct ConeProgram<'a> {
     /// H, symmetric and positive semidefinite.
     pub hessian: &'a Mat<f64>,
-    /// q.
+    /// The linear term q.
     pub linear: Vec<f64>,
     /// R, one column per equality.
     pub equalities: &'a Mat<f64>,
-    /// e.
+    /// The right side e of the equalities.
     pub right_side: Vec<f64>,
     /// The cones, which cover all entries.
     pub cones: Vec<Cone>,
@@ -41,9 +42,9 @@ pub struct ConeProgram<'a> {
 /// Where the method ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Minimiser {
-    /// x.
+    /// The minimiser x.
     pub entries: Vec<f64>,
-    /// y.
+    /// The multipliers y of the equalities.
     pub multipliers: Vec<f64>,
     /// Whether the method calls it a solution.
     pub solved: bool,
@@ -66,7 +67,8 @@ fn sparse(rows: usize, columns: Vec<Vec<(usize, f64)>>) -> CscMatrix<f64> {
 }
 
 impl ConeProgram<'_> {
-    /// The minimiser x and the multipliers y, as nearly as the method gives them in so many iterations; none where it gives none.
+    /// The minimiser x and the multipliers y, as nearly as the method gives them in so many iterations; none where it
+    /// gives none.
     pub fn minimise(&self, max_iterations: usize) -> Option<Minimiser> {
         let (count, motions) = (self.linear.len(), self.right_side.len());
         let upper = (0..count).map(|j| (0..=j).map(|i| (i, self.hessian[(i, j)])).collect()).collect();

@@ -9,11 +9,11 @@ pub enum QpError {
     /// Two parts of the data do not fit together.
     #[error("{what} has {found} entries, {expected} expected")]
     Dimension {
-        /// Which part.
+        /// The part of the program whose size is wrong.
         what: &'static str,
         /// Size it must have.
         expected: usize,
-        /// Size it has.
+        /// The size of that part.
         found: usize,
     },
     /// A part of the set is no convex set, or parts overlap.
@@ -21,29 +21,29 @@ pub enum QpError {
     Set {
         /// Position in the list of blocks.
         block: usize,
-        /// What is wrong.
+        /// What is wrong with the block.
         reason: &'static str,
     },
     /// A number that a method is given is outside its range.
     #[error("{name} = {value} is not allowed; allowed: {allowed}")]
     Setting {
-        /// Its name.
+        /// Name of the parameter.
         name: &'static str,
-        /// Its value.
+        /// The value as it was given.
         value: f64,
-        /// What is allowed.
+        /// The values that are allowed.
         allowed: &'static str,
     },
     /// The objective has negative curvature, or falls for ever along a direction without curvature.
     #[error("the quadratic form is not positive along a descent direction: dᵀHd/dᵀd = {curvature:.3e}, allowed: > 0")]
     Curvature {
-        /// dᵀHd/dᵀd.
+        /// The curvature dᵀHd/dᵀd.
         curvature: f64,
     },
     /// A number is not finite.
     #[error("{what} is not finite")]
     NotFinite {
-        /// Which quantity.
+        /// The quantity that is not finite.
         what: &'static str,
     },
     /// The step limit was reached.
@@ -51,9 +51,9 @@ pub enum QpError {
     NotConverged {
         /// Name of the iteration.
         solver: &'static str,
-        /// Last relative residual.
+        /// The relative residual at the end.
         residual: f64,
-        /// Steps spent.
+        /// The number of steps spent.
         steps: usize,
         /// Relative residuals on the way.
         history: Vec<f64>,

@@ -5,7 +5,7 @@
 //! on a circle:     x_T slides along the tangent p ⟂ e;  the multiplier κ = −g·e/radius adds κ p pᵀ to the Hessian
 //! on a bound, on a zero disc, at the end of an interval:   held
 //! ```
-//! The curvature κ is that of the Lagrangian: a Newton step in the face sees the circle, not only its tangent.
+//! The curvature κ is that of the Lagrangian: a Newton step in the face follows the circle, not only its tangent.
 
 use crate::qp::separable_set::{on_circle, polar};
 use crate::qp::{Block, SeparableSet};

@@ -5,8 +5,8 @@ use crate::linear::vector::{dot, norm};
 use crate::qp::{QpError, SymmetricOperator};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// A lower estimate of the largest eigenvalue after at most `steps` products; a start vector with all frequencies makes five
-/// to ten steps enough for a few per cent.
+/// A lower estimate of the largest eigenvalue after at most `steps` products; a start vector with all frequencies makes
+/// five to ten steps enough for a few per cent.
 ///
 /// # Errors
 /// [`QpError::NotFinite`] when the operator returns a number that is not finite.

@@ -8,10 +8,11 @@
 //! cg step             conjugate gradients in the face, preconditioned there
 //! expansion step      the end of a sweep that left Ω or slid along a circle: projection, gradient from x
 //! ```
-//! Two things differ from the textbook. Sliding along an active circle belongs to the face and sees its curvature (the
-//! textbook leaves it to proportioning, which then costs most of the products). And the sweep is accepted only if it lowers q
-//! by a fixed share of what the projected step x − αg̃ is certain to gain; otherwise that projected step is made. So every
-//! sweep gains at least a multiple of α|g̃|², which gives the R-linear rate of gradient projection whatever the face does.
+//! Two things differ from the textbook. Sliding along an active circle belongs to the face and takes its curvature into account (the
+//! textbook leaves it to proportioning, which then costs most of the products). And the sweep is accepted only if it
+//! lowers q by a fixed share of what the projected step x − αg̃ is certain to gain; otherwise that projected step is
+//! made. So every sweep gains at least a multiple of α|g̃|², which gives the R-linear rate of gradient projection
+//! whatever the face does.
 
 use crate::linear::vector::{add_scaled, dot, norm};
 use crate::qp::{Face, QpError, SeparableSet, SymmetricOperator};
@@ -28,7 +29,7 @@ pub struct FacePreconditioner<'a> {
 /// Products with H by the kind of step that needed them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StepCounts {
-    /// Conjugate gradient steps.
+    /// Number of conjugate gradient steps.
     pub cg_steps: usize,
     /// Projected ends of sweeps, and projected gradient steps.
     pub expansion_steps: usize,
@@ -57,7 +58,7 @@ impl std::ops::AddAssign for StepCounts {
 /// A feasible point with its gradient.
 #[derive(Debug, Clone, Default)]
 pub struct Point {
-    /// x ∈ Ω.
+    /// The iterate x ∈ Ω.
     pub x: Vec<f64>,
     /// g = H x − b.
     pub gradient: Vec<f64>,
@@ -65,17 +66,17 @@ pub struct Point {
 
 /// The solver: operator, set, preconditioner and work so far.
 pub struct Mpgp<'a> {
-    /// H.
+    /// The matrix H.
     pub hessian: &'a dyn SymmetricOperator,
-    /// Ω.
+    /// The feasible set Ω.
     pub set: &'a SeparableSet,
-    /// Preconditioner inside faces.
+    /// The preconditioner inside faces of Ω.
     pub preconditioner: Option<FacePreconditioner<'a>>,
     /// Upper estimate of |H|; raised when a step shows that it is too small.
     pub norm: f64,
     /// Products with H allowed.
     pub max_products: usize,
-    /// Work so far.
+    /// The steps done so far.
     pub counts: StepCounts,
 }
 
@@ -141,7 +142,7 @@ impl Mpgp<'_> {
             let rounding = f64::EPSILON * (norm(linear) + self.norm * norm(&point.x));
             since_best = if length < best { 0 } else { since_best + 1 };
             best = best.min(length);
-            if length <= ROUNDED * rounding || (since_best > MAX_STALLED_ITERATIONS && best <= BLURRED * rounding) {
+            if length <= ROUNDED * rounding || (since_best > MAX_STALLED_ITERATIONS && best <= STALLED * rounding) {
                 return Ok(Ending::Stagnated);
             }
             history.push(length);
@@ -186,9 +187,9 @@ impl Mpgp<'_> {
             point.gradient.iter().zip(&sweep.image).map(|(g, image)| g + image).collect()
         };
         let candidate = Point { x, gradient };
-        match judge(point, &candidate, certain) {
-            Verdict::Lower => *point = candidate,
-            Verdict::Blurred if self.calmer(&candidate, reduced, 0.9) => *point = candidate,
+        match compare_values(point, &candidate, certain) {
+            Comparison::Lower => *point = candidate,
+            Comparison::Rounded if self.reduces_gradient(&candidate, reduced, 0.9) => *point = candidate,
             _ => return self.projected_step(point, linear, reduced),
         }
         Ok(true)
@@ -237,8 +238,8 @@ impl Mpgp<'_> {
         Ok(sweep)
     }
 
-    /// The minimising length along a direction of a sweep; where q is flat, the way to the boundary of Ω if the sweep begins
-    /// there, otherwise none.
+    /// The minimising length along a direction of a sweep; where q is flat, the way to the boundary of Ω if the sweep
+    /// begins there, otherwise none.
     fn step_length(
         &self,
         point: &Point,
@@ -267,7 +268,7 @@ impl Mpgp<'_> {
     }
 
     /// Whether |g̃| at the candidate is below `factor` times what it was.
-    fn calmer(&self, candidate: &Point, reduced: &[f64], factor: f64) -> bool {
+    fn reduces_gradient(&self, candidate: &Point, reduced: &[f64], factor: f64) -> bool {
         norm(&self.set.reduced_gradient(&candidate.x, &candidate.gradient, 1.0 / self.norm)) < factor * norm(reduced)
     }
 
@@ -282,14 +283,14 @@ impl Mpgp<'_> {
             let gradient = self.gradient(&x, linear)?;
             let candidate = Point { x, gradient };
             let moved: f64 = candidate.x.iter().zip(&point.x).map(|(new, old)| (new - old) * (new - old)).sum();
-            let accepted = match judge(point, &candidate, 0.49 * self.norm * moved) {
-                Verdict::Lower => moved > 0.0,
-                Verdict::Blurred => self.calmer(&candidate, reduced, 1.0),
-                Verdict::Higher if moved.sqrt() > STAGNATION * scale => {
+            let accepted = match compare_values(point, &candidate, 0.49 * self.norm * moved) {
+                Comparison::Lower => moved > 0.0,
+                Comparison::Rounded => self.reduces_gradient(&candidate, reduced, 1.0),
+                Comparison::Higher if moved.sqrt() > STAGNATION * scale => {
                     self.norm *= 2.0;
                     continue;
                 }
-                Verdict::Higher => false,
+                Comparison::Higher => false,
             };
             if accepted {
                 *point = candidate;
@@ -341,8 +342,8 @@ const SUFFICIENT: f64 = 0.1;
 const REFRESH: usize = 100;
 /// Multiple of the rounding of the gradient below which |g̃| means nothing.
 const ROUNDED: f64 = 2.0;
-/// The same, if no progress was made for [`MAX_STALLED_ITERATIONS`] sweeps.
-const BLURRED: f64 = 1e7;
+/// Multiple of the rounding below which |g̃| means nothing once [`MAX_STALLED_ITERATIONS`] sweeps made no progress.
+const STALLED: f64 = 1e7;
 /// Sweeps without a smaller |g̃| near the level of rounding.
 const MAX_STALLED_ITERATIONS: usize = 20;
 /// Doublings of the norm estimate in one projected step.
@@ -354,17 +355,17 @@ const STAGNATION: f64 = 100.0;
 
 /// What the values of q say about a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Verdict {
+enum Comparison {
     /// The gain asked for was made.
     Lower,
-    /// Gain and what was asked for drown in rounding: q says nothing.
-    Blurred,
+    /// Gain and the gain asked for are below rounding: q says nothing.
+    Rounded,
     /// Too little gain, or none.
     Higher,
 }
 
 /// Compares q(from) − q(to), computed without the cancellation of two large values, with what is asked for.
-fn judge(from: &Point, to: &Point, asked: f64) -> Verdict {
+fn compare_values(from: &Point, to: &Point, asked: f64) -> Comparison {
     let (mut gain, mut size) = (0.0, 0.0);
     for index in 0..from.x.len() {
         let slope = 0.5 * (from.gradient[index] + to.gradient[index]);
@@ -373,10 +374,10 @@ fn judge(from: &Point, to: &Point, asked: f64) -> Verdict {
     }
     let noise = 16.0 * f64::EPSILON * size;
     if gain >= asked {
-        Verdict::Lower
+        Comparison::Lower
     } else if asked <= noise && gain >= -noise {
-        Verdict::Blurred
+        Comparison::Rounded
     } else {
-        Verdict::Higher
+        Comparison::Higher
     }
 }

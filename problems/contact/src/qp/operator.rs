@@ -13,11 +13,11 @@ pub trait SymmetricOperator {
 
 /// Linear equalities C x = e. Orthonormal rows give the best conditioned augmented Lagrangian.
 pub trait LinearEqualities {
-    /// C `x`.
+    /// The product C x.
     fn apply(&self, x: &[f64]) -> Vec<f64>;
-    /// Cᵀ `y`.
+    /// The product Cᵀ y.
     fn apply_transposed(&self, y: &[f64]) -> Vec<f64>;
-    /// e.
+    /// The right side e of C x = e.
     fn right_side(&self) -> &[f64];
 }
 
@@ -58,7 +58,7 @@ impl SymmetricOperator for Matrix {
 pub struct DenseEqualities {
     /// Cᵀ: one column per equality.
     pub transposed: Matrix,
-    /// e.
+    /// The right side e of C x = e.
     pub right_side: Vec<f64>,
 }
 

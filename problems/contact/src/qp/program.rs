@@ -7,9 +7,9 @@ use crate::qp::{LinearEqualities, SeparableSet, StepCounts, SymmetricOperator};
 pub struct QuadraticProgram<'a> {
     /// H, positive definite on the kernel of C.
     pub hessian: &'a dyn SymmetricOperator,
-    /// b.
+    /// The linear term b.
     pub linear: &'a [f64],
-    /// Ω.
+    /// The feasible set Ω.
     pub set: &'a SeparableSet,
     /// C x = e; C has no rows where there are no equalities.
     pub equalities: &'a dyn LinearEqualities,
@@ -23,7 +23,7 @@ impl QuadraticProgram<'_> {
     }
 }
 
-/// Work allowed.
+/// Limits on the work for one program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QpLimits {
     /// Updates of μ. Default 500.
@@ -45,7 +45,7 @@ pub struct WarmStart {
     pub x: Vec<f64>,
     /// H x without the penalty, if known for exactly this x and x is feasible: saves one product.
     pub image: Option<Vec<f64>>,
-    /// μ.
+    /// Multipliers μ of the equalities.
     pub multipliers: Vec<f64>,
     /// M, absolute; none for the default.
     pub m: Option<f64>,
@@ -60,13 +60,13 @@ pub struct SmalseSolution {
     pub warm: WarmStart,
     /// H x − b + Cᵀμ.
     pub gradient: Vec<f64>,
-    /// |g̃|.
+    /// Norm |g̃| of the reduced gradient.
     pub reduced_gradient: f64,
     /// |C x − e|.
     pub infeasibility: f64,
-    /// Updates of μ.
+    /// Number of updates of μ.
     pub outer: usize,
-    /// Work.
+    /// Steps of the inner method.
     pub counts: StepCounts,
     /// Whether the accuracy asked for was reached (otherwise rounding stopped all progress).
     pub converged: bool,

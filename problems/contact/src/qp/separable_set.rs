@@ -10,28 +10,28 @@ use crate::qp::QpError;
 /// One constrained part of x.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Block {
-    /// `x[index]` ≥ bound.
+    /// A lower bound: `x[index]` ≥ bound.
     HalfLine {
-        /// Which entry.
+        /// Index of the bounded entry.
         index: usize,
-        /// Its lower bound.
+        /// Lower bound of the entry.
         bound: f64,
     },
     /// |`x[first .. first + size]` − centre| ≤ radius.
     Disc {
-        /// First entry.
+        /// Index of the first entry.
         first: usize,
         /// One or two entries.
         size: usize,
         /// Centre; the second number is not read if there is one entry.
         centre: [f64; 2],
-        /// Radius ≥ 0.
+        /// Radius of the disc, ≥ 0.
         radius: f64,
     },
 }
 
 impl Block {
-    /// Its entries.
+    /// The indices of the entries in the block.
     pub fn range(&self) -> std::ops::Range<usize> {
         match *self {
             Self::HalfLine { index, .. } => index..index + 1,
@@ -103,7 +103,7 @@ impl SeparableSet {
         self.dimension
     }
 
-    /// The constrained parts.
+    /// The blocks with a constraint; all other entries are free.
     pub fn blocks(&self) -> &[Block] {
         &self.blocks
     }
@@ -164,7 +164,7 @@ impl SeparableSet {
         step
     }
 
-    /// g̃_α(x).
+    /// The reduced gradient g̃_α(x).
     pub fn reduced_gradient(&self, x: &[f64], gradient: &[f64], alpha: f64) -> Vec<f64> {
         let mut target: Vec<f64> = x.iter().zip(gradient).map(|(x, g)| x - alpha * g).collect();
         let mut reduced = gradient.to_vec();

@@ -33,20 +33,21 @@ use crate::qp::{
 /// ```
 #[derive(Clone, Copy)]
 pub struct Smalse<'a> {
-    /// The program.
+    /// The program to solve.
     pub program: QuadraticProgram<'a>,
     /// Preconditioner of H + ρCᵀC inside faces.
     pub preconditioner: Option<FacePreconditioner<'a>>,
-    /// Work allowed.
+    /// Limits on the work.
     pub limits: QpLimits,
 }
 
 impl Smalse<'_> {
-    /// Solves to |g̃| ≤ tolerance·|H|·s and |C x − e| ≤ tolerance·s, where s = max(|b|/|H|, |e|, |P_Ω(0)|) is the size of
-    /// the solution that the data suggest.
+    /// Solves to |g̃| ≤ tolerance·|H|·s and |C x − e| ≤ tolerance·s, where s = max(|b|/|H|, |e|, |P_Ω(0)|) is the size
+    /// of the solution that the data suggest.
     ///
     /// # Errors
-    /// [`QpError`]; [`QpError::NotConverged`] also when rounding stops the iteration above a thousand times the tolerance.
+    /// [`QpError`]; [`QpError::NotConverged`] also when rounding stops the iteration above a thousand times the
+    /// tolerance.
     pub fn solve(&self, start: &WarmStart, tolerance: f64) -> Result<SmalseSolution, QpError> {
         self.check(start)?;
         let norm_h = self.norm(start)?;
@@ -68,12 +69,12 @@ impl Smalse<'_> {
         Err(QpError::NotConverged { solver: "SMALSE-M", residual, steps, history: vec![residual] })
     }
 
-    /// Runs until `enough` is satisfied after an inner solve or rounding stops all progress; `floor` is the smallest |g̃|
-    /// that is ever asked of the inner solver.
+    /// Runs until `enough` is satisfied after an inner solve or rounding stops all progress; `floor` is the
+    /// smallest |g̃| that is ever asked of the inner solver.
     ///
     /// # Errors
-    /// [`QpError::NotConverged`] with the history of |g̃| + ρ|C x − e| over |b| at the limit of outer steps, and what the
-    /// inner solver returns.
+    /// [`QpError::NotConverged`] with the history of |g̃| + ρ|C x − e| over |b| at the limit of outer steps, and what
+    /// the inner solver returns.
     pub fn run(
         &self,
         start: &WarmStart,
@@ -126,7 +127,6 @@ impl Smalse<'_> {
         }
     }
 
-    /// Checks sizes.
     fn check(&self, start: &WarmStart) -> Result<(), QpError> {
         let expected = self.program.hessian.dimension();
         let sizes = [

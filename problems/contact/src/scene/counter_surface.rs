@@ -9,20 +9,20 @@ use serde::{Deserialize, Serialize};
 pub enum CounterSurface {
     /// `base + first·sin(2πx₁/period) + second·cos(2πx₂/period)`, paper (5.3).
     Waves {
-        /// Mean height, mm.
+        /// Mean height of the waves, mm.
         base: f64,
         /// Amplitude along x₁, mm.
         first: f64,
         /// Amplitude along x₂, mm.
         second: f64,
-        /// Wave length, mm.
+        /// Length of the waves along both axes, mm.
         period: f64,
     },
     /// `apex + R − √(R² − r²)` at the distance r from the centre: a sphere that touches the height `apex` there.
     Sphere {
         /// Height of the lowest point, mm.
         apex: f64,
-        /// Radius R, mm.
+        /// Radius R of the sphere, mm.
         radius: f64,
         /// (x₁, x₂) of the lowest point, mm.
         centre: [f64; 2],
@@ -36,9 +36,9 @@ pub enum CounterSurface {
         /// How much higher the surface is beside the punch, mm.
         relief: f64,
     },
-    /// A horizontal plane.
+    /// A horizontal plane at a height.
     Plane {
-        /// Its height, mm.
+        /// Height of the plane, mm.
         height: f64,
     },
     /// Heights on a grid over the base.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// Displacement components held at zero on a face of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Support {
-    /// The face.
+    /// The face that is held.
     pub face: Face,
     /// Which of u₁, u₂, u₃ are zero there.
     pub components: [bool; 3],
@@ -19,20 +19,20 @@ pub struct Support {
 /// A constant traction on a face of a body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Load {
-    /// The face.
+    /// The face that is loaded.
     pub face: Face,
-    /// Traction, MPa.
+    /// Force per area along the axes, MPa.
     pub traction: [f64; 3],
 }
 
 /// Material, supports and loads of one body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BodyScene {
-    /// Elastic constants.
+    /// The elastic constants of the body.
     pub material: Material,
-    /// Held faces.
+    /// The faces that are held, with the components.
     pub supports: Vec<Support>,
-    /// Loaded faces.
+    /// The faces that are loaded, with the tractions.
     pub loads: Vec<Load>,
 }
 
@@ -54,7 +54,7 @@ impl BodyScene {
 /// An elastic body above the contact boundary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct UpperBody {
-    /// Material, supports, loads.
+    /// Material, supports and loads of the body.
     pub body: BodyScene,
     /// Height of its flat top, mm.
     pub top: f64,
@@ -63,7 +63,7 @@ pub struct UpperBody {
 /// A contact problem with an optimizable lower body.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
-    /// Name for reports.
+    /// The name of the scene in reports.
     pub name: String,
     /// Lengths a, b of the base, mm.
     pub size: [f64; 2],

@@ -13,7 +13,7 @@ pub struct HeightGrid {
 }
 
 impl HeightGrid {
-    /// The same surface in another unit of length: all lengths are multiplied by `factor`.
+    /// The surface in another unit of length: all lengths are multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {

@@ -3,8 +3,8 @@
 //! ```text
 //! C₀ ≤ α_ij ≤ F²(x₁ⁱ, x₂ʲ),   |α_{i+1,j} − α_ij| ≤ C₁a/d₁,   |α_{i,j+1} − α_ij| ≤ C₁b/d₂,   C₂₁ ≤ meas Ω¹(α) ≤ C₂₂
 //! ```
-//! method.md section 2. d₁, d₂ are numbers of intervals between controls. Both the measure of the domain under the spline
-//! and the volume of its bricks are kept within the bounds: they differ by the discretisation error.
+//! method.md section 2. d₁, d₂ are numbers of intervals between controls. Both the measure of the domain under the
+//! spline and the volume of its bricks are kept within the bounds: they differ by the discretisation error.
 
 use crate::body::mesh::Grid;
 use crate::error::SceneError;
@@ -31,7 +31,7 @@ pub struct ShapeBounds {
     pub minimum_height: f64,
     /// C₁, bound of the slope between neighbouring controls.
     pub slope: f64,
-    /// [C₂₁, C₂₂], mm³.
+    /// Least and largest volume [C₂₁, C₂₂], mm³.
     pub volume: [f64; 2],
 }
 
@@ -125,8 +125,8 @@ impl AdmissibleSet {
         self.check_some(controls, self.row_names.len())
     }
 
-    /// Refuses controls whose heights or slopes are outside U. The volume of the bricks is another one on every mesh: a shape that
-    /// attains its bound on one of them may be shown on all.
+    /// Refuses controls whose heights or slopes are outside U. The volume of the bricks is another one on every mesh: a
+    /// shape that attains its bound on one of them may be shown on all.
     ///
     /// # Errors
     /// As [`AdmissibleSet::check`].

@@ -30,7 +30,6 @@ impl Basis {
         Ok(Self { degree, count, knots })
     }
 
-    /// Degree p.
     pub fn degree(&self) -> usize {
         self.degree
     }
@@ -40,7 +39,8 @@ impl Basis {
         &self.knots
     }
 
-    /// Basis and coefficients of the derivative p (α_{i+1} − α_i)/(t_{i+p+1} − t_{i+1}) of Σ α_i N_i between the knots; none for steps.
+    /// Basis and coefficients of the derivative p (α_{i+1} − α_i)/(t_{i+p+1} − t_{i+1}) of Σ α_i N_i between the knots;
+    /// none for steps.
     pub fn derivative(&self, coefficients: &[f64]) -> Option<(Self, Vec<f64>)> {
         let (degree, count) = (self.degree.checked_sub(1)?, self.count - 1);
         let slope = |i: usize| {
@@ -111,15 +111,16 @@ mod tests {
     proptest! {
         #[test]
         fn partition_of_unity_and_bounded_derivative(
-            degree in 1_usize..6, extra in 1_usize..6, t in 0.0_f64..=1.0, heights in prop::collection::vec(-1.0_f64..1.0, 12),
+            degree in 1_usize..6, extra in 1_usize..6, t in 0.0_f64..=1.0,
+            heights in prop::collection::vec(-1.0_f64..1.0, 12),
         ) {
             let basis = Basis::clamped_uniform(degree, degree + extra).expect("valid");
             let values = basis.values(t);
             prop_assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-13);
             prop_assert!(values.iter().all(|&value| (-1e-15..=1.0 + 1e-13).contains(&value)));
             // |F′| ≤ p·max|Δα|/min knot distance: the derivative's control values are p·Δα/(t_{i+p+1} − t_{i+1}).
-            let derivative: f64 =
-                basis.values(Dual::new(t, 1.0)).iter().zip(&heights).map(|(value, height)| value.derivative * height).sum();
+            let values = basis.values(Dual::new(t, 1.0));
+            let derivative: f64 = values.iter().zip(&heights).map(|(value, height)| value.derivative * height).sum();
             let bound = (0..basis.count() - 1)
                 .map(|i| degree as f64 * (heights[i + 1] - heights[i]).abs()
                     / (basis.knots[i + degree + 1] - basis.knots[i + 1]))

@@ -48,7 +48,7 @@ impl SplineSurface {
         [self.bases[0].count(), self.bases[1].count()]
     }
 
-    /// Number of controls.
+    /// The number of controls of the surface.
     pub fn control_count(&self) -> usize {
         self.bases[0].count() * self.bases[1].count()
     }
@@ -60,8 +60,8 @@ impl SplineSurface {
         (0..counts[0]).flat_map(move |i| (0..counts[1]).map(move |j| [along(0, i), along(1, j)]))
     }
 
-    /// Places of the control points of the surface x₃ = Σ α_ij N_i N_j along both axes, mm, as a STEP file has them: the means of p neighbouring
-    /// knots (Greville abscissae), with which Σ x_i N_i = x.
+    /// Places of the control points of the surface x₃ = Σ α_ij N_i N_j along both axes, mm, as a STEP file has them:
+    /// the means of p neighbouring knots (Greville abscissae), with which Σ x_i N_i = x.
     pub fn control_places(&self, size: [f64; 2]) -> [Vec<f64>; 2] {
         std::array::from_fn(|axis| {
             let basis = &self.bases[axis];
@@ -101,8 +101,8 @@ impl SplineSurface {
         HeightMap { along, counts: self.counts() }
     }
 
-    /// The smooth pieces of the surface over a base of `size` mm: its polynomials lie between knots, and a B-spline is nowhere
-    /// larger than its largest coefficient.
+    /// The smooth pieces of the surface over a base of `size` mm: its polynomials lie between knots, and a B-spline is
+    /// nowhere larger than its largest coefficient.
     pub fn pieces(&self, controls: &[f64], size: [f64; 2]) -> Pieces {
         let lines = std::array::from_fn(|axis: usize| {
             let mut knots = self.bases[axis].knots().to_vec();

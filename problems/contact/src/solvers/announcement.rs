@@ -38,11 +38,10 @@ pub enum Task {
 /// A shape to be solved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Shape {
-    /// Control heights, mm.
+    /// The control heights, mm.
     pub controls: Vec<f64>,
     /// What a similar shape has left.
     pub start: Option<ContactWarmStart>,
-    /// Relative residual wanted.
     pub tolerance: f64,
 }
 

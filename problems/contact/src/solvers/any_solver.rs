@@ -13,8 +13,8 @@ use crate::solvers::own_state::OwnState;
 use crate::tfeti::{TornState, TotalFeti};
 use std::sync::Arc;
 
-/// A contact solver of any kind. Where there are several processes, this is the part of the first: each call is announced to the
-/// others, which make the same call.
+/// A contact solver of any kind. Where there are several processes, this is the part of the first: each call is
+/// announced to the others, which make the same call.
 #[derive(Debug)]
 pub struct AnySolver {
     own: OwnSolver,

@@ -16,7 +16,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 pub struct Leader {
     /// For announcements; what they send is not counted.
     announcing: Arc<Counted>,
-    /// For the solvers.
     counted: Arc<Counted>,
     /// What is known of the others. Locked while a task is under way: tasks follow each other in all processes.
     state: Mutex<Progress>,
@@ -82,8 +81,8 @@ impl Leader {
         self.announced(task, |_| own()).map_err(|reason| ContactError::OtherProcess { reason })
     }
 
-    /// Does a task in all processes; fails if it fails in any of them, with the own reason if there is one. `products`: those of a
-    /// result.
+    /// Does a task in all processes; fails if it fails in any of them, with the own reason if there is one. `products`:
+    /// those of a result.
     pub fn agreed<T>(
         &self,
         task: Task,
@@ -149,12 +148,12 @@ impl Leader {
     }
 }
 
-/// The solver of a plan in this process. Where there are several processes, all of them prepare it: total FETI shares the subdomains
-/// among them, direct condensation is repeated by each.
+/// The solver of a plan in this process. Where there are several processes, all of them prepare it: total FETI shares
+/// the subdomains among them, direct condensation is repeated by each.
 ///
 /// # Errors
-/// [`SceneError`] for a bad field, a scene that needs more memory than there is, clusters that the subdomains do not make, or a size
-/// whose symbolic analysis fails.
+/// [`SceneError`] for a bad field, a scene that needs more memory than there is, clusters that the subdomains do not
+/// make, or a size whose symbolic analysis fails.
 pub fn prepared(plan: SolverPlan, communication: Arc<dyn Communication>) -> Result<OwnSolver, SceneError> {
     plan.scene.validate()?;
     let clusters = plan.cluster_shape()?;

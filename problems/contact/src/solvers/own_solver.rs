@@ -1,10 +1,11 @@
 //! The contact solver of one process: total FETI, direct condensation, or the choice between them.
 //!
-//! The choice takes total FETI first, for at most as many products with F as a state by direct condensation costs, and direct
-//! condensation where total FETI finds no state, or none that is clearly accurate. It begins with direct condensation where total
-//! FETI is known to be slow (nearly incompressible standard bricks, bricks of extreme shape, a shape similar to one that needed
-//! it) and where Jacobians are wanted that cost less there. Sizes and counted work alone decide, so that a resumed run repeats
-//! the choice. Where bodies are too large to be condensed, total FETI is alone.
+//! The choice takes total FETI first, for at most as many products with F as a state by direct condensation costs, and
+//! direct condensation where total FETI finds no state, or none that is clearly accurate. It begins with direct
+//! condensation where total FETI is known to be slow (nearly incompressible standard bricks, bricks of extreme shape, a
+//! shape similar to one that needed it) and where Jacobians are wanted that cost less there. Sizes and counted work
+//! alone decide, so that a resumed run repeats the choice. Where bodies are too large to be condensed, total FETI is
+//! alone.
 
 use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{
@@ -19,17 +20,17 @@ use crate::tfeti::{DualMethod, TornOptions, TornState, TotalFeti};
 use crate::work_estimate::WorkEstimate;
 use std::sync::{Arc, OnceLock};
 
-/// Estimated bytes up to which bodies are condensed without being asked for. A constant: what the machine has free must not
-/// change a result.
+/// Estimated bytes up to which bodies are condensed without being asked for. A constant: what the machine has free must
+/// not change a result.
 const MAX_CONDENSED_BYTES: f64 = 4e9;
 /// Products with F that total FETI is always allowed: states of the smallest scenes take some tens.
 const MIN_PRODUCTS: usize = 100;
-/// Share of [`MAX_RESIDUAL`] above which a state of total FETI is found anew by direct condensation: the two solvers measure
-/// forces and lengths in different units, a defect of the gluing grows along a slender body, and bodies that a few nodes hold enlarge
-/// what is left by some 4000. States of ordinary scenes stand at 2e-13.
+/// Share of [`MAX_RESIDUAL`] above which a state of total FETI is found anew by direct condensation: the two solvers
+/// measure forces and lengths in different units, a defect of the gluing grows along a slender body, and bodies that a
+/// few nodes hold enlarge what is left by some 4000. States of ordinary scenes stand at 2e-13.
 const COMFORTABLE_SHARE: f64 = 1e-4;
-/// Cost of a state by direct condensation, in products with F of as many operations, up to which it takes less time with all its
-/// derivatives than one by total FETI: dense operations are the faster ones (docs/scaling.md).
+/// Cost of a state by direct condensation, in products with F of as many operations, up to which it takes less time
+/// with all its derivatives than one by total FETI: dense operations are the faster ones (docs/scaling.md).
 const MAX_PRODUCTS_WITH_JACOBIANS: usize = 1000;
 
 /// Total FETI and direct condensation, each prepared when it is needed.
@@ -45,9 +46,7 @@ pub struct OwnSolver {
 /// Which solvers may work on a shape.
 #[derive(Debug)]
 enum Order {
-    /// Total FETI alone.
     Torn(DualMethod),
-    /// Direct condensation alone.
     Direct,
     /// Total FETI for at most so many products with F, then direct condensation.
     TornFirst(usize),
@@ -184,7 +183,7 @@ impl OwnSolver {
         match self.direct()?.solve(controls, None, tolerance) {
             Ok(state) => {
                 let work = state.work.after(failed.work);
-                // It may have found a state that the gate lets pass.
+                // Total FETI may have found a state whose residuals are near the limit.
                 let what = if found { "is not clearly accurate" } else { "failed" };
                 Ok(ContactState { work, ..condensed(state, format!("total FETI {what}: {}", failed.error)) })
             }
@@ -194,15 +193,16 @@ impl OwnSolver {
         }
     }
 
-    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on total FETI.
+    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on
+    /// total FETI.
     fn condensed(&self, state: &TornState) -> Result<(&DirectSolver, DirectState), ContactError> {
         let configuration = Configuration::of(&self.problem, state.blocks.clone())?;
         let direct = self.direct()?;
         Ok((direct, direct.solve_configuration(configuration, None, 0.0)?.solution))
     }
 
-    /// Sensitivities of a total FETI state, by direct condensation where total FETI does not find them for the products that a state
-    /// by direct condensation costs.
+    /// Sensitivities of a total FETI state, by direct condensation where total FETI does not find them for the products
+    /// that a state by direct condensation costs.
     fn torn_sensitivities(
         &self,
         state: &TornState,

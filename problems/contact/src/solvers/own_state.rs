@@ -7,9 +7,7 @@ use crate::tfeti::TornState;
 /// What the solver of one process keeps of a solved shape.
 #[derive(Debug)]
 pub enum OwnState {
-    /// By total FETI.
     Torn(Box<TornState>),
-    /// By direct condensation.
     Direct(Box<DirectState>),
 }
 

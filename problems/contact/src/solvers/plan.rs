@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// What a solver will be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Wanted {
-    /// States and adjoints.
+    /// States and their adjoints.
     States,
     /// The Jacobian of all contact forces too.
     Jacobians,
@@ -20,11 +20,12 @@ pub enum Wanted {
 pub struct SolverPlan {
     /// The scene, with all that its file refers to.
     pub scene: Scene,
-    /// The contact solver.
+    /// The contact solver by name.
     pub kind: SolverKind,
     /// The preconditioner of total FETI.
     pub preconditioner: PreconditionerKind,
-    /// Number of clusters into which the subdomains of all bodies are joined (hybrid total FETI); none: every subdomain by itself.
+    /// Number of clusters into which the subdomains of all bodies are joined (hybrid total FETI); none: every subdomain
+    /// by itself.
     pub clusters: Option<usize>,
     /// What the solver will be asked for: the choice of `auto` depends on it.
     pub wanted: Wanted,
@@ -49,7 +50,8 @@ impl SolverPlan {
         self.clusters.map_or(Ok([1; 3]), |count| cluster_shape(&self.scene, self.kind, count))
     }
 
-    /// Refuses processes that would own no cluster. Direct condensation, which every process repeats, takes any number of them.
+    /// Refuses processes that would own no cluster. Direct condensation, which every process repeats, takes any number
+    /// of them.
     pub(crate) fn check_processes(&self, processes: usize) -> Result<(), SceneError> {
         let (most, of) = match self.clusters {
             Some(clusters) => (clusters, "clusters (solver.clusters)"),
@@ -71,8 +73,8 @@ fn subdomain_count(scene: &Scene) -> usize {
     body_count(scene) * scene.subdomains.iter().product::<usize>()
 }
 
-/// Subdomains per axis of a cluster where so many clusters, equal boxes of subdomains, divide all bodies. Of several boxes the one with
-/// the smallest surface is taken.
+/// Subdomains per axis of a cluster where so many clusters, equal boxes of subdomains, divide all bodies. Of several
+/// boxes the one with the smallest surface is taken.
 ///
 /// # Errors
 /// [`SceneError::OutOfRange`] for a number that no boxes have, and for a solver without subdomains.

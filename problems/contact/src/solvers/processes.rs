@@ -1,4 +1,4 @@
-//! The processes of a run, as the first sees them, and what the others do.
+//! The processes of a run: what the first needs of them, and what the others do.
 
 use crate::communication::{Communication, InProcess};
 use crate::error::{ContactError, SceneError};
@@ -9,12 +9,12 @@ use std::sync::Arc;
 
 pub use crate::solvers::follower::follow;
 
-/// The processes of a run, as the one sees them that runs the command.
+/// The processes of a run, for the one that runs the command.
 #[derive(Debug, Clone)]
 pub struct Processes(Option<Arc<Leader>>);
 
 impl Processes {
-    /// A single process.
+    /// The connection of a single process.
     pub fn alone() -> Self {
         Self(None)
     }
@@ -24,12 +24,13 @@ impl Processes {
         self.0.is_none()
     }
 
-    /// The solver of a plan, prepared in all processes: total FETI shares the subdomains among them, direct condensation is repeated
-    /// by each.
+    /// The solver of a plan, prepared in all processes: total FETI shares the subdomains among them, direct
+    /// condensation is repeated by each.
     ///
     /// # Errors
-    /// [`SceneError`] for a bad field, a scene that needs more memory than there is, clusters that the subdomains do not make, or a
-    /// size whose symbolic analysis fails; [`SceneError::OtherProcess`] if the preparation fails in another process only.
+    /// [`SceneError`] for a bad field, a scene that needs more memory than there is, clusters that the subdomains do
+    /// not make, or a size whose symbolic analysis fails; [`SceneError::OtherProcess`] if the preparation fails in
+    /// another process only.
     pub fn solver(&self, plan: SolverPlan) -> Result<AnySolver, SceneError> {
         Ok(match &self.0 {
             None => AnySolver::from(prepared(plan, Arc::new(InProcess))?),

@@ -26,7 +26,8 @@ pub struct Counted {
 struct Counters {
     bytes: AtomicU64,
     messages: AtomicU64,
-    /// Processor time that went into communication, nanoseconds: most of it is spent on waiting, which keeps a processor busy.
+    /// Processor time that went into communication, nanoseconds: most of it is spent on waiting, which keeps a
+    /// processor busy.
     waiting: AtomicU64,
     /// Processor time of the process when counting began, s.
     begun: Option<f64>,
@@ -106,11 +107,11 @@ pub struct Usage {
     processes: usize,
     /// Whether every process did the same work, by direct condensation.
     repeated: bool,
-    /// Products with the dual operator, those of adjoints and Jacobians included; those of failed states and of checks are not, though
-    /// their bytes and messages count.
+    /// Products with the dual operator, those of adjoints and Jacobians included; those of failed states and of checks
+    /// are not, though their bytes and messages count.
     products: usize,
-    /// Bytes that a process hands over for the others, per product: the mean of all processes. Every value counts once, however
-    /// many processes get it. Null without products.
+    /// Bytes that a process hands over for the others, per product: the mean of all processes. Every value counts once,
+    /// however many processes get it. Null without products.
     bytes_per_product: Option<f64>,
     /// Gathers and messages to single processes, per product: the mean of all processes.
     messages_per_product: Option<f64>,

@@ -34,8 +34,8 @@ impl TotalFeti {
             *scaled = physical / nu;
         }
         let iterate = &state.solution.iterate;
-        // A sensitivity of J over the height of the body, or over its displacement where that is larger; below the rounding of
-        // this scale, no residual means anything.
+        // A sensitivity of J over the height of the body, or over its displacement where that is larger; below the
+        // rounding of this scale, no residual means anything.
         let heights = &state.blocks[0].upper;
         let height = heights.iter().sum::<f64>() / heights.len() as f64;
         let load = loads.map(|loads| DisplacementLoad::new(&contact.operator, loads, &state.displacement));

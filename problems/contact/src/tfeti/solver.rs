@@ -20,7 +20,7 @@ use std::time::Instant;
 /// How the dual problem is solved. The state is the same, whichever method found it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DualMethod {
-    /// Semismooth Newton.
+    /// The semismooth Newton method.
     Newton(Recycling),
     /// Successive approximations of the slip bound, dual QPs by SMALSE-M and MPGP.
     SuccessiveApproximations,
@@ -63,8 +63,8 @@ const STIFFNESS_SHARE: f64 = 0.5;
 const SMALLEST_SHARE: f64 = 0.01;
 
 impl TotalFeti {
-    /// Tears the bodies of a problem. Where there are several processes, each solves the same problem and works on its own subdomains,
-    /// and all of them call the same functions of the solver in the same order.
+    /// Tears the bodies of a problem. Where there are several processes, each solves the same problem and works on its
+    /// own subdomains, and all of them call the same functions of the solver in the same order.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`].
@@ -74,19 +74,19 @@ impl TotalFeti {
         Ok(Self { model, preconditioner, precision: Precision::default(), method: DualMethod::default() })
     }
 
-    /// The same solver with another method for the dual problem.
+    /// Replaces the method for the dual problem.
     #[must_use]
     pub fn with_method(self, method: DualMethod) -> Self {
         Self { method, ..self }
     }
 
-    /// The same solver with another precision of the products with search directions.
+    /// Replaces the precision of the products with search directions.
     #[must_use]
     pub fn with_precision(self, precision: Precision) -> Self {
         Self { precision, ..self }
     }
 
-    /// The torn model.
+    /// The torn model of all shapes.
     pub fn model(&self) -> &TornModel {
         &self.model
     }
@@ -125,12 +125,13 @@ impl TotalFeti {
         }
     }
 
-    /// Solves one shape by any method on the contact problem in the multipliers, and passes on what else the method returns
-    /// (its default for bodies at rest, where there is nothing to solve). `solver`: what the state says of the method.
+    /// Solves one shape by any method on the contact problem in the multipliers, and passes on what else the method
+    /// returns (its default for bodies at rest, where there is nothing to solve). `solver`: what the state says of the
+    /// method.
     ///
     /// # Errors
-    /// [`ContactError`]: inverted elements, no equilibrium, what the method returns, and [`ContactError::Inaccurate`] when the
-    /// residuals of its state are above both 1e-8 and four times `allowed`.
+    /// [`ContactError`]: inverted elements, no equilibrium, what the method returns, and [`ContactError::Inaccurate`]
+    /// when the residuals of its state are above both 1e-8 and four times `allowed`.
     pub fn solve_by<T: Default>(
         &self,
         solver: SolverKind,
@@ -239,8 +240,8 @@ impl TotalFeti {
     }
 }
 
-/// The contact forces of a solution in physical units, with their certificates: the image of its last iterate is a fresh
-/// product F λ.
+/// The contact forces of a solution in physical units, with their certificates: the image of its last iterate is a
+/// fresh product F λ.
 fn forces(contact: &TornContact<'_>, solution: &TornSolution) -> ContactForces {
     let (boundary, iterate) = (contact.boundary, &solution.iterate);
     let (mut forces, mut jumps) = (iterate.multipliers.contact().to_vec(), iterate.jumps.contact().to_vec());
@@ -261,8 +262,8 @@ fn forces(contact: &TornContact<'_>, solution: &TornSolution) -> ContactForces {
     ContactForces::unpack(boundary, &forces, &jumps, status, residuals, kink)
 }
 
-/// Forces brought into the friction cone, and to zero at open nodes: what the iteration leaves outside is of the size of its
-/// residual.
+/// Forces brought into the friction cone, and to zero at open nodes: what the iteration leaves outside is of the size
+/// of its residual.
 fn admissible_forces(contact: &TornContact<'_>, forces: &[f64], linearizations: &[Linearization]) -> Vec<f64> {
     let mut admissible = vec![0.0; forces.len()];
     for (point, linearization) in contact.boundary.points.iter().zip(linearizations) {

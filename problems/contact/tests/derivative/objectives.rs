@@ -1,4 +1,5 @@
-//! Taylor tests of the objectives beside pressure norm and peak: both solvers, one and two bodies, with friction and without.
+//! Taylor tests of the objectives beside pressure norm and peak: both solvers, one and two bodies, with friction and
+//! without.
 
 use contact::body::mesh::Face;
 use contact::contact_objective::ContactObjective;
@@ -10,7 +11,8 @@ use nonsmooth::{Accuracy, NonsmoothObjective, ReducedObjective, Request, StateSo
 
 const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
 
-/// Both scenes without and with friction; loads act on side faces of both bodies as well, whose area changes with the shape.
+/// Both scenes without and with friction; loads act on side faces of both bodies as well, whose area changes with the
+/// shape.
 fn scenes() -> impl Iterator<Item = Scene> {
     let scene = |scene: Scene, friction| {
         let mut scene = Scene { mesh: [4; 3], subdomains: [2, 1, 2], friction, ..scene };
@@ -32,8 +34,8 @@ fn controls(shape: &ContactShape, seed: u64) -> Vector {
     seeded_direction(36, seed).map(|entry| height * (0.98 + 0.01 * entry))
 }
 
-/// Smallest relative error of the directional derivative over the steps of a Taylor table around a shape without a kink nearby, and the
-/// evaluation there.
+/// Smallest relative error of the directional derivative over the steps of a Taylor table around a shape without a kink
+/// nearby, and the evaluation there.
 fn derivative_error(shape: ContactShape, measure: Measure) -> (f64, f64, Vector) {
     let at = controls(&shape, 3);
     let height = shape.problem().scene.start_height;

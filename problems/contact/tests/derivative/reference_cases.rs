@@ -1,5 +1,5 @@
-//! Reference cases of an independent implementation (direct condensation and Newton in another language): Θ within 1e-10, the
-//! subgradient within 1e-9, for both contact solvers.
+//! Reference cases of an independent implementation (direct condensation and Newton in another language): Θ within
+//! 1e-10, the subgradient within 1e-9, for both contact solvers.
 
 use contact::contact_shape::{ContactShape, SolverKind};
 use contact::cost::{NodeWeight, PressureCost, PressureMeasure};

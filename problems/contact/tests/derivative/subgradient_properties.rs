@@ -23,8 +23,8 @@ fn objective(mut scene: Scene, friction: f64, load: f64, measure: PressureMeasur
 /// Largest relative difference of the subgradient's product and a difference quotient that counts as agreement.
 const AGREEMENT: f64 = 1e-6;
 
-/// Whether ⟨ξ, d⟩ agrees with the central quotient of one of five steps. A long step may lie across a kink, a short one drown
-/// in rounding; a wrong subgradient agrees with none.
+/// Whether ⟨ξ, d⟩ agrees with the central quotient of one of five steps. A long step may lie across a kink, a short one
+/// drown in rounding; a wrong subgradient agrees with none.
 fn agrees(objective: &Objective, control: &Vector, direction: &Vector) -> Result<(), TestCaseError> {
     let evaluate = |control: &Vector| objective.evaluate(&Request::tight(control)).unwrap().into_evaluation();
     let subgradient = evaluate(control).subgradient;
@@ -51,9 +51,11 @@ proptest! {
 
     #[test]
     fn one_body_against_an_obstacle(
-        seed in 0_u64..1_000_000, friction in prop_oneof![Just(0.0), 0.05..0.8], load in 0.3_f64..2.0, exponent in 2.0_f64..6.0,
+        seed in 0_u64..1_000_000, friction in prop_oneof![Just(0.0), 0.05..0.8],
+        load in 0.3_f64..2.0, exponent in 2.0_f64..6.0,
     ) {
-        let objective = objective(signorini().unwrap(), friction, load, PressureMeasure::Norm { exponent, weight: NodeWeight::Nodes });
+        let measure = PressureMeasure::Norm { exponent, weight: NodeWeight::Nodes };
+        let objective = objective(signorini().unwrap(), friction, load, measure);
         let control = numbers(seed, 36).map(|entry| 98.0 + entry);
         agrees(&objective, &control, &numbers(seed + 1, 36))?;
     }
@@ -62,7 +64,8 @@ proptest! {
     fn two_bodies(
         seed in 0_u64..1_000_000, friction in prop_oneof![Just(0.0), 0.05..0.6], load in 0.5_f64..1.5,
     ) {
-        let objective = objective(hertz().unwrap(), friction, load, PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes });
+        let measure = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
+        let objective = objective(hertz().unwrap(), friction, load, measure);
         let control = numbers(seed, 36).map(|entry| 9.7 + 0.1 * entry);
         agrees(&objective, &control, &numbers(seed + 1, 36))?;
     }

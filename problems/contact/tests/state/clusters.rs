@@ -1,4 +1,5 @@
-//! Hybrid total FETI: clusters of subdomains with six rigid motions each find the same states and derivatives as single subdomains.
+//! Hybrid total FETI: clusters of subdomains with six rigid motions each find the same states and derivatives as single
+//! subdomains.
 
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactProblem, ContactSolver};
@@ -16,7 +17,7 @@ fn solver(scene: &Scene, clusters: [usize; 3], method: DualMethod) -> TotalFeti 
     TotalFeti::new(problem, TornOptions { clusters, ..TornOptions::default() }).unwrap().with_method(method)
 }
 
-/// |found − expected|/|expected|.
+/// The relative difference |found − expected|/|expected|.
 fn error(found: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(found.len(), expected.len());
     let difference: Vec<f64> = found.iter().zip(expected).map(|(found, expected)| found - expected).collect();

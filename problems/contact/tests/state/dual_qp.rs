@@ -106,7 +106,7 @@ impl Instance {
         }
     }
 
-    /// ½xᵀHx − xᵀb.
+    /// The value ½xᵀHx − xᵀb.
     fn objective(&self, x: &[f64]) -> f64 {
         let dot = |a: &[f64]| a.iter().zip(x).map(|(a, x)| a * x).sum::<f64>();
         self.rows.iter().zip(x).map(|(row, x)| 0.5 * x * dot(row)).sum::<f64>() - dot(&self.linear)
@@ -193,7 +193,8 @@ fn orthonormal(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     rows
 }
 
-/// Random programs: the numbers of free entries, half-lines, intervals, discs, zero discs and equalities are drawn first.
+/// Random programs: the numbers of free entries, half-lines, intervals, discs, zero discs and equalities are drawn
+/// first.
 fn instances() -> impl Strategy<Value = Instance> {
     (2..5_usize, 0..4_usize, 0..2_usize, 0..4_usize, 0..2_usize, 0..3_usize).prop_flat_map(
         |(free, half_lines, intervals, discs, zero_discs, equalities)| {

@@ -1,5 +1,5 @@
-//! Fields of solved shapes: two independent solvers agree, forces are in equilibrium through every section, boundary values are
-//! those of the contact law.
+//! Fields of solved shapes: two independent solvers agree, forces are in equilibrium through every section, boundary
+//! values are those of the contact law.
 
 use contact::body::elasticity::stress::{BrickStress, COMPONENTS};
 use contact::body::elasticity::{Formulation, brick};
@@ -148,8 +148,8 @@ fn every_layer_passes_on_what_acts_beyond_it() {
     }
 }
 
-/// ∫ φ dA over one side face of the layer, φ rising from 0 at its lower to 1 at its upper edge; edges are straight and the
-/// height is linear along the face, so that φ is ½ on average at every place along it.
+/// ∫ φ dA over one side face of the layer, φ rising from 0 at its lower to 1 at its upper edge; edges are straight and
+/// the height is linear along the face, so that φ is ½ on average at every place along it.
 fn half_moment(height: &impl Fn(usize, usize) -> f64, j: usize, layer: usize) -> f64 {
     let edge = |j: usize| height(j, layer + 1) - height(j, layer);
     0.5 * (edge(j) + edge(j + 1)) / 2.0 * (10.0 / 6.0)

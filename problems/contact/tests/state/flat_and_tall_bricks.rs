@@ -5,7 +5,6 @@ use contact::linear::vector::{add_scaled, norm};
 use contact::scene::{CounterSurface, Scene, signorini};
 use nonsmooth::{Accuracy, StateSolver};
 
-/// Products allowed.
 const FLAT: usize = 1500;
 const TALL: usize = 520;
 

@@ -1,4 +1,5 @@
-//! Bodies that only friction could hold: where contact cannot build up the normal forces, the refusal comes with a proof.
+//! Bodies that only friction could hold: where contact cannot build up the normal forces, the refusal comes with a
+//! proof.
 
 use contact::body::elasticity::Material;
 use contact::body::mesh::Face;
@@ -27,7 +28,7 @@ fn pushed(mesh: usize, friction: f64, ratio: f64, obstacle: CounterSurface, trac
     }
 }
 
-/// The same obstacle as a second body, which holds the first one.
+/// The obstacle as a second body, which holds the first one.
 fn between_bodies(mut scene: Scene) -> Scene {
     let supports = vec![Support { face: Face::Top, components: [true; 3] }];
     let body = BodyScene { material: scene.lower.material, supports, loads: vec![] };
@@ -53,8 +54,8 @@ fn refusal(scene: Scene) -> ContactError {
     }
 }
 
-/// The rigid statics of all four scenes are fine: normal forces may be as large as one likes. Contact cannot build them up: the
-/// push is some three times what the solver still finds a state for.
+/// The rigid statics of all four scenes are fine: normal forces may be as large as one likes. Contact cannot build them
+/// up: the push is some three times what the solver still finds a state for.
 #[test]
 fn what_contact_cannot_build_up_is_refused_with_the_motion() {
     let light = |friction, obstacle, push: f64| pushed(4, friction, 0.3, obstacle, [push, 0.3 * push, 0.0]);
@@ -73,8 +74,8 @@ fn what_contact_cannot_build_up_is_refused_with_the_motion() {
     }
 }
 
-/// A slender column, sheared by loads in equilibrium and out of reach of the obstacle: what condensation leaves of the resultant is
-/// rounding, of which no friction is needed.
+/// A slender column, sheared by loads in equilibrium and out of reach of the obstacle: what condensation leaves of the
+/// resultant is rounding, of which no friction is needed.
 #[test]
 fn loads_in_equilibrium_need_no_friction() {
     for ratio in [0.3, 0.499, 0.4999999] {
@@ -138,8 +139,8 @@ fn what_is_not_proved_is_not_claimed() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// The resultant of every state is at most the bound: no scene with a state is refused. Pushes are drawn up to and beyond
-    /// what friction can hold.
+    /// The resultant of every state is at most the bound: no scene with a state is refused. Pushes are drawn up to and
+    /// beyond what friction can hold.
     #[test]
     fn a_solvable_scene_is_never_refused(
         mesh in 2_usize..=4, friction in 0.05_f64..2.5, ratio in -0.5_f64..0.49, penetration in 0.05_f64..0.5,

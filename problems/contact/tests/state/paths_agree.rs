@@ -1,4 +1,5 @@
-//! Independent paths give the same state: TFETI against direct condensation, different tearings, different numbers of threads.
+//! Independent paths give the same state: TFETI against direct condensation, different tearings, different numbers of
+//! threads.
 
 use contact::body::mesh::Face;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};
@@ -142,8 +143,8 @@ fn warm_start_ends_at_the_same_state() {
     }
 }
 
-/// Supports leave a motion free that frictionless contact does not feel and no load drives: no force depends on it, and the
-/// rounding of its jumps must not be taken for a motion.
+/// Supports leave a motion free that frictionless contact does not feel and no load drives: no force depends on it, and
+/// the rounding of its jumps must not be taken for a motion.
 #[test]
 fn a_motion_without_jumps_changes_no_force() {
     let mut scene = Scene { friction: 0.0, ..signorini().unwrap() };

@@ -116,7 +116,8 @@ fn a_load_that_pulls_away_is_refused_naming_the_direction() {
     }
 }
 
-/// Two blocks of equal size, the upper one pressed onto the lower one, whose base is fixed. Contact alone holds the upper one.
+/// Two blocks of equal size, the upper one pressed onto the lower one, whose base is fixed. Contact alone holds the
+/// upper one.
 fn plates(friction: f64, push: f64) -> Scene {
     let material = Material::new(1000.0, 0.0).unwrap();
     Scene {
@@ -170,7 +171,8 @@ fn unloaded_free_motions_are_grounded() {
     }
 }
 
-/// Supports hold the motions that contact holds as well, and leave two others free: nothing loads them, and they are grounded.
+/// Supports hold the motions that contact holds as well, and leave two others free: nothing loads them, and they are
+/// grounded.
 #[test]
 fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
     for (mesh, subdomains) in [([3; 3], 1), ([4, 4, 2], 2)] {
@@ -215,7 +217,8 @@ fn forces_in_balance_are_never_refused() {
     }
 }
 
-/// A free block that is pushed with nearly as much as friction can hold: the projection onto the cone of contact forces converges slowly there.
+/// A free block that is pushed with nearly as much as friction can hold: the projection onto the cone of contact forces
+/// converges slowly there.
 #[test]
 fn statics_refuse_what_is_beyond_friction_alone() {
     for (friction, mesh) in [(0.02, [2, 3, 5]), (1e-3, [1; 3]), (0.3, [3; 3])] {

@@ -1,5 +1,5 @@
-//! Several processes, played by threads that share nothing but pieces of subdomains: each factors and solves its own, and all end at
-//! the state of a single process, to the last bit.
+//! Several processes, played by threads that share nothing but pieces of subdomains: each factors and solves its own,
+//! and all end at the state of a single process, to the last bit.
 
 use contact::communication::{Communication, Parcel};
 use contact::equilibrium::{ContactProblem, ContactSolver, SolvedBody, SolverState};

@@ -16,7 +16,8 @@ const MAX_EQUAL_DIFFERENCE: f64 = 1e-4;
 /// Objectives below this share of the start's are zero up to rounding.
 const ZERO: f64 = 1e-12;
 
-/// Two optimizations, and their shapes solved in both models. The pairs hold the case with friction first, then that without.
+/// Two optimizations, and their shapes solved in both models. The pairs hold the case with friction first, then that
+/// without.
 pub struct Comparison<'a> {
     /// The optimizations, on their last mesh.
     pub runs: [&'a MeshRun; 2],
@@ -42,8 +43,8 @@ impl Comparison<'_> {
         self.runs[0].objective.solver().problem().scene.friction
     }
 
-    /// Θ of the shape found without friction over that of the shape found with friction, both with friction; none where the latter is zero up
-    /// to rounding.
+    /// Θ of the shape found without friction over that of the shape found with friction, both with friction; none where
+    /// the latter is zero up to rounding.
     pub fn loss(&self) -> Option<f64> {
         let [with, without] = self.with_friction();
         (with > ZERO * self.own[0][0].value).then_some(without / with)
@@ -63,8 +64,8 @@ impl Comparison<'_> {
         SurfaceDifference { mean, shape, variation: mean_and_deviation(&with).1 }
     }
 
-    /// All facts: what friction is worth, whether that is proved, and the start and both optima in both models; with what several processes
-    /// have used.
+    /// All facts: what friction is worth, whether that is proved, and the start and both optima in both models; with
+    /// what several processes have used.
     ///
     /// # Errors
     /// [`Failure::Computation`] for a value that has no JSON.

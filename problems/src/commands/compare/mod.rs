@@ -1,5 +1,5 @@
-//! `compare`: what friction is worth in the optimization (Example 5.3 of the paper). One optimization with friction and one
-//! without start from the same controls; both shapes found are solved with friction and without it.
+//! `compare`: what friction is worth in the optimization (Example 5.3 of the paper). One optimization with friction and
+//! one without start from the same controls; both shapes found are solved with friction and without it.
 
 pub mod comparison;
 
@@ -19,7 +19,6 @@ use crate::commands::solved_shape::{SolvedShape, optimized_objective};
 use contact::error::SceneError;
 use std::path::Path;
 
-/// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let friction = loaded.case.scene.friction;
     if friction == 0.0 {

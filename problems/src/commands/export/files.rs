@@ -5,7 +5,6 @@ use serde::Serialize;
 /// Where an exported shape comes from.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Origin {
-    /// In words.
     pub source: String,
     /// Number of the evaluation in its run, if it is known by one.
     pub evaluation: Option<usize>,
@@ -17,7 +16,6 @@ pub struct Origin {
 pub struct OutputFile {
     /// Name below the folder.
     pub name: &'static str,
-    /// Its bytes.
     pub content: Vec<u8>,
     /// What it holds, in words.
     pub what: String,

@@ -42,7 +42,6 @@ struct FileJson {
     triangles: Option<usize>,
 }
 
-/// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let (arguments, case) = (session.arguments, &loaded.case);
     let options = &arguments.export;

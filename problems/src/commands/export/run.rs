@@ -21,7 +21,7 @@ const SURFACES: [&str; 6] =
 /// The fields of a scene on which the friction problem of a shape does not depend; the mesh may be that of a stage.
 const NO_FRICTION_PROBLEM: [&str; 8] =
     ["name", "mesh", "solver", "optimizer", "output", "surface.start", "objective", "admissible"];
-/// Largest report, bytes.
+/// Largest report that is read, bytes.
 const LARGEST_REPORT: u64 = 256 << 20;
 
 /// The folder of an optimization, ended or not, or of one of its parts: a mesh or a start.
@@ -104,8 +104,8 @@ impl KeptRun {
     /// The shape of an evaluation, or the one that the run has found.
     ///
     /// # Errors
-    /// [`Failure::Input`] for an evaluation that the run does not have or that does not tell which part is meant; any [`Failure`]
-    /// of the files.
+    /// [`Failure::Input`] for an evaluation that the run does not have or that does not tell which part is meant; any
+    /// [`Failure`] of the files.
     pub fn shape(&self, evaluation: Option<usize>) -> Result<(Vector, Origin), Failure> {
         match evaluation {
             Some(evaluation) => self.evaluation(evaluation),

@@ -68,8 +68,8 @@ fn hash(bytes: &[u8]) -> String {
 }
 
 impl RunFolder {
-    /// The scene file of a run that is to be continued, with its path. Comparisons and studies keep their optimizations in folders of
-    /// their own.
+    /// The scene file of a run that is to be continued, with its path. Comparisons and studies keep their optimizations
+    /// in folders of their own.
     ///
     /// # Errors
     /// [`SceneError::File`] if the folder holds no run of this kind.
@@ -103,11 +103,8 @@ impl RunFolder {
         [START, SCENE].iter().all(|name| folder.join(name).exists())
     }
 
-    /// Begins a run in a folder, with what it is, its scene and its initial controls. `claimed` are further files that will be written
-    /// there.
-    ///
-    /// # Errors
-    /// As [`Folder::create`].
+    /// Begins a run in a folder, with what it is, its scene and its initial controls. `claimed` are further files that
+    /// will be written there.
     pub fn begin(
         folder: Folder,
         loaded: &LoadedScene,
@@ -133,8 +130,8 @@ impl RunFolder {
     /// The run that a folder holds, to be continued. Nothing of it is changed.
     ///
     /// # Errors
-    /// [`Failure::Input`] for a journal of another scene or, unless `new_version`, of another version of the program, and for
-    /// fewer evaluations than it holds; any [`Failure`] of the folder.
+    /// [`Failure::Input`] for a journal of another scene or, unless `new_version`, of another version of the program,
+    /// and for fewer evaluations than it holds; any [`Failure`] of the folder.
     pub fn reopen(folder: Folder, loaded: &LoadedScene, new_version: bool) -> Result<Self, Failure> {
         let counts = loaded.file.surface.control_points;
         let initial_controls = controls::read(&folder.path().join(START), counts)?;
@@ -150,11 +147,8 @@ impl RunFolder {
         Ok(this)
     }
 
-    /// Goes on with the run: from here on a folder without report is that of a run that has not ended. What the run has found so
-    /// far stays until its end replaces it.
-    ///
-    /// # Errors
-    /// [`Failure`] if a file cannot be written.
+    /// Goes on with the run: from here on a folder without report is that of a run that has not ended. What the run has
+    /// found so far stays until its end replaces it.
     pub fn proceed(&self, loaded: &LoadedScene) -> Result<(), Failure> {
         if !self.resumed {
             return Ok(());
@@ -177,8 +171,8 @@ impl RunFolder {
     /// An objective with the journal of the run or of one of its stages.
     ///
     /// # Errors
-    /// [`Failure::Input`] for a journal that is that of another scene or that cannot be understood; [`Failure::Computation`] if
-    /// it cannot be read or written.
+    /// [`Failure::Input`] for a journal that is that of another scene or that cannot be understood;
+    /// [`Failure::Computation`] if it cannot be read or written.
     pub fn journaled<O: NonsmoothObjective>(&self, objective: O, stage: Option<&str>) -> Result<Journaled<O>, Failure> {
         let prefix = stage.map_or_else(String::new, |stage| format!("{stage}/"));
         self.folder.claim(&format!("{prefix}{JOURNAL}"))?;
@@ -245,8 +239,8 @@ impl RunFolder {
     }
 }
 
-/// Writes the scene file, without the folder: that is where the file lies, and a file that named it would send other commands
-/// there.
+/// Writes the scene file, without the folder: that is where the file lies, and a file that named it would send other
+/// commands there.
 fn keep_scene(folder: &Folder, mut scene: SceneFile) -> Result<(), Failure> {
     scene.output.folder = None;
     folder.write(SCENE, scene.print()?)

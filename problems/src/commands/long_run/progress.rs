@@ -13,7 +13,6 @@ pub struct Progress {
     label: String,
     /// Largest number of evaluations.
     limit: usize,
-    /// Longest time.
     time_limit: Option<f64>,
     /// Evaluations answered from the journal; nothing is shown for them.
     replayed: usize,

@@ -1,7 +1,7 @@
 //! The status line of a terminal: which evaluation is under way, and which stage of the contact solver.
 //!
-//! The contact solvers tell their stages as `tracing` events ([`contact::equilibrium::Stage`]); [`StageLayer`] listens and
-//! [`StatusLine`] shows the last one. Where stderr is no terminal there is neither line nor listener.
+//! The contact solvers tell their stages as `tracing` events ([`contact::equilibrium::Stage`]); [`StageLayer`] listens
+//! and [`StatusLine`] shows the last one. Where stderr is no terminal there is neither line nor listener.
 
 use crate::commands::ascii::shown;
 use contact::equilibrium::STAGE_TARGET;
@@ -35,7 +35,8 @@ struct Shown {
 }
 
 impl StatusLine {
-    /// The line of stderr, hidden if that is no terminal that can erase a line. It is drawn while any handle of it is left.
+    /// The line of stderr, hidden if that is no terminal that can erase a line. It is drawn while any handle of it is
+    /// left.
     pub fn of_stderr() -> Self {
         let cannot_erase = std::env::var("TERM").is_ok_and(|name| name == "dumb");
         if !std::io::stderr().is_terminal() || cannot_erase {
@@ -53,12 +54,12 @@ impl StatusLine {
         Self(Some(shown))
     }
 
-    /// A line that nobody sees.
+    /// A line that is not drawn.
     pub fn hidden() -> Self {
         Self(None)
     }
 
-    /// Whether anybody sees the line.
+    /// Whether the line is drawn.
     pub fn is_visible(&self) -> bool {
         self.0.is_some()
     }

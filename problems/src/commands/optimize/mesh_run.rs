@@ -33,9 +33,6 @@ pub struct MeshRun {
 
 impl MeshRun {
     /// As [`standstill`], for all runs of an optimization and the shape at which this one, the last, ended.
-    ///
-    /// # Errors
-    /// [`Failure`] of the adjoint.
     pub fn standstill(&self, runs: &[Self], shape: &SolvedShape) -> Result<Option<Warning>, Failure> {
         let reports = runs.iter().map(|run| &run.report);
         Ok(standstill(reports, &self.objective, &self.initial_controls, (&shape.controls, &shape.state))?)

@@ -18,7 +18,6 @@ use crate::commands::optimize::summary::Ended;
 use crate::commands::report::{export_command, files};
 use crate::commands::solved_shape::{SolvedShape, checks};
 
-/// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let optimization = optimize(loaded, None, session)?;
     let folder = optimization.folder.as_ref();

@@ -17,9 +17,9 @@ use nonsmooth::{Termination, Vector};
 use scene_file::MethodName;
 use std::path::Path;
 
-/// First step on every mesh but the first, in first steps of the first mesh. The gap at a coarse optimum says nothing about the
-/// changes that the finer mesh asks for, since the bodies have followed the surface; steps from a fourteenth to a third of the
-/// first were measured to do about equally well (docs/long_runs.md).
+/// First step on every mesh but the first, in first steps of the first mesh. The gap at a coarse optimum says nothing
+/// about the changes that the finer mesh asks for, since the bodies have followed the surface; steps from a fourteenth
+/// to a third of the first were measured to do about equally well (docs/long_runs.md).
 const LATER_FIRST_STEP: f64 = 0.2;
 
 /// An optimization that has ended.
@@ -71,11 +71,8 @@ fn ran_out_of_time(run: &MeshRun) -> bool {
     matches!(run.report.termination, Termination::TimeLimit) || interrupted()
 }
 
-/// Optimizes a scene, on its meshes in turn, from controls that are given, or else named by the command line or the scene. A
-/// run that its folder holds is continued if the command line asks for that.
-///
-/// # Errors
-/// [`Failure`] with its exit status.
+/// Optimizes a scene, on its meshes in turn, from controls that are given, or else named by the command line or the
+/// scene. A run that its folder holds is continued if the command line asks for that.
 pub fn optimize(
     loaded: &LoadedScene,
     given: Option<&Vector>,
@@ -142,9 +139,9 @@ fn random_start(objective: &ContactObjective, start: &Vector, step: f64, seed: u
     project(set, &moved).map_err(|error| Failure::Computation(format!("start {seed}: {error}")))
 }
 
-/// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is continued,
-/// else those given, else those that the command line or the scene names. Everything is checked before the folder is touched.
-/// `claimed` are further files that will be written there.
+/// The folder of a run if one is asked for, and the controls that it starts from: those in the folder of a run that is
+/// continued, else those given, else those that the command line or the scene names. Everything is checked before the
+/// folder is touched. `claimed` are further files that will be written there.
 ///
 /// # Errors
 /// [`Failure::Input`] for controls outside the admissible set; any [`Failure`] of the folder.
@@ -184,15 +181,17 @@ const FIELD_BYTES: u64 = 300;
 /// Bytes per contact node of the figures, as files and in the page (some 2500 were written at 35³).
 const REPORT_BYTES: u64 = 3000;
 
-/// Jacobians that a run may keep, with the restart data behind each: twice as many as runs of the paper's examples need.
+/// Jacobians that a run may keep, with the restart data behind each: twice as many as runs of the paper's examples
+/// need.
 const JACOBIANS: u64 = 40;
 
-/// Most shapes of a series for ParaView that room is looked for: more than twice as many serious steps as runs of the paper's examples have.
+/// Most shapes of a series for ParaView that room is looked for: more than twice as many serious steps as runs of the
+/// paper's examples have.
 const SERIES: u64 = 40;
 
-/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two states, or of a
-/// series if it is asked for, figures, Jacobians of pressures and gaps, and the rest. A comparison writes two runs at once; the rows of a
-/// study prove their own room.
+/// Bytes that the files of a run may need: restart data of two evaluations and of one being written, fields of two
+/// states, or of a series if it is asked for, figures, Jacobians of pressures and gaps, and the rest. A comparison
+/// writes two runs at once; the rows of a study prove their own room.
 fn room(stages: &[MeshStage], kind: RunKind, series: bool) -> u64 {
     let bytes = stages.iter().map(|stage| {
         let scene = &stage.case.scene;

@@ -7,7 +7,6 @@ use std::path::Path;
 /// What a run is within its optimization.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
-    /// All of it.
     Whole,
     /// One of several growing meshes, by its bricks along the axis that has most.
     Mesh(usize),
@@ -25,7 +24,8 @@ impl Part {
         }
     }
 
-    /// Number of its random start; none for a run that begins at the start of the scene or where the one before it ended.
+    /// Number of its random start; none for a run that begins at the start of the scene or where the one before it
+    /// ended.
     pub fn random_start(self) -> Option<u64> {
         match self {
             Self::Start(number @ 2..) => Some(number as u64),
@@ -43,8 +43,8 @@ pub struct MeshStage {
     pub case: Case,
 }
 
-/// The runs of a case, in order: one per mesh of its continuation, else one per start. On the meshes of a continuation, the axis
-/// with most bricks gets the number asked for, and the others keep their proportion to it.
+/// The runs of a case, in order: one per mesh of its continuation, else one per start. On the meshes of a continuation,
+/// the axis with most bricks gets the number asked for, and the others keep their proportion to it.
 pub fn stages(case: &Case) -> Vec<MeshStage> {
     let meshes = &case.optimizer.continuation;
     let starts = case.optimizer.starts;

@@ -13,7 +13,8 @@ use contact::solvers::Usage;
 use nonsmooth::{Certificate, IterationRecord, Report, Vector};
 use serde_json::json;
 
-/// One evaluation; its `objective` is null if it failed, its `seconds` count from the start, its `products` are those with the dual operator.
+/// One evaluation; its `objective` is null if it failed, its `seconds` count from the start, its `products` are those
+/// with the dual operator.
 fn course(record: &IterationRecord) -> serde_json::Value {
     let mut entry = json!({
         "evaluation": record.evaluation,
@@ -57,8 +58,9 @@ pub fn proof(report: &Report) -> String {
     }
 }
 
-/// Difference of Θ beyond which two ends are two optima, relative to Θ where it lies between the next constant and 1 times the largest
-/// decrease of a run, else to this bound. A Θ that falls to zero, or that carries a constant, has the decrease alone as its scale.
+/// Difference of Θ beyond which two ends are two optima, relative to Θ where it lies between the next constant and 1
+/// times the largest decrease of a run, else to this bound. A Θ that falls to zero, or that carries a constant, has the
+/// decrease alone as its scale.
 const SAME_OPTIMUM: f64 = 1e-5;
 /// Least scale of Θ in largest decreases.
 const LEAST_SCALE: f64 = 1e-3;

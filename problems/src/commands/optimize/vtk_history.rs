@@ -12,11 +12,12 @@ use nonsmooth::{Journal, StepKind, Vector};
 /// The list of the series.
 const LIST: &str = "history.pvd";
 
-/// Writes the start and every serious step of runs that follow each other; the time of a shape is the number of its evaluation,
-/// counted through all runs. Each state is solved again, since a run keeps its shapes and not their fields.
+/// Writes the start and every serious step of runs that follow each other; the time of a shape is the number of its
+/// evaluation, counted through all runs. Each state is solved again, since a run keeps its shapes and not their fields.
 ///
 /// # Errors
-/// [`Failure`] of the contact solver and of the files; [`Failure::Computation`] for a journal without the shape of a step.
+/// [`Failure`] of the contact solver and of the files; [`Failure::Computation`] for a journal without the shape of a
+/// step.
 pub fn write(folder: &Folder, runs: &[&MeshRun]) -> Result<(), Failure> {
     let vtk = folder.within(VTK)?;
     let (mut entries, mut before) = (Vec::new(), 0);

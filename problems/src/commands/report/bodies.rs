@@ -15,8 +15,8 @@ const MAX_SHOWN_DISPLACEMENT: f64 = 0.08;
 /// Largest lift of an upper body, as a share of its largest height.
 const MAX_LIFT: f64 = 0.25;
 
-/// Von Mises stresses on the deformed bodies, the shapes side by side on one scale: a figure of all bodies, or, where their materials
-/// differ, one per body. Shapes without fields are left out.
+/// Von Mises stresses on the deformed bodies, the shapes side by side on one scale: a figure of all bodies, or, where
+/// their materials differ, one per body. Shapes without fields are left out.
 pub fn von_mises(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Vec<Result<Figure, FigureError>> {
     let mut scenes = objective.solver().problem().bodies();
     match (scenes.next(), scenes.next()) {
@@ -98,7 +98,7 @@ pub fn surfaces(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Resu
     .figure()
 }
 
-/// The same heights from above, with lines of equal height.
+/// Heights of the contact surface less their mean, seen from above, with lines of equal height.
 pub fn surface_map(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Result<Figure, FigureError> {
     let problem = objective.solver().problem();
     let [n1, n2, _] = problem.grid.nodes();

@@ -1,17 +1,14 @@
 //! What is to be seen in the figures of a report, in sentences.
 
-/// The sketch.
 pub const SKETCH: &str = "The bodies at the first shape with their bricks. Triangles stand on faces whose displacements are held, arrows \
     on faces that carry a load; the letters lead to the list, which names face, direction and size.";
 
-/// The pressure map.
 pub const PRESSURE: &str = "Contact pressure over the plan of the contact surface; a ring marks the peak. On one scale, equal colours are \
     equal pressures. On scales of their own, small differences can be seen.";
 
 /// The pressure map of a single shape.
 pub const PRESSURE_ALONE: &str = "Contact pressure over the plan of the contact surface; a ring marks the peak.";
 
-/// The line cuts.
 pub const CUTS: &str = "The same pressures along lines through the peak of each shape.";
 
 /// The status with friction.
@@ -21,7 +18,6 @@ pub const STATUS: &str = "Open nodes carry no pressure. Sticking nodes hold by f
 /// The status without friction.
 pub const STATUS_WITHOUT_FRICTION: &str = "Open nodes carry no pressure, closed ones do.";
 
-/// The stress.
 pub const STRESS: &str = "Von Mises stress, averaged from brick centres to nodes, on the outside of the deformed bodies. Bodies of \
     different materials have a picture and a colour scale each, since their strengths differ. The note below the picture says by how much \
     displacements are magnified.";
@@ -34,7 +30,6 @@ pub const SURFACE: &str = "The contact surface of the lower body without load, i
 pub const SURFACE_MAP: &str = "The same heights from above. The lines join points of equal height and carry it in mm; a ring marks the \
     highest node.";
 
-/// The course.
 pub const COURSE: &str = "Every mark is an evaluation. Its shape says what became of it, its colour who proposed it. The line is the best \
     value so far. Values worse than the start do not stretch the axis: they stand at the upper edge with an arrow and their value. Where \
     there is a dashed line, no shape that carries the same total force can be below it.";

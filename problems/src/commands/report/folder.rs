@@ -37,7 +37,7 @@ pub struct ReportFolder<'a> {
 /// Parts of the page that are made with the files.
 #[derive(Debug, Default)]
 pub struct Parts {
-    /// The numbers by which shapes are judged.
+    /// The key numbers of shapes.
     pub numbers: Section,
     /// The pictures with their captions.
     pub pictures: Vec<Block>,
@@ -60,18 +60,12 @@ impl<'a> ReportFolder<'a> {
     }
 
     /// Writes a file.
-    ///
-    /// # Errors
-    /// As [`Folder::write`].
     pub fn write(&mut self, name: &str, text: &str, what: &'static str) -> Result<(), Failure> {
         self.announce(name, what);
         self.folder.write(name, text)
     }
 
     /// Writes a figure; the page will show it.
-    ///
-    /// # Errors
-    /// As [`Folder::draw`].
     pub fn draw(&mut self, figure: Figure, what: &str, caption: &str) -> Result<(), Failure> {
         self.keep(&figure, what)?;
         self.parts.pictures.push(Block::Picture { figure, caption: caption.into() });
@@ -85,11 +79,8 @@ impl<'a> ReportFolder<'a> {
         self.folder.within(FIGURES)?.draw(figure)
     }
 
-    /// Solved shapes, each with the beginning of its files' names and what it is called: the contact boundary as tables, fields for
-    /// ParaView, figures, and the numbers by which they are judged.
-    ///
-    /// # Errors
-    /// [`Failure`] of the fields and of the files.
+    /// Solved shapes, each with the beginning of its files' names and what it is called: the contact boundary as
+    /// tables, fields for ParaView, figures, and their key numbers.
     pub fn show(&mut self, solved: &[(&'static str, &'static str, &SolvedShape)]) -> Result<(), Failure> {
         let shown = |&(name, label, shape)| ShownShape::new(self.objective, (name, label), shape, self.wanted());
         let shapes = solved.iter().map(shown).collect::<Result<Vec<_>, _>>()?;
@@ -176,9 +167,6 @@ impl<'a> ReportFolder<'a> {
     }
 
     /// Writes the page if it is wanted; sections on the scene, the versions and all files are added to it.
-    ///
-    /// # Errors
-    /// As [`Folder::write`].
     pub fn finish(mut self, page: impl FnOnce(Parts) -> Page, warnings: &[Warning]) -> Result<(), Failure> {
         if !self.wanted().report {
             return Ok(());

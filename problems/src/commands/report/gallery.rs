@@ -19,18 +19,15 @@ pub struct ShownShape<'a> {
     pub caption: String,
     /// The beginning of the names of its files.
     pub name: &'static str,
-    /// The shape.
     pub solved: &'a SolvedShape,
     /// Its displacements and stresses, if a picture, a file or the page shows them.
     pub fields: Option<Fields>,
 }
 
 impl<'a> ShownShape<'a> {
-    /// A solved shape with the beginning of its files' names and what it is called, and with as many fields as the outputs show. Files for
-    /// ParaView hold the sensitivity of the objective to the height of every contact node as well, which takes an adjoint.
-    ///
-    /// # Errors
-    /// [`Failure`] of the adjoint.
+    /// A solved shape with the beginning of its files' names and what it is called, and with as many fields as the
+    /// outputs show. Files for ParaView hold the sensitivity of the objective to the height of every contact node as
+    /// well, which takes an adjoint.
     pub fn new(
         objective: &ContactObjective,
         (name, label): (&'static str, &'static str),

@@ -1,4 +1,4 @@
-//! The numbers by which shapes are judged, side by side with their change.
+//! The key numbers of shapes, side by side with their change.
 
 use crate::commands::facts::{Fact, Group};
 use crate::commands::report::gallery::ShownShape;

@@ -27,9 +27,6 @@ const SURFACES: &str = "The contact surface of each row without load, its height
     scale.";
 
 /// Writes table, figures and page of a study.
-///
-/// # Errors
-/// [`Failure`] of the figures and of the folder.
 pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> Result<(), Failure> {
     let mut files = vec![File { path: "study.csv".into(), what: "the table with all digits".into() }];
     folder.write("study.csv", study.csv())?;
@@ -136,8 +133,8 @@ fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'stati
     Ok(figures)
 }
 
-/// Objective, peak pressure and contact area over the first option whose values are numbers, one curve for all rows that agree in the
-/// others.
+/// Objective, peak pressure and contact area over the first option whose values are numbers, one curve for all rows
+/// that agree in the others.
 fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureError>> {
     let numbers = |values: &[String]| values.len() > 1 && values.iter().all(|value| value.parse::<f64>().is_ok());
     let Some(across) = study.vary().iter().position(|varied| numbers(varied.values())) else { return vec![] };

@@ -5,7 +5,8 @@ use crate::commands::solved_shape::ContactObjective;
 use contact::contact_shape::ContactState;
 use nonsmooth::Report;
 
-/// One line per contact node: place, pressure and traction, remaining gap (≥ 0 up to the accuracy of the state), status.
+/// One line per contact node: place, pressure and traction, remaining gap (≥ 0 up to the accuracy of the state),
+/// status.
 pub fn contact_nodes(objective: &ContactObjective, state: &ContactState) -> String {
     let problem = objective.solver().problem();
     let mut table = String::from("x1_mm,x2_mm,pressure_MPa,traction_1_MPa,traction_2_MPa,remaining_gap_mm,status\n");
@@ -21,7 +22,8 @@ pub fn contact_nodes(objective: &ContactObjective, state: &ContactState) -> Stri
     table
 }
 
-/// One line per evaluation of an optimization. The aggregate norm is in the norm of the optimizer, which has no unit in common with Θ.
+/// One line per evaluation of an optimization. The aggregate norm is in the norm of the optimizer, which has no unit in
+/// common with Θ.
 pub fn history(objective: &ContactObjective, report: &Report) -> String {
     let unit = plain_unit(&objective.unit()).replace(' ', "_");
     let named = ["value", "center_value", "predicted_decrease"].map(|name| format!("{name}_{unit}")).join(",");

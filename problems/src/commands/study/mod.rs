@@ -1,4 +1,5 @@
-//! `study`: a table over values of parameters. Every row is the scene with some options, evaluated at one shape or optimized.
+//! `study`: a table over values of parameters. Every row is the scene with some options, evaluated at one shape or
+//! optimized.
 //!
 //! ```text
 //! DIR/scene.toml, start.json, study.json   the study as stated
@@ -37,7 +38,6 @@ const ROWS: &str = "rows.json";
 /// Largest file of rows, bytes.
 const LARGEST_FILE: u64 = 1 << 30;
 
-/// The command.
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let path = loaded.case.output.folder.as_deref().map(Path::new);
     let plan = match path.filter(|_| session.arguments.course.resume.is_some()) {

@@ -8,7 +8,6 @@ use clap::Parser;
 use contact::error::SceneError;
 use serde::{Deserialize, Serialize};
 
-/// Most rows.
 const MAX_ROWS: usize = 1000;
 
 /// The options of a row.
@@ -38,9 +37,6 @@ pub struct Plan {
 
 impl Plan {
     /// The study that the command line states.
-    ///
-    /// # Errors
-    /// As [`Plan::checked`].
     pub fn stated(arguments: &Arguments) -> Result<Self, Failure> {
         let same_start = arguments.shape.controls.is_some() || arguments.course.start_controls.is_some();
         let HeightError { height_error, seed } = arguments.error;
@@ -51,7 +47,7 @@ impl Plan {
         Self { vary, fixed, optimize, same_start }.checked()
     }
 
-    /// The same, unless options cannot be varied together.
+    /// The plan, unless its options cannot be varied together.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the option and a value that it does not take, or for more than [`MAX_ROWS`] rows.

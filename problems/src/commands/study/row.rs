@@ -22,7 +22,6 @@ use std::time::Instant;
 pub struct Row {
     /// The options that it has beside those of the study.
     pub options: Vec<String>,
-    /// What came out.
     #[serde(flatten)]
     pub outcome: Outcome,
     /// Seconds that it took.
@@ -39,10 +38,9 @@ pub enum Outcome {
     Failed(String),
 }
 
-/// A solved row.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solved {
-    /// Θ.
+    /// The objective Θ.
     pub objective: f64,
     /// The unit of Θ.
     pub objective_unit: String,
@@ -50,11 +48,11 @@ pub struct Solved {
     pub peak_pressure: f64,
     /// Tributary area of the closed contact nodes, mm².
     pub contact_area: f64,
-    /// Σλ_N, N.
+    /// The total normal force Σλ_N, N.
     pub total_normal_force: f64,
     /// Numbers of nodes per status.
     pub status: StatusCounts,
-    /// Control heights, mm.
+    /// The control heights, mm.
     pub controls: Vec<f64>,
     /// Where the row was optimized, how.
     pub optimization: Option<Optimized>,
@@ -71,11 +69,9 @@ pub struct Optimized {
     pub objective_start: f64,
     /// Largest contact pressure at the start, MPa.
     pub peak_pressure_start: f64,
-    /// Evaluations.
     pub evaluations: usize,
     /// Evaluations on the mesh that took most.
     pub most_evaluations: usize,
-    /// How it ended.
     pub termination: String,
     /// Whether the shape is proved stationary.
     pub confirmed: bool,
@@ -115,8 +111,8 @@ impl Row {
         solved.optimization.as_ref().map(|run| run.most_evaluations)
     }
 
-    /// Whether a study that is continued computes it again: it failed, or, where there is a new limit, its optimization ended at the old
-    /// one.
+    /// Whether a study that is continued computes it again: it failed, or, where there is a new limit, its optimization
+    /// ended at the old one.
     pub fn is_to_be_continued(&self, new_limit: bool) -> bool {
         match &self.outcome {
             Outcome::Failed(_) => true,
@@ -125,8 +121,8 @@ impl Row {
     }
 }
 
-/// Computes a row: the scene with its options and those that all rows have, at controls that are given or at its own start; optimized if asked for, in a folder
-/// if there is one. The inner error says why the row was cut short.
+/// Computes a row: the scene with its options and those that all rows have, at controls that are given or at its own
+/// start; optimized if asked for, in a folder if there is one. The inner error says why the row was cut short.
 ///
 /// # Errors
 /// [`Failure::Incomplete`] if files of the row could not be written; every other failure is the row's outcome.

@@ -35,7 +35,6 @@ impl StudyJson {
         self.failures == self.rows.len() && self.failures > 0
     }
 
-    /// What is varied.
     pub fn vary(&self) -> &[Varied] {
         &self.vary
     }
@@ -123,7 +122,6 @@ fn run<V: Into<Value>>(solved: &Solved, value: fn(&Optimized) -> V) -> Value {
     solved.optimization.as_ref().map_or(Value::Missing, |run| value(run).into())
 }
 
-/// The columns.
 const COLUMNS: [Column; 14] = [
     of_run("objective_start", "objective at start", |row| run(row, |run| run.objective_start)),
     of_run("peak_pressure_start_MPa", "peak at start, MPa", |row| run(row, |run| run.peak_pressure_start)),

@@ -47,7 +47,6 @@ impl Varied {
         Ok(Self { name: name.to_owned(), values })
     }
 
-    /// The option.
     pub fn name(&self) -> &str {
         &self.name
     }

@@ -20,7 +20,6 @@ pub struct AlgebraRow {
     pub seconds: f64,
     /// Products with the dual operator; 0 for direct condensation.
     pub products: usize,
-    /// Relative residual reached.
     pub residual: f64,
     /// Largest error of a pressure over the largest pressure.
     pub pressure: f64,
@@ -38,7 +37,6 @@ pub struct AlgebraRow {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AlgebraStudy {
     pub scene: SceneName,
-    /// Bricks per edge.
     pub bricks: usize,
     /// The rows, by solver, tolerances descending.
     pub rows: Vec<AlgebraRow>,
@@ -60,9 +58,6 @@ struct Exact {
 }
 
 /// Runs all solvers.
-///
-/// # Errors
-/// [`Failure`] from a scene or a solver.
 pub fn study(scene: SceneName, bricks: usize, exponents: &[i32]) -> Result<AlgebraStudy, Failure> {
     let objective = |variant| objective_by(variant, scene.scene(case(bricks))?, norm());
     let reference = objective(Variant::Direct)?;

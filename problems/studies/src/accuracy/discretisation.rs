@@ -17,7 +17,6 @@ pub const QUANTITIES: [&str; 5] = ["∫σ⁴", "peak pressure", "Σλ_N x₁", "
 /// Errors on a mesh.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshRow {
-    /// Bricks per edge.
     pub bricks: usize,
     /// Torn dofs of all bodies.
     pub dofs: usize,
@@ -47,9 +46,6 @@ const ALGEBRA: f64 = 1e-9;
 const ASYMPTOTIC: usize = 8;
 
 /// Solves a scene on all meshes.
-///
-/// # Errors
-/// [`Failure`] from a scene or a solver.
 pub fn study(scene: SceneName, meshes: &[usize]) -> Result<MeshStudy, Failure> {
     let mut rows = meshes.iter().map(|&mesh| measure(scene, mesh)).collect::<Result<Vec<_>, _>>()?;
     let fine: Vec<&MeshRow> = match rows.iter().filter(|row| row.bricks >= ASYMPTOTIC).count() {

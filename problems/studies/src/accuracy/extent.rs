@@ -57,7 +57,7 @@ impl Extent {
         levels: &[4, 6],
         evaluations: 6,
     };
-    /// About two minutes.
+    /// The extent that takes about two minutes.
     pub const QUICK: Self = Self {
         meshes: &[4, 6, 8, 12, 16, 24],
         algebra_mesh: 8,

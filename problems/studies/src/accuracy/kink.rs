@@ -23,11 +23,11 @@ pub struct KinkRow {
     pub scene: String,
     /// Statuses that change at the kink, and how.
     pub change: String,
-    /// t*, mm.
+    /// The position t* of the kink, mm.
     pub position: f64,
-    /// Θ′(t*−).
+    /// The derivative Θ′(t*−).
     pub before: f64,
-    /// Θ′(t*+).
+    /// The derivative Θ′(t*+).
     pub after: f64,
     /// ⟨ξ, d⟩ with the element returned at t*.
     pub product: f64,
@@ -122,9 +122,6 @@ struct Change {
 }
 
 /// `count` kinks of a scene, on lines from a perturbed shape in random directions.
-///
-/// # Errors
-/// [`Failure`] from the scene or a solver.
 pub fn of_scene(scene: SceneName, count: usize) -> Result<Vec<KinkRow>, Failure> {
     let objective = objective_of(scene, MESH, norm())?;
     let start = crate::accuracy::algebra::perturbed(&objective);

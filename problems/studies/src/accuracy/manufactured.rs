@@ -24,7 +24,6 @@ use std::time::Instant;
 /// Errors of one mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ManufacturedErrors {
-    /// Bricks per edge.
     pub bricks: usize,
     /// Dofs that are not prescribed.
     pub dofs: usize,
@@ -59,7 +58,7 @@ impl Wave {
         AMPLITUDE.map(|a| a * Self::argument(x).sin())
     }
 
-    /// ∂u_j/∂x_i as `[j][i]`.
+    /// The derivatives ∂u_j/∂x_i as `[j][i]`.
     fn gradient(x: [f64; 3]) -> [[f64; 3]; 3] {
         let cosine = Self::argument(x).cos();
         AMPLITUDE.map(|a| WAVE.map(|k| a * k * cosine))
@@ -128,7 +127,6 @@ fn smooth(bricks: usize, material: &Material) -> Result<Smooth, Failure> {
 /// Errors of the recovered stress of one mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressErrors {
-    /// Bricks per edge.
     pub bricks: usize,
     /// √(Σ V|σ − σ_h|²/Σ V|σ|²) over the centres of the bricks.
     pub centre: f64,
@@ -137,9 +135,6 @@ pub struct StressErrors {
 }
 
 /// Solves on `bricks`³ bricks of a formulation and compares the fields of the body with the exact stress.
-///
-/// # Errors
-/// As [`manufactured_errors`].
 pub fn manufactured_stress_errors(bricks: usize, formulation: Formulation) -> Result<StressErrors, Failure> {
     let material = Material::new(1.0, 0.3)?.with_formulation(formulation);
     let Smooth { block, u, .. } = smooth(bricks, &material)?;

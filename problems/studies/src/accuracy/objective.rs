@@ -9,7 +9,6 @@ use contact::scene::Scene;
 use problems::commands::{ContactObjective, Failure};
 use std::sync::Arc;
 
-/// The paper's exponent.
 pub const EXPONENT: f64 = 4.0;
 
 /// All contact solvers and preconditioners, with their names in tables and pictures.
@@ -39,7 +38,7 @@ pub fn objective_by(variant: Variant, scene: Scene, measure: PressureMeasure) ->
     Ok(ContactObjective::new(ContactShape::by(solver.into()), Measure::Pressure(measure))?)
 }
 
-/// Σσ⁴.
+/// The measure Σσ⁴.
 pub fn norm() -> PressureMeasure {
     PressureMeasure::Norm { exponent: EXPONENT, weight: NodeWeight::Nodes }
 }

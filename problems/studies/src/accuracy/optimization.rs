@@ -90,9 +90,6 @@ struct StrategyRun {
 }
 
 /// Runs all strategies on the levels of `extent`.
-///
-/// # Errors
-/// [`Failure`] from a scene, a solver or the optimizer.
 pub fn study(scene: SceneName, extent: Extent) -> Result<OptimizationStudy, Failure> {
     let levels = extent.levels;
     let fine = levels[levels.len() - 1];

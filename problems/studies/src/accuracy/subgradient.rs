@@ -29,9 +29,6 @@ pub struct SubgradientStudy {
 }
 
 /// Makes the tables and constructs the kinks.
-///
-/// # Errors
-/// [`Failure`] from a scene or a solver.
 pub fn study(extent: Extent) -> Result<SubgradientStudy, Failure> {
     let (mut taylor, mut kinks) = (Vec::new(), kink::of_toy()?);
     for scene in SCENES {

@@ -138,9 +138,6 @@ impl Extent {
 
 impl SceneName {
     /// The scene on the mesh of a case.
-    ///
-    /// # Errors
-    /// [`SceneError`] from the preset.
     pub fn scene(self, case: Case) -> Result<Scene, SceneError> {
         let mut scene = match self {
             Self::Signorini => scene::signorini()?,

@@ -55,7 +55,6 @@ pub struct ScalingArguments {
     pub cluster_products: f64,
 }
 
-/// A positive number.
 fn positive(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|value| *value > 0.0 && value.is_finite());
     value.ok_or_else(|| "a positive number is allowed".into())

@@ -23,11 +23,11 @@ pub struct Solve {
     pub tolerance: f64,
     /// Relative Newton residual reached.
     pub residual: f64,
-    /// Steps and products.
+    /// Steps and products with the dual operator.
     pub work: Work,
-    /// Σσ⁴, MPa⁴.
+    /// The objective Σσ⁴, MPa⁴.
     pub objective: f64,
-    /// Wall-clock seconds.
+    /// Wall-clock time, s.
     pub seconds: f64,
     /// Stages of these; none for direct condensation.
     pub stages: Option<StageSeconds>,

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 /// One line of the matrix.
 pub struct Case {
-    /// Group of cases.
+    /// The group of cases to which the case belongs.
     pub group: &'static str,
     /// Name within the group.
     pub name: String,
@@ -32,7 +32,7 @@ impl Case {
         Self { quick: false, ..self }
     }
 
-    /// Runs the case.
+    /// Runs the case and records its outcome.
     pub fn run(&self) -> Record {
         let clock = Instant::now();
         let record = (self.run)();

@@ -100,7 +100,7 @@ fn join(first: &str, second: &str) -> String {
     [first, second].iter().filter(|text| !text.is_empty()).copied().collect::<Vec<_>>().join("; ")
 }
 
-/// A scene that is refused before any solver sees it.
+/// A scene that is refused before any solver starts.
 fn refused_scene(mut record: Record, case: &ContactCase, reason: String) -> Record {
     let expected = matches!(case.expected, Expected::Refused("Scene"));
     record.outcome = if expected { CaseOutcome::Refused } else { CaseOutcome::Broken };

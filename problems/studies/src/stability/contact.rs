@@ -49,7 +49,6 @@ impl ContactCase {
         Self { scene, controls: None, expected: Expected::Solved, check: None, paper: false }
     }
 
-    /// Replaces the controls.
     #[must_use]
     pub fn at(mut self, controls: Vec<f64>) -> Self {
         self.controls = Some(controls);

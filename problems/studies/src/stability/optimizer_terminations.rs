@@ -30,11 +30,11 @@ const NOISE_GAP: f64 = 10.0;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TerminationKind {
-    /// Stationary, confirmed.
+    /// Stationary, with sufficient evidence.
     Confirmed,
-    /// Stationary, unconfirmed.
+    /// Stationary by the model, without sufficient evidence.
     Unconfirmed,
-    /// A noise limit.
+    /// Noise hides the remaining decrease.
     Noise,
     /// A step too short to change the variables.
     Short,

@@ -42,7 +42,6 @@ pub struct Path {
 /// One case with its outcome.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Record {
-    /// Group of cases.
     pub group: &'static str,
     /// Name of the case.
     pub name: String,

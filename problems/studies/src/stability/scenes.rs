@@ -6,7 +6,6 @@ use contact::error::SceneError;
 use contact::scene::{BodyScene, CounterSurface, Load, Scene, Support, UpperBody, hertz, signorini};
 use contact::shape::{ShapeBounds, SplineKind};
 
-/// All components held.
 pub const HELD: [bool; 3] = [true; 3];
 
 /// Example 5.1 on 4³ bricks in 2³ subdomains.

@@ -76,8 +76,8 @@ pub fn height_derivative(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS
     result
 }
 
-/// ∂(K u)/∂x₃ of each of the eight nodes: one row of 24 nodal forces per node that moves, N per mm; the same derivative as
-/// [`height_derivative`], for all q at once.
+/// ∂(K u)/∂x₃ of each of the eight nodes: one row of 24 nodal forces per node that moves, N per mm; the same derivative
+/// as [`height_derivative`], for all q at once.
 pub(crate) fn height_forces(nodes: &Nodes<f64>, material: &Material, u: &[f64; DOFS]) -> [[f64; DOFS]; 8] {
     let mut result = [[0.0; DOFS]; 8];
     let (lambda, mu) = (pointwise_lambda(material), material.shear_modulus());
@@ -144,7 +144,7 @@ mod tests {
         std::array::from_fn(|i| (seed * (i as f64 + 1.0)).sin())
     }
 
-    /// K u.
+    /// The product K u.
     fn product(matrix: &[[f64; DOFS]; DOFS], u: &[f64; DOFS]) -> [f64; DOFS] {
         std::array::from_fn(|i| matrix[i].iter().zip(u).map(|(k, u)| k * u).sum())
     }

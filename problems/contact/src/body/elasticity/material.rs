@@ -40,15 +40,15 @@ impl Material {
         Ok(Self { young_modulus, poisson_ratio, formulation: Formulation::default() })
     }
 
-    /// The same material with bricks of another formulation.
+    /// Replaces the formulation of the bricks.
     #[must_use]
     pub fn with_formulation(self, formulation: Formulation) -> Self {
         Self { formulation, ..self }
     }
 
-    /// A material of the same shear modulus and formulation that can be compressed, for a nearly incompressible one. Where a
-    /// body may evade a change of volume, its stiffness is that of shear, and this material has it; standard bricks can evade
-    /// less, so that theirs is stiffer.
+    /// A material of the same shear modulus and formulation that can be compressed, for a nearly incompressible one.
+    /// Where a body may evade a change of volume, its stiffness is that of shear, and this material has it; standard
+    /// bricks can evade less, so that theirs is stiffer.
     pub fn compressible_neighbour(&self) -> Option<Self> {
         let poisson_ratio = match self.formulation {
             Formulation::Standard => NEARLY_INCOMPRESSIBLE,
@@ -68,7 +68,7 @@ impl Material {
         self.young_modulus
     }
 
-    /// Poisson's ratio ν.
+    /// Poisson's ratio ν of the law in use.
     pub fn poisson_ratio(&self) -> f64 {
         self.poisson_ratio
     }

@@ -4,8 +4,8 @@
 //! K = K_deviatoric + (κ/V) D Dᵀ,   D_a = ∫ ∇N_a dV,   V = ∫ dV,    so that ∫ κ θ̄(u) θ̄(q) dV = κ D(u) D(q)/V
 //! ∂/∂x₃ᵛ:  κ (D′(u) D(q) + D(u) D′(q) − D(u) D(q) V′/V)/V,   D′(u) = Σ det [ ∇·u G₃ᵥ − Σ ∂₃u_i G_iᵥ ],   V′ = Σ det G₃ᵥ
 //! ```
-//! One constraint per brick instead of eight: near-incompressible bricks keep their bending modes. The deviatoric part is
-//! integrated fully, so no spurious mode appears.
+//! One constraint per brick instead of eight: near-incompressible bricks keep their bending modes. The deviatoric part
+//! is integrated fully, so no spurious mode appears.
 
 use crate::body::elasticity::brick::{DOFS, GaussPoint, displacement_gradient};
 use crate::scalar::Scalar;

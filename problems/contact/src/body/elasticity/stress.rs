@@ -5,8 +5,8 @@
 //! mean dilatation:  σ = κ θ̄ I + 2μ (ε − ⅓ tr(ε) I),  θ̄ = D(u)/V  over the brick      (mean_dilatation.rs)
 //! σ_vM = √( ½[(σ₁₁ − σ₂₂)² + (σ₂₂ − σ₃₃)² + (σ₃₃ − σ₁₁)²] + 3(σ₁₂² + σ₂₃² + σ₁₃²) )              [Mises1913]
 //! ```
-//! At the centre of a trilinear brick the stress converges one order faster than elsewhere \[Barlow1976\], so that is where it
-//! is taken for pictures. Tensors are six numbers in the order 11, 22, 33, 12, 23, 13.
+//! At the centre of a trilinear brick the stress converges one order faster than elsewhere \[Barlow1976\], so that is
+//! where it is taken for pictures. Tensors are six numbers in the order 11, 22, 33, 12, 23, 13.
 
 use crate::body::elasticity::brick::{DOFS, GaussPoint, Nodes, displacement_gradient, gauss_points, sample};
 use crate::body::elasticity::{Formulation, Material, hex8, mean_dilatation};
@@ -42,7 +42,8 @@ impl<'a> BrickStress<'a> {
         self.at(&sample(self.nodes, [0.0; 3]))
     }
 
-    /// Stress at the eight Gauss points and their volumes: MPa, mm³. The forces of the brick are the sums Σ V σ ∇N_a over them.
+    /// Stress at the eight Gauss points and their volumes: MPa, mm³. The forces of the brick are the sums Σ V σ ∇N_a
+    /// over them.
     pub fn at_gauss_points(&self) -> [(SymmetricTensor, GaussPoint<f64>); 8] {
         gauss_points(self.nodes).map(|point| (self.at(&point), point))
     }

@@ -1,4 +1,5 @@
-//! Von Mises stress at the centre of a brick, with its derivatives by displacements and by heights of nodes; method.md (5.6).
+//! Von Mises stress at the centre of a brick, with its derivatives by displacements and by heights of nodes; method.md
+//! (5.6).
 //!
 //! ```text
 //! s = 2μ dev ε,   σ_vM = √(3/2 s:s),   P = ∂σ_vM/∂σ = 3/2 s/σ_vM,   g_a = ∇N_a at the centre
@@ -93,7 +94,7 @@ mod tests {
         std::array::from_fn(|dof| 1e-3 * (1.7 * (dof as f64 + 1.0)).sin())
     }
 
-    /// The same stress and the volume in numbers with derivatives, by its definition.
+    /// Stress and volume in numbers with derivatives, by the definition of the stress.
     fn dual(nodes: &Nodes<Dual>, u: &[Dual; DOFS]) -> [Dual; 2] {
         let centre = sample(nodes, [0.0; 3]);
         let c = Dual::constant;

@@ -93,7 +93,8 @@ impl Grid {
         (0..self.column_count()).map(move |column| (column / rows, column % rows))
     }
 
-    /// Lumped tributary area of column (i, j) on the projected grid: h₁h₂ inside, half on edges, quarter in corners; mm².
+    /// Lumped tributary area of column (i, j) on the projected grid: h₁h₂ inside, half on edges, quarter in corners;
+    /// mm².
     pub(crate) fn tributary_area(&self, i: usize, j: usize) -> f64 {
         let share = |index: usize, cells: usize| if index == 0 || index == cells { 0.5 } else { 1.0 };
         let cell = self.size[0] / self.cells[0] as f64 * self.size[1] / self.cells[1] as f64;
@@ -122,7 +123,7 @@ impl Grid {
 /// A grid with its two surfaces: the geometry of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Block {
-    /// Topology and plan.
+    /// Numbers of bricks and the plan of the block.
     pub grid: Grid,
     /// Height of the lower surface per column of nodes, mm.
     pub lower: Vec<f64>,
@@ -157,8 +158,8 @@ impl Block {
 
     /// Refuses a block with an inverted or flat brick. `body` is its number in messages (1 lower, 2 upper).
     ///
-    /// Columns are vertical over a uniform grid, so det(∂x/∂ξ) of a brick interpolates h₁h₂·(height of the column)/n₃ between
-    /// its four columns: it is positive everywhere exactly if all columns have positive height.
+    /// Columns are vertical over a uniform grid, so det(∂x/∂ξ) of a brick interpolates h₁h₂·(height of the column)/n₃
+    /// between its four columns: it is positive everywhere exactly if all columns have positive height.
     ///
     /// # Errors
     /// [`ContactError::InvertedElement`] naming a brick at the first such column.

@@ -23,7 +23,7 @@ impl Subdomain {
         self.cells.map(|cells| cells + 1)
     }
 
-    /// Number of nodes.
+    /// Number of nodes of the subdomain.
     pub fn node_count(&self) -> usize {
         self.nodes().iter().product()
     }

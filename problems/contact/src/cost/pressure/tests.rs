@@ -184,7 +184,8 @@ fn curvature_of_a_root_is_positive_where_one_node_carries_the_norm() {
         let cost = cost(PressureMeasure::Norm { exponent, weight }).rooted();
         let jacobian = Matrix::from_fn(4, 3, |i, j| ((3 * i + j) as f64).sin());
         let curvature = |c: &Vector| cost.curvature(c, &jacobian).expect("smooth");
-        // The curvature is of the size of (σ/N)^{p−2} at the other nodes: at p = 64 far below the rounding of the terms that cancel.
+        // The curvature is of the size of (σ/N)^{p−2} at the other nodes: at p = 64 far below the rounding of the terms
+        // that cancel.
         let eigenvalues = curvature(&Vector::from_vec(vec![1300.0, 500.0, 100.0, 0.0])).symmetric_eigenvalues();
         assert!(
             eigenvalues.min() >= -1e-14 * eigenvalues.max() && eigenvalues.max() > 0.0,

@@ -5,9 +5,9 @@
 //!     ⇔   (Tᵀ F Q + Δ) q − G_Tᵀ b = Tᵀ (B K⁺ l − j),   Gq q = Rᵀ l,   p = K⁺ (l − Bᵀ Q q) + R b
 //! dJ = ∂J − pᵀ (∂K u − ∂f) + (Q q)ᵀ ∂g
 //! ```
-//! The transpose of the Newton system (method.md section 5): GMRES with friction; without it the system is symmetric and
-//! conjugate gradients do. Cycles follow each other until the residual, computed afresh, is small; products with search
-//! directions are in single precision until a cycle shows that it is too coarse for the system.
+//! The transpose of the Newton system (method.md section 5): GMRES with friction; without it the system is symmetric
+//! and conjugate gradients do. Cycles follow each other until the residual, computed afresh, is small; products with
+//! search directions are in single precision until a cycle shows that it is too coarse for the system.
 
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;
@@ -21,10 +21,9 @@ use crate::tfeti::derivative::displacement_load::DisplacementLoad;
 use crate::tfeti::dual::{ActiveSet, Friction, Precision, TornContact};
 use crate::tfeti::torn::{RowVector, TornVector};
 
-/// The adjoint state.
 #[derive(Debug, Clone)]
 pub struct TornAdjoint {
-    /// p.
+    /// The adjoint displacement p.
     pub(crate) displacement: TornVector,
     /// Q q over all rows: the adjoint of the gap.
     pub(crate) multipliers: RowVector,
@@ -54,9 +53,9 @@ struct AdjointIterate {
 }
 
 impl TornContact<'_> {
-    /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ, `load` is l = ∂J/∂u where J depends on u.
-    /// `natural`: a residual, in the unit of j, that is rounding for the sensitivity however small that is. `max_products`: products with F
-    /// allowed in all.
+    /// Solves the adjoint system at given derivatives; `direction` is j = ∂J/∂λ, `load` is l = ∂J/∂u where J depends on
+    /// u. `natural`: a residual, in the unit of j, that is rounding for the sensitivity however small that is.
+    /// `max_products`: products with F allowed in all.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] when the tolerance is not reached, [`ContactError::Unheld`].
@@ -76,7 +75,8 @@ impl TornContact<'_> {
         }
         let system = AdjointSystem { contact: self, active, load, right };
         let mut iterate = system.at_start();
-        // Where equilibrium alone determines the forces, all of the right side is rigid and only rounding is left of it.
+        // Where equilibrium alone determines the forces, all of the right side is rigid and only rounding is left of
+        // it.
         let size = iterate.residual.max(SMALLEST_PROJECTED_SHARE * self.norm(&system.right));
         let goal = if size < ROUNDING_SHARE * natural { TIGHTEST_ACCEPTABLE * natural } else { tolerance * size };
         let size = size.max(natural);
@@ -144,8 +144,8 @@ impl AdjointSystem<'_> {
         AdjointIterate { residual: self.contact.norm(&projected), unknowns, rest, projected }
     }
 
-    /// One run of a Krylov method with products in a given precision, towards a residual of `goal`; then the residual by one
-    /// product in double precision.
+    /// One run of a Krylov method with products in a given precision, towards a residual of `goal`; then the residual
+    /// by one product in double precision.
     fn adjoint_cycle(&self, iterate: &mut AdjointIterate, goal: f64, precision: Precision, max_krylov: usize) {
         let reduction = match precision {
             Precision::Double => 0.0,

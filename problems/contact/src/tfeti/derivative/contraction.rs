@@ -15,7 +15,7 @@ use crate::linear::sums::Whole;
 use crate::linear::vector::{add_scaled, norm};
 use crate::tfeti::dual::{ActiveSet, Friction, TornContact, TornSolution};
 
-/// Arnoldi steps.
+/// Number of Arnoldi steps after which the estimate stands.
 const MAX_STEPS: usize = 12;
 /// Relative length of a new basis vector that counts as zero: the space is invariant.
 const INVARIANT: f64 = 1e-4;
@@ -77,10 +77,10 @@ impl TornContact<'_> {
         Ok(Diagnosis { contraction, condition: None })
     }
 
-    /// A rough |Φ′ Ψ|/|Ψ| at the slip bounds Ψ of the state, by at most so many products with F; 0 without friction forces. Where no
-    /// node slides, Φ′ is that of all closed nodes sliding along their friction forces: where they stick, slip bounds change
-    /// nothing nearby, but nodes that only friction keeps closed may as well be open. Where no node is closed, it is that of the nodes
-    /// which friction could wedge in, sliding as they do.
+    /// A rough |Φ′ Ψ|/|Ψ| at the slip bounds Ψ of the state, by at most so many products with F; 0 without friction
+    /// forces. Where no node slides, Φ′ is that of all closed nodes sliding along their friction forces: where they
+    /// stick, slip bounds change nothing nearby, but nodes that only friction keeps closed may as well be open. Where
+    /// no node is closed, it is that of the nodes which friction could wedge in, sliding as they do.
     ///
     /// # Errors
     /// [`ContactError::Unheld`] when the closed nodes leave a motion free.
@@ -135,8 +135,8 @@ impl TornContact<'_> {
             .collect()
     }
 
-    /// Φ′ dΨ over the sliding nodes (scaled rows; all rows of a node share their scale), and the relative residual of its
-    /// linear system.
+    /// Φ′ dΨ over the sliding nodes (scaled rows; all rows of a node share their scale), and the relative residual of
+    /// its linear system.
     fn bound_change(
         &self,
         active: &ActiveSet<'_>,

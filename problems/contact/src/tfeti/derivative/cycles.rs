@@ -1,4 +1,5 @@
-//! Iterative refinement in cycles: what follows a run of a Krylov method whose products were in single or double precision.
+//! Iterative refinement in cycles: what follows a run of a Krylov method whose products were in single or double
+//! precision.
 
 use crate::tfeti::dual::Precision;
 
@@ -22,13 +23,13 @@ pub enum NextCycle {
     Continue,
     /// Another cycle with products in double precision.
     Double,
-    /// The same, from the beginning: the cycle has made things worse.
+    /// A cycle from zero with products in double precision: this cycle has made the residual larger.
     DoubleFromZero,
     /// Rounding has stopped all progress.
     Stop,
 }
 
-/// Judges a cycle by the residual before and after it.
+/// What follows a cycle, by the residual before and after it.
 pub fn next_cycle(precision: Precision, previous: f64, residual: f64, goal: f64) -> NextCycle {
     let within = |share: f64| residual <= share * previous;
     if residual <= goal || within(SLOW_REDUCTION) {

@@ -1,4 +1,5 @@
-//! What a function of the displacements adds to the adjoint system: its gradient l = ∂J/∂u acts on the bodies like a load.
+//! What a function of the displacements adds to the adjoint system: its gradient l = ∂J/∂u acts on the bodies like a
+//! load.
 //!
 //! ```text
 //! u of a node = mean over its copies   ⇒   every copy carries l/(number of copies);     K⁺ l,   B K⁺ l,   e_l = Rᵀ l
@@ -12,7 +13,7 @@ use crate::tfeti::torn::{RowVector, TornVector, torn_loads};
 pub struct DisplacementLoad {
     /// K⁺ l over the torn dofs, unit of J per N.
     pub response: TornVector,
-    /// B K⁺ l.
+    /// The jumps B K⁺ l.
     pub jumps: RowVector,
     /// Rᵀ l of all clusters, unit of J per mm.
     pub resultants: Vec<f64>,
@@ -21,8 +22,8 @@ pub struct DisplacementLoad {
 }
 
 impl DisplacementLoad {
-    /// From three entries per node of every body, lower first, and the displacement of the state. Where there are several processes, all
-    /// of them call it.
+    /// From three entries per node of every body, lower first, and the displacement of the state. Where there are
+    /// several processes, all of them call it.
     pub fn new(operator: &DualOperator<'_>, loads: &[f64], displacement: &TornVector) -> Self {
         let model = operator.model;
         let forces = torn_loads(model, loads);

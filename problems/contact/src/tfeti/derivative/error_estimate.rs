@@ -1,12 +1,12 @@
-//! The error that the residual of a state causes in a function of its contact forces and displacements: the adjoint weighs it;
-//! method.md (5.3).
+//! The error that the residual of a state causes in a function of its contact forces and displacements: the adjoint
+//! weighs it; method.md (5.3).
 //!
 //! ```text
 //! r = λ − Π(λ + c w),   w = B u − g;     p, η: the adjoint of j = ∂J/∂λ, l = ∂J/∂u;     ψ = j − B p − η/c
 //! J(λ̄, u) − J(λ*, u*) = η_E·w_E + Σ_nodes [ψ·r + j·(λ̄ − λ)] + O(|r|²)            λ̄ = Π_cone(λ), the forces reported
 //! ```
-//! From K u + Bᵀλ = f, (I − D) dλ − c D B du = dr and its transpose. Every iterate has G λ = e, so that nothing else is left
-//! over. [`crate::equilibrium::ValueError`] says what the terms are used for.
+//! From K u + Bᵀλ = f, (I − D) dλ − c D B du = dr and its transpose. Every iterate has G λ = e, so that nothing else is
+//! left over. [`crate::equilibrium::ValueError`] says what the terms are used for.
 
 use crate::equilibrium::{ValueError, law};
 use crate::linear::sums::Sums;

@@ -4,10 +4,10 @@
 //! r = −∂(K u − f),   δe = Rᵀ r,   δd = B K⁺ r − ∂g
 //! Qᵀ F T y + Δ y − QᵀGᵀ δa = Qᵀ δd,   G T y = δe,      δλ = T y,   δw = δd − F δλ + Gᵀ δa
 //! ```
-//! The system of a Newton step with another right side; the adjoint solves with its transpose. With G T y = δe the forces
-//! r − Bᵀ T y are in equilibrium on every subdomain, so δd − F T y = B K⁺(r − Bᵀ T y) − ∂g is one product, free of rigid parts
-//! that would cancel. Directions are in single precision, and so is all else where the tolerance allows it; otherwise the
-//! residual is computed afresh in double precision after every cycle.
+//! The system of a Newton step with another right side; the adjoint solves with its transpose. With G T y = δe the
+//! forces r − Bᵀ T y are in equilibrium on every subdomain, so δd − F T y = B K⁺(r − Bᵀ T y) − ∂g is one product, free
+//! of rigid parts that would cancel. Directions are in single precision, and so is all else where the tolerance allows
+//! it; otherwise the residual is computed afresh in double precision after every cycle.
 
 use crate::body::mesh::Block;
 use crate::equilibrium::Tangents;
@@ -28,7 +28,6 @@ use std::cell::RefCell;
 /// The surface that moves, and the state that it moves in.
 #[derive(Debug, Clone, Copy)]
 pub struct MovedSurface<'a> {
-    /// The lower body.
     pub lower: &'a Block,
     /// u over torn dofs, mm.
     pub displacement: &'a TornVector,
@@ -119,7 +118,7 @@ impl TornContact<'_> {
         Ok(())
     }
 
-    /// Whether single precision alone reaches a tolerance, judged by the condition of the subdomains.
+    /// Whether single precision alone reaches a tolerance, estimated from the condition of the subdomains.
     fn single_is_enough(&self, tolerance: f64) -> bool {
         self.precision == Precision::Mixed
             && tolerance >= TIGHTEST_SINGLE
@@ -177,7 +176,8 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
         points.map(|point| sum(point.start)).collect()
     }
 
-    /// One run of the Krylov method in precision E, towards residuals of `goals`, or by a factor `reduction` if that is more.
+    /// One run of the Krylov method in precision E, towards residuals of `goals`, or by a factor `reduction` if that is
+    /// more.
     fn cycle<E: Real>(&self, iterate: &mut TangentIterate<D, N>, goals: &Row<f64, N>, reduction: f64) {
         let (rows, contact) = (&self.active.rows, self.contact);
         // Every column is brought to size one, so that no unit system leaves the range of single precision.
@@ -227,7 +227,8 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
 }
 
 impl<const N: usize> TangentSystem<'_, f32, N> {
-    /// One cycle in single precision, with its largest relative residual by the recurrence; none if it misses the tolerance.
+    /// One cycle in single precision, with its largest relative residual by the recurrence; none if it misses the
+    /// tolerance.
     fn solve_once(&self, tolerance: f64) -> Option<(TangentIterate<f32, N>, f64)> {
         let mut iterate = self.at_zero();
         let sizes = iterate.sizes();
@@ -238,7 +239,8 @@ impl<const N: usize> TangentSystem<'_, f32, N> {
 }
 
 impl<const N: usize> TangentSystem<'_, f64, N> {
-    /// Cycles to a relative residual, each followed by products in double precision; also the largest relative residual.
+    /// Cycles to a relative residual, each followed by products in double precision; also the largest relative
+    /// residual.
     fn solve_in_cycles(&self, tolerance: f64) -> Result<(TangentIterate<f64, N>, f64), ContactError> {
         let mut precision = self.contact.precision;
         let mut iterate = self.at_zero();
@@ -281,8 +283,8 @@ impl<const N: usize> TangentSystem<'_, f64, N> {
 }
 
 impl<D, const N: usize> TangentIterate<D, N> {
-    /// What relative residuals refer to: where equilibrium alone determines the forces, all of the right side is rigid and only
-    /// rounding is left of it.
+    /// What relative residuals refer to: where equilibrium alone determines the forces, all of the right side is rigid
+    /// and only rounding is left of it.
     fn sizes(&self) -> Row<f64, N> {
         self.residuals.zip(&self.natural, |size, all| size.max(SMALLEST_PROJECTED_SHARE * all))
     }

@@ -6,7 +6,8 @@
 //! Qᵀ F T y + Δ y − Qᵀ Gᵀ a = r,     Δ = (1 − β)/c on the slip rows, 0 elsewhere
 //! preconditioner:   Qᵀ (B_D S B_Dᵀ) Q + Z,   Z = (1 − β) c on the slip rows
 //! ```
-//! With the slip compliance δ = (1 − β)/(cβ) one has w = (1 + δc)^(−1/2) = √β, so Δ = w²δ, and Z is that spring in series.
+//! With the slip compliance δ = (1 − β)/(cβ) one has w = (1 + δc)^(−1/2) = √β, so Δ = w²δ, and Z is that spring in
+//! series.
 
 use crate::equilibrium::ContactBoundary;
 use crate::equilibrium::law::Linearization;
@@ -31,7 +32,7 @@ pub struct ActiveRows<'a> {
     starts: Vec<usize>,
     dimension: usize,
     stiffness: f64,
-    /// 𝓕 in T.
+    /// The friction coefficient 𝓕 in T.
     trial_friction: f64,
 }
 
@@ -66,7 +67,8 @@ impl<'a> ActiveRows<'a> {
         self.dimension
     }
 
-    /// Calls `visit(node's first contact row, its number of rows, its first unknown, derivative)` for every closed node.
+    /// Calls `visit(node's first contact row, its number of rows, its first unknown, derivative)` for every closed
+    /// node.
     fn closed_nodes(&self, mut visit: impl FnMut(usize, usize, usize, &Linearization)) {
         for ((point, linearization), &start) in self.boundary.points.iter().zip(&self.linearizations).zip(&self.starts)
         {
@@ -76,22 +78,22 @@ impl<'a> ActiveRows<'a> {
         }
     }
 
-    /// T y.
+    /// The product T y.
     pub fn trial<V: Entry>(&self, unknowns: &[V]) -> RowVector<V> {
         self.expand(unknowns, self.trial_friction)
     }
 
-    /// Q y.
+    /// The product Q y.
     pub fn test<V: Entry>(&self, unknowns: &[V]) -> RowVector<V> {
         self.expand(unknowns, 0.0)
     }
 
-    /// Tᵀ r.
+    /// The product Tᵀ r.
     pub fn trial_transposed<V: Entry>(&self, rows: &RowVector<V>) -> Vec<V> {
         self.restrict(rows, self.trial_friction)
     }
 
-    /// Qᵀ r.
+    /// The product Qᵀ r.
     pub fn test_transposed<V: Entry>(&self, rows: &RowVector<V>) -> Vec<V> {
         self.restrict(rows, 0.0)
     }
@@ -129,8 +131,8 @@ impl<'a> ActiveRows<'a> {
         })
     }
 
-    /// The unknowns y that repeat given multipliers: T y has their values on B_E, their normal forces on the closed nodes,
-    /// their tangential forces on the stick nodes, and their part across the slip direction on the slip nodes.
+    /// The unknowns y that repeat given multipliers: T y has their values on B_E, their normal forces on the closed
+    /// nodes, their tangential forces on the stick nodes, and their part across the slip direction on the slip nodes.
     pub fn unknowns_of(&self, multipliers: &RowVector) -> Vec<f64> {
         self.reduce(multipliers, |rows, direction, ratio| {
             [rows[0], if ratio > 0.0 { across(rows, direction, 1.0 / ratio.sqrt()) } else { 0.0 }]

@@ -6,9 +6,10 @@
 //! S = K_CC − K_CI K_II⁻¹ K_IC once per shape;    method.md (4.9)
 //! b_C ← b_C − K_CI K_II⁻¹ b_I,   (S + U) a_C = b_C,   K_II a_I = b_I − K_IC a_C
 //! ```
-//! K = G_E G_Eᵀ is symmetric and sparse, and singular where contact alone holds a body. K + w I_C is positive definite. Its factor
-//! serves both ends: its leading columns eliminate I, and its trailing block L₂₂ gives S = L₂₂L₂₂ᵀ − w I_C. w is the mean of the diagonal
-//! of K_CC, so that the difference keeps its digits; where K_CC is zero, w is one, because G is dimensionless.
+//! K = G_E G_Eᵀ is symmetric and sparse, and singular where contact alone holds a body. K + w I_C is positive definite.
+//! Its factor serves both ends: its leading columns eliminate I, and its trailing block L₂₂ gives S = L₂₂L₂₂ᵀ − w I_C.
+//! w is the mean of the diagonal of K_CC, so that the difference keeps its digits; where K_CC is zero, w is one,
+//! because G is dimensionless.
 
 use crate::error::ContactError;
 use crate::linear::cholesky::NumericFactor;
@@ -17,7 +18,8 @@ use crate::linear::right_side::RightSide;
 use crate::tfeti::torn::CoarsePattern;
 use faer::Mat;
 
-/// The part of the coarse matrix that all active sets of a shape share, with the subdomains away from contact eliminated.
+/// The part of the coarse matrix that all active sets of a shape share, with the subdomains away from contact
+/// eliminated.
 #[derive(Debug)]
 pub struct CondensedCoarse {
     /// Factor of K + w I_C.
@@ -28,11 +30,12 @@ pub struct CondensedCoarse {
 }
 
 impl CondensedCoarse {
-    /// Condenses K, given by its lower values over `pattern.lower`. `grounded`: amplitudes of motions that nothing holds and no
-    /// load works on; they are held by their part on C.
+    /// Condenses K, given by its lower values over `pattern.lower`. `grounded`: amplitudes of motions that nothing
+    /// holds and no load works on; they are held by their part on C.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when the rows of B_E leave more motions of a body free than its contact nodes see.
+    /// [`ContactError::Factorization`] when the rows of B_E leave more motions of a body free than its contact nodes
+    /// see.
     pub fn new(pattern: &CoarsePattern, mut values: Vec<f64>, grounded: &[Vec<f64>]) -> Result<Self, ContactError> {
         let contact = pattern.contact_amplitudes();
         let diagonal = |&amplitude: &usize| pattern.lower.starts()[amplitude];
@@ -55,7 +58,8 @@ impl CondensedCoarse {
         Ok(Self { factor, schur, interior_count: pattern.interior_count() })
     }
 
-    /// Factors S + U; `add_contact` calls its argument with row, column and value of every term of U, in places within C.
+    /// Factors S + U; `add_contact` calls its argument with row, column and value of every term of U, in places within
+    /// C.
     pub fn with_contact(&self, add_contact: impl FnOnce(&mut dyn FnMut(usize, usize, f64))) -> CoarseFactor<'_> {
         let mut matrix = self.schur.clone();
         add_contact(&mut |row, column, value| matrix[(row, column)] += value);
@@ -67,7 +71,7 @@ impl CondensedCoarse {
 #[derive(Debug)]
 pub struct CoarseFactor<'a> {
     constant: &'a CondensedCoarse,
-    /// S + U.
+    /// The factors of S + U.
     contact: DenseLu,
 }
 

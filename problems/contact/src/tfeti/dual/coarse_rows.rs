@@ -1,6 +1,7 @@
 //! The rows of Gᵀ = B R of a process: rows of B on the rigid motions of the clusters they touch.
 //!
-//! A cluster is a single subdomain unless the tearing joins several. The motions at the ghosts come from the processes that own them. A contact row is formed by its owner, and all processes are told.
+//! A cluster is a single subdomain unless the tearing joins several. The motions at the ghosts come from the processes
+//! that own them. A contact row is formed by its owner, and all processes are told.
 
 use crate::equilibrium::modes::MOTIONS;
 use crate::tfeti::dual::rigid_rows::Six;

@@ -1,5 +1,5 @@
-//! The natural coarse space: what forces on the rows do to the rigid motions of the clusters. In total FETI every subdomain is a
-//! cluster of its own.
+//! The natural coarse space: what forces on the rows do to the rigid motions of the clusters. In total FETI every
+//! subdomain is a cluster of its own.
 //!
 //! ```text
 //! G = Rᵀ Bᵀ,   e = Rᵀ f:      G λ = e is the equilibrium of all clusters,      Gᵀ a are the jumps of rigid amplitudes a
@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 pub struct CoarseSpace {
     /// Gᵀ: rows of B of this process.
     rows: RigidRows,
-    /// The same by the clusters of this process.
+    /// G: rows by the clusters of this process.
     transposed: RigidRows,
     resultants: Vec<f64>,
     pattern: Arc<CoarsePattern>,
@@ -46,7 +46,8 @@ impl CoarseSpace {
     /// The coarse space of a factored system. `grounded`: amplitude vectors of motions that nothing holds.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when the constant part of the coarse matrix is not positive semidefinite to rounding.
+    /// [`ContactError::Factorization`] when the constant part of the coarse matrix is not positive semidefinite to
+    /// rounding.
     pub fn new(model: &TornModel, system: &TornSystem, grounded: Vec<Vec<f64>>) -> Result<Self, ContactError> {
         let (constraints, distribution) = (&model.constraints, &model.clusters);
         let modes = TornModes::new(model, system);
@@ -91,7 +92,7 @@ impl CoarseSpace {
         self.rows.count()
     }
 
-    /// e.
+    /// The resultants e of the loads.
     pub fn resultants(&self) -> &[f64] {
         &self.resultants
     }
@@ -101,8 +102,8 @@ impl CoarseSpace {
         &self.condensed
     }
 
-    /// Σ weight·(row of Gᵀ) of a combination of contact rows, as entries (place of the amplitude within C, value) that may repeat
-    /// a place.
+    /// Σ weight·(row of Gᵀ) of a combination of contact rows, as entries (place of the amplitude within C, value) that
+    /// may repeat a place.
     pub fn combine(&self, combination: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let mut combined: Vec<(usize, f64)> = Vec::with_capacity(48);
         for &(row, weight) in combination {
@@ -153,14 +154,14 @@ impl CoarseSpace {
         defect
     }
 
-    /// Gᵀ a.
+    /// The jumps Gᵀ a of rigid amplitudes.
     pub fn jumps<V: Entry>(&self, amplitudes: &[V]) -> RowVector<V> {
         RowVector::new(self.rows.jumps(amplitudes), self.equality_count)
     }
 }
 
-/// Σ (row of Gᵀ)ᵀ(row of Gᵀ) over the first `count` rows of Gᵀ, as lower values over the coarse pattern. A process has all rows that
-/// touch its clusters, and forms the columns of these.
+/// Σ (row of Gᵀ)ᵀ(row of Gᵀ) over the first `count` rows of Gᵀ, as lower values over the coarse pattern. A process has
+/// all rows that touch its clusters, and forms the columns of these.
 fn gram(
     pattern: &CoarsePattern,
     [rows, transposed]: [&RigidRows; 2],

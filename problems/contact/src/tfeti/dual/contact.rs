@@ -22,19 +22,17 @@ use crate::tfeti::torn::RowVector;
 /// Everything that a method works with, for one shape.
 #[derive(Debug)]
 pub struct TornContact<'a> {
-    /// F.
+    /// The dual operator F.
     pub(crate) operator: DualOperator<'a>,
-    /// G and e.
+    /// The rows G with the resultants e.
     pub(crate) space: &'a CoarseSpace,
-    /// Preconditioner of F.
     pub(crate) preconditioner: Preconditioner<'a>,
-    /// Contact nodes.
     pub(crate) boundary: &'a ContactBoundary,
-    /// d.
+    /// The jumps d without forces.
     pub(crate) constant: RowVector,
     /// Initial gaps of the contact nodes, mm.
     pub(crate) gaps: &'a [f64],
-    /// c, N/mm.
+    /// The typical stiffness c, N/mm.
     pub(crate) stiffness: f64,
     /// Force that residuals are relative to, N.
     pub(crate) load: f64,

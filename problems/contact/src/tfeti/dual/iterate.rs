@@ -8,9 +8,8 @@ use crate::tfeti::torn::RowVector;
 pub struct Iterate {
     /// λ over all rows.
     pub(crate) multipliers: RowVector,
-    /// F λ.
+    /// The product F λ.
     pub(crate) image: RowVector,
-    /// Rigid amplitudes a.
     pub(crate) amplitudes: Vec<f64>,
     /// w = B u − g over all rows.
     pub(crate) jumps: RowVector,
@@ -32,11 +31,9 @@ impl Iterate {
 /// The contact forces that a method has found.
 #[derive(Debug, Clone)]
 pub struct TornSolution {
-    /// The last iterate.
     pub(crate) iterate: Iterate,
     /// The derivative selected at every contact node.
     pub(crate) linearizations: Vec<Linearization>,
-    /// Relative residual.
     pub(crate) residual: f64,
     /// Steps of the method.
     pub(crate) steps: usize,

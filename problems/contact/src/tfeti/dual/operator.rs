@@ -15,8 +15,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub enum Precision {
     /// All products in double precision.
     Double,
-    /// Subdomain solves of search directions in single precision (1.3 to 1.7 times faster), residuals replaced by double
-    /// products whenever they have fallen by four digits.
+    /// Subdomain solves of search directions in single precision (1.3 to 1.7 times faster), residuals replaced by
+    /// double products whenever they have fallen by four digits.
     #[default]
     Mixed,
 }
@@ -27,7 +27,7 @@ pub enum Precision {
 pub struct DualOperator<'a> {
     /// What does not depend on the shape.
     pub model: &'a TornModel,
-    /// The factored subdomains.
+    /// The factored subdomains with their loads.
     pub system: &'a TornSystem,
     applications: AtomicUsize,
 }
@@ -43,7 +43,7 @@ impl<'a> DualOperator<'a> {
         self.applications.load(Ordering::Relaxed)
     }
 
-    /// F λ.
+    /// The product F λ.
     pub fn apply(&self, multipliers: &RowVector) -> RowVector {
         self.apply_with(multipliers, |factors, part| factors.solve(part))
     }
@@ -93,7 +93,8 @@ impl<'a> DualOperator<'a> {
         self.gather_columns(torn)
     }
 
-    /// B K⁺ (r − BᵀΛ) for torn forces r (N) in their precision; `count` columns are counted. `torn`: room for a torn block.
+    /// B K⁺ (r − BᵀΛ) for torn forces r (N) in their precision; `count` columns are counted. `torn`: room for a torn
+    /// block.
     pub(crate) fn free_jumps<E: Real, const N: usize>(
         &self,
         forces: &[Row<E, N>],
@@ -125,7 +126,8 @@ impl<'a> DualOperator<'a> {
         self.solve_loads(torn, load, solve);
     }
 
-    /// K⁺ f for forces that `load` fills in subdomain by subdomain, given its first dof, and for a given product with K⁺ of a subdomain.
+    /// K⁺ f for forces that `load` fills in subdomain by subdomain, given its first dof, and for a given product with
+    /// K⁺ of a subdomain.
     fn solve_loads<V: RightSide>(
         &self,
         torn: &mut [V],
@@ -151,7 +153,7 @@ impl<'a> DualOperator<'a> {
         }
     }
 
-    /// B u.
+    /// The jumps B u.
     pub fn gather(&self, mut torn: TornVector) -> RowVector {
         self.gather_columns(&mut torn.0)
     }
@@ -160,7 +162,8 @@ impl<'a> DualOperator<'a> {
         self.model.rows_times(&self.model.constraints.rows, torn)
     }
 
-    /// K⁺ l over the subdomains of this process for torn forces l, and Rᵀ l of all clusters; counted like a product with F.
+    /// K⁺ l over the subdomains of this process for torn forces l, and Rᵀ l of all clusters; counted like a product
+    /// with F.
     pub fn response(&self, forces: &TornVector) -> (TornVector, Vec<f64>) {
         self.applications.fetch_add(1, Ordering::Relaxed);
         let mut torn = self.model.zeros();
@@ -173,7 +176,7 @@ impl<'a> DualOperator<'a> {
         (torn, resultants)
     }
 
-    /// K⁺ f.
+    /// The displacements K⁺ f under the loads.
     pub fn loaded_displacement(&self) -> TornVector {
         let mut torn = self.model.zeros();
         let size = self.model.pattern.pattern.dimension();
@@ -187,7 +190,8 @@ impl<'a> DualOperator<'a> {
         torn
     }
 
-    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, from `loaded` = K⁺ f and the amplitudes of all; method.md (4.2).
+    /// u = K⁺(f − Bᵀλ) + R a on the subdomains of this process, from `loaded` = K⁺ f and the amplitudes of all;
+    /// method.md (4.2).
     pub fn displacement(&self, mut loaded: TornVector, multipliers: &RowVector, amplitudes: &[f64]) -> TornVector {
         let mut torn = self.model.zeros();
         self.solve_subdomains(multipliers, &mut torn.0, |factors, part| factors.solve(part));

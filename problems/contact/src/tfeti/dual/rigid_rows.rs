@@ -1,4 +1,5 @@
-//! Gᵀ: rows of B times the rigid modes, in blocks of the six amplitudes of a cluster: of a subdomain, where none are joined.
+//! Gᵀ: rows of B times the rigid modes, in blocks of the six amplitudes of a cluster: of a subdomain, where none are
+//! joined.
 
 use crate::equilibrium::modes::MOTIONS;
 use crate::linear::entry::{Entry, vectorized};
@@ -21,7 +22,7 @@ pub struct RigidRows {
 const LISTS_AT_ONCE: usize = 512;
 
 impl RigidRows {
-    /// Without rows.
+    /// An empty list of rows.
     pub fn new() -> Self {
         Self { starts: vec![0], others: Vec::new(), values: Vec::new() }
     }
@@ -37,7 +38,6 @@ impl RigidRows {
         }
     }
 
-    /// Number of rows.
     pub fn count(&self) -> usize {
         self.starts.len() - 1
     }

@@ -4,9 +4,10 @@
 //! repeat:  derivatives D at the iterate;  v = (what the active rows demand at once) + T P M P (reduced residual),  G v = 0
 //!          F v (the only product);  iterate := best combination of all directions so far   (recycling.rs)
 //! ```
-//! A Newton step with GMRES spends one product on its particular part and starts its Krylov space anew; here the space grows
-//! over the whole solve, derivatives follow every product, and the residual falls at the rate of the linear problem. The
-//! projector of an active set is kept while the set stays (a search direction need not know the last slip direction).
+//! A Newton step with GMRES spends one product on its particular part and starts its Krylov space anew; here the space
+//! grows over the whole solve, derivatives follow every product, and the residual falls at the rate of the linear
+//! problem. The projector of an active set is kept while the set stays (a search direction need not know the last slip
+//! direction).
 
 use crate::equilibrium::Stage;
 use crate::equilibrium::law::Linearization;
@@ -21,8 +22,9 @@ use crate::tfeti::newton::stagnation::stagnates;
 /// Residual reduction after which the projector is renewed although the active set has stayed.
 const PROJECTOR_RENEWAL: f64 = 0.01;
 
-/// Resultant of a cluster, over the load, that rounding leaves where the coarse matrix is well conditioned; ordinary states stand at
-/// 1e-15. Few nodes in a corner make it ill conditioned: every direction then leaves equilibrium by more.
+/// Resultant of a cluster, over the load, that rounding leaves where the coarse matrix is well conditioned; ordinary
+/// states stand at 1e-15. Few nodes in a corner make it ill conditioned: every direction then leaves equilibrium by
+/// more.
 const MAX_IMBALANCE: f64 = 1e-13;
 
 /// Residual reduction after which single precision images are replaced.
@@ -30,8 +32,8 @@ const IMAGE_REPLACEMENT: f64 = 1e-4;
 
 /// Products in which the residual must at least halve; otherwise rounding, or a bad start, has stopped the descent.
 const MAX_STALLED_PRODUCTS: usize = 10;
-/// The same for nearly incompressible bodies and for flat or tall bricks: pressures, or bending, that the preconditioner does
-/// not know take products of their own.
+/// Limit like [`MAX_STALLED_PRODUCTS`] for nearly incompressible bodies and for flat or tall bricks: pressures, or
+/// bending, that the preconditioner does not know take products of their own.
 const MAX_STALLED_SLOW: usize = 20;
 
 impl TornContact<'_> {
@@ -91,8 +93,8 @@ impl TornContact<'_> {
         if slow { MAX_STALLED_SLOW } else { MAX_STALLED_PRODUCTS }
     }
 
-    /// Brings the multipliers into equilibrium where they have drifted from it, and replaces their image by a product in double
-    /// precision; returns the residual.
+    /// Brings the multipliers into equilibrium where they have drifted from it, and replaces their image by a product
+    /// in double precision; returns the residual.
     pub(crate) fn replace_image(&self, iterate: &mut Iterate) -> f64 {
         if self.imbalance(&iterate.multipliers) > MAX_IMBALANCE {
             // Where no active set holds all motions, nothing can be brought into equilibrium; the certificate tells.

@@ -1,10 +1,11 @@
 //! Active sets that hold every rigid motion.
 //!
 //! ```text
-//! an active set may leave a motion free on the way:   slip → stick, then the open nodes nearest to contact are closed,
+//! an active set may leave a motion free:   slip → stick, then the open nodes nearest to contact are closed,
 //!                                                     3, 6, 12, …, until G_T Gqᵀ is regular
 //! ```
-//! Only directions of search are affected: the residual, and with it the certificate, knows nothing of the closed nodes.
+//! Only directions of search are affected: the residual, and with it the certificate, knows nothing of the closed
+//! nodes.
 
 use crate::equilibrium::law::Linearization;
 use crate::error::ContactError;

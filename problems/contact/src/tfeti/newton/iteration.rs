@@ -22,9 +22,9 @@ const MAX_HALVINGS: usize = 6;
 const SUFFICIENT_DECREASE: f64 = 1e-4;
 
 impl TornContact<'_> {
-    /// Solves from given multipliers (over all rows) of a similar problem, or from the bonded problem. Where inexact steps do
-    /// not converge, a second run solves every linear system as accurately as rounding allows. The residual that decides, and
-    /// that certifies the state, comes from a fresh product with F.
+    /// Solves from given multipliers (over all rows) of a similar problem, or from the bonded problem. Where inexact
+    /// steps do not converge, a second run solves every linear system as accurately as rounding allows. The residual
+    /// that decides, and that certifies the state, comes from a fresh product with F.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] with the residual history, [`ContactError::BeyondPrecision`],
@@ -61,8 +61,8 @@ impl TornContact<'_> {
         settings.max_products.saturating_sub(self.operator.applications())
     }
 
-    /// Newton steps until the residual is small, rounding stops them, or they lead nowhere. `accuracy`: of the linear solves,
-    /// for the residual (mm) that the outer residual deserves.
+    /// Newton steps until the residual is small, rounding stops them, or they lead nowhere. `accuracy`: of the linear
+    /// solves, for the residual (mm) that the outer residual deserves.
     fn newton_steps(
         &self,
         mut iterate: Iterate,

@@ -49,8 +49,8 @@ impl LinearAccuracy {
 const MAX_REFINED_SHARE: f64 = 0.5;
 
 impl TornContact<'_> {
-    /// Solves the reduced system of an active set, starting from given multipliers. The directions of its Krylov space join
-    /// `recycled`, where later iterates will use them.
+    /// Solves the reduced system of an active set, starting from given multipliers. The directions of its Krylov space
+    /// join `recycled`, where later iterates will use them.
     pub(crate) fn linear_solve(
         &self,
         active: &ActiveSet<'_>,

@@ -6,8 +6,8 @@
 //! c w_E by c Σ y_k (dw_k)_E,      λ − Π(x) by dλ − D (dλ + c dw)   on the contact rows
 //! ```
 //! y minimises the linearised residual (normal equations; products of rows of B_E are kept from step to step). The
-//! combination is taken if the true residual falls, and repeated, with new derivatives D, while it falls well: a change of
-//! status or of a slip direction invalidates nothing, because F v_k does not depend on it.
+//! combination is taken if the true residual falls, and repeated, with new derivatives D, while it falls well: a change
+//! of status or of a slip direction invalidates nothing, because F v_k does not depend on it.
 
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::Linearization;
@@ -45,7 +45,6 @@ pub struct Recycled {
 }
 
 impl Recycled {
-    /// Number of directions.
     pub fn len(&self) -> usize {
         self.directions.len()
     }
@@ -127,7 +126,7 @@ impl Recycled {
         solve_scaled(&normal, &right)
     }
 
-    /// (dw_k)_E · (dw_l)_E.
+    /// The inner product (dw_k)_E · (dw_l)_E.
     fn product(&self, k: usize, l: usize) -> f64 {
         self.products[k.max(l)][k.min(l)]
     }

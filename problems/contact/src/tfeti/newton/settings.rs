@@ -9,7 +9,6 @@ pub struct NewtonSettings {
     pub tolerance: f64,
     /// Relative residual that is accepted when rounding stops all progress.
     pub acceptable: f64,
-    /// Newton steps allowed.
     pub max_steps: usize,
     /// Krylov iterations allowed per Newton step; the descent ends with twice as many directions.
     pub max_krylov: usize,
@@ -39,8 +38,8 @@ impl NewtonSettings {
     }
 }
 
-/// Rigid amplitudes of subdomains at the contact boundary up to which directions are recycled: with more, the repeated factorisation of
-/// their dense matrix outweighs the products saved.
+/// Rigid amplitudes of subdomains at the contact boundary up to which directions are recycled: with more, the repeated
+/// factorisation of their dense matrix outweighs the products saved.
 const MAX_CONTACT_AMPLITUDES: usize = 2100;
 
 /// Use of the dual directions that a solve has already multiplied with F.
@@ -48,8 +47,9 @@ const MAX_CONTACT_AMPLITUDES: usize = 2100;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Recycling {
-    /// Every product serves all later iterates: fewest products with F, more dense algebra. Beyond 2100 rigid amplitudes of
-    /// subdomains at the contact boundary, whose dense matrix every active set factors, it counts as [`Recycling::Off`].
+    /// Every product serves all later iterates: fewest products with F, more dense algebra. Beyond 2100 rigid
+    /// amplitudes of subdomains at the contact boundary, whose dense matrix every active set factors, it counts as
+    /// [`Recycling::Off`].
     #[default]
     On,
     /// Newton steps with a GMRES of their own.

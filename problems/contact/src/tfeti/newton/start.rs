@@ -18,8 +18,8 @@ const REACH: f64 = 100.0;
 const ON_THE_CONE: f64 = 1e-9;
 
 impl TornContact<'_> {
-    /// The iterate that a solve begins with: the forces of a similar problem (over all rows) where they hold this shape,
-    /// else the bonded problem.
+    /// The iterate that a solve begins with: the forces of a similar problem (over all rows) where they hold this
+    /// shape, else the bonded problem.
     pub(crate) fn start(
         &self,
         forces: Option<&[f64]>,
@@ -37,8 +37,8 @@ impl TornContact<'_> {
         self.bonded(LinearAccuracy::start(max_products), recycled)
     }
 
-    /// The bonded problem: contact rows glued, solved roughly. A node that only forces out of all proportion to the load could
-    /// close starts open; where bodies have to travel to meet, the nodes that meet first start closed.
+    /// The bonded problem: contact rows glued, solved roughly. A node that only forces out of all proportion to the
+    /// load could close starts open; where bodies have to travel to meet, the nodes that meet first start closed.
     pub(crate) fn bonded(
         &self,
         accuracy: LinearAccuracy,
@@ -64,8 +64,8 @@ impl TornContact<'_> {
         self.boundary.points.iter().map(|point| self.boundary.friction * forces[point.start].max(0.0)).collect()
     }
 
-    /// Given multipliers, balanced, with their image, and amplitudes by least squares on the held rows; `bounds`: slip bound
-    /// per contact node.
+    /// Given multipliers, balanced, with their image, and amplitudes by least squares on the held rows; `bounds`: slip
+    /// bound per contact node.
     ///
     /// # Errors
     /// [`ContactError::Unheld`] when the nodes that carry forces leave a motion free.

@@ -1,9 +1,10 @@
-//! The orthonormalised projected dual operator, as the QP solver sees it.
+//! The orthonormalised projected dual operator, as an operator of the QP solver.
 //!
 //! ```text
 //! C = L⁻¹G,  LLᵀ = GGᵀ in the elimination order,   Q = CᵀC,   P = I − Q        H = P F P,   preconditioner of H + ρQ:  P M P + Q/ρ
 //! ```
-//! Vectors of the QP solver go over the rows of all processes, and every process has them; products with F, M and G are shared.
+//! Vectors of the QP solver go over the rows of all processes, and every process has them; products with F, M and G are
+//! shared.
 
 use crate::error::ContactError;
 use crate::linear::cholesky::NumericFactor;
@@ -47,7 +48,7 @@ impl<'a> OrthonormalCoarse<'a> {
         })
     }
 
-    /// Cᵀ y.
+    /// The jumps Cᵀ y.
     fn jumps(&self, y: &[f64]) -> Vec<f64> {
         self.space.timed(|| {
             let mut ordered = y.to_vec();
@@ -70,18 +71,18 @@ impl<'a> OrthonormalCoarse<'a> {
         self.model.constraints.own_rows(whole)
     }
 
-    /// Q v.
+    /// The product Q v.
     fn rigid_part(&self, v: &[f64]) -> Vec<f64> {
         self.jumps(&self.apply(v))
     }
 
-    /// P v.
+    /// The product P v.
     fn projected(&self, v: &[f64]) -> Vec<f64> {
         difference(v, self.rigid_part(v))
     }
 }
 
-/// v − removed.
+/// The difference v − removed.
 fn difference(v: &[f64], mut removed: Vec<f64>) -> Vec<f64> {
     removed.iter_mut().zip(v).for_each(|(removed, v)| *removed = v - *removed);
     removed
@@ -101,17 +102,17 @@ impl LinearEqualities for OrthonormalCoarse<'_> {
     }
 }
 
-/// P F P.
+/// The operator P F P.
 #[derive(Debug)]
 pub struct ProjectedDual<'a> {
     /// F of one shape.
     pub operator: &'a DualOperator<'a>,
-    /// C.
+    /// The matrix C.
     pub coarse: &'a OrthonormalCoarse<'a>,
 }
 
 impl ProjectedDual<'_> {
-    /// F v.
+    /// The product F v.
     fn product(&self, v: &[f64]) -> Vec<f64> {
         self.coarse.whole(&self.operator.apply(&self.coarse.own(v)))
     }

@@ -4,8 +4,9 @@
 //! Ψ ← 𝓕 λ_N(Ψ):   min ½ λᵀ PFP λ − λᵀ P(d − F λ₀)   s.t.  C λ = L⁻¹e,  λ_N ≥ 0,  |λ_T,i| ≤ Ψ_i          method.md (4.1)
 //! λ₀ = Gᵀ(GGᵀ)⁻¹ e,   C = L⁻¹G,   LLᵀ = GGᵀ,   Q = CᵀC,   P = I − Q
 //! ```
-//! The orthonormalised homogenised problem in the unshifted multipliers: P λ₀ = 0, so that the bounds stay where they are.
-//! Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ that it brings about.
+//! The orthonormalised homogenised problem in the unshifted multipliers: P λ₀ = 0, so that the bounds stay where they
+//! are. Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ that it
+//! brings about.
 
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::tangential_norm;
@@ -24,8 +25,8 @@ use crate::tfeti::paper::projected_dual::{OrthonormalCoarse, ProjectedDual, proj
 pub struct AugmentedLagrangianSettings {
     /// Relative residual aimed at, measured as Newton's.
     pub tolerance: f64,
-    /// Accuracy of a Tresca problem relative to the change of the slip bound that it brings about. Default 0.2 (0.1 takes
-    /// some five per cent more products, 0.3 some five per cent fewer).
+    /// Accuracy of a Tresca problem relative to the change of the slip bound that it brings about. Default 0.2 (0.1
+    /// takes some five per cent more products, 0.3 some five per cent fewer).
     pub adaptivity: f64,
     /// Fixed point steps allowed, one Tresca problem each. Default 60.
     pub max_fixed_point_steps: usize,
@@ -46,7 +47,7 @@ impl AugmentedLagrangianSettings {
 /// Work of the paper's path.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AugmentedLagrangianCounts {
-    /// Tresca problems.
+    /// Number of Tresca problems solved.
     pub fixed_point_steps: usize,
     /// Multiplier updates of SMALSE-M.
     pub outer: usize,
@@ -96,12 +97,12 @@ struct FixedPoint {
 }
 
 impl TornContact<'_> {
-    /// Solves by successive approximations of the slip bound, from given multipliers (over all rows) of a similar problem or
-    /// from the bonded problem.
+    /// Solves by successive approximations of the slip bound, from given multipliers (over all rows) of a similar
+    /// problem or from the bonded problem.
     ///
     /// # Errors
-    /// [`ContactError::NoContraction`] when the fixed point iteration does not contract, [`ContactError::DualProblem`] from
-    /// the dual QP, [`ContactError::NotConverged`], [`ContactError::NoEquilibrium`].
+    /// [`ContactError::NoContraction`] when the fixed point iteration does not contract, [`ContactError::DualProblem`]
+    /// from the dual QP, [`ContactError::NotConverged`], [`ContactError::NoEquilibrium`].
     pub fn solve_by_successive_approximations(
         &self,
         start: Option<&[f64]>,
@@ -168,7 +169,8 @@ impl TornContact<'_> {
         }
     }
 
-    /// The first slip bounds and multipliers: those of an iterate. Where the QP's gradient is −w, Cᵀμ is its rigid part.
+    /// The first slip bounds and multipliers: those of an iterate. Where the QP's gradient is −w, Cᵀμ is its rigid
+    /// part.
     fn first(&self, iterate: &Iterate, coarse: &OrthonormalCoarse<'_>) -> FixedPoint {
         let multipliers = coarse.apply(&coarse.whole(&iterate.jumps)).into_iter().map(|entry| -entry).collect();
         let warm = WarmStart { x: coarse.whole(&iterate.multipliers), multipliers, ..WarmStart::default() };
@@ -261,7 +263,7 @@ impl TornContact<'_> {
     }
 }
 
-/// |a − b|₂.
+/// The distance |a − b|₂.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }

@@ -5,9 +5,9 @@
 //! W = [√σ K⁺B_cᵀ   R/√σ],   A = [ σ B_c K⁺ B_cᵀ   G_cᵀ ]        K̂⁺ = K⁺ − W A⁻¹ Wᵀ                      method.md (4.10)
 //!                               [ G_c          − N Nᵀ ]
 //! ```
-//! N: amplitudes α of the six rigid motions of the cluster, orthonormal; G_cᵀ N = 0. Forces f in balance on the cluster, Nᵀ Rᵀ f = 0, give
-//! Nᵀ α = 0, and u solves the two equations. σ is a mean diagonal of K, so that A has no unit. G_c G_cᵀ + N Nᵀ is regular exactly if
-//! the cluster has no motion but these six.
+//! N: amplitudes α of the six rigid motions of the cluster, orthonormal; G_cᵀ N = 0. Forces f in balance on the
+//! cluster, Nᵀ Rᵀ f = 0, give Nᵀ α = 0, and u solves the two equations. σ is a mean diagonal of K, so that A has no
+//! unit. G_c G_cᵀ + N Nᵀ is regular exactly if the cluster has no motion but these six.
 //!
 //! References: \[KlawonnRheinbach2010\], \[RihaBrzobohatyMarkopoulosMecaKozubek2016\].
 
@@ -45,7 +45,8 @@ struct MemberFactors {
 /// Pivot ratio of G_c G_cᵀ + N Nᵀ that counts as singular.
 const SINGULAR: f64 = 1e-12;
 
-/// Amplitudes of the six rigid motions of a cluster along the orthonormal modes of its subdomains: six orthonormal vectors.
+/// Amplitudes of the six rigid motions of a cluster along the orthonormal modes of its subdomains: six orthonormal
+/// vectors.
 fn motions(coordinates: &[Vec<[f64; 3]>], modes: &[&[Vec<f64>]]) -> Vec<Vec<f64>> {
     let whole = orthonormal_modes(&coordinates.concat());
     let amplitudes = |motion: &Vec<f64>| {
@@ -62,7 +63,7 @@ fn motions(coordinates: &[Vec<[f64; 3]>], modes: &[&[Vec<f64>]]) -> Vec<Vec<f64>
     motions
 }
 
-/// G_c.
+/// The rows G_c of a cluster.
 fn rigid_rows(rows: &ClusterRows, modes: &[&[Vec<f64>]]) -> Mat<f64> {
     let mut matrix = Mat::<f64>::zeros(MOTIONS * modes.len(), rows.count);
     for (index, (member, modes)) in rows.members.iter().zip(modes).enumerate() {
@@ -75,13 +76,14 @@ fn rigid_rows(rows: &ClusterRows, modes: &[&[Vec<f64>]]) -> Mat<f64> {
     matrix
 }
 
-/// N Nᵀ.
+/// The matrix N Nᵀ of the held motions.
 fn held(motions: &[Vec<f64>]) -> Mat<f64> {
     let size = motions[0].len();
     Mat::from_fn(size, size, |row, column| motions.iter().map(|motion| motion[row] * motion[column]).sum())
 }
 
-/// Whether the rows of a cluster leave it the six motions of a rigid body and no others; `coordinates` of the nodes of its subdomains.
+/// Whether the rows of a cluster leave it the six motions of a rigid body and no others; `coordinates` of the nodes of
+/// its subdomains.
 pub fn moves_as_one_body(rows: &ClusterRows, coordinates: &[Vec<[f64; 3]>]) -> bool {
     let modes: Vec<Vec<Vec<f64>>> = coordinates.iter().map(|nodes| orthonormal_modes(nodes)).collect();
     let modes: Vec<&[Vec<f64>]> = modes.iter().map(Vec::as_slice).collect();

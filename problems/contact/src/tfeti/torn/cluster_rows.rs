@@ -1,4 +1,5 @@
-//! The rows that hold a cluster together, B_c: some gluing rows between its subdomains are kept for good, not by multipliers.
+//! The rows that hold a cluster together, B_c: some gluing rows between its subdomains are kept for good, not by
+//! multipliers.
 //!
 //! ```text
 //! B_c u = 0:   all Helmert rows of the chosen nodes whose copies all lie in the cluster;   such rows are none of B_E
@@ -10,7 +11,6 @@ use std::ops::Range;
 /// B_c of one cluster.
 #[derive(Debug)]
 pub struct ClusterRows {
-    /// Number of rows.
     pub count: usize,
     /// Their parts by subdomain.
     pub members: Vec<MemberRows>,

@@ -3,8 +3,9 @@
 //! ```text
 //! amplitudes of clusters without contact rows, in nested dissection order │ amplitudes of clusters with contact rows
 //! ```
-//! The rows of B_E couple a cluster with its neighbours alone, and do so alike for all active sets. What an active set adds lies
-//! in the trailing block, whose amplitudes all count as coupled. A cluster is a single subdomain unless the tearing joins several.
+//! The rows of B_E couple a cluster with its neighbours alone, and do so alike for all active sets. What an active set
+//! adds lies in the trailing block, whose amplitudes all count as coupled. A cluster is a single subdomain unless the
+//! tearing joins several.
 
 use crate::equilibrium::modes::MOTIONS;
 use crate::error::ContactError;
@@ -23,7 +24,6 @@ use std::sync::Arc;
 pub struct CoarsePattern {
     /// Lower triangle of the coarse matrix.
     pub lower: Arc<LowerPattern>,
-    /// Its symbolic factor.
     pub symbolic: Arc<SymbolicFactor>,
     /// Amplitudes in elimination order.
     order: Vec<usize>,
@@ -32,8 +32,8 @@ pub struct CoarsePattern {
 }
 
 impl CoarsePattern {
-    /// The pattern of the rows of B of all processes. The bodies have `counts` clusters per axis each, of `size` dofs; `distribution` is
-    /// that of the clusters.
+    /// The pattern of the rows of B of all processes. The bodies have `counts` clusters per axis each, of `size` dofs;
+    /// `distribution` is that of the clusters.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when the symbolic analysis fails.

@@ -7,9 +7,9 @@
 //! ```
 //! B_D Bᵀ = I with stiffness weights between bodies: B_D gives the softer body the larger share.
 //!
-//! A process has the rows of B_E that touch its subdomains, by ascending owner: the owner of a row is the first subdomain that it
-//! touches. Rows of owners in other processes come first. Contact rows are known to all processes; each computes the jumps of those
-//! that it owns, and all are told.
+//! A process has the rows of B_E that touch its subdomains, by ascending owner: the owner of a row is the first
+//! subdomain that it touches. Rows of owners in other processes come first. Contact rows are known to all processes;
+//! each computes the jumps of those that it owns, and all are told.
 
 use crate::equilibrium::ContactBoundary;
 use crate::error::ContactError;
@@ -204,7 +204,8 @@ fn cluster_rows(all: &SceneRows, body: &BodyRows<'_>, subdomains: &Range<usize>,
     rows.map(|(index, rows)| ClusterRows::new(rows, dofs(index)..dofs(index + 1), size)).collect()
 }
 
-/// What this process exchanges: for a row of B_E, all processes that it touches need all of its dofs; for a contact row, its owner.
+/// What this process exchanges: for a row of B_E, all processes that it touches need all of its dofs; for a contact
+/// row, its owner.
 fn interface(all: &SceneRows, owners: &[usize], distribution: &Distribution, size: usize) -> Interface {
     let (rank, subdomains) = (distribution.communication().rank(), distribution.owned());
     let owned: Range<usize> = size * subdomains.start..size * subdomains.end;

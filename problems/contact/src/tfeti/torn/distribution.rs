@@ -4,8 +4,8 @@
 //! process r:   the subdomains from bounds[r] to bounds[r + 1]
 //! Σ over subdomains:   the tree that halves the range of all subdomains, whatever the bounds
 //! ```
-//! A process adds up the largest branches of the tree that lie within its range and sends their sums, some 2·log₂ of the number of
-//! subdomains; everybody adds those in the order of the tree.
+//! A process adds up the largest branches of the tree that lie within its range and sends their sums, some 2·log₂ of
+//! the number of subdomains; everybody adds those in the order of the tree.
 
 use crate::communication::{Communication, Parcel};
 use crate::error::ContactError;
@@ -77,7 +77,6 @@ impl Distribution {
         self.bounds.partition_point(|&bound| bound <= subdomain) - 1
     }
 
-    /// Number of subdomains.
     pub fn count(&self) -> usize {
         self.bounds[self.bounds.len() - 1]
     }
@@ -95,8 +94,8 @@ impl Distribution {
     /// What this process has computed, if no process has failed.
     ///
     /// # Errors
-    /// The own failure, else [`ContactError::Factorization`] with that of the first process that has one. A process that goes on
-    /// alone would wait for the others forever.
+    /// The own failure, else [`ContactError::Factorization`] with that of the first process that has one. A process
+    /// that goes on alone would wait for the others forever.
     pub fn agreed<T>(&self, own: Result<T, ContactError>) -> Result<T, ContactError> {
         match (self.communication().agree(own.as_ref().err().map(ToString::to_string)), own) {
             (Some(reason), Ok(_)) => {
@@ -232,7 +231,7 @@ fn total<'a, P: Iterator<Item = (&'a Range<usize>, &'a [f64])>>(
     }
 }
 
-/// a + b.
+/// The sum a + b.
 fn added(mut a: Vec<f64>, b: &[f64]) -> Vec<f64> {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += b);
     a

@@ -3,14 +3,15 @@
 //! ```text
 //! K⁺ = (K + ρ N Nᵀ)⁻¹,  N = orthonormal basis of R restricted to three fixing nodes:   K K⁺ K = K
 //! ```
-//! A nearly incompressible subdomain has a second stiffness matrix, of a compressible material of the same shear modulus. The
-//! preconditioner takes a jump of displacements half and half, and such halves change the volume of a subdomain although no
-//! motion of the body has to: with K itself, they would count λ/μ times too much. The factor c is a stiffness against contact
-//! forces, which the volume does not resist either.
+//! A nearly incompressible subdomain has a second stiffness matrix, of a compressible material of the same shear
+//! modulus. The preconditioner takes a jump of displacements half and half, and such halves change the volume of a
+//! subdomain although no motion of the body has to: with K itself, they would count λ/μ times too much. The factor c is
+//! a stiffness against contact forces, which the volume does not resist either.
 //!
-//! Where the factor loses many digits, forces are balanced before and displacements after K⁺: (I − RRᵀ) K⁺ (I − RRᵀ) is another
-//! generalised inverse, whose displacements are no larger than the deformation. Forces out of balance would bend a thin plate
-//! over its three fixing nodes by many times of what the forces together do, and the difference would lose all digits.
+//! Where the factor loses many digits, forces are balanced before and displacements after K⁺: (I − RRᵀ) K⁺ (I − RRᵀ) is
+//! another generalised inverse, whose displacements are no larger than the deformation. Forces out of balance would
+//! bend a thin plate over its three fixing nodes by many times of what the forces together do, and the difference would
+//! lose all digits.
 //!
 //! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 
@@ -36,11 +37,11 @@ pub struct InteriorClass {
     pub symbolic: Option<Arc<SymbolicFactor>>,
     /// Dofs with rows of B or B_c, ascending.
     pub boundary: Vec<usize>,
-    /// K_BB.
+    /// The block K_BB.
     pub boundary_block: SymmetricBlock,
-    /// K_IB.
+    /// The block K_IB.
     pub coupling: SymmetricBlock,
-    /// K_BI.
+    /// The block K_BI.
     pub coupling_transposed: SymmetricBlock,
 }
 
@@ -70,7 +71,7 @@ impl InteriorClass {
 pub struct SubdomainFactors {
     /// Values of the stiffness matrix K over [`LocalPattern::pattern`].
     pub stiffness: Vec<f64>,
-    /// The same of the compressible neighbour of a nearly incompressible material.
+    /// Values of the stiffness matrix of the compressible neighbour of a nearly incompressible material.
     compressible: Option<Vec<f64>>,
     /// Factor of K + ρNNᵀ.
     pub inverse: NumericFactor,
@@ -95,8 +96,8 @@ const LOST_DIGITS: f64 = 1e-10;
 impl SubdomainFactors {
     /// Assembles and factors one subdomain.
     ///
-    /// `coordinates` of its nodes; `brick`: nodes of a local brick; `load`: consistent nodal loads; `interior`: class to factor
-    /// for the Dirichlet preconditioner.
+    /// `coordinates` of its nodes; `brick`: nodes of a local brick; `load`: consistent nodal loads; `interior`: class
+    /// to factor for the Dirichlet preconditioner.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] when a matrix is not positive definite or K K⁺ K = K fails.
@@ -119,7 +120,8 @@ impl SubdomainFactors {
         let interior = match interior.and_then(|class| class.symbolic.as_ref().map(|symbolic| (class, symbolic))) {
             Some((class, symbolic)) => {
                 let factored = symbolic.factorize(&class.submatrix.gather(compressible.as_ref().unwrap_or(&stiffness)));
-                // Rows may leave a motion of the interior free. Every principal submatrix of the regularised matrix is definite.
+                // Rows may leave a motion of the interior free. Every principal submatrix of the regularised matrix is
+                // definite.
                 let definite = |_| symbolic.factorize(&class.submatrix.gather(&regularised));
                 Some(factored.or_else(definite)?)
             }
@@ -136,7 +138,7 @@ impl SubdomainFactors {
         Ok(factors)
     }
 
-    /// Rᵀ x.
+    /// The resultants Rᵀ x.
     pub(crate) fn resultants_of<V: Entry>(&self, x: &[V]) -> [V; MOTIONS] {
         let mut resultants = [V::ZERO; MOTIONS];
         vectorized(

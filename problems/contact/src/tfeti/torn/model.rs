@@ -1,4 +1,5 @@
-//! The torn scene: what is fixed for a run, and the factored system of one shape. A process holds its own subdomains only.
+//! The torn scene: what is fixed for a run, and the factored system of one shape. A process holds its own subdomains
+//! only.
 
 use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::body::mesh::{Block, Subdomain, Tearing};
@@ -42,7 +43,8 @@ pub struct TornSubdomain {
     interior: Option<Arc<InteriorClass>>,
 }
 
-/// Everything that does not depend on the shape: tearing, rows, patterns, and the factors of bodies that keep their shape.
+/// Everything that does not depend on the shape: tearing, rows, patterns, and the factors of bodies that keep their
+/// shape.
 #[derive(Debug)]
 pub struct TornModel {
     /// The problem that was torn.
@@ -55,7 +57,7 @@ pub struct TornModel {
     pub distribution: Arc<Distribution>,
     /// Which process works on which clusters of subdomains: what has rigid motions of its own.
     pub clusters: Arc<Distribution>,
-    /// Rows of B.
+    /// The rows of B.
     pub constraints: Arc<Constraints>,
     /// Dofs that this process shares with others.
     pub interface: Interface,
@@ -77,16 +79,16 @@ struct FactoredBody {
     clusters: Vec<Arc<ClusterFactors>>,
 }
 
-/// Work on a subdomain of the upper body relative to one of the lower body, whose shape changes: products alone, no factors and
-/// no sums for the derivative.
+/// Work on a subdomain of the upper body relative to one of the lower body, whose shape changes: products alone, no
+/// factors and no sums for the derivative.
 const FIXED_WEIGHT: f64 = 0.5;
 
 impl TornModel {
     /// Tears the bodies of a problem and builds the rows of this process.
     ///
     /// # Errors
-    /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`] for clusters that do not divide the
-    /// subdomains, or whose subdomains the rows of B_c do not hold together.
+    /// [`ContactError::Factorization`] when a symbolic analysis fails, [`ContactError::Clusters`] for clusters that do
+    /// not divide the subdomains, or whose subdomains the rows of B_c do not hold together.
     pub fn new(problem: Arc<ContactProblem>, options: TornOptions) -> Result<Self, ContactError> {
         let TornOptions { preconditioner, clusters: shape, communication } = options;
         let counts = problem.scene.subdomains;
@@ -152,8 +154,8 @@ impl TornModel {
         self.interface.torn_count() - self.interface.owned_count()
     }
 
-    /// Factors the subdomains of the given blocks (lower, then upper). The upper body keeps its shape: it is factored at the first call
-    /// and shared afterwards. Factorisations are counted over all processes.
+    /// Factors the subdomains of the given blocks (lower, then upper). The upper body keeps its shape: it is factored
+    /// at the first call and shared afterwards. Factorisations are counted over all processes.
     ///
     /// # Errors
     /// [`ContactError::Factorization`] from a subdomain.
@@ -202,7 +204,8 @@ impl TornModel {
         self.distribution.agreed(factored)
     }
 
-    /// What joins the clusters of a body in this process, from its factored subdomains; nothing where every subdomain is a cluster.
+    /// What joins the clusters of a body in this process, from its factored subdomains; nothing where every subdomain
+    /// is a cluster.
     fn join_body(
         &self,
         body: usize,
@@ -245,7 +248,8 @@ impl TornModel {
         TornVector(vec![0.0; self.interface.torn_count()])
     }
 
-    /// Coarse amplitudes of the motions that nothing holds: Rᵀ of their displacement on every subdomain, of unit length together.
+    /// Coarse amplitudes of the motions that nothing holds: Rᵀ of their displacement on every subdomain, of unit length
+    /// together.
     pub fn grounded_amplitudes(&self, system: &TornSystem, configuration: &Configuration) -> Vec<Vec<f64>> {
         let Configuration { blocks, rigid, grounded, .. } = configuration;
         let amplitudes = |motion: &Vec<f64>| {
@@ -310,7 +314,6 @@ fn distributions(communication: Arc<dyn Communication>, numbering: &Numbering) -
     [clusters, subdomains]
 }
 
-/// Clusters per axis.
 fn cluster_counts(counts: [usize; 3], shape: [usize; 3]) -> Result<[usize; 3], ContactError> {
     if (0..3).any(|axis| shape[axis] == 0 || !counts[axis].is_multiple_of(shape[axis])) {
         let reason = format!("their numbers have to divide the {counts:?} subdomains of a body");
@@ -319,8 +322,8 @@ fn cluster_counts(counts: [usize; 3], shape: [usize; 3]) -> Result<[usize; 3], C
     Ok(std::array::from_fn(|axis| counts[axis] / shape[axis]))
 }
 
-/// Refuses clusters with other motions than those of a rigid body. Whether nodes hold subdomains together does not depend on the shape of
-/// the body; bricks of edge one stand for all.
+/// Refuses clusters with other motions than those of a rigid body. Whether nodes hold subdomains together does not
+/// depend on the shape of the body; bricks of edge one stand for all.
 fn check_motions(
     constraints: &Constraints,
     numbering: &Numbering,
@@ -352,8 +355,9 @@ fn coordinates(place: &Subdomain, block: &Block) -> Vec<[f64; 3]> {
     (0..place.node_count()).map(|node| block.coordinates(place.block_position(node))).collect()
 }
 
-/// The interior class of one subdomain, shared among subdomains with the same interior dofs: those without rows of B and B_c.
-/// `joined`: its dofs with rows of B_c. They have no jumps between subdomains: contact rows alone move them in the preconditioner.
+/// The interior class of one subdomain, shared among subdomains with the same interior dofs: those without rows of B
+/// and B_c. `joined`: its dofs with rows of B_c. They have no jumps between subdomains: contact rows alone move them in
+/// the preconditioner.
 fn interior_class(
     classes: &mut HashMap<Vec<bool>, Arc<InteriorClass>>,
     pattern: &LocalPattern,

@@ -3,8 +3,9 @@
 //! ```text
 //! a box of clusters is halved across its longest axis, again and again;   cluster k of the lower body, k of the upper one, k + 1 …
 //! ```
-//! The subdomains of a cluster follow each other, in an order of the same kind; without clusters, every subdomain is one. The order does
-//! not depend on the number of processes. Every one of them gets a range of it: a recursive bisection.
+//! The subdomains of a cluster follow each other, in an order of the same kind; without clusters, every subdomain is
+//! one. The order does not depend on the number of processes. Every one of them gets a range of it: a recursive
+//! bisection.
 
 use crate::body::mesh::{Subdomain, Tearing};
 use crate::lattice;
@@ -18,13 +19,12 @@ pub struct Numbering {
     numbers: Vec<Vec<usize>>,
     /// Numbers of the clusters of every body, by their index in the box of clusters.
     clusters: Vec<Vec<usize>>,
-    /// Subdomains per cluster.
     members: usize,
 }
 
 impl Numbering {
-    /// Numbers the subdomains of bodies that are all torn alike, `counts` per axis, in clusters of `shape` subdomains per axis, which
-    /// divides `counts`.
+    /// Numbers the subdomains of bodies that are all torn alike, `counts` per axis, in clusters of `shape` subdomains
+    /// per axis, which divides `counts`.
     pub fn new(tearing: &Tearing, counts: [usize; 3], shape: [usize; 3], bodies: usize) -> Self {
         let boxes: [usize; 3] = std::array::from_fn(|axis| counts[axis] / shape[axis]);
         let (mut order, mut inner) = (Vec::new(), Vec::new());
@@ -52,7 +52,6 @@ impl Numbering {
         self.members
     }
 
-    /// Number of clusters.
     pub fn cluster_count(&self) -> usize {
         self.count() / self.members
     }
@@ -62,12 +61,10 @@ impl Numbering {
         self.clusters[body][index]
     }
 
-    /// Number of subdomains.
     pub fn count(&self) -> usize {
         self.places.len()
     }
 
-    /// Number of bodies.
     pub fn body_count(&self) -> usize {
         self.numbers.len()
     }

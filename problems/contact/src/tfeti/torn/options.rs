@@ -7,10 +7,11 @@ use std::sync::Arc;
 /// How bodies are torn, preconditioned and divided among processes.
 #[derive(Debug, Clone)]
 pub struct TornOptions {
-    /// Which preconditioner.
+    /// The preconditioner of the dual operator.
     pub preconditioner: PreconditionerKind,
-    /// Subdomains per axis of a cluster, which divide those of a body. The subdomains of a cluster share six rigid motions, so that the coarse
-    /// problem has six unknowns per cluster (hybrid total FETI). One subdomain per cluster is total FETI.
+    /// Subdomains per axis of a cluster, which divide those of a body. The subdomains of a cluster share six rigid
+    /// motions, so that the coarse problem has six unknowns per cluster (hybrid total FETI). One subdomain per cluster
+    /// is total FETI.
     pub clusters: [usize; 3],
     /// What connects the processes; each of them works on its own clusters.
     pub communication: Arc<dyn Communication>,

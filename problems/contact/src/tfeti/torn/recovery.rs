@@ -6,8 +6,8 @@ use crate::lattice;
 use crate::tfeti::torn::model::TornModel;
 use crate::tfeti::torn::vectors::TornVector;
 
-/// All bodies of a shape, lower first, from the displacements over the torn dofs of this process; the copies of a node are averaged.
-/// Process 0 alone has them: nobody else needs the memory that whole bodies take.
+/// All bodies of a shape, lower first, from the displacements over the torn dofs of this process; the copies of a node
+/// are averaged. Process 0 alone has them: nobody else needs the memory that whole bodies take.
 pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> Vec<SolvedBody> {
     let size = model.pattern.pattern.dimension();
     let own = &torn.0[..model.interface.owned_count()];
@@ -15,8 +15,8 @@ pub fn whole_bodies(model: &TornModel, blocks: &[Block], torn: &TornVector) -> V
     blocks.iter().enumerate().map(|(body, block)| whole_body(model, body, block, &all)).collect()
 }
 
-/// The transposed map: from three entries per node of every body, lower first, to the torn dofs of this process. Each of the c copies of
-/// a node carries 1/c of its entries.
+/// The transposed map: from three entries per node of every body, lower first, to the torn dofs of this process. Each
+/// of the c copies of a node carries 1/c of its entries.
 pub fn torn_loads(model: &TornModel, loads: &[f64]) -> TornVector {
     let grid = &model.problem.grid;
     let count = grid.node_count();

@@ -23,7 +23,7 @@ pub fn orthonormal_modes(nodes: &[[f64; 3]]) -> Vec<Vec<f64>> {
     modes
 }
 
-/// Gram–Schmidt, twice.
+/// Orthonormalises by two passes of the method of Gram and Schmidt.
 pub fn orthonormalise(vectors: &mut [Vec<f64>]) {
     for index in 0..vectors.len() {
         let (done, rest) = vectors.split_at_mut(index);

@@ -1,4 +1,5 @@
-//! Inner products of vectors over the rows of B, or over the unknowns of an active set: rows of B_E first, contact after them.
+//! Inner products of vectors over the rows of B, or over the unknowns of an active set: rows of B_E first, contact
+//! after them.
 //!
 //! ```text
 //! Σ over rows of B_E = Σ over subdomains of the rows that they own, by the tree of the distribution;   contact rows are everywhere

@@ -8,11 +8,8 @@ use std::ops::Range;
 
 /// What the rows need to know of one body.
 pub struct BodyRows<'a> {
-    /// The grid.
     pub grid: &'a Grid,
-    /// Its subdomains.
     pub tearing: &'a Tearing,
-    /// Its supports.
     pub scene: &'a BodyScene,
     /// First torn dof of every subdomain of the tearing, of all processes.
     pub offsets: Vec<usize>,
@@ -34,8 +31,8 @@ impl BodyRows<'_> {
         (inside && self.is_near_a_corner(position)).then_some(cluster)
     }
 
-    /// Whether a node lies at a corner between subdomains, next to the end of an edge, or next to the corner of a face: few nodes, as far
-    /// apart on a face as inner nodes can be, so that neighbours hardly turn against each other.
+    /// Whether a node lies at a corner between subdomains, next to the end of an edge, or next to the corner of a face:
+    /// few nodes, as far apart on a face as inner nodes can be, so that neighbours hardly turn against each other.
     fn is_near_a_corner(&self, position: [usize; 3]) -> bool {
         let cells = self.tearing.subdomains[0].cells;
         (0..3).all(|axis| {
@@ -54,7 +51,6 @@ pub struct EqualityRow {
     pub owner: usize,
     /// Its place among the rows of its owner.
     pub index: usize,
-    /// Its entries.
     pub entries: SparseRow,
 }
 
@@ -122,8 +118,8 @@ pub fn first_subdomain(row: &SparseRow, size: usize) -> usize {
     row.iter().map(|(dof, _)| dof / size).min().unwrap_or(0)
 }
 
-/// Visits the rows of supports and gluing of one body, with the cluster whose row of B_c they are; returns the number of gluing rows of
-/// B_E.
+/// Visits the rows of supports and gluing of one body, with the cluster whose row of B_c they are; returns the number
+/// of gluing rows of B_E.
 fn equality_rows(body: &BodyRows<'_>, mut visit: impl FnMut(Option<usize>, SparseRow)) -> usize {
     let mut gluing_count = 0;
     for node in lattice::points([0; 3], body.grid.nodes()) {

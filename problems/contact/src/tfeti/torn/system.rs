@@ -134,7 +134,7 @@ mod tests {
         jumps.fold(0.0, f64::max)
     }
 
-    /// K x.
+    /// The forces K x.
     fn forces(model: &TornModel, system: &TornSystem, x: &[f64]) -> Vec<f64> {
         let size = model.pattern.pattern.dimension();
         let mut forces = vec![0.0; x.len()];
@@ -144,7 +144,7 @@ mod tests {
         forces
     }
 
-    /// K̂⁺ f.
+    /// The displacements K̂⁺ f.
     fn displacements(model: &TornModel, system: &TornSystem, forces: &[f64]) -> Vec<f64> {
         let mut x = forces.to_vec();
         let parts = x.chunks_exact_mut(model.pattern.pattern.dimension()).zip(&system.parts);

@@ -2,8 +2,8 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// A vector over the rows of B of a process, scaled as they are: its rows of gluing and supports (B_E) first, then all packed contact
-/// rows. An entry is a number, or a row of a block of columns.
+/// A vector over the rows of B of a process, scaled as they are: its rows of gluing and supports (B_E) first, then all
+/// packed contact rows. An entry is a number, or a row of a block of columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowVector<V = f64> {
     values: Vec<V>,

@@ -1,9 +1,11 @@
-//! A bar pressed against a rough plane and pulled at its end: it slips over the length that friction needs to carry the pull.
+//! A bar pressed against a rough plane and pulled at its end: it slips over the length that friction needs to carry the
+//! pull.
 //!
 //! ```text
 //! E A u″ = 𝓕 p b on (L − ℓ, L),  u = 0 before,  E A u′(L) = Q:     ℓ = Q/(𝓕 p b),   u = 𝓕 p b (x − L + ℓ)²/(2 E A)
 //! ```
-//! ν = 0 and a height far below the length of a brick make the column of bricks that bar, up to (height/length of a brick).
+//! ν = 0 and a height far below the length of a brick make the column of bricks that bar, up to (height/length of a
+//! brick).
 
 use super::setting::{SECOND, block, load, solve, support};
 use contact::body::elasticity::Material;

@@ -1,7 +1,8 @@
 //! Boussinesq: the surface of an elastic half-space sinks by (1 − ν²)P/(πEr) at the distance r of a normal force P.
 //!
-//! A quarter of a block stands for the half-space, and a column of the inverse of its condensed stiffness for the deflections.
-//! A finite block adds a field that is smooth and even in r: A/r + B + Cr² is fitted at distances from 0.2 to 0.7 of the side.
+//! A quarter of a block stands for the half-space, and a column of the inverse of its condensed stiffness for the
+//! deflections. A finite block adds a field that is smooth and even in r: A/r + B + Cr² is fitted at distances from 0.2
+//! to 0.7 of the side.
 
 use super::setting::{FIRST, SECOND, THIRD, block, support};
 use contact::body::elasticity::Material;

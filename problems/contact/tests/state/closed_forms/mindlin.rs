@@ -1,11 +1,11 @@
-//! Cattaneo and Mindlin: a sphere pressed by P onto a block of the same material and pushed along by Q < 𝓕P slips outside a
-//! circle of radius c.
+//! Cattaneo and Mindlin: a sphere pressed by P onto a block of the same material and pushed along by Q < 𝓕P slips
+//! outside a circle of radius c.
 //!
 //! ```text
 //! c/a = (1 − Q/(𝓕P))^(1/3) = k,    Σ|λ_T| r² / Σ|λ_T|  :  Σλ_N r² / Σλ_N  =  (1 − k⁵) : (1 − k³)
 //! ```
-//! Equal materials do not slip under P alone (no Dundurs coupling), so that the law in displacements gives the solution of the
-//! law in velocities.
+//! Equal materials do not slip under P alone (no Dundurs coupling), so that the law in displacements gives the solution
+//! of the law in velocities.
 
 use super::setting::{ALL, SECOND, THIRD, block, load, pressures, solve, support};
 use contact::body::elasticity::Material;

@@ -1,5 +1,5 @@
-//! Contact patch test: a block pressed flat onto a plane has the pressure of its load at every node, when each node stands for
-//! its tributary area: whole inside, half on edges, a quarter in corners.
+//! Contact patch test: a block pressed flat onto a plane has the pressure of its load at every node, when each node
+//! stands for its tributary area: whole inside, half on edges, a quarter in corners.
 
 use super::setting::{THIRD, block, load, pressures, solve, support};
 use contact::body::elasticity::Material;

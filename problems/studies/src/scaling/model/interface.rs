@@ -7,9 +7,6 @@ use problems::commands::Failure;
 use std::sync::Arc;
 
 /// Dofs of other ranks that a rank needs, in the mean over all ranks.
-///
-/// # Errors
-/// [`Failure`] if the bodies cannot be torn.
 pub fn mean_ghosts(problem: &Arc<ContactProblem>, ranks: usize) -> Result<f64, Failure> {
     let mut sum = 0;
     for rank in 0..ranks {

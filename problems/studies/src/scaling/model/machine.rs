@@ -37,7 +37,7 @@ pub struct Machine {
     pub sparse_rate: f64,
     /// Operations per second of a dense factorisation.
     pub dense_rate: f64,
-    /// Bytes per subdomain.
+    /// Memory per subdomain, bytes.
     pub bytes: f64,
     /// Bytes of a process without subdomains.
     pub base_bytes: f64,
@@ -47,9 +47,6 @@ pub struct Machine {
 
 impl Machine {
     /// Measures this machine, on one thread.
-    ///
-    /// # Errors
-    /// [`Failure`] if a state cannot be found.
     pub fn measure(scene: SceneName) -> Result<Self, Failure> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let pool = pool.map_err(|error| Failure::Computation(format!("one thread: {error}")))?;

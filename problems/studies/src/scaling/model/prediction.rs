@@ -26,7 +26,7 @@ pub struct Network {
 pub struct Workload {
     /// Number of MPI processes.
     pub ranks: f64,
-    /// Subdomains per rank.
+    /// Number of subdomains per rank.
     pub subdomains: f64,
     /// Products with clusters over those without; none for plain total FETI.
     pub clusters: Option<f64>,
@@ -46,7 +46,7 @@ pub struct Prediction {
     pub own: f64,
     /// Factors of the coarse problem, s.
     pub coarse_factors: f64,
-    /// Its solves, s.
+    /// Time for the solves with the coarse matrix, s.
     pub coarse_solves: f64,
     /// Exchanges with neighbours, s.
     pub neighbours: f64,
@@ -76,7 +76,7 @@ const SUM_GATHERS: f64 = 4.0;
 const SUMS: f64 = 60.0;
 /// Dual vectors that a solve keeps.
 const DUAL_VECTORS: f64 = 140.0;
-/// Dense matrices of the contact units that are alive at once.
+/// Dense matrices of the contact units that are in memory at once.
 const DENSE_MATRICES: f64 = 6.0;
 /// Entries of the coarse matrix per subdomain: six columns of some fourteen neighbours.
 const COARSE_COLUMNS: f64 = 525.0;

@@ -15,7 +15,6 @@ use std::sync::Arc;
 pub struct Options {
     /// Network that the prediction assumes.
     pub network: Network,
-    /// Subdomains per rank.
     pub per_rank: usize,
     /// Products of state and adjoint together; none for those of the measurement.
     pub products: Option<f64>,

@@ -56,7 +56,7 @@ pub struct UnitCase {
     pub units: Vector,
     /// Largest decimal exponent of the units.
     pub spread: usize,
-    /// Offset of Θ.
+    /// The constant added to Θ.
     pub offset: f64,
     /// Number among the problems of the same family, set, spread and kind of start.
     pub number: usize,

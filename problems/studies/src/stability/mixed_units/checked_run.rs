@@ -45,11 +45,10 @@ pub struct UnitRecord {
     pub given: Given,
     /// Whether every variable has two finite bounds.
     pub boxed: bool,
-    /// Kind of start.
     pub start: &'static str,
     /// Largest decimal exponent of the units.
     pub spread: usize,
-    /// Offset of Θ.
+    /// The constant added to Θ.
     pub offset: f64,
     /// Value at the end, without the offset.
     pub value: f64,

@@ -19,18 +19,18 @@ const DEPENDENT: f64 = 1e-7;
 pub struct ConeProgram {
     /// P, symmetric and positive semidefinite.
     pub hessian: Matrix,
-    /// p.
+    /// The linear term p.
     pub linear: Vector,
     /// Half-spaces: G row by row, with its side g.
     pub half_spaces: Vec<(Vector, f64)>,
-    /// Cones (M, e).
+    /// The cones (M, e).
     pub cones: Vec<(Matrix, Vector)>,
 }
 
 /// A primal-dual solution of the cone program.
 #[derive(Debug, Clone)]
 pub struct Optimum {
-    /// z.
+    /// The minimiser z.
     pub point: Vector,
     /// The value of the dual program.
     pub dual_value: f64,

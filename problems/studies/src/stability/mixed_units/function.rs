@@ -10,9 +10,9 @@ use nonsmooth::{Matrix, Vector};
 /// The function h of the residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outer {
-    /// Σ |r_i|.
+    /// The sum Σ |r_i|.
     AbsoluteSum,
-    /// max r_i.
+    /// The maximum of r_i.
     Largest,
     /// Σ |(r_i, …)|₂ over groups of so many entries in a row.
     SumOfNorms(usize),
@@ -21,26 +21,26 @@ pub enum Outer {
 /// The term ½|L (x − c) − d|².
 #[derive(Debug, Clone)]
 pub struct Quadratic {
-    /// L.
+    /// The root L.
     pub root: Matrix,
-    /// d.
+    /// The right side d.
     pub right: Vector,
 }
 
 /// Θ with all its data.
 #[derive(Debug, Clone)]
 pub struct Function {
-    /// h.
+    /// The outer function h.
     pub outer: Outer,
     /// A, one row per residual.
     pub rows: Matrix,
-    /// c.
+    /// The centre c.
     pub centre: Vector,
-    /// b.
+    /// The right side b.
     pub right: Vector,
     /// q, only where h is the largest entry.
     pub quadratic: Option<Quadratic>,
-    /// s.
+    /// The constant s added to Θ.
     pub offset: f64,
 }
 
@@ -58,7 +58,6 @@ impl Function {
         Self::new(Outer::Largest, both, Vector::from_fn(2 * m, |i, _| sign(i) * right[i % m]))
     }
 
-    /// Number of variables.
     pub fn dimension(&self) -> usize {
         self.rows.ncols()
     }
@@ -123,7 +122,7 @@ impl Function {
         (outer.value(&outputs), jacobian.tr_mul(&outer.subgradient(&outputs)))
     }
 
-    /// Θ.
+    /// The value of Θ.
     pub fn value(&self, x: &Vector) -> f64 {
         self.outer_function().value(&self.outputs(x).0)
     }

@@ -6,13 +6,11 @@ use nonsmooth::{InputError, Matrix, Polyhedron, Vector};
 /// Where a run starts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Start {
-    /// At zero.
     Zero,
     /// At a random point.
     Random(Vector),
     /// At a point that belongs to the problem.
     Given(Vector),
-    /// At the minimiser.
     Minimiser,
     /// Outside of the active bounds: the nearest admissible point is the minimiser.
     Beyond,
@@ -42,11 +40,10 @@ pub struct Problem {
     pub lower: Vector,
     /// Upper bounds, ∞ where open.
     pub upper: Vector,
-    /// R.
+    /// The matrix R of the rows.
     pub rows: Matrix,
-    /// s.
+    /// The right sides s.
     pub sides: Vector,
-    /// Where runs start.
     pub starts: Vec<Start>,
 }
 

@@ -71,7 +71,7 @@ impl UnitReport {
         self.records.iter().filter(|record| record.false_termination.is_some()).collect()
     }
 
-    /// Totals and tables.
+    /// The page with totals and tables.
     pub fn markdown(&self) -> String {
         let mut text = format!(
             "{} runs, {} false terminations. Reached with units of 1e±{USUAL_SPREAD} at most and a box or outputs: {}. \

@@ -29,7 +29,6 @@ const CONE_EVERY: usize = 10;
 /// Numbers of scenes by result.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Counts {
-    /// Scenes drawn.
     pub scenes: usize,
     /// States that any path returned.
     pub states: usize,

@@ -10,7 +10,6 @@ use contact::solvers::{AnySolver, Processes, SolverKind, SolverPlan};
 use scene_file::Case;
 use std::sync::Arc;
 
-/// Exponent of Θ.
 const EXPONENT: i32 = 4;
 /// Share of the load below which contact forces are rounding.
 const NOTHING: f64 = 1e-6;
@@ -24,11 +23,10 @@ const TOLERANCE: f64 = 1e-12;
 pub struct Found {
     /// Name of the solver.
     pub path: String,
-    /// Θ.
+    /// The objective Θ.
     pub objective: f64,
     /// Largest residual, computed anew from the forces.
     pub residual: f64,
-    /// Estimated floating-point operations.
     pub operations: f64,
     /// Whether the state may not be unique.
     pub may_not_be_unique: bool,
