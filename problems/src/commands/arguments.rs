@@ -269,7 +269,7 @@ impl Arguments {
         Self::parse_by(Self::parser(), words).map(|(arguments, _)| arguments)
     }
 
-    /// Reads the words of a command line by this parser; the scene too, where it has an argument [`SCENE`].
+    /// Reads the words of a command line by this parser; the scene too, where it has an argument for one.
     pub fn parse_by(
         mut parser: clap::Command,
         words: impl IntoIterator<Item = impl Into<OsString> + Clone>,
