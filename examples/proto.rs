@@ -464,46 +464,108 @@ fn odd() {
 /// h composed of the objective's own outer function and the exact penalty.
 struct PenOuter(testset::Outer, usize, f64, Vec<ConstraintKind>);
 impl OuterFunction for PenOuter {
-    fn value(&self, z: &Vector) -> f64 { self.0.evaluate(&z.as_slice()[..self.1]).0 + self.2 * z.iter().skip(self.1).zip(&self.3).fold(0.0f64, |a, (b, k)| a.max(k.violation(*b))) }
+    fn value(&self, z: &Vector) -> f64 {
+        self.0.evaluate(&z.as_slice()[..self.1]).0
+            + self.2 * z.iter().skip(self.1).zip(&self.3).fold(0.0f64, |a, (b, k)| a.max(k.violation(*b)))
+    }
     fn subgradient(&self, z: &Vector) -> Vector {
-        let mut w = self.0.evaluate(&z.as_slice()[..self.1]).1; w.resize(z.len(), 0.0);
+        let mut w = self.0.evaluate(&z.as_slice()[..self.1]).1;
+        w.resize(z.len(), 0.0);
         let (mut m, mut at) = (0.0, None);
-        for (j, k) in self.3.iter().enumerate() { let v = k.violation(z[self.1 + j]); if v > m { m = v; at = Some(j); } }
-        if let Some(j) = at { w[self.1 + j] = self.2 * if z[self.1 + j] > 0.0 { 1.0 } else { -1.0 }; }
+        for (j, k) in self.3.iter().enumerate() {
+            let v = k.violation(z[self.1 + j]);
+            if v > m {
+                m = v;
+                at = Some(j);
+            }
+        }
+        if let Some(j) = at {
+            w[self.1 + j] = self.2 * if z[self.1 + j] > 0.0 { 1.0 } else { -1.0 };
+        }
         Vector::from_vec(w)
     }
 }
 struct Wrapped<'a>(&'a testset::constrained::ConstrainedProblem, Option<OwnOuter>, Vec<ConstraintKind>);
 struct OwnOuter(testset::Outer);
 impl OuterFunction for OwnOuter {
-    fn value(&self, z: &Vector) -> f64 { self.0.evaluate(z.as_slice()).0 }
-    fn subgradient(&self, z: &Vector) -> Vector { Vector::from_vec(self.0.evaluate(z.as_slice()).1) }
+    fn value(&self, z: &Vector) -> f64 {
+        self.0.evaluate(z.as_slice()).0
+    }
+    fn subgradient(&self, z: &Vector) -> Vector {
+        Vector::from_vec(self.0.evaluate(z.as_slice()).1)
+    }
 }
 impl NonsmoothObjective for Wrapped<'_> {
     type WarmStart = ();
-    fn dimension(&self) -> usize { self.0.dimension }
-    fn outer(&self) -> Option<&dyn OuterFunction> { self.1.as_ref().map(|o| o as &dyn OuterFunction) }
-    fn constraint_kinds(&self) -> &[ConstraintKind] { &self.2 }
+    fn dimension(&self) -> usize {
+        self.0.dimension
+    }
+    fn outer(&self) -> Option<&dyn OuterFunction> {
+        self.1.as_ref().map(|o| o as &dyn OuterFunction)
+    }
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        &self.2
+    }
     fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
         let x = request.point.as_slice();
         let found = self.0.evaluate(x);
-        let n = x.len(); let c = &found.constraints;
-        let constraints = ConstraintEvaluation::new(Vector::from_iterator(c.len(), c.iter().map(|c| c.0)), Matrix::from_fn(c.len(), n, |i, k| c[i].1[k]));
+        let n = x.len();
+        let c = &found.constraints;
+        let constraints = ConstraintEvaluation::new(
+            Vector::from_iterator(c.len(), c.iter().map(|c| c.0)),
+            Matrix::from_fn(c.len(), n, |i, k| c[i].1[k]),
+        );
         let (outputs, rows) = self.0.composition().linearize(x);
-        let linearization = if self.1.is_some() { Linearized::if_asked(request.linearization, Linearization { jacobian: Matrix::from_fn(outputs.len(), n, |i, k| rows[i][k]), outputs: Vector::from_vec(outputs), accuracy: 0.0, inactive: None }) } else { Linearized::NotAsked };
-        Ok(Answer::Accurate(Evaluation { linearization, constraints: Some(constraints), ..Evaluation::exact(found.value, Vector::from_vec(found.subgradient), ()) }))
+        let linearization = if self.1.is_some() {
+            Linearized::if_asked(
+                request.linearization,
+                Linearization {
+                    jacobian: Matrix::from_fn(outputs.len(), n, |i, k| rows[i][k]),
+                    outputs: Vector::from_vec(outputs),
+                    accuracy: 0.0,
+                    inactive: None,
+                },
+            )
+        } else {
+            Linearized::NotAsked
+        };
+        Ok(Answer::Accurate(Evaluation {
+            linearization,
+            constraints: Some(constraints),
+            ..Evaluation::exact(found.value, Vector::from_vec(found.subgradient), ())
+        }))
     }
 }
 fn kinds_of(p: &testset::constrained::ConstrainedProblem) -> Vec<ConstraintKind> {
-    p.kinds.iter().map(|k| match k { testset::constrained::Kind::Nonsmooth => Nonsmooth, testset::constrained::Kind::Smooth => Smooth, testset::constrained::Kind::SmoothEquality => SmoothEquality }).collect()
+    p.kinds
+        .iter()
+        .map(|k| match k {
+            testset::constrained::Kind::Nonsmooth => Nonsmooth,
+            testset::constrained::Kind::Smooth => Smooth,
+            testset::constrained::Kind::SmoothEquality => SmoothEquality,
+        })
+        .collect()
 }
 fn coll() {
-    let only = std::env::args().nth(2).unwrap_or_default(); let verbose = std::env::args().nth(3).is_some();
+    let only = std::env::args().nth(2).unwrap_or_default();
+    let verbose = std::env::args().nth(3).is_some();
     let (mut logs, mut solved, mut total, mut false_, mut ratio, mut both) = (0.0, 0, 0, 0, 0.0, 0);
-    for p in testset::constrained::all().into_iter().flat_map(|p| [p.joined(), p]).filter(|p| only.is_empty() || p.name == only || (only == "single" && !p.name.ends_with("Joined"))) {
+    for p in testset::constrained::all()
+        .into_iter()
+        .flat_map(|p| [p.joined(), p])
+        .filter(|p| only.is_empty() || p.name == only || (only == "single" && !p.name.ends_with("Joined")))
+    {
         let set = Polyhedron::boxed(v(&p.lower), v(&p.upper)).unwrap();
         let limit = 1000;
-        let judge = |x: &Vector| { let f = p.evaluate(x.as_slice()).value; let best = std::iter::once(p.optimum).chain(p.other_optima.iter().copied()).map(|o| (f - o) / o.abs().max(1.0)).min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap(); (best, p.violation(x.as_slice())) };
+        let judge = |x: &Vector| {
+            let f = p.evaluate(x.as_slice()).value;
+            let best = std::iter::once(p.optimum)
+                .chain(p.other_optima.iter().copied())
+                .map(|o| (f - o) / o.abs().max(1.0))
+                .min_by(|a, b| a.abs().total_cmp(&b.abs()))
+                .unwrap();
+            (best, p.violation(x.as_slice()))
+        };
         let mut line = format!("{:26} n {:3} m {:2}", p.name, p.dimension, p.kinds.len());
         let mut counts = [0usize; 3];
         for mode in 0..3 {
@@ -514,36 +576,91 @@ fn coll() {
                 BundleTrust::new(config).unwrap().constraints(set.clone()).minimize(&theta, v(&p.start))
             } else {
                 let m0 = p.composition().linearize(&p.start).0.len();
-                let theta = CompositeFunction::new(p.dimension, PenOuter(p.composition().outer().clone(), m0, p.penalty, kinds_of(&p)), |x: &Vector| {
-                    let found = p.evaluate(x.as_slice()); let (outputs, rows) = p.composition().linearize(x.as_slice());
-                    let n = x.len();
-                    let z: Vec<f64> = outputs.iter().copied().chain(found.constraints.iter().map(|c| c.0)).collect();
-                    let all: Vec<Vec<f64>> = rows.into_iter().chain(found.constraints.into_iter().map(|c| c.1)).collect();
-                    (Vector::from_vec(z), Matrix::from_fn(all.len(), n, |i, k| all[i][k]))
-                });
+                let theta = CompositeFunction::new(
+                    p.dimension,
+                    PenOuter(p.composition().outer().clone(), m0, p.penalty, kinds_of(&p)),
+                    |x: &Vector| {
+                        let found = p.evaluate(x.as_slice());
+                        let (outputs, rows) = p.composition().linearize(x.as_slice());
+                        let n = x.len();
+                        let z: Vec<f64> =
+                            outputs.iter().copied().chain(found.constraints.iter().map(|c| c.0)).collect();
+                        let all: Vec<Vec<f64>> =
+                            rows.into_iter().chain(found.constraints.into_iter().map(|c| c.1)).collect();
+                        (Vector::from_vec(z), Matrix::from_fn(all.len(), n, |i, k| all[i][k]))
+                    },
+                );
                 BundleTrust::new(config).unwrap().constraints(set.clone()).minimize(&theta, v(&p.start))
             };
             match report {
                 Ok(r) => {
-                    if verbose && mode == 0 { for r in &r.history { println!("  {:3} {:8} {:12} {:?} c {:.9e} pred {:.2e} agg {:.1e} err {:.1e} u {:.1e} len {:.1e}", r.evaluation, r.kind, r.origin, r.value, r.center_value, r.predicted_decrease, r.aggregate_norm, r.aggregate_error, r.weight, r.step_length); } println!("{r}"); }
+                    if verbose && mode == 0 {
+                        for r in &r.history {
+                            println!(
+                                "  {:3} {:8} {:12} {:?} c {:.9e} pred {:.2e} agg {:.1e} err {:.1e} u {:.1e} len {:.1e}",
+                                r.evaluation,
+                                r.kind,
+                                r.origin,
+                                r.value,
+                                r.center_value,
+                                r.predicted_decrease,
+                                r.aggregate_norm,
+                                r.aggregate_error,
+                                r.weight,
+                                r.step_length
+                            );
+                        }
+                        println!("{r}");
+                    }
                     let (e, viol) = judge(&r.solution);
                     let ok = e.abs() <= 1e-6 && (viol <= 1e-7 || mode == 2 && viol < 1e-5);
                     let conf = r.termination.is_confirmed();
-                    if mode == 0 { total += 1; solved += usize::from(ok); false_ += usize::from(conf && !ok); if ok { logs += (r.counts.evaluations as f64).ln(); } }
-                    if ok { counts[mode] = r.counts.evaluations; }
+                    if mode == 0 {
+                        total += 1;
+                        solved += usize::from(ok);
+                        false_ += usize::from(conf && !ok);
+                        if ok {
+                            logs += (r.counts.evaluations as f64).ln();
+                        }
+                    }
+                    if ok {
+                        counts[mode] = r.counts.evaluations;
+                    }
                     let t = r.termination.to_string();
-                    line += &format!(" | {} {:4} {:+.0e} {:.0e}{}{}", if ok { "ok  " } else { "MISS" }, r.counts.evaluations, e, viol, if conf { " conf" } else { "" }, if ok { String::new() } else { format!(" {}", &t[..t.len().min(38)]) });
+                    line += &format!(
+                        " | {} {:4} {:+.0e} {:.0e}{}{}",
+                        if ok { "ok  " } else { "MISS" },
+                        r.counts.evaluations,
+                        e,
+                        viol,
+                        if conf { " conf" } else { "" },
+                        if ok { String::new() } else { format!(" {}", &t[..t.len().min(38)]) }
+                    );
                 }
-                Err(e) => { line += &format!(" | ERROR {e}"); if mode == 0 { total += 1; } }
+                Err(e) => {
+                    line += &format!(" | ERROR {e}");
+                    if mode == 0 {
+                        total += 1;
+                    }
+                }
             }
         }
-        if counts[0] > 0 && counts[2] > 0 { ratio += (counts[0] as f64 / counts[2] as f64).ln(); both += 1; }
+        if counts[0] > 0 && counts[2] > 0 {
+            ratio += (counts[0] as f64 / counts[2] as f64).ln();
+            both += 1;
+        }
         println!("{line}");
     }
-    println!("{solved} of {total}, false {false_}, geo {:.1}, ratio to the penalty {:.2} over {both}", (logs / solved as f64).exp(), (ratio / both as f64).exp());
+    println!(
+        "{solved} of {total}, false {false_}, geo {:.1}, ratio to the penalty {:.2} over {both}",
+        (logs / solved as f64).exp(),
+        (ratio / both as f64).exp()
+    );
 }
 fn main() {
-    if std::env::args().nth(1).as_deref() == Some("coll") { return coll(); }
+    if std::env::args().nth(1).as_deref() == Some("coll") {
+        return coll();
+    }
     if std::env::args().nth(1).as_deref() == Some("trust") {
         return trust();
     }

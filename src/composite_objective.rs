@@ -4,8 +4,10 @@ use crate::checks::check_finite;
 use crate::composite::{Linearization, Linearized, OuterFunction};
 use crate::reduced::{chain_rule, evaluate};
 use crate::{
-    Accuracy, Answer, Coderivative, CostGradient, Evaluation, Matrix, NonsmoothObjective, OracleError, Request, Vector,
+    Accuracy, Answer, Coderivative, ConstraintEvaluation, ConstraintKind, CostGradient, Evaluation, Matrix,
+    NonsmoothObjective, OracleError, Request, Vector,
 };
+use std::convert::Infallible;
 
 /// Θ = h∘c with a closure `x ↦ (c(x), G)`.
 ///
@@ -50,16 +52,33 @@ impl<H: OuterFunction, F: Fn(&Vector) -> (Vector, Matrix)> NonsmoothObjective fo
         Some(&self.outer)
     }
 
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        self.outer.constraint_kinds()
+    }
+
     fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
         let (outputs, jacobian) = (self.function)(request.point);
         let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
         linearization.check(self.dimension)?;
         let value = self.outer.value(&linearization.outputs);
         let subgradient = linearization.jacobian.tr_mul(&self.outer.subgradient(&linearization.outputs));
+        let constraints = of_outputs(&self.outer, &linearization);
         let linearization = Linearized::if_asked(request.linearization, linearization);
-        let evaluation = Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) };
+        let evaluation = Evaluation { linearization, constraints, ..Evaluation::exact(value, subgradient, ()) };
         Ok(Answer::Accurate(evaluation))
     }
+}
+
+/// The constraints that go with an outer function, at outputs with their Jacobian.
+fn of_outputs(outer: &dyn OuterFunction, known: &Linearization) -> Option<ConstraintEvaluation> {
+    let Linearization { outputs, jacobian, .. } = known;
+    let count = outer.constraint_kinds().len();
+    let gradient = |weights: &Vector| Ok::<_, Infallible>(jacobian.tr_mul(weights));
+    let found = |pieces: &[_]| {
+        let Ok(found) = ConstraintEvaluation::of_pieces((count, jacobian.ncols()), pieces, gradient, true);
+        found
+    };
+    (count > 0).then(|| found(&outer.constraint_pieces(outputs)))
 }
 
 /// The outputs c of a state problem that a convex cost is a function of, with their generalized Jacobian. Their number
@@ -142,6 +161,20 @@ impl<S: OutputJacobian, H: OuterFunction> CompositeObjective<S, H> {
         })
     }
 
+    /// The constraints at a state whose Jacobian is not known, by one coderivative for each.
+    fn constraints(&self, control: &Vector, state: &S::State) -> Result<Option<ConstraintEvaluation>, OracleError> {
+        let count = self.cost.constraint_kinds().len();
+        if count == 0 {
+            return Ok(None);
+        }
+        let pieces = self.cost.constraint_pieces(&self.solver.outputs(state));
+        let gradient = |weights: &Vector| {
+            let dual = self.solver.output_dual(state, weights);
+            Ok(self.solver.coderivative(control, state, &dual)?.element)
+        };
+        ConstraintEvaluation::of_pieces((count, control.len()), &pieces, gradient, false).map(Some)
+    }
+
     /// Outputs and G at a state, G corrected so that Gᵀw is the subgradient ξ.
     fn linearize(&self, control: &Vector, state: &S::State, subgradient: &Vector, accuracy: Accuracy) -> Linearized {
         match self.solver.linearize(control, state, accuracy) {
@@ -166,6 +199,10 @@ impl<S: OutputJacobian, H: OuterFunction> NonsmoothObjective for CompositeObject
         Some(&self.cost)
     }
 
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        self.cost.constraint_kinds()
+    }
+
     fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
         evaluate(&self.solver, request, |state| {
             let mut evaluation = self.differentiate(request.point, state)?;
@@ -173,6 +210,10 @@ impl<S: OutputJacobian, H: OuterFunction> NonsmoothObjective for CompositeObject
                 evaluation.linearization =
                     self.linearize(request.point, state, &evaluation.subgradient, wanted.accuracy);
             }
+            evaluation.constraints = match evaluation.linearization.known() {
+                Some(known) => of_outputs(&self.cost, known),
+                None => self.constraints(request.point, state)?,
+            };
             Ok(evaluation)
         })
     }

@@ -8,7 +8,7 @@
 //! are evaluated may violate nonlinear constraints; they never violate U.
 
 use crate::checks::{check_finite, check_size};
-use crate::composite::{Linearization, Linearized, OuterFunction};
+use crate::composite::{Linearization, Linearized, OuterFunction, OutputPiece};
 use crate::{Answer, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError, Request, Vector};
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +58,37 @@ impl ConstraintEvaluation {
     /// Values with one subgradient of each constraint.
     pub fn new(values: Vector, jacobian: Matrix) -> Self {
         Self { values, jacobian, pieces: vec![] }
+    }
+
+    /// The constraints whose pieces are functions of outputs; `gradient` is the gradient by the variables for weights of the outputs.
+    pub(crate) fn of_pieces<E>(
+        (count, dimension): (usize, usize),
+        pieces: &[OutputPiece],
+        mut gradient: impl FnMut(&Vector) -> Result<Vector, E>,
+        all: bool,
+    ) -> Result<Self, E> {
+        let mut values = Vector::from_element(count, f64::NAN);
+        let mut largest: Vec<Option<usize>> = vec![None; count];
+        for (index, piece) in pieces.iter().enumerate().filter(|(_, piece)| piece.constraint < count) {
+            // A value that is NaN stays, to be refused.
+            if largest[piece.constraint].is_none() || piece.value.is_nan() || piece.value > values[piece.constraint] {
+                (values[piece.constraint], largest[piece.constraint]) = (piece.value, Some(index));
+            }
+        }
+        let mut found = Self::new(values, Matrix::zeros(count, dimension));
+        for (index, piece) in pieces.iter().enumerate().filter(|(_, piece)| piece.constraint < count) {
+            let own = largest[piece.constraint] == Some(index);
+            if !(own || all) {
+                continue;
+            }
+            let gradient = gradient(&piece.weights)?;
+            if own {
+                found.jacobian.set_row(piece.constraint, &gradient.transpose());
+            } else {
+                found.pieces.push(ConstraintPiece { constraint: piece.constraint, value: piece.value, gradient });
+            }
+        }
+        Ok(found)
     }
 
     /// Refuses wrong sizes, and entries that are not finite.

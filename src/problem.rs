@@ -4,7 +4,7 @@
 //! Θ(α) = J(α, S(α)),     ξ = ∇₁J(α, y) + D*S(α)(∇₂J(α, y)),     y = S(α)                       method.md (1.1), (1.2)
 //! ```
 
-use crate::{Accuracy, OracleError, Vector};
+use crate::{Accuracy, ConstraintKind, OracleError, Vector};
 
 /// A parametrised, possibly nonsmooth equilibrium y = S(α); method.md (1.1).
 pub trait StateSolver {
@@ -78,6 +78,16 @@ pub trait Cost<State: ?Sized> {
 
     /// (∇₁J, ∇₂J) at (α, y).
     fn gradient(&self, control: &Vector, state: &State) -> CostGradient;
+
+    /// The kinds of the nonlinear constraints c_j(α, y) that go with the cost; none by default.
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        &[]
+    }
+
+    /// The constraints at (α, y), one per kind: values with their two partial gradients. Each costs one coderivative.
+    fn constraints(&self, _control: &Vector, _state: &State) -> Vec<(f64, CostGradient)> {
+        vec![]
+    }
 }
 
 /// The two partial gradients of a [`Cost`].

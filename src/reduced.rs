@@ -3,7 +3,8 @@
 use crate::checks::check_size;
 use crate::linalg::first_non_finite;
 use crate::{
-    Answer, Coderivative, Cost, CostGradient, Evaluation, NonsmoothObjective, OracleError, Request, Sensitivity, Vector,
+    Answer, Coderivative, ConstraintEvaluation, ConstraintKind, Cost, CostGradient, Evaluation, Matrix,
+    NonsmoothObjective, OracleError, Request, Sensitivity, Vector,
 };
 
 /// The objective Θ(α) = J(α, S(α)) of a state solver with coderivative and a cost.
@@ -39,6 +40,21 @@ impl<S: Coderivative, J: Cost<S::State>> ReducedObjective<S, J> {
         let value = self.cost.value(control, state);
         chain_rule(&self.solver, control, state, value, || self.cost.gradient(control, state))
     }
+
+    /// The constraints that go with the cost, by the chain rule.
+    fn constraints(&self, control: &Vector, state: &S::State) -> Result<Option<ConstraintEvaluation>, OracleError> {
+        if self.cost.constraint_kinds().is_empty() {
+            return Ok(None);
+        }
+        let found = self.cost.constraints(control, state);
+        let mut jacobian = Matrix::zeros(found.len(), control.len());
+        for (row, (_, gradient)) in found.iter().enumerate() {
+            let element = self.solver.coderivative(control, state, &gradient.state)?.element;
+            jacobian.set_row(row, &(&gradient.control + element).transpose());
+        }
+        let values = Vector::from_iterator(found.len(), found.iter().map(|(value, _)| *value));
+        Ok(Some(ConstraintEvaluation::new(values, jacobian)))
+    }
 }
 
 impl<S: Coderivative, J: Cost<S::State>> NonsmoothObjective for ReducedObjective<S, J> {
@@ -48,8 +64,15 @@ impl<S: Coderivative, J: Cost<S::State>> NonsmoothObjective for ReducedObjective
         self.solver.control_dimension()
     }
 
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        self.cost.constraint_kinds()
+    }
+
     fn evaluate(&self, request: &Request<'_, S::WarmStart>) -> Result<Answer<S::WarmStart>, OracleError> {
-        evaluate(&self.solver, request, |state| self.differentiate(request.point, state))
+        evaluate(&self.solver, request, |state| {
+            let constraints = self.constraints(request.point, state)?;
+            Ok(Evaluation { constraints, ..self.differentiate(request.point, state)? })
+        })
     }
 }
 

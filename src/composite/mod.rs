@@ -13,14 +13,16 @@
 //! \[Fletcher1982\], \[LewisWright2016\] (proximal method for composite minimization), \[Sagastizabal2013\] (composite
 //! bundle method).
 
+mod constrained;
 mod epigraph;
 mod linearization;
 mod outer;
 mod sum;
 
+pub use constrained::WithConstraints;
 pub use epigraph::Epigraph;
 pub use linearization::{InactiveConstraints, Linearization, LinearizationRequest, Linearized};
 pub use outer::{
-    EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, PositiveParts, SumOfPowers, weighted_gram,
+    EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, OutputPiece, PositiveParts, SumOfPowers, weighted_gram,
 };
 pub use sum::SmoothPlus;

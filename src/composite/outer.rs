@@ -1,7 +1,7 @@
 //! Convex functions of the outputs.
 
 use super::epigraph::Epigraph;
-use crate::{Matrix, Vector};
+use crate::{ConstraintKind, Matrix, Vector};
 
 /// A convex function h: Rᵐ → R with one subgradient, and its curvature where it has one.
 pub trait OuterFunction {
@@ -25,11 +25,32 @@ pub trait OuterFunction {
         None
     }
 
+    /// The kinds of the nonlinear constraints that go with h, which are functions of the outputs too; none by default.
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        &[]
+    }
+
+    /// The constraints at outputs: pieces of which each constraint is the largest, at least one per constraint.
+    fn constraint_pieces(&self, _outputs: &Vector) -> Vec<OutputPiece> {
+        vec![]
+    }
+
     /// Whether h(t c) = t h(c) for all t > 0, as for maxima and norms; false by default. A subgradient at outputs far
     /// away then says as much about h here as if it had been taken nearby, without the rounding of large numbers.
     fn is_homogeneous(&self) -> bool {
         false
     }
+}
+
+/// A piece of a constraint that is a function of the outputs c, with its gradient at these outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputPiece {
+    /// The constraint j, counted from 0.
+    pub constraint: usize,
+    /// The value of the piece.
+    pub value: f64,
+    /// The gradient by the outputs, m entries.
+    pub weights: Vector,
 }
 
 impl<H: OuterFunction + ?Sized> OuterFunction for &H {
@@ -47,6 +68,14 @@ impl<H: OuterFunction + ?Sized> OuterFunction for &H {
 
     fn epigraph(&self) -> Option<Epigraph> {
         (**self).epigraph()
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        (**self).constraint_kinds()
+    }
+
+    fn constraint_pieces(&self, outputs: &Vector) -> Vec<OutputPiece> {
+        (**self).constraint_pieces(outputs)
     }
 
     fn is_homogeneous(&self) -> bool {
