@@ -47,7 +47,8 @@ pub(super) fn after_evaluation(state: &BundleState, method: &mut BundleTrust<'_>
     // Next to zero, the first step may be a rounding, beside which every decrease is large. A length of 1 costs an
     // unbounded run some steps more and says nothing about bounded ones, whatever their units.
     let limit = UNBOUNDED_DECREASE * (state.start_value.abs() + slope * state.first_step.max(1.0));
-    if state.start_value - state.center_value > limit {
+    // An objective may fall without bound where constraints are violated.
+    if state.is_feasible() && state.start_value - state.center_value > limit {
         return Break(Termination::UnboundedBelow);
     }
     Continue(())
