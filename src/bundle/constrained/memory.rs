@@ -10,7 +10,7 @@ use std::rc::Rc;
 /// A constraint is satisfied if its violation is at most this share of its size.
 const TOLERANCE: f64 = 1e-10;
 /// What rounding hides of a value c_j, as a share of Σ |h_i x_i|.
-const ROUNDING: f64 = 1e-14;
+const ROUNDING: f64 = 2e-15;
 /// Linearizations above a constraint by more than this share of the terms prove it nonconvex.
 const CONVEX_SHARE: f64 = 1e-9;
 /// Gradients of active constraints that cancel, or vanish, to this share are degenerate.
@@ -46,8 +46,8 @@ pub(crate) struct Constraints {
     units: Vec<f64>,
     /// The largest |c_j|.
     largest: Vec<f64>,
-    /// The largest |c_j| at the last centers.
-    recent: Vec<f64>,
+    /// The first |c_j| at a center that is not 0.
+    first: Vec<f64>,
     /// Whether linearizations prove c_j nonconvex.
     nonconvex: Vec<bool>,
     /// Σ σ_j |μ_j| of the last subproblem: how much the objective costs per unit of violation.
@@ -113,7 +113,7 @@ impl Constraints {
             kinds: kinds.to_vec(),
             units: vec![0.0; count],
             largest: vec![0.0; count],
-            recent: vec![0.0; count],
+            first: vec![0.0; count],
             nonconvex: vec![false; count],
             penalty: slope,
             lowered_at: f64::INFINITY,
@@ -138,7 +138,9 @@ impl Constraints {
     fn measure(&mut self) {
         for (j, value) in self.center.evaluation.values.iter().enumerate() {
             self.largest[j] = self.largest[j].max(value.abs());
-            self.recent[j] = value.abs().max(0.1 * self.recent[j]);
+            if self.first[j] == 0.0 {
+                self.first[j] = value.abs();
+            }
         }
     }
 
@@ -327,8 +329,9 @@ impl Constraints {
     /// bounds the size that it is compared with.
     fn tolerance(&self, j: usize, evaluation: &ConstraintEvaluation, point: &Vector) -> f64 {
         let terms: f64 = evaluation.jacobian.row(j).iter().zip(point.iter()).map(|(h, x)| (h * x).abs()).sum();
-        let size = if terms > 0.0 { terms.min(self.largest[j]) } else { self.largest[j] };
-        (TOLERANCE * size).max(ROUNDING * terms).max(f64::EPSILON * self.recent[j])
+        let first = self.first[j];
+        let size = if terms > 0.0 { terms.min(first) } else { first };
+        (TOLERANCE * size).max(ROUNDING * terms).max(f64::EPSILON * first)
     }
 
     /// The largest violation in tolerances: the point is feasible up to 1.
