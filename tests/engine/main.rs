@@ -8,6 +8,7 @@ mod accuracy_cost;
 mod certificate;
 mod composite;
 mod composite_faults;
+mod constraints;
 mod degenerate_input;
 mod evaluation_counts;
 mod feasibility;
