@@ -113,7 +113,6 @@ fn run(
     (result, oracle.outside.take())
 }
 
-/// Runs with a journal.
 pub fn journaled<O>(input: RunInput, objective: &O, folder: &str, identity: &str) -> Result<RunOutcome, RunError>
 where
     O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>,

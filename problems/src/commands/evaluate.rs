@@ -100,7 +100,6 @@ fn lead(objective: &ContactObjective, shape: &SolvedShape) -> Vec<String> {
     ]
 }
 
-/// The work on a state and its subgradient.
 fn work(state: &ContactState, [of_state, of_subgradient]: [f64; 2]) -> Result<Vec<Fact>, Failure> {
     let work = state.work();
     let words = format!(

@@ -90,7 +90,6 @@ pub struct Fact {
 }
 
 impl Fact {
-    /// A fact with one value.
     pub fn new(key: &'static str, name: &str, value: impl Into<Value>, unit: &str) -> Self {
         Self::row(key, name, vec![value.into()], unit)
     }
@@ -117,7 +116,6 @@ impl Fact {
         Self::object(key, "", value, String::new())
     }
 
-    /// The fact with what it means.
     pub fn meaning(self, meaning: &'static str) -> Self {
         Self { meaning, ..self }
     }
@@ -153,7 +151,6 @@ impl Fact {
         }
     }
 
-    /// What JSON has of the value of this number, or of all.
     fn value_json(&self, shape: Option<usize>) -> serde_json::Value {
         match (&self.object, shape, &self.values[..]) {
             (Some(object), ..) => object.clone(),

@@ -236,7 +236,6 @@ pub fn options(optimizer: bool) -> &'static [SceneOption] {
     TABLES[usize::from(optimizer)]
 }
 
-/// The option of a name.
 pub fn find(name: &str) -> Option<&'static SceneOption> {
     options(false).iter().chain(options(true)).find(|option| option.name == name)
 }

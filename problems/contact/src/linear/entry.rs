@@ -28,10 +28,8 @@ pub trait Entry: Copy + Send + Sync + PartialEq {
     /// Multiplies: self ← factor·self.
     fn scale(&mut self, factor: f64);
 
-    /// The number in a column.
     fn get(&self, column: usize) -> f64;
 
-    /// Sets the number in a column.
     fn set(&mut self, column: usize, value: f64);
 }
 

@@ -39,7 +39,6 @@ impl Part {
 pub struct MeshStage {
     /// What it is within the optimization.
     pub part: Part,
-    /// The case on its mesh.
     pub case: Case,
 }
 

@@ -96,7 +96,6 @@ pub struct Ended<'a> {
     pub shapes: &'a [SolvedShape; 2],
     /// What is implausible about the shape found.
     pub checks: &'a [Warning],
-    /// What was left out.
     pub left_out: Vec<&'static str>,
     /// What several processes have used.
     pub processes: Option<Usage>,

@@ -154,7 +154,6 @@ fn cell(value: &Value) -> String {
     }
 }
 
-/// The folder of a row, by its number from 1.
 pub fn row_folder(number: usize) -> String {
     format!("row_{number:03}")
 }

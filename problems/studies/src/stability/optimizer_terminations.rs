@@ -49,12 +49,10 @@ pub enum TerminationKind {
 /// One run and what it claims.
 #[derive(Debug, Clone, Serialize)]
 pub struct TerminationRecord {
-    /// Name of the problem.
     pub problem: String,
     pub variant: Variant,
     /// Whether it is convex, and declared so.
     pub convex: bool,
-    /// The kind of the termination.
     pub kind: TerminationKind,
     /// (value − a f* − s)/a, relative to 1 + |f*|.
     pub gap: f64,

@@ -47,7 +47,6 @@ impl TornContact<'_> {
         }
     }
 
-    /// The active set of an iterate.
     pub(crate) fn held_at(&self, iterate: &Iterate) -> Result<ActiveSet<'_>, ContactError> {
         self.held(self.linearize(iterate), || {
             let arguments = self.arguments(iterate);

@@ -92,7 +92,6 @@ fn generator(kind: usize, spread: usize, number: usize) -> Random {
     Random((kind * 1_000_000 + spread * 10_000 + number) as u64)
 }
 
-/// A problem in random units.
 fn in_units(problem: Problem, spread: usize, number: usize, random: &mut Random) -> UnitCase {
     let units = units(random, problem.lower.len(), spread, number);
     UnitCase { problem, units, spread, offset: OFFSETS[number % OFFSETS.len()], number }
