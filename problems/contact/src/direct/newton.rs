@@ -79,11 +79,6 @@ pub(super) struct ActiveSystem {
 }
 
 impl Reached {
-    /// Cone programs that were solved.
-    pub(super) fn program_count(&self) -> usize {
-        self.programs.as_ref().map_or(0, |programs| programs.count)
-    }
-
     pub(super) fn work(&self) -> Work {
         let programs = self.programs.as_ref().map_or([0; 2], |programs| [programs.iterations, programs.newton_steps]);
         let newton_steps = self.history.len() + programs[1];

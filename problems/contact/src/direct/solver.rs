@@ -175,7 +175,7 @@ impl DirectSolver {
         let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
         let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
         let reached = contact.equilibrium(start.as_deref(), tolerance, max_steps);
-        let (work, programs) = (reached.work(), reached.program_count());
+        let (work, programs) = (reached.work(), reached.programs.as_ref().map_or(0, |programs| programs.count));
         if interrupted() {
             return Err(ContactError::Interrupted);
         }

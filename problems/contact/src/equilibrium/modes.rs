@@ -111,10 +111,6 @@ impl RigidScene {
         row
     }
 
-    fn held_rows(&self) -> impl Iterator<Item = DVector<f64>> {
-        self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0))
-    }
-
     /// The motions that the supports of one body leave free.
     pub(crate) fn own_motions(&self, body: usize) -> Vec<OwnMotion> {
         let basis = |point| self.frames[body].motions(point);
@@ -140,7 +136,8 @@ impl RigidScene {
     /// # Errors
     /// [`ContactError::NoEquilibrium`] naming the motion and the resultant that cannot be carried.
     pub(crate) fn analyse(&self, boundary: &ContactBoundary) -> Result<Vec<Motion>, ContactError> {
-        let free = kernel(&self.held_rows().collect::<Vec<_>>(), MOTIONS * self.bodies);
+        let held = self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0));
+        let free = kernel(&held.collect::<Vec<_>>(), MOTIONS * self.bodies);
         if free.is_empty() {
             return Ok(Vec::new());
         }

@@ -37,28 +37,13 @@ pub struct ExportOptions {
 }
 
 impl ExportOptions {
-    /// Whether triangles are written.
-    pub fn writes_stl(&self) -> bool {
-        self.stl || self.is_free()
-    }
-
-    /// Whether the B-spline is written.
-    pub fn writes_step(&self) -> bool {
-        self.step || self.is_free()
-    }
-
-    /// Whether the table of heights is written.
-    pub fn writes_csv(&self) -> bool {
-        self.csv || self.is_free()
-    }
-
     /// Largest distance between triangles and surface, mm.
     pub fn tolerance(&self) -> f64 {
         self.tolerance.unwrap_or(DEFAULT_TOLERANCE)
     }
 
-    /// Whether no format is named.
-    fn is_free(&self) -> bool {
+    /// Whether no format is named: triangles, splines and table are written then.
+    pub fn is_free(&self) -> bool {
         !(self.stl || self.step || self.csv || self.friction_problem)
     }
 
@@ -74,7 +59,7 @@ impl ExportOptions {
         if has_controls && self.run.is_some() {
             return refused("--controls", "without --run, which names the shape");
         }
-        if self.tolerance.is_some() && !self.writes_stl() {
+        if self.tolerance.is_some() && !(self.stl || self.is_free()) {
             return refused("--tolerance", "with --stl only, or without any format");
         }
         Ok(())

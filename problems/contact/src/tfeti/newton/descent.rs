@@ -80,11 +80,6 @@ impl TornContact<'_> {
         Ok(residual)
     }
 
-    /// Precision of the products with directions: factors of flat or tall bricks lose all digits of single precision.
-    fn descent_precision(&self) -> Precision {
-        if self.operator.model.problem.flat_or_tall().is_some() { Precision::Double } else { self.precision }
-    }
-
     /// Products in which the residual must at least halve.
     fn patience(&self) -> usize {
         let problem = &self.operator.model.problem;
@@ -123,7 +118,10 @@ impl TornContact<'_> {
         let step = self.precondition(rows, &residual);
         add_scaled(&mut direction, 1.0, &rows.trial(&step));
         active.balance(&mut direction);
-        let image = self.operator.apply_direction(&direction, self.descent_precision());
+        // Factors of flat or tall bricks lose all digits of single precision.
+        let double = self.operator.model.problem.flat_or_tall().is_some();
+        let precision = if double { Precision::Double } else { self.precision };
+        let image = self.operator.apply_direction(&direction, precision);
         let amplitudes = balancing_amplitudes(active, &rows.unknowns_of(&direction), &image);
         let jumps = self.space.jumps(&amplitudes);
         directions.push(self, Direction { amplitudes, forces: Some((direction, image)) }, jumps);

@@ -71,11 +71,6 @@ pub struct UnitRecord {
 }
 
 impl UnitRecord {
-    /// Whether convexity was declared or outputs were given.
-    pub fn is_informed(&self) -> bool {
-        self.given != Given::Nothing
-    }
-
     /// Whether the termination is false, or the minimum is not reached, or the run does not state that it is reached.
     pub fn is_bad(&self) -> bool {
         self.false_termination.is_some() || !self.reached || !self.said
