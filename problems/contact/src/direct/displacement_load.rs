@@ -25,10 +25,10 @@ pub(super) struct CondensedLoad {
 impl CondensedLoad {
     /// The load on a body, from three entries per node.
     pub(super) fn new(body: &CompliantBody, pattern: &CondensationPattern, load: &[f64]) -> Self {
-        let free = load.iter().zip(pattern.held());
+        let free = load.iter().zip(&pattern.held);
         let full: Vec<f64> = free.map(|(load, held)| if *held { 0.0 } else { *load }).collect();
         let column = Mat::from_fn(full.len(), 1, |dof, _| full[dof]);
-        let condensed = body.condensed.condense_loads(column, pattern.held());
+        let condensed = body.condensed.condense_loads(column, &pattern.held);
         let contact = condensed.col_as_slice(0);
         let response = multiply(&body.compliance, contact);
         let resultants = body.motions.iter().map(|motion| dot(motion, contact)).collect();

@@ -275,7 +275,7 @@ impl ContactSolver for DirectSolver {
         let whole = Subdomain::whole(grid);
         let forces = shape_forces(&state.block, &whole, &scene.material, &scene.loads, u, changes);
         let forces = Mat::from_fn(u.len(), changes.len(), |dof, column| forces[column][dof]);
-        let loads = lower.condensed.condense_loads(forces, self.lower.held());
+        let loads = lower.condensed.condense_loads(forces, &self.lower.held);
         let tangents = state.contact.tangents(&solution.linearizations, &loads, changes);
         let entries = tangents.forces.iter().chain(&tangents.openings).flatten();
         if entries.copied().any(|entry| !entry.is_finite()) {

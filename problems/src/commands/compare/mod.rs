@@ -34,9 +34,9 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         session,
     )?;
     let folder = folder.as_ref();
-    let continued = folder.map(|folder| continuation(folder.folder().path(), session.arguments));
+    let continued = folder.map(|folder| continuation(folder.folder.path(), session.arguments));
     let (as_json, parts) = (session.arguments.json, parts(loaded, folder)?);
-    if let Some(folder) = folder.filter(|folder| folder.is_resumed()) {
+    if let Some(folder) = folder.filter(|folder| folder.resumed) {
         check(&parts, session)?;
         folder.proceed(loaded)?;
     }
@@ -69,7 +69,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         folder.write(REPORT, &object)
     };
     let printed = session.arguments.printed(format!("{text}\n{printed}"), object.clone());
-    let text = printed_with_files(printed, as_json, folder.map(RunFolder::folder), write)?;
+    let text = printed_with_files(printed, as_json, folder.map(|folder| &folder.folder), write)?;
     let failed = runs.iter().find_map(|(run, _)| run.failure());
     match (interruption(continued.as_deref()), failed) {
         (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),
@@ -83,7 +83,7 @@ fn parts(loaded: &LoadedScene, folder: Option<&RunFolder>) -> Result<[LoadedScen
     let part = |name: &str, friction: f64| {
         loaded.changed(|scene| {
             scene.friction = friction;
-            scene.output.folder = folder.map(|folder| folder.folder().path().join(name).display().to_string());
+            scene.output.folder = folder.map(|folder| folder.folder.path().join(name).display().to_string());
         })
     };
     Ok([part(COMPARED[0], loaded.case.scene.friction)?, part(COMPARED[1], 0.0)?])

@@ -11,7 +11,6 @@ use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::{STATUS, interrupted};
 use crate::commands::loaded_scene::{LoadedScene, Session};
-use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::run::{OptimizationRun, optimize};
 use crate::commands::optimize::stages::Part;
 use crate::commands::optimize::summary::Ended;
@@ -21,7 +20,7 @@ use crate::commands::solved_shape::{SolvedShape, checks};
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let optimization = optimize(loaded, None, session)?;
     let folder = optimization.folder.as_ref();
-    let continued = folder.map(|folder| continuation(folder.folder().path(), session.arguments));
+    let continued = folder.map(|folder| continuation(folder.folder.path(), session.arguments));
     let (text, _shapes) = report(&optimization, loaded, session, continued.as_deref())?;
     match (interruption(continued.as_deref()), optimization.failure()) {
         (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),
@@ -66,7 +65,7 @@ pub fn report(
     let facts = ended.facts()?;
     let object = json(&facts)?;
     let continued = continued.filter(|_| optimization.can_continue());
-    let kept = optimization.folder.as_ref().map(|folder| export_command(folder.folder().path()));
+    let kept = optimization.folder.as_ref().map(|folder| export_command(folder.folder.path()));
     let more = [("to continue", continued), ("to export", kept.as_deref())];
     let more: String = more.iter().filter_map(|(name, command)| Some(line(name, (*command)?))).collect();
     let write = |folder: &Folder| {
@@ -83,7 +82,7 @@ pub fn report(
         // From here on the run has ended.
         folder.write(REPORT, &object)
     };
-    let folder = optimization.folder.as_ref().map(RunFolder::folder);
+    let folder = optimization.folder.as_ref().map(|folder| &folder.folder);
     let json = session.arguments.json;
     let printed = session.arguments.printed(facts.text(session.arguments.verbose) + &more, object.clone());
     Ok((printed_with_files(printed, json, folder, write)?, shapes))

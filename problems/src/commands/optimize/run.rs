@@ -157,8 +157,8 @@ pub fn begin(
     let bytes = room(&stages(&loaded.case), kind, arguments.series.vtk_history);
     if let Some(path) = path.filter(|path| arguments.course.resume.is_some() && RunFolder::is_one(path)) {
         let folder = RunFolder::reopen(Folder::reopen(path, bytes)?, loaded, arguments.course.new_version)?;
-        shape.problem().admissible.check(folder.initial_controls())?;
-        let controls = folder.initial_controls().clone();
+        shape.problem().admissible.check(&folder.initial_controls)?;
+        let controls = folder.initial_controls.clone();
         return Ok((Some(folder), controls));
     }
     let load = || {
