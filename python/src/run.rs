@@ -133,8 +133,7 @@ fn check_start(folder: &str, input: &RunInput) -> Result<(), RunError> {
     let same =
         |point: &[f64]| point.iter().zip(input.start.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * input.start.amax());
     match first {
-        // A journal of other size is refused as such; an inadmissible start is moved, so that it need not be the first
-        // point.
+        // A journal of other size is refused as such; an inadmissible start is moved and need not be the first point.
         Some(entry) if entry.point.len() == input.start.len() && input.set.dimension() == input.start.len() => {
             let is_other = input.set.violation(&input.start) == 0.0 && !same(&entry.point);
             if is_other { Err(RunError::OtherStart(folder.to_owned())) } else { Ok(()) }
@@ -149,8 +148,7 @@ pub fn drive<O: NonsmoothObjective>(input: RunInput, objective: &O) -> Result<(R
     watched(move || signal(&failure), || drive_watched(input, objective))
 }
 
-/// Whether an exception is to end what the engine does: one that is kept already, or that of a signal which has
-/// arrived.
+/// Whether an exception is to end what the engine does: one that is kept already, or that of a signal.
 pub fn signal(failure: &Failure) -> bool {
     if let Err(error) = Python::attach(|py| py.check_signals()) {
         failure.set(error);

@@ -325,8 +325,7 @@ impl SceneChanges {
     }
 }
 
-/// Help that says what holds where an option is not given: the field of a scene, or its value in the scene of the
-/// binary.
+/// Help that says what holds without an option: the field of a scene, or its value in the scene of the binary.
 pub fn help_with_defaults(command: Command, scene: Option<&SceneFile>) -> Command {
     let described = |argument: Arg| {
         let Some(field) = find(argument.get_id().as_str()).and_then(|option| option.fields.first()) else {

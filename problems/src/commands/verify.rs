@@ -113,8 +113,7 @@ pub fn taylor_steps(largest: f64) -> Vec<f64> {
     (0..STEP_COUNT).map(|index| largest * STEP_RATIO.powi(index)).collect()
 }
 
-/// A step along the direction and against it over which no contact node changes its status; the shortest step tried if
-/// there is none.
+/// A step along the direction and against it that changes no contact status; the shortest step tried if there is none.
 fn smooth_step(
     objective: &ContactObjective,
     control: &Vector,

@@ -20,8 +20,7 @@ fn warns_of_few_digits(result: &Value) -> bool {
     result["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "few-digits")
 }
 
-/// Heights that differ by rounding change Θ by 6e-6 with direct condensation, which the default takes, and by 1.3e-8
-/// with total FETI.
+/// Heights that differ by rounding change Θ by 6e-6 with direct condensation, the default, by 1.3e-8 with total FETI.
 #[test]
 fn digits_that_condensation_has_lost_are_named() {
     let change = |solver: &str| {

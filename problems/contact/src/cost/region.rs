@@ -24,8 +24,7 @@ pub struct RegionBricks {
     pub volume: f64,
 }
 
-/// Share of the size of the scene by which a centre may lie outside of a box and count as inside: the rounding of its
-/// coordinates.
+/// Distance over the size of the scene at which a centre still counts as inside a box: rounding of its coordinates.
 const ROUNDING: f64 = 1e-12;
 
 impl Region {

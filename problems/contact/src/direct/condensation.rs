@@ -122,8 +122,7 @@ impl CondensedBody {
         displacement
     }
 
-    /// What forces on the whole body, N, one column per load case, put on the contact dofs, N; forces on held dofs do
-    /// not count.
+    /// What forces on the whole body, N, one column per load case, put on the contact dofs, N; held dofs do not count.
     pub fn condense_loads(&self, mut forces: Mat<f64>, held: &[bool]) -> Mat<f64> {
         for column in 0..forces.ncols() {
             for (force, _) in forces.col_as_slice_mut(column).iter_mut().zip(held).filter(|(_, held)| **held) {
@@ -142,8 +141,7 @@ impl CondensedBody {
         loads
     }
 
-    /// Extends contact displacements to the whole body under `load` on its dofs (0 at held ones); `forces` act on the
-    /// contact dofs.
+    /// Extends contact displacements to the body under `load` (0 at held dofs); `forces` act on the contact dofs.
     pub fn extend(&self, contact_displacement: &[f64], forces: &[f64], load: &[f64]) -> Vec<f64> {
         let mut u = load.to_vec();
         for (node, &first) in self.contact.iter().enumerate() {

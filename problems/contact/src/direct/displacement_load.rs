@@ -1,5 +1,4 @@
-//! What a function of the displacements adds to the adjoint: its gradient l = ∂J/∂u acts on the condensed bodies like a
-//! load.
+//! What a function of the displacements adds to the adjoint: l = ∂J/∂u acts on the condensed bodies like a load.
 //!
 //! ```text
 //! l̂ = l_c − K_ci K_ii⁻¹ l_i,   u_c = C (f̂ ∓ Bᵀλ) + N a   ⇒   l·du = l̂·du_c = Σ_bodies ∓ (C l̂)·Bᵀdλ + (Nᵀ l̂)·da

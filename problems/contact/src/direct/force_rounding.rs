@@ -7,8 +7,7 @@
 //! bricks these are so much stiffer than the motion of the top that digits of C are lost, of which no residual formed
 //! with C knows. r is formed with K; free rigid motions are left out of u, since K times their rounding is no force. δ
 //! is the length that one step of iterative refinement would move the contact nodes by. It does not count where
-//! equilibrium alone determines the forces, since condensed loads have the resultants of the loads themselves; Δλ tells
-//! the difference.
+//! equilibrium alone determines the forces, since condensed loads keep the resultants of the loads; Δλ shows it.
 
 use crate::body::mesh::Block;
 use crate::direct::compliant_body::CompliantBody;

@@ -120,8 +120,7 @@ impl CompliantContact {
         Reached { unknowns, linearizations, solved, history, programs }
     }
 
-    /// Newton's method from unknowns near an equilibrium, in so many steps; none where it does not converge. Also its
-    /// steps.
+    /// Newton's method from unknowns near an equilibrium, in so many steps, with their number; none where it diverges.
     pub(super) fn newton_near(
         &mut self,
         unknowns: &[f64],

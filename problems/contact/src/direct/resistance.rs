@@ -1,5 +1,4 @@
-//! The largest force that friction can build up: a proof that bodies which only friction could hold have no
-//! equilibrium.
+//! The largest force that friction can build up: a proof that bodies held by friction alone have no equilibrium.
 //!
 //! ```text
 //! λ in the friction cones,   Rᵀ λ = e,   λ_Nᵀ w_N = 0   ⇒   q(λ) := λ_Nᵀ (C λ)_N − d_Nᵀ λ_N = 0
@@ -30,8 +29,7 @@ const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
 const MAX_SHARE: f64 = 0.999;
 /// Rounding of the products that a proof consists of, relative to their terms.
 const ROUNDING: f64 = 1e-11;
-/// Least work on a motion, in units of the load: below it the resultant may be what condensation left of loads in
-/// equilibrium.
+/// Least work on a motion, in units of the load: below it the resultant may be rounding of loads in equilibrium.
 const LEAST_WORK: f64 = 1e-6;
 /// Largest difference of C_ij and C_ji, relative to the largest entry: more says that condensation has lost half of the
 /// digits.

@@ -85,8 +85,7 @@ impl DirectSolver {
         Ok(Self { problem, lower, upper, fixed: OnceLock::new(), held })
     }
 
-    /// The contact problem in the forces of given controls: what the state is computed from, for other methods to
-    /// solve.
+    /// The contact problem in the forces of given controls: the data of the state, for other methods.
     ///
     /// # Errors
     /// [`ContactError`]: inverted elements, no equilibrium of rigid bodies, a failing factorisation.

@@ -233,8 +233,7 @@ struct ConeProjection<'a> {
 }
 
 impl ConeProjection<'_> {
-    /// What remains of `load` after a near resultant of the cone is taken off, and what may remain of a load within the
-    /// cone.
+    /// What remains of `load` less a near resultant of the cone, and what may remain of a load within the cone.
     ///
     /// With unit forces c of the cone, weights w and rest r = load − Σ w c, a load within the cone has |r|² = r·load ≤
     /// Σ w* max c·r for the weights w* that balance it.
@@ -318,8 +317,7 @@ mod tests {
     /// Supports of two bodies, friction, expected numbers.
     type Stack<'a> = ([&'a [Support]; 2], f64, [usize; 3]);
 
-    /// Numbers of motions that supports leave free to the lower body and to all, and of those that contact leaves free
-    /// as well.
+    /// Numbers of motions that supports leave free to the lower body and to all, and that contact leaves free as well.
     fn counts(mut scene: Scene, supports: [&[Support]; 2], height: f64, friction: f64) -> [usize; 3] {
         (scene.size, scene.mesh, scene.friction) = ([1.0; 2], [4; 3], friction);
         (scene.lower.supports, scene.lower.loads) = (supports[0].to_vec(), Vec::new());

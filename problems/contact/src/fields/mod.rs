@@ -1,5 +1,4 @@
-//! Fields of a solved shape: displacements and stresses inside the bodies, pressures and tractions on the contact
-//! boundary.
+//! Fields of a solved shape: displacements and stresses of the bodies, pressures and tractions of contact.
 //!
 //! ```text
 //! σ per brick at its centre (elasticity/stress.rs);   von Mises per node: Σ V_e σ_vM,e / Σ V_e over the adjoining bricks e

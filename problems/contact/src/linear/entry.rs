@@ -146,8 +146,7 @@ impl<E: Real, const N: usize> Entry for Row<E, N> {
     }
 }
 
-/// Runs `work`, compiled for the widest registers of this processor that are known to faer; what it calls must be
-/// inlined.
+/// Runs `work`, compiled for the widest registers of this processor known to faer; what it calls must be inlined.
 #[inline(always)]
 pub fn vectorized<R>(work: impl FnOnce() -> R) -> R {
     Arch::new().dispatch(work)

@@ -193,8 +193,7 @@ impl OwnSolver {
         }
     }
 
-    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on
-    /// total FETI.
+    /// Solves the shape of a total FETI state by direct condensation, for derivatives that total FETI does not find.
     fn condensed(&self, state: &TornState) -> Result<(&DirectSolver, DirectState), ContactError> {
         let configuration = Configuration::of(&self.problem, state.blocks.clone())?;
         let direct = self.direct()?;

@@ -24,8 +24,7 @@ pub struct SolverPlan {
     pub kind: SolverKind,
     /// The preconditioner of total FETI.
     pub preconditioner: PreconditionerKind,
-    /// Number of clusters into which the subdomains of all bodies are joined (hybrid total FETI); none: every subdomain
-    /// by itself.
+    /// Number of clusters of subdomains of all bodies (hybrid total FETI); none: every subdomain by itself.
     pub clusters: Option<usize>,
     /// What the solver will be asked for: the choice of `auto` depends on it.
     pub wanted: Wanted,

@@ -16,8 +16,7 @@ type Solver = Option<(PreconditionerKind, DualMethod)>;
 
 const DIRICHLET: Solver = Some((PreconditionerKind::Dirichlet, DualMethod::Newton(Recycling::On)));
 
-/// Rounding of the reference, relative to it. Where displacements of the whole bodies enter, a digit more is lost than
-/// with the forces.
+/// Rounding of the reference, relative to it. Displacements of whole bodies cost a digit more than forces.
 fn rounding(measure: &Measure) -> f64 {
     match measure {
         Measure::Pressure(_) => 1e-13,

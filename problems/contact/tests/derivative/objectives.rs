@@ -11,8 +11,7 @@ use nonsmooth::{Accuracy, NonsmoothObjective, ReducedObjective, Request, StateSo
 
 const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
 
-/// Both scenes without and with friction; loads act on side faces of both bodies as well, whose area changes with the
-/// shape.
+/// Both scenes without and with friction; loads act on side faces of both bodies as well, whose area changes.
 fn scenes() -> impl Iterator<Item = Scene> {
     let scene = |scene: Scene, friction| {
         let mut scene = Scene { mesh: [4; 3], subdomains: [2, 1, 2], friction, ..scene };

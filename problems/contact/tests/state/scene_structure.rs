@@ -116,8 +116,7 @@ fn a_load_that_pulls_away_is_refused_naming_the_direction() {
     }
 }
 
-/// Two blocks of equal size, the upper one pressed onto the lower one, whose base is fixed. Contact alone holds the
-/// upper one.
+/// Two blocks of equal size, the upper one pressed onto the lower, whose base is fixed. Contact holds the upper one.
 fn plates(friction: f64, push: f64) -> Scene {
     let material = Material::new(1000.0, 0.0).unwrap();
     Scene {

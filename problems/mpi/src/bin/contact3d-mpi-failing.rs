@@ -102,8 +102,7 @@ fn wanted() -> Option<(usize, usize, String)> {
     Some((words.next()?.parse().ok()?, words.next()?.parse().ok()?, words.next()?.to_owned()))
 }
 
-/// Exchanges values with every other process before the command begins: as many as the two ranks decide, and none with
-/// some.
+/// Exchanges values with all other processes before the command begins: as many as the ranks decide, none with some.
 fn exchange_with_all(world: &World) {
     let number = |from: usize, to: usize| if from > to { 0 } else { 20_000 * from + to };
     let value = |from: usize, to: usize, index: usize| (1000 * from + to) as f64 + 1e-6 * index as f64;

@@ -47,8 +47,7 @@ impl ExportOptions {
         !(self.stl || self.step || self.csv || self.friction_problem)
     }
 
-    /// Refuses options that do not go together; `has_folder`, `has_controls`: whether `--out` and `--controls` are
-    /// given.
+    /// Refuses options that do not go together; `has_folder`, `has_controls`: `--out` and `--controls` are given.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the option.

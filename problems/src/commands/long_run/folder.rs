@@ -225,8 +225,7 @@ impl RunFolder {
     }
 }
 
-/// Writes the scene file, without the folder: that is where the file lies, and a file that named it would send other
-/// commands there.
+/// Writes the scene file, without the folder: a file that named it would send other commands there.
 fn keep_scene(folder: &Folder, mut scene: SceneFile) -> Result<(), Failure> {
     scene.output.folder = None;
     folder.write(SCENE, scene.print()?)

@@ -1,5 +1,4 @@
-//! `study`: a table over values of parameters. Every row is the scene with some options, evaluated at one shape or
-//! optimized.
+//! `study`: a table over values of parameters. A row is the scene with some options, evaluated or optimized.
 //!
 //! ```text
 //! DIR/scene.toml, start.json, study.json   the study as stated

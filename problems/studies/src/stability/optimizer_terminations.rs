@@ -162,8 +162,7 @@ fn check(record: &mut TerminationRecord, changed: &Changed<'_>, report: &Report)
     Ok(())
 }
 
-/// Runs the variants that `take` selects by their number, on all processors; the records are in the order of the
-/// problems.
+/// Runs the variants that `take` selects by their number, on all processors; records are in the order of problems.
 ///
 /// # Errors
 /// [`InputError`] if a problem of the collection cannot be posed.

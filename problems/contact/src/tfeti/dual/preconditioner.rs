@@ -4,8 +4,7 @@
 //! Dirichlet:  B_D S B_Dᵀ,  S = K_BB − K_BI K_II⁻¹ K_IB   (B: dofs with rows, I: the others)
 //! lumped:     B_D K_BB B_Dᵀ
 //! ```
-//! K is the boundary stiffness of a subdomain: for a nearly incompressible material, that of its compressible
-//! neighbour.
+//! K is the boundary stiffness of a subdomain: for nearly incompressible material, that of its compressible neighbour.
 
 use crate::linear::entry::vectorized;
 use crate::linear::right_side::RightSide;

@@ -169,8 +169,7 @@ impl TornContact<'_> {
         }
     }
 
-    /// The first slip bounds and multipliers: those of an iterate. Where the QP's gradient is −w, Cᵀμ is its rigid
-    /// part.
+    /// The first slip bounds and multipliers: those of an iterate. The QP's gradient is −w, its rigid part Cᵀμ.
     fn first(&self, iterate: &Iterate, coarse: &OrthonormalCoarse<'_>) -> FixedPoint {
         let multipliers = coarse.apply(&coarse.whole(&iterate.jumps)).into_iter().map(|entry| -entry).collect();
         let warm = WarmStart { x: coarse.whole(&iterate.multipliers), multipliers, ..WarmStart::default() };

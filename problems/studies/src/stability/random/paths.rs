@@ -140,8 +140,7 @@ impl Examined {
         points.zip(normal).map(|(point, force)| (force.max(0.0) / point.area).powi(EXPONENT)).sum()
     }
 
-    /// The residual of given forces in the problem condensed anew: equilibrium of the bodies, contact law at every
-    /// node.
+    /// The residual of given forces in the problem condensed anew: equilibrium and contact law.
     fn residual(&self, forces: &ContactForces) -> f64 {
         let Ok(contact) = &self.contact else { return f64::NAN };
         let (boundary, length) = (&self.problem.boundary, contact.unit * contact.load);
