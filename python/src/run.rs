@@ -124,8 +124,7 @@ where
     Ok(watched.outcome(report, set))
 }
 
-/// Refuses to continue from another start: the run would drop every evaluation of the journal, and they may be
-/// expensive.
+/// Refuses to continue from another start: the run would drop the evaluations of the journal.
 fn check_start(folder: &str, input: &RunInput) -> Result<(), RunError> {
     let journal = Journal::read(folder).map_err(RunError::Journal)?;
     let first = journal.as_ref().and_then(|journal| journal.entries.first());

@@ -12,8 +12,7 @@ use nonsmooth::{
     ReducedObjective, Request, StateSolver, Vector,
 };
 
-/// Least first step over the smallest edge of the body. Ten times as much takes more evaluations on flat bodies that
-/// touch everywhere.
+/// Least first step over the smallest edge of the body. Ten times as much costs evaluations on flat bodies.
 const LEAST_FIRST_STEP: f64 = 1e-3;
 /// Largest first step over the smallest edge of the body: bodies close larger gaps by moving as a whole, which says
 /// nothing about their shape.

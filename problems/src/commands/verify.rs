@@ -95,8 +95,7 @@ fn rest(result: &VerificationJson) -> String {
     lines.into_iter().chain(usage).collect()
 }
 
-/// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the
-/// largest step.
+/// Taylor test of the subgradient at a shape on the smooth piece around it, with contact state and largest step.
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,

@@ -35,8 +35,7 @@ fn digits_that_condensation_has_lost_are_named() {
     assert!(!warns_of_few_digits(&torn) && by_tearing < 5e-8, "{by_tearing:e} {}", torn["warnings"]);
 }
 
-/// A body 3e5 times as high as the lower one, free along x3: its load must arrive at the contact. Condensed loads had
-/// lost 5e-5 of it.
+/// A body 3e5 times as high as the lower one, free along x3: its load must reach the contact. Condensation lost 5e-5.
 #[test]
 fn loads_on_free_bodies_arrive() {
     for solver in ["auto", "direct"] {
@@ -46,8 +45,7 @@ fn loads_on_free_bodies_arrive() {
     }
 }
 
-/// One free body on a tall one: equilibrium alone determines the single contact force, so that the compliance may have
-/// lost all its digits.
+/// One free body on a tall one: equilibrium alone determines the contact force, whatever the compliance has lost.
 #[test]
 fn forces_that_equilibrium_determines_have_all_digits() {
     let direct = evaluated("statically_determined", &["--solver", "direct"]);

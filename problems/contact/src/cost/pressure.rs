@@ -364,8 +364,7 @@ fn norm_unit(exponent: f64, weight: NodeWeight) -> String {
 fn least_deviation(areas: &[f64], wanted: &[f64], total_force: f64) -> f64 {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by(|a, b| wanted[*b].total_cmp(&wanted[*a]));
-    // With the first nodes of this order under pressure, t follows from the force; the next node is added while w + t
-    // is positive there.
+    // With the first nodes of this order under pressure, t follows from the force; nodes are added while w + t > 0.
     let (mut area, mut force, mut shift) = (0.0, 0.0, f64::INFINITY);
     for index in order {
         if area > 0.0 && wanted[index] + shift <= 0.0 {

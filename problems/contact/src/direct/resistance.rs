@@ -20,8 +20,7 @@ use faer::Mat;
 
 /// Normal part of an orthonormal motion that is rounding.
 const TANGENTIAL: f64 = 1e-12;
-/// Share of the largest row sum of M by which M must be positive definite: what condensation of badly conditioned
-/// bodies may lose.
+/// Share of the largest row sum of M by which M must be definite: condensation may lose as much.
 const DEFINITE: f64 = 1e-8;
 /// Shares 𝓕²T/C_NN⁺ that are tried until M is positive definite.
 const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
@@ -31,8 +30,7 @@ const MAX_SHARE: f64 = 0.999;
 const ROUNDING: f64 = 1e-11;
 /// Least work on a motion, in units of the load: below it the resultant may be rounding of loads in equilibrium.
 const LEAST_WORK: f64 = 1e-6;
-/// Largest difference of C_ij and C_ji, relative to the largest entry: more says that condensation has lost half of the
-/// digits.
+/// Largest difference of C_ij and C_ji, relative to the largest entry: more: condensation has lost half the digits.
 const LARGEST_SKEW: f64 = 1e-6;
 /// Most rows of a program: beyond, it would cost far more than the solvers that failed.
 pub(super) const MAX_ROWS: usize = 900;

@@ -93,8 +93,7 @@ impl DirectSolver {
         Ok(self.condense(Configuration::new(&self.problem, controls)?)?.0)
     }
 
-    /// Condenses all bodies of a shape; also its lower block, the load (zero for bodies at rest) and the number of
-    /// factorisations done.
+    /// Condenses all bodies of a shape; also its lower block, the load (zero at rest) and the number of factorisations.
     fn condense(&self, configuration: Configuration) -> Result<(CompliantContact, Block, f64, usize), ContactError> {
         Stage::Factorization.enter()?;
         let lower = self.lower.condense(&configuration.blocks[0], &self.problem.scene.lower)?;

@@ -20,8 +20,7 @@ use crate::tfeti::{DualMethod, TornOptions, TornState, TotalFeti};
 use crate::work_estimate::WorkEstimate;
 use std::sync::{Arc, OnceLock};
 
-/// Estimated bytes up to which bodies are condensed without being asked for. A constant: what the machine has free must
-/// not change a result.
+/// Estimated bytes up to which `auto` condenses bodies: a constant, since free memory must not change a result.
 const MAX_CONDENSED_BYTES: f64 = 4e9;
 /// Products with F that total FETI is always allowed: states of the smallest scenes take some tens.
 const MIN_PRODUCTS: usize = 100;

@@ -49,8 +49,7 @@ impl SolverPlan {
         self.clusters.map_or(Ok([1; 3]), |count| cluster_shape(&self.scene, self.kind, count))
     }
 
-    /// Refuses processes that would own no cluster. Direct condensation, which every process repeats, takes any number
-    /// of them.
+    /// Refuses processes that would own no cluster. Direct condensation takes any number of processes.
     pub(crate) fn check_processes(&self, processes: usize) -> Result<(), SceneError> {
         let (most, of) = match self.clusters {
             Some(clusters) => (clusters, "clusters (solver.clusters)"),

@@ -1,5 +1,4 @@
-//! Taylor tests of the objectives beside pressure norm and peak: both solvers, one and two bodies, with friction and
-//! without.
+//! Taylor tests of the objectives beside pressure norm and peak: both solvers, one or two bodies, without friction too.
 
 use contact::body::mesh::Face;
 use contact::contact_objective::ContactObjective;

@@ -170,8 +170,7 @@ fn unloaded_free_motions_are_grounded() {
     }
 }
 
-/// Supports hold the motions that contact holds as well, and leave two others free: nothing loads them, and they are
-/// grounded.
+/// Supports hold the motions that contact holds as well, and leave two free, unloaded and grounded.
 #[test]
 fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
     for (mesh, subdomains) in [([3; 3], 1), ([4, 4, 2], 2)] {

@@ -1,5 +1,4 @@
-//! `contact3d-mpi` for the tests of failures: one of its processes fails where the environment variable
-//! `FAILING_PROCESS` says so.
+//! `contact3d-mpi` for the tests of failures: one process fails where the variable `FAILING_PROCESS` says so.
 //!
 //! `RANK CALL KIND`: process RANK fails in its call number CALL of the connection, by
 //!

@@ -22,10 +22,19 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let folder = optimization.folder.as_ref();
     let continued = folder.map(|folder| continuation(folder.folder.path(), session.arguments));
     let (text, _shapes) = report(&optimization, loaded, session, continued.as_deref())?;
-    match (interruption(continued.as_deref()), optimization.failure()) {
-        (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),
-        (None, Some(reason)) => Err(Failure::Incomplete { text, reason, status: 1 }),
-        (None, None) => Ok(text),
+    outcome(text, continued.as_deref(), optimization.failure())
+}
+
+/// The text for stdout, with what is to be said about an interruption or a failure of the run behind it.
+pub fn outcome(text: String, continued: Option<&str>, failure: Option<String>) -> Result<String, Failure> {
+    if interrupted() {
+        let kept = continued.map(|command| format!("interrupted; continue with `{command}`"));
+        let lost = || "interrupted; nothing was kept; with --out DIR a run can be continued".to_owned();
+        return Err(Failure::Incomplete { text, reason: kept.unwrap_or_else(lost), status: STATUS });
+    }
+    match failure {
+        Some(reason) => Err(Failure::Incomplete { text, reason, status: 1 }),
+        None => Ok(text),
     }
 }
 
@@ -86,13 +95,4 @@ pub fn report(
     let json = session.arguments.json;
     let printed = session.arguments.printed(facts.text(session.arguments.verbose) + &more, object.clone());
     Ok((printed_with_files(printed, json, folder, write)?, shapes))
-}
-
-/// The sentence about an interruption, with the command that continues the run; none if the run was not interrupted.
-pub fn interruption(continued: Option<&str>) -> Option<String> {
-    let hint = match continued {
-        Some(command) => format!("continue with `{command}`"),
-        None => "nothing was kept; with --out DIR a run can be continued".to_owned(),
-    };
-    interrupted().then(|| format!("interrupted; {hint}"))
 }

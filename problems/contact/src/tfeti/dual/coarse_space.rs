@@ -92,8 +92,7 @@ impl CoarseSpace {
         &self.resultants
     }
 
-    /// Σ weight·(row of Gᵀ) of a combination of contact rows, as entries (place of the amplitude within C, value) that
-    /// may repeat a place.
+    /// Σ weight·(row of Gᵀ) of combined contact rows, as entries (place within C, value) that may repeat a place.
     pub fn combine(&self, combination: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let mut combined: Vec<(usize, f64)> = Vec::with_capacity(48);
         for &(row, weight) in combination {

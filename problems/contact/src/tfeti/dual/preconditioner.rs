@@ -50,8 +50,7 @@ impl<'a> Preconditioner<'a> {
         model.rows_times(&constraints.weighted, torn)
     }
 
-    /// S or K_BB times the boundary part. Entries of the interior come out meaningless; nothing reads them, since B_D
-    /// has no rows there.
+    /// S or K_BB times the boundary part. Entries of the interior are meaningless and not read: B_D has no rows there.
     fn apply_subdomain<V: RightSide>(&self, index: usize, factors: &SubdomainFactors, part: &mut [V]) {
         let stiffness = factors.boundary_stiffness();
         let Some(class) = self.model.interior(index) else {

@@ -120,8 +120,7 @@ impl SubdomainFactors {
         let interior = match interior.and_then(|class| class.symbolic.as_ref().map(|symbolic| (class, symbolic))) {
             Some((class, symbolic)) => {
                 let factored = symbolic.factorize(&class.submatrix.gather(compressible.as_ref().unwrap_or(&stiffness)));
-                // Rows may leave a motion of the interior free. Every principal submatrix of the regularised matrix is
-                // definite.
+                // Rows may leave a motion of the interior free. The regularised matrix has definite submatrices.
                 let definite = |_| symbolic.factorize(&class.submatrix.gather(&regularised));
                 Some(factored.or_else(definite)?)
             }

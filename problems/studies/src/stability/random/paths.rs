@@ -96,8 +96,7 @@ impl Examined {
         })
     }
 
-    /// A state with all that a path asks of its solver: sensitivities, and the contraction where there is an estimate
-    /// of it.
+    /// A state with all that a path asks of its solver: sensitivities, and the contraction where it is estimated.
     fn solved(&self, solver: &AnySolver, controls: &[f64]) -> Result<(ContactState, Option<f64>), ContactError> {
         let state = solver.solve(controls, None, TOLERANCE)?;
         let friction = self.problem.boundary.has_friction();
