@@ -268,7 +268,7 @@ impl<const OPTIMIZER: bool> FromArgMatches for SceneOptions<OPTIMIZER> {
 }
 
 impl<const OPTIMIZER: bool> SceneOptions<OPTIMIZER> {
-    /// Those of some names.
+    /// The options that have one of some names.
     #[must_use]
     pub fn only(&self, names: &[&str]) -> Self {
         Self(self.0.iter().filter(|(name, _)| names.contains(name)).cloned().collect())

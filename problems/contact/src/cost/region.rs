@@ -20,7 +20,7 @@ pub struct Region {
 pub struct RegionBricks {
     /// Bricks (i, j, k) of every body, lower first.
     pub bricks: Vec<Vec<[usize; 3]>>,
-    /// Their volume at the start height, mm³.
+    /// Volume of these bricks at the start height, mm³.
     pub volume: f64,
 }
 

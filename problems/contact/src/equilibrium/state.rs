@@ -31,7 +31,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// This work and that of an attempt before it.
+    /// The sum of this work and the work of an attempt before.
     #[must_use]
     pub fn after(self, other: Self) -> Self {
         Self {

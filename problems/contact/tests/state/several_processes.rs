@@ -13,7 +13,7 @@ use std::sync::Arc;
 struct Outcome {
     forces: [Vec<f64>; 2],
     heights: Vec<f64>,
-    /// Those of a function of the displacements.
+    /// Sensitivities of a function of the displacements.
     heights_by_displacements: Vec<f64>,
     tangents: Vec<Vec<f64>>,
     /// At process 0 alone.

@@ -58,7 +58,7 @@ pub struct AugmentedLagrangianCounts {
 }
 
 impl AugmentedLagrangianCounts {
-    /// These counts in the record that all contact solvers share.
+    /// The counts in the record that all contact solvers share.
     pub fn added_to(&self, work: Work) -> Work {
         Work {
             newton_steps: 0,

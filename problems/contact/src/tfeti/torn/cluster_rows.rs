@@ -11,7 +11,7 @@ use std::ops::Range;
 #[derive(Debug)]
 pub struct ClusterRows {
     pub count: usize,
-    /// Their parts by subdomain.
+    /// The parts of the rows by subdomain.
     pub members: Vec<MemberRows>,
 }
 

@@ -27,9 +27,9 @@ const AFAR: f64 = 8.0;
 pub enum Given {
     /// Neither convexity nor outputs are declared.
     Nothing,
-    /// That Θ is convex.
+    /// Convexity of Θ is declared.
     Convexity,
-    /// The outputs, their Jacobian and the outer function.
+    /// The outputs, their Jacobian and the outer function are given.
     Outputs,
 }
 

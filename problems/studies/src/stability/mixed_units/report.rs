@@ -13,7 +13,7 @@ const USUAL_SPREAD: usize = 3;
 /// A share: so many of so many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Share {
-    /// Those that are so.
+    /// Number of runs with the property.
     pub part: usize,
     /// Number of runs considered.
     pub of: usize,
