@@ -56,8 +56,7 @@ fn forces_that_equilibrium_determines_have_all_digits() {
 }
 
 /// A column 1e6 times as high as wide: its foot carries half of what pulls along its height, as in a bar held at both
-/// ends, and bending by the eccentric load changes that by two per cent. It was taken for free to move, and contact
-/// carried all.
+/// ends, and bending by the eccentric load changes that by two per cent. Contact used to carry all.
 #[test]
 fn a_column_held_at_its_foot_is_held_however_high() {
     for name in ["held_at_its_foot", "held_at_foot_and_side"] {

@@ -65,8 +65,7 @@ struct Bound<'a> {
 
 impl CompliantContact {
     /// The motion by which the load exceeds most what friction can build up, with the largest resistance to it. None
-    /// without friction or free motions, where free motions open the contact, for large problems, and where the bound
-    /// is not found.
+    /// without friction or free motions, where free motions open the contact, for large problems, and without a bound.
     ///
     /// There is an equilibrium only if `resultant ≤ largest`.
     pub fn resistance(&self) -> Option<Resistance> {

@@ -4,8 +4,7 @@
 //! equilibrium needs   Zᵀ (f − Bᵀλ) = 0   for the motions Z that supports leave free, with λ in the friction cone
 //! ```
 //! A load outside that cone has no equilibrium and is refused before any iteration; a motion that neither supports nor
-//! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero, so λ does not
-//! change).
+//! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero).
 
 use crate::equilibrium::ContactBoundary;
 use crate::error::ContactError;

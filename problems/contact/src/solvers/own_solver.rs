@@ -4,8 +4,7 @@
 //! direct condensation where total FETI finds no state, or none that is clearly accurate. It begins with direct
 //! condensation where total FETI is known to be slow (nearly incompressible standard bricks, bricks of extreme shape, a
 //! shape similar to one that needed it) and where Jacobians are wanted that cost less there. Sizes and counted work
-//! alone decide, so that a resumed run repeats the choice. Where bodies are too large to be condensed, total FETI is
-//! alone.
+//! alone decide, so that a resumed run repeats the choice. Bodies too large to be condensed leave total FETI alone.
 
 use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{

@@ -126,8 +126,7 @@ impl TotalFeti {
     }
 
     /// Solves one shape by any method on the contact problem in the multipliers, and passes on what else the method
-    /// returns (its default for bodies at rest, where there is nothing to solve). `solver`: what the state says of the
-    /// method.
+    /// returns (its default for bodies at rest, where there is nothing to solve). `solver`: the method, for the state.
     ///
     /// # Errors
     /// [`ContactError`]: inverted elements, no equilibrium, what the method returns, and [`ContactError::Inaccurate`]

@@ -23,8 +23,7 @@ use crate::tfeti::newton::stagnation::stagnates;
 const PROJECTOR_RENEWAL: f64 = 0.01;
 
 /// Resultant of a cluster, over the load, that rounding leaves where the coarse matrix is well conditioned; ordinary
-/// states stand at 1e-15. Few nodes in a corner make it ill conditioned: every direction then leaves equilibrium by
-/// more.
+/// states stand at 1e-15. Few nodes in a corner make it ill conditioned: all directions then leave equilibrium.
 const MAX_IMBALANCE: f64 = 1e-13;
 
 /// Residual reduction after which single precision images are replaced.

@@ -5,8 +5,7 @@
 //! λ₀ = Gᵀ(GGᵀ)⁻¹ e,   C = L⁻¹G,   LLᵀ = GGᵀ,   Q = CᵀC,   P = I − Q
 //! ```
 //! The orthonormalised homogenised problem in the unshifted multipliers: P λ₀ = 0, so that the bounds stay where they
-//! are. Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ that it
-//! brings about.
+//! are. Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ.
 
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::tangential_norm;

@@ -10,8 +10,7 @@
 //!
 //! Where the factor loses many digits, forces are balanced before and displacements after K⁺: (I − RRᵀ) K⁺ (I − RRᵀ) is
 //! another generalised inverse, whose displacements are no larger than the deformation. Forces out of balance would
-//! bend a thin plate over its three fixing nodes by many times of what the forces together do, and the difference would
-//! lose all digits.
+//! bend a thin plate over its three fixing nodes by many times of what the forces together do, and lose all digits.
 //!
 //! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 

@@ -111,8 +111,7 @@ impl Examined {
     }
 
     /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without
-    /// its limit on work, and so is its residual; the residuals of the other paths are computed by a routine of the
-    /// study.
+    /// its limit on work, and so is its residual; the study computes the residuals of the other paths.
     pub fn by_cone_programs(&self) -> PathResult {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));
