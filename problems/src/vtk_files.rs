@@ -1,5 +1,4 @@
-//! Fields of solved shapes as VTK files: per state one grid of the bodies and one of the contact boundary, and one list
-//! of all of them.
+//! Fields of solved shapes as VTK files: per state a grid of the bodies and one of the contact boundary; a list of all.
 //!
 //! | array | where | unit | meaning |
 //! |---|---|---|---|

@@ -219,8 +219,7 @@ proptest! {
         prop_assert!(seen.iter().all(|seen| *seen));
     }
 
-    /// The proof of the module head: every limiting gradient points away from the minimiser, so no other point of the
-    /// box is stationary.
+    /// The proof of the module head: limiting gradients point away from the minimiser: no other point is stationary.
     #[test]
     fn gradients_point_away_from_the_minimiser(control in any_control()) {
         points_away(&control)?;

@@ -125,8 +125,7 @@ impl ContactScene {
         convert::array2(py, rows, columns, |i, j| start[i * columns + j])
     }
 
-    /// Θ, its subgradient, and the state at control heights in row-major order; with what is implausible about it if it
-    /// is asked for.
+    /// Θ, its subgradient, and the state at control heights in row-major order; with its warnings if asked for.
     fn evaluate<'py>(
         &self,
         py: Python<'py>,

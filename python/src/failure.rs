@@ -3,8 +3,7 @@
 use pyo3::PyErr;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The first exception that the user's code raised, shared by the function, the outer function, the callback and the
-/// run.
+/// The first exception that the user's code raised, shared by function, outer function, callback and run.
 #[derive(Debug, Clone, Default)]
 pub struct Failure(Arc<Mutex<Option<PyErr>>>);
 

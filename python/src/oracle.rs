@@ -4,8 +4,7 @@
 //! fun(x) → (value, subgradient)               fun(x, accuracy=τ) → the same, or (value, subgradient, error bound)
 //! fun(x) → (outputs, Jacobian)                with an outer function; smooth(x) → (value, gradient) of what is added
 //! ```
-//! `OutsideDomain` and numbers that are not finite shorten the step. Every other exception ends the run and is kept as
-//! it is.
+//! `OutsideDomain` and numbers that are not finite shorten the step. All other exceptions end the run and are kept.
 
 use crate::convert;
 use crate::errors::OutsideDomain;

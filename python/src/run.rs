@@ -113,7 +113,6 @@ fn run(
     (result, oracle.outside.take())
 }
 
-/// Runs with a journal.
 pub fn journaled<O>(input: RunInput, objective: &O, folder: &str, identity: &str) -> Result<RunOutcome, RunError>
 where
     O: NonsmoothObjective<WarmStart: Serialize + DeserializeOwned>,
@@ -125,8 +124,7 @@ where
     Ok(watched.outcome(report, set))
 }
 
-/// Refuses to continue from another start: the run would drop every evaluation of the journal, and they may be
-/// expensive.
+/// Refuses to continue from another start: the run would drop the evaluations of the journal.
 fn check_start(folder: &str, input: &RunInput) -> Result<(), RunError> {
     let journal = Journal::read(folder).map_err(RunError::Journal)?;
     let first = journal.as_ref().and_then(|journal| journal.entries.first());
@@ -134,8 +132,7 @@ fn check_start(folder: &str, input: &RunInput) -> Result<(), RunError> {
     let same =
         |point: &[f64]| point.iter().zip(input.start.iter()).all(|(a, b)| (a - b).abs() <= 1e-9 * input.start.amax());
     match first {
-        // A journal of other size is refused as such; an inadmissible start is moved, so that it need not be the first
-        // point.
+        // A journal of other size is refused as such; an inadmissible start is moved and need not be the first point.
         Some(entry) if entry.point.len() == input.start.len() && input.set.dimension() == input.start.len() => {
             let is_other = input.set.violation(&input.start) == 0.0 && !same(&entry.point);
             if is_other { Err(RunError::OtherStart(folder.to_owned())) } else { Ok(()) }
@@ -150,8 +147,7 @@ pub fn drive<O: NonsmoothObjective>(input: RunInput, objective: &O) -> Result<(R
     watched(move || signal(&failure), || drive_watched(input, objective))
 }
 
-/// Whether an exception is to end what the engine does: one that is kept already, or that of a signal which has
-/// arrived.
+/// Whether an exception is to end what the engine does: one that is kept already, or that of a signal.
 pub fn signal(failure: &Failure) -> bool {
     if let Err(error) = Python::attach(|py| py.check_signals()) {
         failure.set(error);

@@ -1,5 +1,4 @@
-//! An objective that remembers the subgradient of its lowest value: a report holds the best point, but not what belongs
-//! to it.
+//! An objective that remembers the subgradient of its lowest value: a report holds the best point alone.
 
 use crate::outcome::RunOutcome;
 use nonsmooth::composite::OuterFunction;

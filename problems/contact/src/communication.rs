@@ -14,8 +14,7 @@ pub trait Communication: Debug + Send + Sync {
     /// Number of connected processes.
     fn size(&self) -> usize;
 
-    /// The values of all processes, one process after the other. `counts`: how many values each process gives, the same
-    /// list everywhere.
+    /// The values of all processes, in order. `counts`: how many values each process gives, equal everywhere.
     fn gather(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
 
     /// Sends every parcel to its process and fills it with what that process sends here. Two processes that exchange

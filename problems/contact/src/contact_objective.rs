@@ -1,5 +1,4 @@
-//! The objective Θ of a contact problem: a measure of the states that control heights lead to, and how far its first
-//! step goes.
+//! The objective Θ of a contact problem: a measure of the states of control heights, and its first step.
 
 use crate::contact_shape::{ContactShape, ContactState, ContactWarmStart};
 pub use crate::cost::PressureRoot;
@@ -13,8 +12,7 @@ use nonsmooth::{
     ReducedObjective, Request, StateSolver, Vector,
 };
 
-/// Least first step over the smallest edge of the body. Ten times as much takes more evaluations on flat bodies that
-/// touch everywhere.
+/// Least first step over the smallest edge of the body. Ten times as much costs evaluations on flat bodies.
 const LEAST_FIRST_STEP: f64 = 1e-3;
 /// Largest first step over the smallest edge of the body: bodies close larger gaps by moving as a whole, which says
 /// nothing about their shape.
@@ -230,8 +228,7 @@ impl<S: ContactSolver> NonsmoothObjective for ContactObjective<S> {
 /// Coordinates in which a change of the mean height by the height itself is as long as a change of shape by the first
 /// step: bodies that contact holds follow the surface as a whole, so that Θ hardly depends on its mean height.
 ///
-/// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and leaves differences
-/// alone.
+/// M = I + (κ − 1)/n · 1 1ᵀ, κ = max(1, mean height / first step), stretches the mean by κ and keeps differences.
 pub fn mean_height_coordinates(start: &Vector, first_step: f64) -> Matrix {
     let count = start.len();
     let stretch = (start.mean().abs() / first_step).max(1.0);

@@ -96,8 +96,7 @@ impl<S: ContactSolver> ContactShape<S> {
         self.solver.diagnose(&state.solution).map_err(oracle)
     }
 
-    /// What is implausible about a state; the check for uniqueness takes at most a tenth of the state's products with
-    /// F.
+    /// What is implausible about a state; the check for uniqueness takes at most a tenth of its products with F.
     ///
     /// # Errors
     /// [`OracleError::Failed`] for a state of another mesh.
@@ -244,8 +243,7 @@ impl<S: ContactSolver> Coderivative for ContactShape<S> {
     }
 }
 
-/// The outputs are the contact pressures σ = λ_N/A per contact node, MPa; the slacks are the gaps of the open nodes,
-/// mm.
+/// The outputs are the contact pressures σ = λ_N/A per contact node, MPa; the slacks are gaps of open nodes, mm.
 impl<S: ContactSolver> OutputJacobian for ContactShape<S> {
     fn outputs(&self, state: &Self::State) -> Vector {
         self.problem().boundary.pressures(&state.forces.normal)

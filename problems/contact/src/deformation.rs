@@ -20,11 +20,11 @@ pub struct Deformation {
 }
 
 impl Deformation {
-    /// That of no body.
+    /// The deformation of no body.
     pub const NONE: Self =
         Self { displacement: 0.0, rotation: 0.0, strain: 0.0, scaled_jacobian: f64::INFINITY, edge: f64::INFINITY };
 
-    /// That of a body with a displacement per node, mm.
+    /// The deformation of a body with a displacement per node, mm.
     pub fn of(block: &Block, displacement: &[[f64; 3]]) -> Self {
         let heights = block.upper.iter().zip(&block.lower).map(|(upper, lower)| upper - lower);
         let mut found = Self {
@@ -46,7 +46,7 @@ impl Deformation {
         found
     }
 
-    /// That of these bodies and others.
+    /// The deformation of two groups of bodies together.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {

@@ -173,8 +173,7 @@ pub enum ContactError {
         /// Why, and what is allowed.
         reason: String,
     },
-    /// A symbolic analysis failed, a matrix is not positive definite, or a factorisation did not pass its residual
-    /// check.
+    /// A symbolic analysis failed, a matrix is not positive definite, or a factorisation is inaccurate.
     #[error("{what}: {reason}")]
     Factorization {
         /// The matrix that was to be factored.
@@ -285,8 +284,7 @@ impl From<FactorizationError> for ContactError {
 }
 
 impl ContactError {
-    /// Whether every solver would say the same: the scene, the shape or the caller is at fault, or an end is wished
-    /// for.
+    /// Whether every solver would fail alike: by the scene, the shape or the caller, or because an end is asked for.
     pub fn ends_the_search(&self) -> bool {
         matches!(
             self,

@@ -16,8 +16,7 @@ const SINGLE: f64 = 4.0;
 /// Dual vectors and torn vectors that each column of a Jacobian keeps while it advances, in single precision:
 /// directions, their images, subdomain solutions.
 const TANGENT_VECTORS: (f64, f64) = (36.0, 8.0);
-/// Size of the factor of the interior matrix, which the Dirichlet preconditioner needs, over that of a subdomain's
-/// factor.
+/// Size of the interior factor, which the Dirichlet preconditioner needs, over that of a subdomain's factor.
 const INTERIOR_SHARE: f64 = 0.45;
 /// Share of a subdomain's factor that its copy in single precision adds.
 const SINGLE_PRECISION_SHARE: f64 = 0.5;
@@ -61,8 +60,7 @@ pub(crate) fn estimate(
     let held = 6.0 * bodies * (scene.subdomains[0] * scene.subdomains[1]) as f64;
     let coarse = 1.3 * 4.0 * factor_values(3.0 * pieces) + 6.0 * held * held;
     let (dual, torn) = TANGENT_VECTORS;
-    // Factors, torn vectors and rows of B_E are shared among the processes; every process has the contact rows and the
-    // coarse problem.
+    // Processes share factors, torn vectors and rows of B_E; every process has the contact rows and the coarse problem.
     let owned = (pieces / processes as f64).ceil();
     let rows = glued * owned / pieces + contact;
     let tangents = SINGLE * columns.min(MAX_COLUMNS) as f64 * (dual * rows + torn * owned * dofs);

@@ -181,8 +181,7 @@ fn obstacle(problem: &ContactProblem, forces: &ContactForces, found: &mut Vec<Wa
     });
 }
 
-/// Places of samples between 0 and `last`, in steps: moved by up to half a step, so that no wave repeats itself from
-/// sample to sample.
+/// Places of samples between 0 and `last`, in steps: moved by up to half a step, so that no wave repeats itself.
 fn uneven(sample: usize, last: usize) -> f64 {
     let ends = sample == 0 || sample == last;
     sample as f64 + if ends { 0.0 } else { 0.5 * (sample as f64 * 0.618_033_988_749_895).fract() }

@@ -15,8 +15,7 @@ const LEAST: f64 = 1e-9;
 const IDLE: &str = "nothing loads the bodies; give loads to the scene";
 
 /// A warning about runs that gained no more than rounding because Θ is constant there, or at its least value; none for
-/// all other runs. `start` are the controls at which the last run began, `end` the controls at which it ended, with
-/// their state.
+/// all other runs. `start` and `end` are the controls at the ends of the last run, with the state at `end`.
 ///
 /// # Errors
 /// [`OracleError`] of the adjoint.

@@ -64,8 +64,7 @@ impl WorkEstimate {
         ((self.condensation + EXPECTED_STEPS * self.condensed_step) / self.product) as usize
     }
 
-    /// Newton steps on condensed bodies that cost as much as so many products with F; at least those of an ordinary
-    /// state.
+    /// Newton steps on condensed bodies that cost as much as so many products with F; at least those of a usual state.
     pub(crate) fn condensed_steps_per_products(&self, products: usize) -> usize {
         ((products as f64 * self.product / self.condensed_step) as usize).max(MIN_STEPS)
     }

@@ -11,8 +11,7 @@ pub const FAILED: i32 = 1;
 /// Exit status of a single process that panics.
 const PANICKED: i32 = 101;
 
-/// Between the messages of two neighbouring processes that fail at once: the first one ends the others before they say
-/// the same.
+/// Between messages of neighbouring processes that fail at once: the first ends the others before they say the same.
 const PATIENCE: Duration = Duration::from_millis(20);
 /// Longest time that a message waits.
 const LONGEST_PATIENCE: Duration = Duration::from_secs(1);

@@ -44,8 +44,7 @@ pub enum Command {
     Export,
 }
 
-/// Declares [`Arguments`]: groups of options, each with the commands that take it. Options of other commands are not
-/// given.
+/// Declares [`Arguments`]: groups of options, each with its commands. Options of other commands are not given.
 macro_rules! groups {
     ($($(#[$meaning:meta])* $field:ident: $group:ty, of $($command:ident)|+;)+) => {
         /// A command with its options.
@@ -366,8 +365,7 @@ impl Arguments {
         }
     }
 
-    /// Refuses options beside --resume that are no limits: a run that is continued has its scene and its options in
-    /// its folder.
+    /// Refuses options beside --resume that are no limits: the folder of a run has its scene and its options.
     fn check_resumed(&self) -> Result<(), Failure> {
         let allowed = Self {
             command: self.command,
@@ -389,8 +387,7 @@ impl Arguments {
     }
 }
 
-/// An error about an option that the command does not take, with the commands that do, or about a command that there
-/// is not.
+/// An error about an option that the command does not take, with those that do, or about an unknown command.
 fn with_takers(error: Error, parser: &mut clap::Command) -> Error {
     let context = match error.kind() {
         ErrorKind::UnknownArgument => ContextKind::InvalidArg,

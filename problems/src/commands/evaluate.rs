@@ -6,7 +6,7 @@ use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, json, printed_with_files};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::numbers::{number, plain_unit, raised};
-use crate::commands::optimize::summary::warning_facts;
+use crate::commands::optimize::summary::closing_facts;
 use crate::commands::report::files;
 use crate::commands::shape_facts;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, checks, solver_facts};
@@ -38,12 +38,8 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         Some(diagnosis) => Fact::object("diagnosis", "diagnosis", &diagnosis, diagnosis.to_string())?,
         None => Fact::json("diagnosis", &None::<()>)?,
     });
-    rest.extend(warning_facts(&warnings)?);
-    let left_out = arguments.left_out(solver);
-    rest.push(Fact::object("left_out", "left out", &left_out, left_out.join("; "))?.detail());
-    if let Some(usage) = session.processes.usage(shape.state.solver)? {
-        rest.push(Fact::object("processes", "processes", &usage, usage.to_string())?);
-    }
+    let usage = session.processes.usage(shape.state.solver)?;
+    rest.extend(closing_facts(&warnings, &arguments.left_out(solver), usage.as_ref())?);
     let groups = vec![Group::new("", result), Group::new("State", states), Group::new("Work", rest)];
     let facts = Facts { lead: lead(objective, &shape), groups };
     let object = json(&facts)?;
@@ -100,7 +96,6 @@ fn lead(objective: &ContactObjective, shape: &SolvedShape) -> Vec<String> {
     ]
 }
 
-/// The work on a state and its subgradient.
 fn work(state: &ContactState, [of_state, of_subgradient]: [f64; 2]) -> Result<Vec<Fact>, Failure> {
     let work = state.work();
     let words = format!(

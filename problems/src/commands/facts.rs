@@ -73,8 +73,7 @@ impl From<String> for Value {
 /// One fact of a result: a value, or one per shape.
 #[derive(Debug, Clone)]
 pub struct Fact {
-    /// Its name in JSON, which does not change; a name `a.b` stands for the key `b` of the object `a`. Empty: not in
-    /// JSON.
+    /// Its name in JSON, which does not change; `a.b` is the key `b` of the object `a`. Empty: not in JSON.
     key: &'static str,
     /// Its name for people. Empty: in JSON only.
     name: String,
@@ -90,7 +89,6 @@ pub struct Fact {
 }
 
 impl Fact {
-    /// A fact with one value.
     pub fn new(key: &'static str, name: &str, value: impl Into<Value>, unit: &str) -> Self {
         Self::row(key, name, vec![value.into()], unit)
     }
@@ -117,7 +115,6 @@ impl Fact {
         Self::object(key, "", value, String::new())
     }
 
-    /// The fact with what it means.
     pub fn meaning(self, meaning: &'static str) -> Self {
         Self { meaning, ..self }
     }
@@ -142,8 +139,7 @@ impl Fact {
         self.values.iter().map(Value::shown)
     }
 
-    /// From the first value to the second, in per cent of the first; none for other numbers of values and where the
-    /// first is zero.
+    /// From the first value to the second, in per cent of the first; none for other numbers of values and after zero.
     fn change_percent(&self) -> Option<f64> {
         match self.values[..] {
             [Value::Number(first), Value::Number(second)] if first != 0.0 => {
@@ -153,7 +149,6 @@ impl Fact {
         }
     }
 
-    /// What JSON has of the value of this number, or of all.
     fn value_json(&self, shape: Option<usize>) -> serde_json::Value {
         match (&self.object, shape, &self.values[..]) {
             (Some(object), ..) => object.clone(),
@@ -272,8 +267,7 @@ impl Facts {
     }
 }
 
-/// A text table: a line per row, columns side by side; the last cell of a row that has fewer runs over the columns
-/// behind it.
+/// A text table: a line per row, columns side by side; the last cell of a shorter row runs over the columns behind it.
 pub fn aligned(head: &[String], rows: &[Vec<String>]) -> String {
     let count = |cell: &String| cell.chars().count();
     let mut widths: Vec<usize> = head.iter().map(count).collect();
@@ -296,8 +290,7 @@ pub fn line(name: &str, words: &str) -> String {
     format!("{name:<NAME_WIDTH$}{}{}\n", if name.chars().count() < NAME_WIDTH { "" } else { "  " }, words.trim_end())
 }
 
-/// One JSON object. Facts with several values have arrays; objects of such facts become an array of objects, one per
-/// shape.
+/// One JSON object. Facts with several values have arrays; objects of such facts become an array, one per shape.
 impl Serialize for Facts {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let keyed: Vec<&Fact> = self.all().filter(|fact| !fact.key.is_empty()).collect();

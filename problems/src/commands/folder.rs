@@ -36,8 +36,7 @@ pub const STUDY: &str = "study.json";
 /// Bytes that stand for those of a run, while it is tried out whether they fit.
 const PROBE: &str = "room";
 
-/// An output folder, or a folder inside one, that was found writable before the work began. No other process works in
-/// it.
+/// An output folder, or one inside it, that was found writable before the work began. No other process works in it.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,

@@ -24,8 +24,7 @@ static REQUESTED: AtomicBool = AtomicBool::new(false);
 /// Whether the next request ends the program at once.
 static ANSWERED: AtomicBool = AtomicBool::new(false);
 
-/// From now on a request to end is remembered, and another one ends the program at once. `said`: what happens next is
-/// said.
+/// From now on a request to end is kept, and a second one ends the program at once. `said`: what happens next is said.
 pub fn watch_interrupts(said: bool) {
     // Several runs of one process share what watches.
     static WATCHED: Once = Once::new();

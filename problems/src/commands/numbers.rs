@@ -25,8 +25,7 @@ pub fn rounded(value: f64, digits: usize) -> String {
     }
 }
 
-/// A number with all its digits, at most 17, and without a sign before zero: what a table of comma-separated values
-/// holds.
+/// A number with all its digits, at most 17, and without a sign before zero: for comma-separated values.
 pub fn exact(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),

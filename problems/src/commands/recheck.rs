@@ -16,8 +16,7 @@ use scene_file::{SceneFile, read_text};
 use serde::Serialize;
 use std::path::Path;
 
-/// Largest difference of the norm, in norms of the subgradients behind it, and of the error, in values of Θ, that
-/// counts as rounding.
+/// Largest difference of the norm, in norms of its subgradients, and of the error, in values of Θ, that is rounding.
 const MAX_ROUNDING: f64 = 1e-8;
 
 /// Largest certificate file, bytes.
@@ -47,8 +46,7 @@ impl Number {
 struct RecheckJson {
     aggregate_norm: Number,
     aggregate_error: Number,
-    /// Whether the multipliers are those of a convex combination and of closed sides of the admissible set, and whether
-    /// the point lies in that set.
+    /// Whether the multipliers are those of a convex combination and of closed sides, and the point is admissible.
     multipliers_and_point_admissible: bool,
     multiplier_defect: f64,
     open_side_multiplier: f64,

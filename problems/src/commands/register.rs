@@ -1,8 +1,7 @@
 //! Which files of a folder the program wrote, and which process works there.
 //!
 //! A folder of results holds a list of the files in it. A name is on the list before its file exists, so that a file
-//! that is not on it was not written by the program, whenever the program ended. The process that works in the folder
-//! locks the list.
+//! that is not on it was not written by the program, whenever the program ended. The process that works there locks it.
 
 use crate::commands::failure::Failure;
 use std::collections::BTreeSet;

@@ -54,7 +54,6 @@ impl RunKind {
         Ok(serde_json::to_string(&RunJson { kind: self }).map_err(Failure::computation)? + "\n")
     }
 
-    /// What it is, in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Optimization => "an optimization",

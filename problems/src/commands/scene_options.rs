@@ -236,7 +236,6 @@ pub fn options(optimizer: bool) -> &'static [SceneOption] {
     TABLES[usize::from(optimizer)]
 }
 
-/// The option of a name.
 pub fn find(name: &str) -> Option<&'static SceneOption> {
     options(false).iter().chain(options(true)).find(|option| option.name == name)
 }
@@ -269,7 +268,7 @@ impl<const OPTIMIZER: bool> FromArgMatches for SceneOptions<OPTIMIZER> {
 }
 
 impl<const OPTIMIZER: bool> SceneOptions<OPTIMIZER> {
-    /// Those of some names.
+    /// The options that have one of some names.
     #[must_use]
     pub fn only(&self, names: &[&str]) -> Self {
         Self(self.0.iter().filter(|(name, _)| names.contains(name)).cloned().collect())
@@ -326,8 +325,7 @@ impl SceneChanges {
     }
 }
 
-/// Help that says what holds where an option is not given: the field of a scene, or its value in the scene of the
-/// binary.
+/// Help that says what holds without an option: the field of a scene, or its value in the scene of the binary.
 pub fn help_with_defaults(command: Command, scene: Option<&SceneFile>) -> Command {
     let described = |argument: Arg| {
         let Some(field) = find(argument.get_id().as_str()).and_then(|option| option.fields.first()) else {

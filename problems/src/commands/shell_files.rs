@@ -1,5 +1,4 @@
-//! What a shell and `man` can know of a contact binary: `completions SHELL` and `man`, from the description behind the
-//! help.
+//! Files for a shell and for `man`: `completions SHELL` and `man`, from the description behind the help.
 
 use crate::commands::failure::Failure;
 use clap::ValueEnum;
@@ -41,8 +40,7 @@ pub fn asked(command: &clap::Command, arguments: &[String]) -> Option<Result<Str
     }
 }
 
-/// The page for `man`: that of the program, and for every command the options that the program without a command does
-/// not take.
+/// The page for `man`: the program, and for every command what `optimize` does not take.
 fn manual(command: &clap::Command) -> Result<String, Failure> {
     let mut bytes = Vec::new();
     Man::new(command.clone()).render(&mut bytes).map_err(Failure::computation)?;

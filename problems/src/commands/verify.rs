@@ -95,8 +95,7 @@ fn rest(result: &VerificationJson) -> String {
     lines.into_iter().chain(usage).collect()
 }
 
-/// Taylor test of the subgradient at a shape on the smooth piece around it, with the contact state there and the
-/// largest step.
+/// Taylor test of the subgradient at a shape on the smooth piece around it, with contact state and largest step.
 pub fn smooth_taylor_test(
     objective: &ContactObjective,
     control: &Vector,
@@ -113,8 +112,7 @@ pub fn taylor_steps(largest: f64) -> Vec<f64> {
     (0..STEP_COUNT).map(|index| largest * STEP_RATIO.powi(index)).collect()
 }
 
-/// A step along the direction and against it over which no contact node changes its status; the shortest step tried if
-/// there is none.
+/// A step along the direction and against it that changes no contact status; the shortest step tried if there is none.
 fn smooth_step(
     objective: &ContactObjective,
     control: &Vector,

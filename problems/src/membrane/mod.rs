@@ -1,5 +1,4 @@
-//! A membrane over an obstacle, pressed and lifted by controlled loads: a state problem beyond contact mechanics of
-//! solids.
+//! A membrane over an obstacle, pressed and lifted by controlled loads: a state problem beyond contact of solids.
 //!
 //! ```text
 //! u ≥ ψ,   λ = −Δu − f(α) ≥ 0,   λ (u − ψ) = 0   in Ω = (x₀, x₀ + l)²,     u = g on ∂Ω

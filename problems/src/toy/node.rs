@@ -76,8 +76,7 @@ impl std::fmt::Display for NodeStatus {
 pub struct NodeValues {
     /// Normal force λ_N, positive under compression.
     pub normal_force: f64,
-    /// λ_T, the tangential force of the node on the support; the node feels −λ_T, see the equilibrium in the module
-    /// head.
+    /// λ_T, the tangential force of the node on the support; −λ_T acts on the node, see the equilibrium of the module.
     pub tangential_force: f64,
     /// n, the height of the node.
     pub height: f64,

@@ -1,5 +1,4 @@
-//! One run of the engine on the toy with every point that it evaluated; values and kinks over the admissible box for
-//! pictures.
+//! One run of the engine on the toy with all points evaluated; values and kinks over the box for pictures.
 
 use super::{LOWER, SURFACE, UPPER, admissible_set, toy_objective};
 use nonsmooth::{
@@ -39,8 +38,7 @@ pub fn trace(start: [f64; 2]) -> Result<ToyTrace, OptimizeError> {
     Ok(ToyTrace { report, points: points.into_inner() })
 }
 
-/// Controls at equal distances in the admissible box, `cells` + 1 along each axis, with Θ there; the second control
-/// runs fastest.
+/// Controls on a uniform grid of the admissible box, `cells` + 1 per axis, with Θ; the second control runs fastest.
 ///
 /// # Errors
 /// An [`OracleError`] without cells.

@@ -80,8 +80,7 @@ pub fn optimization_line(example: usize) -> Result<String, Failure> {
     Ok(line(&report, name, paper, &format!("{reached}, {} in all, {end}", report["evaluations"])))
 }
 
-/// A line of the table of states in README.md: Example 5.1 at its flat start. Peak memory is that of the process so
-/// far.
+/// A line of the table of states in README.md: Example 5.1 at its flat start. Peak memory is that of the process.
 pub fn state_line(case: Case) -> Result<String, Failure> {
     let Case { mesh, subdomains } = case;
     let (bricks, pieces) = (mesh.to_string(), subdomains.to_string());

@@ -41,8 +41,7 @@ fn codes(result: &Value) -> Vec<&str> {
     result["warnings"].as_array().unwrap().iter().map(|warning| warning["code"].as_str().unwrap()).collect()
 }
 
-/// Loaded evenly, the flat foot has its peak in the corners. Over the nodes, those on edges count twice as much as
-/// their area.
+/// Loaded evenly, the flat foot has its peak in the corners. In sums over nodes, those on edges count twice their area.
 #[test]
 fn an_even_load_is_spread_by_the_integral_and_not_by_the_sum_over_nodes() {
     let load = "[[lower.loads]]\nface = \"x1-max\"\ntraction = [0, 0, 5]\n";

@@ -1,5 +1,4 @@
-//! Mutated scene, control, grid and journal files: every one is accepted or refused with an error, none panics or
-//! hangs.
+//! Mutated scene, control, grid and journal files: each is accepted or refused with an error, none panics or hangs.
 //!
 //! `FUZZ_INPUTS=100000 cargo test --release -p problems --test commands fuzz -- --nocapture` runs 100 000 inputs;
 //! without the variable a few thousand. Inputs are a function of their number alone. Nothing is solved: reading,

@@ -1,5 +1,4 @@
-//! A contact scene whose optimum lies on kinks of the state: the composite model must not cost more than the cuts
-//! alone.
+//! A contact scene whose optimum lies on kinks of the state: the composite model must cost no more than cuts alone.
 
 use crate::binary;
 use serde_json::Value;

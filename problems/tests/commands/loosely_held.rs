@@ -1,7 +1,6 @@
 //! Scenes that few nodes hold, found wrong or refused by an independent check: the default finds their states.
 //!
-//! Θ comes from other programs, with residuals ≤ 5e-10: a convex program without friction, a contact-dynamics solver
-//! with it.
+//! Θ comes from other programs, with residuals ≤ 5e-10: a convex program without friction, contact dynamics with it.
 
 use std::path::Path;
 use testset::kit::{errors, json, run};

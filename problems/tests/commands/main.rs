@@ -32,6 +32,8 @@ mod pages_run;
 mod pictures;
 mod pins;
 mod processes;
+#[path = "../../contact/tests/state/rank.rs"]
+mod rank;
 mod recheck;
 mod reports;
 mod run_folder;

@@ -1,5 +1,4 @@
-//! What the commands say to people: errors name the option or the field as it was written, its value, and what is
-//! allowed.
+//! What the commands say to people: errors name the option or the field as written, its value, and what is allowed.
 
 use std::path::Path;
 use testset::kit::{self, text};

@@ -16,7 +16,7 @@ fn states_and_subgradients_are_the_pinned_ones() {
     check_pins(PINS, |pin| pin["command"] == "evaluate", run);
 }
 
-/// Those on 12³ bricks are compared by the test `long` of the studies.
+/// Optimizations on 12³ bricks are compared by the test `long` of the studies.
 #[test]
 fn optimizations_on_small_meshes_come_as_low_as_pinned() {
     check_pins(PINS, |pin| pin["command"] == "optimize" && pin["mesh"] == "6", run);

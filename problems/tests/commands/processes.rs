@@ -1,40 +1,14 @@
 //! Several processes, played by threads: the first runs a command, the others follow it. The package `problems-mpi`
 //! tests the same with real ones.
 
-use contact::communication::{Communication, Parcel};
+use crate::rank::Rank;
+use contact::communication::Communication;
 use problems::commands::processes::run_together;
 use problems::commands::{Arguments, execute, execute_among};
 use scene_file::SceneFile;
 use serde_json::Value;
 use std::sync::Arc;
-use testset::kit::{Mailbox, scratch, text};
-
-/// One of several processes, played by a thread.
-#[derive(Debug)]
-struct Rank(Mailbox);
-
-impl Communication for Rank {
-    fn rank(&self) -> usize {
-        self.0.rank
-    }
-
-    fn size(&self) -> usize {
-        self.0.size()
-    }
-
-    fn gather(&self, own: &[f64], counts: &[usize]) -> Vec<f64> {
-        self.0.gather(own, counts)
-    }
-
-    fn exchange(&self, parcels: &mut [Parcel]) {
-        parcels.iter().for_each(|parcel| self.0.send(parcel.rank, &parcel.outgoing));
-        for parcel in parcels {
-            let incoming = self.0.receive(parcel.rank);
-            assert_eq!(incoming.len(), parcel.incoming.len());
-            parcel.incoming = incoming;
-        }
-    }
-}
+use testset::kit::{scratch, text};
 
 fn arguments(options: &[&str]) -> Arguments {
     Arguments::try_parse_from([&["contact3d"], options, &["--json"]].concat()).unwrap()
@@ -61,9 +35,7 @@ fn together(count: usize, options: &[&str]) -> Result<Value, (String, u8)> {
 /// As [`together`], with another scene.
 fn together_on(open: fn() -> Opened, count: usize, options: &[&str]) -> Result<Value, (String, u8)> {
     let arguments = arguments(options);
-    let handles: Vec<_> = Mailbox::all(count)
-        .into_iter()
-        .map(Rank)
+    let handles: Vec<_> = Rank::all(count)
         .map(|rank| {
             let arguments = arguments.clone();
             std::thread::spawn(move || {
@@ -214,7 +186,7 @@ fn a_refusal_and_a_failure_are_those_of_a_single_process() {
 
 #[test]
 fn a_process_of_another_build_is_refused_by_the_first() {
-    let handles = Mailbox::all(3).into_iter().map(Rank).enumerate().map(|(number, rank)| {
+    let handles = Rank::all(3).enumerate().map(|(number, rank)| {
         std::thread::spawn(move || {
             let communication: Arc<dyn Communication> = Arc::new(rank);
             let build = if number == 2 { "version 2" } else { "version 1" };

@@ -146,8 +146,7 @@ fn the_table_of_the_result_says_what_the_files_say() {
         assert!((number(&shown[2]) - change).abs() < 0.051, "{row}: {}", shown[2]);
     }
     let values = |key: &str| &rows.iter().find(|row| row["key"] == key).unwrap()["values"];
-    // The states of the table are solved anew, without the start that the run had: they agree up to rounding, as it
-    // happens not to the bit.
+    // The states of the table are solved anew, without the start that the run had: they agree up to rounding.
     let agree = |a: &Value, b: &Value| (a.as_f64().unwrap() / b.as_f64().unwrap() - 1.0).abs() < 1e-13;
     assert!(agree(&values("objective")[0], &result["objective_start"]), "{}", values("objective"));
     assert!(agree(&values("objective")[1], &result["objective"]), "{} {}", values("objective"), result["objective"]);

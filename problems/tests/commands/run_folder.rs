@@ -52,8 +52,7 @@ fn a_resumed_run_says_that_its_time_limit_holds_again() {
     assert!(other.status.success() && !errors(&other).contains("time limit"), "{}", errors(&other));
 }
 
-/// The formula has a pole at x1 = 4, which is a node of the second mesh only: neither of the mesh of the scene nor of
-/// the first one.
+/// The formula has a pole at x1 = 4, a node of the second mesh only, not of the scene's and the first one.
 #[test]
 fn an_objective_without_a_value_on_a_later_mesh_is_refused_at_the_start() {
     let scratch = kit::scratch();

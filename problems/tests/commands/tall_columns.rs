@@ -20,8 +20,7 @@ fn warns_of_few_digits(result: &Value) -> bool {
     result["warnings"].as_array().unwrap().iter().any(|warning| warning["code"] == "few-digits")
 }
 
-/// Heights that differ by rounding change Θ by 6e-6 with direct condensation, which the default takes, and by 1.3e-8
-/// with total FETI.
+/// Heights that differ by rounding change Θ by 6e-6 with direct condensation, the default, by 1.3e-8 with total FETI.
 #[test]
 fn digits_that_condensation_has_lost_are_named() {
     let change = |solver: &str| {
@@ -36,8 +35,7 @@ fn digits_that_condensation_has_lost_are_named() {
     assert!(!warns_of_few_digits(&torn) && by_tearing < 5e-8, "{by_tearing:e} {}", torn["warnings"]);
 }
 
-/// A body 3e5 times as high as the lower one, free along x3: its load must arrive at the contact. Condensed loads had
-/// lost 5e-5 of it.
+/// A body 3e5 times as high as the lower one, free along x3: its load must reach the contact. Condensation lost 5e-5.
 #[test]
 fn loads_on_free_bodies_arrive() {
     for solver in ["auto", "direct"] {
@@ -47,8 +45,7 @@ fn loads_on_free_bodies_arrive() {
     }
 }
 
-/// One free body on a tall one: equilibrium alone determines the single contact force, so that the compliance may have
-/// lost all its digits.
+/// One free body on a tall one: equilibrium alone determines the contact force, whatever the compliance has lost.
 #[test]
 fn forces_that_equilibrium_determines_have_all_digits() {
     let direct = evaluated("statically_determined", &["--solver", "direct"]);
@@ -59,8 +56,7 @@ fn forces_that_equilibrium_determines_have_all_digits() {
 }
 
 /// A column 1e6 times as high as wide: its foot carries half of what pulls along its height, as in a bar held at both
-/// ends, and bending by the eccentric load changes that by two per cent. It was taken for free to move, and contact
-/// carried all.
+/// ends, and bending by the eccentric load changes that by two per cent. Contact used to carry all.
 #[test]
 fn a_column_held_at_its_foot_is_held_however_high() {
     for name in ["held_at_its_foot", "held_at_foot_and_side"] {

@@ -74,8 +74,7 @@ fn bodies_are_read_back_bit_by_bit() {
     }
 }
 
-/// Every cell has the volume of its brick, positive in VTK's order of points: first face 0 1 2 3, second face 4 5 6 7
-/// above it.
+/// Every cell has the volume of its brick, positive in VTK's order of points: face 0 1 2 3, then 4 5 6 7 above it.
 fn check_hexahedra(found: &ReadGrid, fields: &Fields) {
     let bricks = fields.bodies.iter().flat_map(|body| body.block.grid.bricks().map(|brick| body.block.brick(brick)));
     let corner = |index: usize| [index >> 2 & 1, index >> 1 & 1, index & 1];

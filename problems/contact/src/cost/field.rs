@@ -1,5 +1,4 @@
-//! Costs of the displacements: p-norm of the von Mises stress in a region, compliance; method.md (3.7), (3.8), (5.5) to
-//! (5.7).
+//! Costs of the displacements: stress norm in a region, compliance; method.md (3.7), (3.8), (5.5) to (5.7).
 //!
 //! ```text
 //! J = ((1/V₀) Σ_e V_e σ_vM,e^p)^{1/p}      or      J = f·u            l = ∂J/∂u: a load in the adjoint problem
@@ -123,8 +122,7 @@ impl FieldCost {
         }
     }
 
-    /// What `compute` makes of every brick of the region, per body: its nodes, its shear modulus and its displacements
-    /// are given.
+    /// What `compute` makes of every brick of the region, per body: given its nodes, shear modulus and displacements.
     fn map_bricks<T: Send>(
         &self,
         bodies: &[SolvedBody],

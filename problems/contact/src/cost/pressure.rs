@@ -19,8 +19,7 @@ pub enum NodeWeight {
     /// Its area A_i: the sum is ∫σ^p dA, MPa^p mm², which meshes of one scene agree on.
     #[default]
     Area,
-    /// 1, as in the paper: the sum Σσ^p, MPa^p, grows with the number of nodes, and nodes on edges count as much as
-    /// those inside.
+    /// 1, as in the paper: the sum Σσ^p, MPa^p, grows with the number of nodes; nodes on edges count like those inside.
     Nodes,
 }
 
@@ -188,8 +187,7 @@ impl PressureCost {
         Some(PressureRoot { name, value: self.norm_in_mpa(value)? })
     }
 
-    /// Where the value is the root of a norm, the factor and the unit of the norm: it is the factor times the value to
-    /// the power p.
+    /// Where the value is the root of a norm, the factor and the unit of the norm: factor times value to the power p.
     pub fn norm_of_root(&self) -> Option<(f64, String)> {
         match self.measure {
             PressureMeasure::Norm { exponent, weight } if self.is_root => {
@@ -219,8 +217,7 @@ impl PressureCost {
     }
 
     /// Why the value does not change with the pressures near those of a state, in words with a remedy: where σ₀ of the
-    /// open area lies above all pressures, or below those of all closed nodes. None for the other measures, and for
-    /// other σ₀.
+    /// open area lies above all pressures, or below those of all closed nodes. None otherwise.
     pub fn why_flat<S>(&self, state: &ContactState<S>) -> Option<String> {
         let PressureMeasure::OpenArea { pressure: bound } = self.measure else { return None };
         let pressures = self.boundary.pressures(&state.forces.normal);
@@ -367,8 +364,7 @@ fn norm_unit(exponent: f64, weight: NodeWeight) -> String {
 fn least_deviation(areas: &[f64], wanted: &[f64], total_force: f64) -> f64 {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by(|a, b| wanted[*b].total_cmp(&wanted[*a]));
-    // With the first nodes of this order under pressure, t follows from the force; the next node is added while w + t
-    // is positive there.
+    // With the first nodes of this order under pressure, t follows from the force; nodes are added while w + t > 0.
     let (mut area, mut force, mut shift) = (0.0, 0.0, f64::INFINITY);
     for index in order {
         if area > 0.0 && wanted[index] + shift <= 0.0 {

@@ -20,12 +20,11 @@ pub struct Region {
 pub struct RegionBricks {
     /// Bricks (i, j, k) of every body, lower first.
     pub bricks: Vec<Vec<[usize; 3]>>,
-    /// Their volume at the start height, mm³.
+    /// Volume of these bricks at the start height, mm³.
     pub volume: f64,
 }
 
-/// Share of the size of the scene by which a centre may lie outside of a box and count as inside: the rounding of its
-/// coordinates.
+/// Distance over the size of the scene at which a centre still counts as inside a box: rounding of its coordinates.
 const ROUNDING: f64 = 1e-12;
 
 impl Region {

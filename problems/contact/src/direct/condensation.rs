@@ -20,11 +20,13 @@ use std::sync::Arc;
 /// What all shapes of a body share.
 #[derive(Debug)]
 pub struct CondensationPattern {
-    pattern: LocalPattern,
+    /// Sparsity and assembly of the body's stiffness matrix.
+    pub(super) pattern: LocalPattern,
     symbolic: Arc<SymbolicFactor>,
     /// First dof of every contact node.
     contact: Vec<usize>,
-    held: Vec<bool>,
+    /// Whether supports hold a dof of the body.
+    pub(super) held: Vec<bool>,
 }
 
 #[derive(Debug)]
@@ -34,8 +36,10 @@ pub struct CondensedBody {
     /// f̂_c, the loads condensed onto the contact dofs, N.
     pub(crate) load: Vec<f64>,
     factor: NumericFactor,
-    full_load: Vec<f64>,
-    contact: Vec<usize>,
+    /// The loads over the whole body, N; 0 at held dofs.
+    pub(super) full_load: Vec<f64>,
+    /// First dof of every contact node.
+    pub(super) contact: Vec<usize>,
     shift: f64,
 }
 
@@ -53,16 +57,6 @@ impl CondensationPattern {
             held.extend(scene.held(grid, pattern.shape.local_position(node)));
         }
         Ok(Self { pattern, symbolic, contact: nodes.into_iter().map(|node| 3 * node).collect(), held })
-    }
-
-    /// Sparsity and assembly of the body's stiffness matrix.
-    pub(super) fn local(&self) -> &LocalPattern {
-        &self.pattern
-    }
-
-    /// Whether supports hold a dof of the body.
-    pub fn held(&self) -> &[bool] {
-        &self.held
     }
 
     /// Condenses one shape.
@@ -128,8 +122,7 @@ impl CondensedBody {
         displacement
     }
 
-    /// What forces on the whole body, N, one column per load case, put on the contact dofs, N; forces on held dofs do
-    /// not count.
+    /// What forces on the whole body, N, one column per load case, put on the contact dofs, N; held dofs do not count.
     pub fn condense_loads(&self, mut forces: Mat<f64>, held: &[bool]) -> Mat<f64> {
         for column in 0..forces.ncols() {
             for (force, _) in forces.col_as_slice_mut(column).iter_mut().zip(held).filter(|(_, held)| **held) {
@@ -148,18 +141,7 @@ impl CondensedBody {
         loads
     }
 
-    /// First dof of every contact node.
-    pub(super) fn contact(&self) -> &[usize] {
-        &self.contact
-    }
-
-    /// The loads over the whole body, N; 0 at held dofs.
-    pub fn full_load(&self) -> &[f64] {
-        &self.full_load
-    }
-
-    /// Extends contact displacements to the whole body under `load` on its dofs (0 at held ones); `forces` act on the
-    /// contact dofs.
+    /// Extends contact displacements to the body under `load` (0 at held dofs); `forces` act on the contact dofs.
     pub fn extend(&self, contact_displacement: &[f64], forces: &[f64], load: &[f64]) -> Vec<f64> {
         let mut u = load.to_vec();
         for (node, &first) in self.contact.iter().enumerate() {

@@ -7,8 +7,7 @@
 //! bricks these are so much stiffer than the motion of the top that digits of C are lost, of which no residual formed
 //! with C knows. r is formed with K; free rigid motions are left out of u, since K times their rounding is no force. δ
 //! is the length that one step of iterative refinement would move the contact nodes by. It does not count where
-//! equilibrium alone determines the forces, since condensed loads have the resultants of the loads themselves; Δλ tells
-//! the difference.
+//! equilibrium alone determines the forces, since condensed loads keep the resultants of the loads; Δλ shows it.
 
 use crate::body::mesh::Block;
 use crate::direct::compliant_body::CompliantBody;
@@ -28,20 +27,20 @@ fn unbalanced(
     u: &[f64],
     mut force: Vec<f64>,
 ) -> Mat<f64> {
-    let local = pattern.local();
+    let local = &pattern.pattern;
     let values = local.assemble(&scene.material, |brick| block.brick(brick));
     let mut image = vec![0.0; u.len()];
     local.pattern.multiply(&values, u, &mut image);
     add_scaled(&mut force, -1.0, &image);
-    let held = pattern.held();
+    let held = &pattern.held;
     Mat::from_fn(force.len(), 1, |dof, _| if held[dof] { 0.0 } else { force[dof] })
 }
 
 impl CondensedBody {
     /// The loads and forces on the contact dofs, N, over the whole body.
     fn full_force(&self, forces: &[f64]) -> Vec<f64> {
-        let mut full = self.full_load().to_vec();
-        for (&first, force) in self.contact().iter().zip(forces.chunks_exact(3)) {
+        let mut full = self.full_load.clone();
+        for (&first, force) in self.contact.iter().zip(forces.chunks_exact(3)) {
             add_scaled(&mut full[first..first + 3], 1.0, force);
         }
         full
@@ -57,11 +56,11 @@ impl CompliantBody {
         block: &Block,
         multipliers: &[f64],
     ) -> Vec<f64> {
-        let (forces, load) = (self.contact_forces(multipliers), self.condensed.full_load());
+        let (forces, load) = (self.contact_forces(multipliers), &self.condensed.full_load);
         let displacement = self.displacement(multipliers, &vec![0.0; self.motions.len()], true);
         let u = self.condensed.extend(&displacement, &forces, load);
         let rest = unbalanced(pattern, scene, block, &u, self.condensed.full_force(&forces));
-        let rest = self.condensed.condense_loads(rest, pattern.held());
+        let rest = self.condensed.condense_loads(rest, &pattern.held);
         multiply(&self.compliance, rest.col_as_slice(0))
     }
 }

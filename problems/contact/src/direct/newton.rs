@@ -79,11 +79,6 @@ pub(super) struct ActiveSystem {
 }
 
 impl Reached {
-    /// Cone programs that were solved.
-    pub(super) fn program_count(&self) -> usize {
-        self.programs.as_ref().map_or(0, |programs| programs.count)
-    }
-
     pub(super) fn work(&self) -> Work {
         let programs = self.programs.as_ref().map_or([0; 2], |programs| [programs.iterations, programs.newton_steps]);
         let newton_steps = self.history.len() + programs[1];
@@ -125,8 +120,7 @@ impl CompliantContact {
         Reached { unknowns, linearizations, solved, history, programs }
     }
 
-    /// Newton's method from unknowns near an equilibrium, in so many steps; none where it does not converge. Also its
-    /// steps.
+    /// Newton's method from unknowns near an equilibrium, in so many steps, with their number; none where it diverges.
     pub(super) fn newton_near(
         &mut self,
         unknowns: &[f64],

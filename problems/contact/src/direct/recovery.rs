@@ -34,7 +34,7 @@ impl DirectState {
         self.displacements[body].get_or_init(|| {
             let size = 3 * self.contact.problem.boundary.points.len();
             let contact = &self.solution.displacement[size * body..size * (body + 1)];
-            let load = self.contact.bodies[body].condensed.full_load();
+            let load = &self.contact.bodies[body].condensed.full_load;
             self.extend_under(body, contact, &self.solution.forces, load)
         })
     }

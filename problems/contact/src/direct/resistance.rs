@@ -1,5 +1,4 @@
-//! The largest force that friction can build up: a proof that bodies which only friction could hold have no
-//! equilibrium.
+//! The largest force that friction can build up: a proof that bodies held by friction alone have no equilibrium.
 //!
 //! ```text
 //! λ in the friction cones,   Rᵀ λ = e,   λ_Nᵀ w_N = 0   ⇒   q(λ) := λ_Nᵀ (C λ)_N − d_Nᵀ λ_N = 0
@@ -21,8 +20,7 @@ use faer::Mat;
 
 /// Normal part of an orthonormal motion that is rounding.
 const TANGENTIAL: f64 = 1e-12;
-/// Share of the largest row sum of M by which M must be positive definite: what condensation of badly conditioned
-/// bodies may lose.
+/// Share of the largest row sum of M by which M must be definite: condensation may lose as much.
 const DEFINITE: f64 = 1e-8;
 /// Shares 𝓕²T/C_NN⁺ that are tried until M is positive definite.
 const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
@@ -30,11 +28,9 @@ const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
 const MAX_SHARE: f64 = 0.999;
 /// Rounding of the products that a proof consists of, relative to their terms.
 const ROUNDING: f64 = 1e-11;
-/// Least work on a motion, in units of the load: below it the resultant may be what condensation left of loads in
-/// equilibrium.
+/// Least work on a motion, in units of the load: below it the resultant may be rounding of loads in equilibrium.
 const LEAST_WORK: f64 = 1e-6;
-/// Largest difference of C_ij and C_ji, relative to the largest entry: more says that condensation has lost half of the
-/// digits.
+/// Largest difference of C_ij and C_ji, relative to the largest entry: more: condensation has lost half the digits.
 const LARGEST_SKEW: f64 = 1e-6;
 /// Most rows of a program: beyond, it would cost far more than the solvers that failed.
 pub(super) const MAX_ROWS: usize = 900;
@@ -69,8 +65,7 @@ struct Bound<'a> {
 
 impl CompliantContact {
     /// The motion by which the load exceeds most what friction can build up, with the largest resistance to it. None
-    /// without friction or free motions, where free motions open the contact, for large problems, and where the bound
-    /// is not found.
+    /// without friction or free motions, where free motions open the contact, for large problems, and without a bound.
     ///
     /// There is an equilibrium only if `resultant ≤ largest`.
     pub fn resistance(&self) -> Option<Resistance> {

@@ -85,8 +85,7 @@ impl DirectSolver {
         Ok(Self { problem, lower, upper, fixed: OnceLock::new(), held })
     }
 
-    /// The contact problem in the forces of given controls: what the state is computed from, for other methods to
-    /// solve.
+    /// The contact problem in the forces of given controls: the data of the state, for other methods.
     ///
     /// # Errors
     /// [`ContactError`]: inverted elements, no equilibrium of rigid bodies, a failing factorisation.
@@ -94,8 +93,7 @@ impl DirectSolver {
         Ok(self.condense(Configuration::new(&self.problem, controls)?)?.0)
     }
 
-    /// Condenses all bodies of a shape; also its lower block, the load (zero for bodies at rest) and the number of
-    /// factorisations done.
+    /// Condenses all bodies of a shape; also its lower block, the load (zero at rest) and the number of factorisations.
     fn condense(&self, configuration: Configuration) -> Result<(CompliantContact, Block, f64, usize), ContactError> {
         Stage::Factorization.enter()?;
         let lower = self.lower.condense(&configuration.blocks[0], &self.problem.scene.lower)?;
@@ -175,7 +173,7 @@ impl DirectSolver {
         let start = start.filter(|start| start.len() == size).map(|start| contact.unknowns_near(start));
         let max_steps = WorkEstimate::of(&contact.problem.scene).condensed_steps_per_products(MAX_PRODUCTS);
         let reached = contact.equilibrium(start.as_deref(), tolerance, max_steps);
-        let (work, programs) = (reached.work(), reached.program_count());
+        let (work, programs) = (reached.work(), reached.programs.as_ref().map_or(0, |programs| programs.count));
         if interrupted() {
             return Err(ContactError::Interrupted);
         }
@@ -275,7 +273,7 @@ impl ContactSolver for DirectSolver {
         let whole = Subdomain::whole(grid);
         let forces = shape_forces(&state.block, &whole, &scene.material, &scene.loads, u, changes);
         let forces = Mat::from_fn(u.len(), changes.len(), |dof, column| forces[column][dof]);
-        let loads = lower.condensed.condense_loads(forces, self.lower.held());
+        let loads = lower.condensed.condense_loads(forces, &self.lower.held);
         let tangents = state.contact.tangents(&solution.linearizations, &loads, changes);
         let entries = tangents.forces.iter().chain(&tangents.openings).flatten();
         if entries.copied().any(|entry| !entry.is_finite()) {

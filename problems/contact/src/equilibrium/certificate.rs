@@ -6,8 +6,7 @@ use crate::error::ContactError;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Factor by which other residuals of an iterate may exceed its Newton residual, since they are measured in other
-/// norms.
+/// Factor by which other residuals of an iterate, in other norms, may exceed its Newton residual.
 const OTHER_NORMS: f64 = 4.0;
 
 /// Largest residual of a state that any solver returns, unless a coarser one is asked for.

@@ -102,7 +102,7 @@ pub struct Tangents {
 }
 
 impl Tangents {
-    /// Those of bodies at rest: no force depends on the shape, and gaps follow the surface.
+    /// The tangents of bodies at rest: no force depends on the shape, and gaps follow the surface.
     pub(crate) fn at_rest(row_count: usize, changes: &[Vec<f64>]) -> Self {
         let forces = vec![vec![0.0; row_count]; changes.len()];
         Self { forces, openings: changes.to_vec(), residual: 0.0, applications: 0 }
@@ -125,7 +125,7 @@ pub struct Sensitivities {
 }
 
 impl Sensitivities {
-    /// Those of bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
+    /// Sensitivities of bodies at rest: no force depends on the shape (one-sidedly where a gap is closed).
     pub(crate) fn at_rest(contact_nodes: usize) -> Self {
         Self {
             heights: vec![0.0; contact_nodes],

@@ -4,8 +4,7 @@
 //! Φ: Ψ ↦ 𝓕 λ_N(Ψ), λ_N(Ψ) from the Tresca problem with slip bounds Ψ;    contraction = spectral radius of Φ′ at the state
 //! ```
 //! Below 1 the successive approximations converge near the state and the state is isolated; an eigenvalue 1 of Φ′ is
-//! where Newton's matrix is singular. At 1 and above, contraction proves nothing about uniqueness: other equilibria may
-//! exist.
+//! where Newton's matrix is singular. At 1 and above, contraction proves nothing about uniqueness: others may exist.
 
 use nalgebra::{DMatrix, linalg::Schur};
 use serde::{Deserialize, Serialize};

@@ -1,5 +1,4 @@
-//! Unilateral contact with Coulomb friction: boundary, law, rigid motions, certificates; what a contact solver solves
-//! and returns.
+//! Unilateral contact with Coulomb friction: boundary, law, rigid motions, certificates, problem and state.
 
 mod boundary;
 pub(crate) mod certificate;

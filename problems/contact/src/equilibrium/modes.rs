@@ -4,8 +4,7 @@
 //! equilibrium needs   Zᵀ (f − Bᵀλ) = 0   for the motions Z that supports leave free, with λ in the friction cone
 //! ```
 //! A load outside that cone has no equilibrium and is refused before any iteration; a motion that neither supports nor
-//! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero, so λ does not
-//! change).
+//! closed contact restrains, and that the load does not drive, is grounded (its resultant is zero).
 
 use crate::equilibrium::ContactBoundary;
 use crate::error::ContactError;
@@ -111,10 +110,6 @@ impl RigidScene {
         row
     }
 
-    fn held_rows(&self) -> impl Iterator<Item = DVector<f64>> {
-        self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0))
-    }
-
     /// The motions that the supports of one body leave free.
     pub(crate) fn own_motions(&self, body: usize) -> Vec<OwnMotion> {
         let basis = |point| self.frames[body].motions(point);
@@ -140,7 +135,8 @@ impl RigidScene {
     /// # Errors
     /// [`ContactError::NoEquilibrium`] naming the motion and the resultant that cannot be carried.
     pub(crate) fn analyse(&self, boundary: &ContactBoundary) -> Result<Vec<Motion>, ContactError> {
-        let free = kernel(&self.held_rows().collect::<Vec<_>>(), MOTIONS * self.bodies);
+        let held = self.held.iter().map(|&(body, point, component)| self.row(body, point, component, 1.0));
+        let free = kernel(&held.collect::<Vec<_>>(), MOTIONS * self.bodies);
         if free.is_empty() {
             return Ok(Vec::new());
         }
@@ -236,8 +232,7 @@ struct ConeProjection<'a> {
 }
 
 impl ConeProjection<'_> {
-    /// What remains of `load` after a near resultant of the cone is taken off, and what may remain of a load within the
-    /// cone.
+    /// What remains of `load` less a near resultant of the cone, and what may remain of a load within the cone.
     ///
     /// With unit forces c of the cone, weights w and rest r = load − Σ w c, a load within the cone has |r|² = r·load ≤
     /// Σ w* max c·r for the weights w* that balance it.
@@ -321,8 +316,7 @@ mod tests {
     /// Supports of two bodies, friction, expected numbers.
     type Stack<'a> = ([&'a [Support]; 2], f64, [usize; 3]);
 
-    /// Numbers of motions that supports leave free to the lower body and to all, and of those that contact leaves free
-    /// as well.
+    /// Numbers of motions that supports leave free to the lower body and to all, and that contact leaves free as well.
     fn counts(mut scene: Scene, supports: [&[Support]; 2], height: f64, friction: f64) -> [usize; 3] {
         (scene.size, scene.mesh, scene.friction) = ([1.0; 2], [4; 3], friction);
         (scene.lower.supports, scene.lower.loads) = (supports[0].to_vec(), Vec::new());

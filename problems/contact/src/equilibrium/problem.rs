@@ -15,8 +15,7 @@ use crate::shape::{AdmissibleSet, HeightMap};
 /// for plates and for bricks that are long in the plan.
 const EXTREME_BRICK: f64 = 30.0;
 
-/// Poisson's ratio of standard bricks from which they are nearly incompressible: total FETI takes hundreds of products
-/// and more.
+/// Poisson's ratio from which standard bricks are nearly incompressible: total FETI takes hundreds of products.
 const LOCKING: f64 = 0.499;
 
 /// The discrete problem behind a scene.
@@ -63,8 +62,7 @@ impl ContactProblem {
         3 * self.grid.node_count() * self.bodies().count()
     }
 
-    /// The parts of ∂J/∂(state): ∂J/∂λ in packed rows, and ∂J/∂u over the displacements of all bodies, where J depends
-    /// on them.
+    /// The parts of ∂J/∂(state): ∂J/∂λ in packed rows, and, where J depends on it, ∂J/∂u over all bodies.
     ///
     /// # Errors
     /// [`ContactError::ForeignState`] for entries of another mesh.
@@ -98,8 +96,7 @@ impl ContactProblem {
         std::array::from_fn(|axis| lengths[axis] / self.scene.mesh[axis] as f64)
     }
 
-    /// Why linear systems of the problem are ill conditioned, if material or bricks make them so: total FETI is slow
-    /// then.
+    /// Why linear systems of the problem are ill conditioned, by material or bricks: total FETI is slow then.
     pub(crate) fn ill_conditioned(&self) -> Option<String> {
         let locking = self.bodies().map(|body| body.material).filter(|m| m.formulation() == Formulation::Standard);
         let ratio = locking.map(|material| material.poisson_ratio()).fold(f64::NEG_INFINITY, f64::max);

@@ -31,7 +31,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// This work and that of an attempt before it.
+    /// The sum of this work and the work of an attempt before.
     #[must_use]
     pub fn after(self, other: Self) -> Self {
         Self {
@@ -108,8 +108,7 @@ pub struct ContactState<S> {
     pub solver: SolverKind,
     /// Why that solver, where another would have been the first choice.
     pub reason: Option<String>,
-    /// Contraction factor observed by the successive approximations, where that method found the state and took enough
-    /// steps.
+    /// Contraction factor observed by the successive approximations, where these found the state in enough steps.
     pub contraction: Option<f64>,
     /// Seconds of the stages, where the solver takes them.
     pub stages: Option<StageSeconds>,

@@ -6,8 +6,7 @@
 //! ```
 //! The sum is the error to first order. The remainder is of second order: nodes whose status differs between λ and λ*,
 //! the curvature of J and of the slip circle. The bound holds whenever the remainder is at most a quarter of Σ|t_i|;
-//! the residual has to be so small that few nodes change their status on the way to the solution. The last term is
-//! rounding.
+//! the residual has to be so small that few nodes change their status. The last term is rounding.
 //!
 //! It is an estimate for the peak pressure, whose largest node may change; for the deviation from a wanted pressure
 //! near that pressure, where ∂J/∂σ and with it every t_i vanishes but the curvature stays; for the open area where a

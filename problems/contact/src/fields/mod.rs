@@ -1,12 +1,10 @@
-//! Fields of a solved shape: displacements and stresses inside the bodies, pressures and tractions on the contact
-//! boundary.
+//! Fields of a solved shape: displacements and stresses of the bodies, pressures and tractions of contact.
 //!
 //! ```text
 //! σ per brick at its centre (elasticity/stress.rs);   von Mises per node: Σ V_e σ_vM,e / Σ V_e over the adjoining bricks e
 //! pressure λ_N/A,   traction λ_T/A,   A the tributary area of the projected grid
 //! ```
-//! Computed when asked for, from what the contact solver has: no solve of the contact problem is repeated. Units: N,
-//! mm, MPa.
+//! Computed on request, from what the contact solver has: no contact problem is solved again. Units: N, mm, MPa.
 
 mod bodies;
 mod contact;

@@ -5,8 +5,7 @@ use crate::linear::real::Real;
 use crate::linear::sums::Sums;
 use rayon::prelude::*;
 
-/// Rows that are worked on together: their numbers stay in the cache of one core, and sums in single precision stay
-/// short.
+/// Rows that are worked on together: their numbers stay in the cache of a core, and sums in single precision short.
 const CHUNK: usize = 256;
 
 /// aᵀb per column, for every a of a list.

@@ -28,10 +28,8 @@ pub trait Entry: Copy + Send + Sync + PartialEq {
     /// Multiplies: self ← factor·self.
     fn scale(&mut self, factor: f64);
 
-    /// The number in a column.
     fn get(&self, column: usize) -> f64;
 
-    /// Sets the number in a column.
     fn set(&mut self, column: usize, value: f64);
 }
 
@@ -148,8 +146,7 @@ impl<E: Real, const N: usize> Entry for Row<E, N> {
     }
 }
 
-/// Runs `work`, compiled for the widest registers of this processor that are known to faer; what it calls must be
-/// inlined.
+/// Runs `work`, compiled for the widest registers of this processor known to faer; what it calls must be inlined.
 #[inline(always)]
 pub fn vectorized<R>(work: impl FnOnce() -> R) -> R {
     Arch::new().dispatch(work)

@@ -57,7 +57,7 @@ pub fn gmres<P>(
         result.residual = triangle.append(column, length);
         history.push(result.residual);
         // A vanishing new vector means the solution is exact in this space; NaN ends the loop as well.
-        let scale = triangle.last_column_norm();
+        let scale = triangle.columns.last().map_or(0.0, |column| norm(column));
         let stalled = history.len() > patience && result.residual > 0.5 * history[history.len() - 1 - patience];
         if length.is_nan() || length <= 1e-14 * scale || stalled {
             break;
@@ -98,10 +98,6 @@ impl Triangle {
         self.rotations.push((c, s));
         self.columns.push(column);
         (s * tail).abs()
-    }
-
-    fn last_column_norm(&self) -> f64 {
-        self.columns.last().map_or(0.0, |column| norm(column))
     }
 
     /// Back substitution; a zero pivot contributes nothing.

@@ -67,8 +67,7 @@ fn sparse(rows: usize, columns: Vec<Vec<(usize, f64)>>) -> CscMatrix<f64> {
 }
 
 impl ConeProgram<'_> {
-    /// The minimiser x and the multipliers y, as nearly as the method gives them in so many iterations; none where it
-    /// gives none.
+    /// The minimiser x and the multipliers y as found in so many iterations; none where the method fails.
     pub fn minimise(&self, max_iterations: usize) -> Option<Minimiser> {
         let (count, motions) = (self.linear.len(), self.right_side.len());
         let upper = (0..count).map(|j| (0..=j).map(|i| (i, self.hessian[(i, j)])).collect()).collect();

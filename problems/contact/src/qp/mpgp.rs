@@ -8,11 +8,11 @@
 //! cg step             conjugate gradients in the face, preconditioned there
 //! expansion step      the end of a sweep that left Ω or slid along a circle: projection, gradient from x
 //! ```
-//! Two things differ from the textbook. Sliding along an active circle belongs to the face and takes its curvature into account (the
-//! textbook leaves it to proportioning, which then costs most of the products). And the sweep is accepted only if it
-//! lowers q by a fixed share of what the projected step x − αg̃ is certain to gain; otherwise that projected step is
-//! made. So every sweep gains at least a multiple of α|g̃|², which gives the R-linear rate of gradient projection
-//! whatever the face does.
+//! Two things differ from the textbook. Sliding along an active circle belongs to the face and takes its curvature into
+//! account (the textbook leaves it to proportioning, which then costs most of the products). And the sweep is accepted
+//! only if it lowers q by a fixed share of what the projected step x − αg̃ is certain to gain; otherwise that projected
+//! step is made. So every sweep gains at least a multiple of α|g̃|², which gives the R-linear rate of gradient
+//! projection whatever the face does.
 
 use crate::linear::vector::{add_scaled, dot, norm};
 use crate::qp::{Face, QpError, SeparableSet, SymmetricOperator};

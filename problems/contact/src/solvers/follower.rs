@@ -19,8 +19,7 @@ struct Follower {
     states: BTreeMap<Id, OwnState>,
 }
 
-/// Does what the first process announces, until that says that the run has ended. It prints nothing, and reads and
-/// writes no file.
+/// Does what the first process announces until the run has ended. It prints nothing, and reads and writes no file.
 ///
 /// # Errors
 /// The reason in words if an announcement is not understood; then the processes do not run the same program.

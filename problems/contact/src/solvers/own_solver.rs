@@ -4,8 +4,7 @@
 //! direct condensation where total FETI finds no state, or none that is clearly accurate. It begins with direct
 //! condensation where total FETI is known to be slow (nearly incompressible standard bricks, bricks of extreme shape, a
 //! shape similar to one that needed it) and where Jacobians are wanted that cost less there. Sizes and counted work
-//! alone decide, so that a resumed run repeats the choice. Where bodies are too large to be condensed, total FETI is
-//! alone.
+//! alone decide, so that a resumed run repeats the choice. Bodies too large to be condensed leave total FETI alone.
 
 use crate::direct::{DirectSolver, DirectState};
 use crate::equilibrium::{
@@ -20,8 +19,7 @@ use crate::tfeti::{DualMethod, TornOptions, TornState, TotalFeti};
 use crate::work_estimate::WorkEstimate;
 use std::sync::{Arc, OnceLock};
 
-/// Estimated bytes up to which bodies are condensed without being asked for. A constant: what the machine has free must
-/// not change a result.
+/// Estimated bytes up to which `auto` condenses bodies: a constant, since free memory must not change a result.
 const MAX_CONDENSED_BYTES: f64 = 4e9;
 /// Products with F that total FETI is always allowed: states of the smallest scenes take some tens.
 const MIN_PRODUCTS: usize = 100;
@@ -193,8 +191,7 @@ impl OwnSolver {
         }
     }
 
-    /// Solves the shape of a total FETI state again by direct condensation, for derivatives that do not converge on
-    /// total FETI.
+    /// Solves the shape of a total FETI state by direct condensation, for derivatives that total FETI does not find.
     fn condensed(&self, state: &TornState) -> Result<(&DirectSolver, DirectState), ContactError> {
         let configuration = Configuration::of(&self.problem, state.blocks.clone())?;
         let direct = self.direct()?;

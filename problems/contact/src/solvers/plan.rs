@@ -24,8 +24,7 @@ pub struct SolverPlan {
     pub kind: SolverKind,
     /// The preconditioner of total FETI.
     pub preconditioner: PreconditionerKind,
-    /// Number of clusters into which the subdomains of all bodies are joined (hybrid total FETI); none: every subdomain
-    /// by itself.
+    /// Number of clusters of subdomains of all bodies (hybrid total FETI); none: every subdomain by itself.
     pub clusters: Option<usize>,
     /// What the solver will be asked for: the choice of `auto` depends on it.
     pub wanted: Wanted,
@@ -50,8 +49,7 @@ impl SolverPlan {
         self.clusters.map_or(Ok([1; 3]), |count| cluster_shape(&self.scene, self.kind, count))
     }
 
-    /// Refuses processes that would own no cluster. Direct condensation, which every process repeats, takes any number
-    /// of them.
+    /// Refuses processes that would own no cluster. Direct condensation takes any number of processes.
     pub(crate) fn check_processes(&self, processes: usize) -> Result<(), SceneError> {
         let (most, of) = match self.clusters {
             Some(clusters) => (clusters, "clusters (solver.clusters)"),

@@ -26,8 +26,7 @@ pub struct Counted {
 struct Counters {
     bytes: AtomicU64,
     messages: AtomicU64,
-    /// Processor time that went into communication, nanoseconds: most of it is spent on waiting, which keeps a
-    /// processor busy.
+    /// Processor time that went into communication, nanoseconds: most of it is waiting, which keeps a processor busy.
     waiting: AtomicU64,
     /// Processor time of the process when counting began, s.
     begun: Option<f64>,

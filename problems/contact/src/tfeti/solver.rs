@@ -126,8 +126,7 @@ impl TotalFeti {
     }
 
     /// Solves one shape by any method on the contact problem in the multipliers, and passes on what else the method
-    /// returns (its default for bodies at rest, where there is nothing to solve). `solver`: what the state says of the
-    /// method.
+    /// returns (its default for bodies at rest, where there is nothing to solve). `solver`: the method, for the state.
     ///
     /// # Errors
     /// [`ContactError`]: inverted elements, no equilibrium, what the method returns, and [`ContactError::Inaccurate`]
@@ -240,8 +239,7 @@ impl TotalFeti {
     }
 }
 
-/// The contact forces of a solution in physical units, with their certificates: the image of its last iterate is a
-/// fresh product F λ.
+/// The contact forces of a solution in physical units, with certificates by a new product F λ with the last iterate.
 fn forces(contact: &TornContact<'_>, solution: &TornSolution) -> ContactForces {
     let (boundary, iterate) = (contact.boundary, &solution.iterate);
     let (mut forces, mut jumps) = (iterate.multipliers.contact().to_vec(), iterate.jumps.contact().to_vec());
@@ -262,8 +260,7 @@ fn forces(contact: &TornContact<'_>, solution: &TornSolution) -> ContactForces {
     ContactForces::unpack(boundary, &forces, &jumps, status, residuals, kink)
 }
 
-/// Forces brought into the friction cone, and to zero at open nodes: what the iteration leaves outside is of the size
-/// of its residual.
+/// Forces brought into the friction cone, and to zero at open nodes: as much lies outside as the residual.
 fn admissible_forces(contact: &TornContact<'_>, forces: &[f64], linearizations: &[Linearization]) -> Vec<f64> {
     let mut admissible = vec![0.0; forces.len()];
     for (point, linearization) in contact.boundary.points.iter().zip(linearizations) {

@@ -33,7 +33,7 @@ impl SolverState for TornState {
     /// λ over all rows. Where there are several processes, all of them call it.
     fn warm_start(&self) -> ContactWarmStart {
         ContactWarmStart::Multipliers(
-            self.constraints.whole(&self.solution.iterate.multipliers, self.space.distribution()),
+            self.constraints.whole(&self.solution.iterate.multipliers, &self.space.distribution),
         )
     }
 }

@@ -16,8 +16,7 @@ type Solver = Option<(PreconditionerKind, DualMethod)>;
 
 const DIRICHLET: Solver = Some((PreconditionerKind::Dirichlet, DualMethod::Newton(Recycling::On)));
 
-/// Rounding of the reference, relative to it. Where displacements of the whole bodies enter, a digit more is lost than
-/// with the forces.
+/// Rounding of the reference, relative to it. Displacements of whole bodies cost a digit more than forces.
 fn rounding(measure: &Measure) -> f64 {
     match measure {
         Measure::Pressure(_) => 1e-13,
@@ -86,8 +85,7 @@ fn check_pressures(scene: &Scene, control: &Vector) -> Result<(), TestCaseError>
     check(scene, control, &norm, &solvers, &[1e-2, 1e-4, 1e-7, 1e-10])
 }
 
-/// The stress norm: its adjoint carries a load as well. For the compliance the bound is an estimate, docs/method.md
-/// (5.3).
+/// The stress norm: its adjoint carries a load as well. For the compliance it is an estimate: docs/method.md (5.3).
 fn check_fields(scene: &Scene, control: &Vector) -> Result<(), TestCaseError> {
     let all = Region { lower: [f64::NEG_INFINITY; 3], upper: [f64::INFINITY; 3], body: None };
     let solvers = [DIRICHLET, Some((PreconditionerKind::Dirichlet, DualMethod::SuccessiveApproximations))];

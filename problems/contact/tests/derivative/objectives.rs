@@ -1,5 +1,4 @@
-//! Taylor tests of the objectives beside pressure norm and peak: both solvers, one and two bodies, with friction and
-//! without.
+//! Taylor tests of the objectives beside pressure norm and peak: both solvers, one or two bodies, without friction too.
 
 use contact::body::mesh::Face;
 use contact::contact_objective::ContactObjective;
@@ -11,8 +10,7 @@ use nonsmooth::{Accuracy, NonsmoothObjective, ReducedObjective, Request, StateSo
 
 const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
 
-/// Both scenes without and with friction; loads act on side faces of both bodies as well, whose area changes with the
-/// shape.
+/// Both scenes without and with friction; loads act on side faces of both bodies as well, whose area changes.
 fn scenes() -> impl Iterator<Item = Scene> {
     let scene = |scene: Scene, friction| {
         let mut scene = Scene { mesh: [4; 3], subdomains: [2, 1, 2], friction, ..scene };

@@ -1,5 +1,4 @@
-//! Hybrid total FETI: clusters of subdomains with six rigid motions each find the same states and derivatives as single
-//! subdomains.
+//! Hybrid total FETI: clusters with six rigid motions each find the states and derivatives of single subdomains.
 
 use contact::contact_shape::ContactState;
 use contact::equilibrium::{ContactProblem, ContactSolver};

@@ -61,8 +61,7 @@ fn cone_programs_keep_within_their_work() {
 }
 
 /// Scene 1401 of seed 3 of the random study: a thin plate that contact holds against a push. Continuation ends at a
-/// fold. Which of its states are found hangs on rounding: of 20 shapes that differ by 1e-9, cone programs lead to a
-/// state in some.
+/// fold. Which of its states are found hangs on rounding: of 20 shapes that differ by 1e-9, cone programs solve some.
 #[test]
 fn the_last_resort_finds_what_continuation_loses() {
     let scene = Scene {

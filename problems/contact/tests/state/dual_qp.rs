@@ -193,8 +193,7 @@ fn orthonormal(mut rows: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     rows
 }
 
-/// Random programs: the numbers of free entries, half-lines, intervals, discs, zero discs and equalities are drawn
-/// first.
+/// Random programs: the numbers of free entries, half-lines, intervals, discs, zero discs and equalities come first.
 fn instances() -> impl Strategy<Value = Instance> {
     (2..5_usize, 0..4_usize, 0..2_usize, 0..4_usize, 0..2_usize, 0..3_usize).prop_flat_map(
         |(free, half_lines, intervals, discs, zero_discs, equalities)| {

@@ -5,8 +5,7 @@ use contact::friction_problem::{FrictionProblem, ROWS};
 use contact::scene::{Scene, hertz, signorini};
 use nonsmooth::{Accuracy, StateSolver};
 
-/// A sum of entries times a vector, by rows or, with `transposed`, by columns; the lower triangle of a symmetric matrix
-/// counts twice.
+/// A sum of entries times a vector, by rows or, with `transposed`, by columns; a lower triangle counts twice.
 fn product(entries: &[(usize, usize, f64)], x: &[f64], rows: usize, transposed: bool, symmetric: bool) -> Vec<f64> {
     let mut y = vec![0.0; rows];
     for &(row, column, value) in entries {

@@ -1,5 +1,4 @@
-//! Bodies that only friction could hold: where contact cannot build up the normal forces, the refusal comes with a
-//! proof.
+//! Bodies that only friction could hold: where contact cannot build up normal forces, the refusal has a proof.
 
 use contact::body::elasticity::Material;
 use contact::body::mesh::Face;

@@ -13,6 +13,7 @@ mod friction_too_weak;
 mod interruption;
 mod nearly_incompressible;
 mod paths_agree;
+mod rank;
 mod scene_structure;
 mod several_processes;
 mod successive_approximations;

@@ -1,5 +1,4 @@
-//! Nearly incompressible bodies take about as many products with F as compressible ones, and the two solvers agree on
-//! them.
+//! Nearly incompressible bodies take about as many products with F as compressible ones, and both solvers agree.
 
 use contact::body::elasticity::{Formulation, Material};
 use contact::body::mesh::Face;

@@ -1,5 +1,4 @@
-//! Independent paths give the same state: TFETI against direct condensation, different tearings, different numbers of
-//! threads.
+//! Independent paths give the same state: TFETI against direct condensation, several tearings and numbers of threads.
 
 use contact::body::mesh::Face;
 use contact::contact_shape::{ContactShape, ContactState, SolverKind};

@@ -116,8 +116,7 @@ fn a_load_that_pulls_away_is_refused_naming_the_direction() {
     }
 }
 
-/// Two blocks of equal size, the upper one pressed onto the lower one, whose base is fixed. Contact alone holds the
-/// upper one.
+/// Two blocks of equal size, the upper one pressed onto the lower, whose base is fixed. Contact holds the upper one.
 fn plates(friction: f64, push: f64) -> Scene {
     let material = Material::new(1000.0, 0.0).unwrap();
     Scene {
@@ -171,8 +170,7 @@ fn unloaded_free_motions_are_grounded() {
     }
 }
 
-/// Supports hold the motions that contact holds as well, and leave two others free: nothing loads them, and they are
-/// grounded.
+/// Supports hold the motions that contact holds as well, and leave two free, unloaded and grounded.
 #[test]
 fn motions_that_neither_supports_nor_contact_hold_are_grounded() {
     for (mesh, subdomains) in [([3; 3], 1), ([4, 4, 2], 2)] {

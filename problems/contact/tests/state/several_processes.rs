@@ -1,46 +1,19 @@
 //! Several processes, played by threads that share nothing but pieces of subdomains: each factors and solves its own,
 //! and all end at the state of a single process, to the last bit.
 
-use contact::communication::{Communication, Parcel};
+use crate::rank::Rank;
+use contact::communication::Communication;
 use contact::equilibrium::{ContactProblem, ContactSolver, SolvedBody, SolverState};
 use contact::error::ContactError;
 use contact::scene::{Scene, hertz, signorini};
 use contact::tfeti::{DualMethod, Recycling, TornOptions, TotalFeti};
 use std::sync::Arc;
-use testset::kit::Mailbox;
-
-/// One of several processes, played by a thread.
-#[derive(Debug)]
-struct Rank(Mailbox);
-
-impl Communication for Rank {
-    fn rank(&self) -> usize {
-        self.0.rank
-    }
-
-    fn size(&self) -> usize {
-        self.0.size()
-    }
-
-    fn gather(&self, own: &[f64], counts: &[usize]) -> Vec<f64> {
-        self.0.gather(own, counts)
-    }
-
-    fn exchange(&self, parcels: &mut [Parcel]) {
-        parcels.iter().for_each(|parcel| self.0.send(parcel.rank, &parcel.outgoing));
-        for parcel in parcels {
-            let incoming = self.0.receive(parcel.rank);
-            assert_eq!(incoming.len(), parcel.incoming.len());
-            parcel.incoming = incoming;
-        }
-    }
-}
 
 #[derive(Debug, Clone, PartialEq)]
 struct Outcome {
     forces: [Vec<f64>; 2],
     heights: Vec<f64>,
-    /// Those of a function of the displacements.
+    /// Sensitivities of a function of the displacements.
     heights_by_displacements: Vec<f64>,
     tangents: Vec<Vec<f64>>,
     /// At process 0 alone.
@@ -109,7 +82,7 @@ fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
         let scene = Scene { mesh: [4; 3], subdomains, ..scene.unwrap() };
         let alone = solve(&scene, clusters, None, method);
         for (processes, threads) in [(1, 1), (2, 2), (3, 1), (4, 1)] {
-            let ranks = Mailbox::all(processes).into_iter().map(Rank).map(|rank| {
+            let ranks = Rank::all(processes).map(|rank| {
                 let scene = scene.clone();
                 on_threads(threads, move || solve(&scene, clusters, Some(rank), method))
             });
@@ -124,7 +97,7 @@ fn any_number_of_processes_finds_the_state_of_one_bit_by_bit() {
 
 #[test]
 fn a_failure_in_one_process_ends_the_others() {
-    let handles = Mailbox::all(3).into_iter().map(Rank).enumerate().map(|(number, rank)| {
+    let handles = Rank::all(3).enumerate().map(|(number, rank)| {
         on_threads(1, move || {
             let scene = Scene { mesh: [4; 3], ..signorini().unwrap() };
             // The bodies of the second process are so flat that no factor of theirs has a digit.
@@ -146,7 +119,7 @@ fn a_failure_in_one_process_ends_the_others() {
 
 #[test]
 fn the_first_failure_is_known_to_all() {
-    let handles = Mailbox::all(3).into_iter().map(Rank).enumerate().map(|(number, rank)| {
+    let handles = Rank::all(3).enumerate().map(|(number, rank)| {
         on_threads(1, move || {
             let communication: &dyn Communication = &rank;
             let failure = |fails: bool| fails.then(|| format!("rank {number}: too little memory, 5 \u{b0}C"));

@@ -1,5 +1,4 @@
-//! `contact3d-mpi` for the tests of failures: one of its processes fails where the environment variable
-//! `FAILING_PROCESS` says so.
+//! `contact3d-mpi` for the tests of failures: one process fails where the variable `FAILING_PROCESS` says so.
 //!
 //! `RANK CALL KIND`: process RANK fails in its call number CALL of the connection, by
 //!
@@ -102,8 +101,7 @@ fn wanted() -> Option<(usize, usize, String)> {
     Some((words.next()?.parse().ok()?, words.next()?.parse().ok()?, words.next()?.to_owned()))
 }
 
-/// Exchanges values with every other process before the command begins: as many as the two ranks decide, and none with
-/// some.
+/// Exchanges values with all other processes before the command begins: as many as the ranks decide, none with some.
 fn exchange_with_all(world: &World) {
     let number = |from: usize, to: usize| if from > to { 0 } else { 20_000 * from + to };
     let value = |from: usize, to: usize, index: usize| (1000 * from + to) as f64 + 1e-6 * index as f64;

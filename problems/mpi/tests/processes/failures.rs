@@ -1,5 +1,4 @@
-//! Failures of one process at any place end all processes: none hangs, one message says why, and the run can be
-//! continued.
+//! A failure of one process anywhere ends all: none hangs, one message says why, and the run can be continued.
 
 use super::{PROGRAM, ended, errors, scene, started, together};
 use serde_json::Value;

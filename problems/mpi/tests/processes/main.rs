@@ -24,8 +24,7 @@ fn scene(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(format!("{name}.toml"))
 }
 
-/// `mpirun` with more processes than processors, quiet about the exit status of the program, also for the superuser of
-/// a container.
+/// `mpirun` with more processes than processors, quiet about the exit status, also for the superuser of a container.
 fn mpirun() -> Command {
     let mut command = Command::new("mpirun");
     command.args(["--oversubscribe", "-q"]);

@@ -16,8 +16,7 @@ const MAX_EQUAL_DIFFERENCE: f64 = 1e-4;
 /// Objectives below this share of the start's are zero up to rounding.
 const ZERO: f64 = 1e-12;
 
-/// Two optimizations, and their shapes solved in both models. The pairs hold the case with friction first, then that
-/// without.
+/// Two optimizations, and their shapes solved in both models. Pairs hold the case with friction first.
 pub struct Comparison<'a> {
     /// The optimizations, on their last mesh.
     pub runs: [&'a MeshRun; 2],

@@ -7,11 +7,11 @@ use crate::commands::compare::comparison::Comparison;
 use crate::commands::facts::line;
 use crate::commands::failure::Failure;
 use crate::commands::folder::{COMPARED, Folder, REPORT, continuation, json, printed_with_files};
-use crate::commands::interrupt::STATUS;
+use crate::commands::interrupt::{STATUS, interrupted};
 use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::run::{OptimizationRun, begin, optimize};
-use crate::commands::optimize::{interruption, report};
+use crate::commands::optimize::{outcome, report};
 use crate::commands::register::REGISTER;
 use crate::commands::report::files;
 use crate::commands::run_kind::RunKind;
@@ -34,9 +34,9 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         session,
     )?;
     let folder = folder.as_ref();
-    let continued = folder.map(|folder| continuation(folder.folder().path(), session.arguments));
+    let continued = folder.map(|folder| continuation(folder.folder.path(), session.arguments));
     let (as_json, parts) = (session.arguments.json, parts(loaded, folder)?);
-    if let Some(folder) = folder.filter(|folder| folder.is_resumed()) {
+    if let Some(folder) = folder.filter(|folder| folder.resumed) {
         check(&parts, session)?;
         folder.proceed(loaded)?;
     }
@@ -69,13 +69,8 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         folder.write(REPORT, &object)
     };
     let printed = session.arguments.printed(format!("{text}\n{printed}"), object.clone());
-    let text = printed_with_files(printed, as_json, folder.map(RunFolder::folder), write)?;
-    let failed = runs.iter().find_map(|(run, _)| run.failure());
-    match (interruption(continued.as_deref()), failed) {
-        (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),
-        (None, Some(reason)) => Err(Failure::Incomplete { text, reason, status: 1 }),
-        (None, None) => Ok(text),
-    }
+    let text = printed_with_files(printed, as_json, folder.map(|folder| &folder.folder), write)?;
+    outcome(text, continued.as_deref(), runs.iter().find_map(|(run, _)| run.failure()))
 }
 
 /// The two scenes, with friction and without it, each with a folder of its own inside that of the comparison.
@@ -83,7 +78,7 @@ fn parts(loaded: &LoadedScene, folder: Option<&RunFolder>) -> Result<[LoadedScen
     let part = |name: &str, friction: f64| {
         loaded.changed(|scene| {
             scene.friction = friction;
-            scene.output.folder = folder.map(|folder| folder.folder().path().join(name).display().to_string());
+            scene.output.folder = folder.map(|folder| folder.folder.path().join(name).display().to_string());
         })
     };
     Ok([part(COMPARED[0], loaded.case.scene.friction)?, part(COMPARED[1], 0.0)?])
@@ -120,8 +115,7 @@ fn cut_short(mut text: String, continued: Option<&str>, as_json: bool) -> Failur
     if !as_json {
         text += "the comparison is not complete\n";
     }
-    let (reason, status) =
-        if interruption(continued).is_some() { ("interrupted", STATUS) } else { ("time limit reached", 1) };
+    let (reason, status) = if interrupted() { ("interrupted", STATUS) } else { ("time limit reached", 1) };
     let continued = continued.map_or_else(String::new, |command| format!("; continue with `{command}`"));
     Failure::Incomplete { text, reason: reason.to_owned() + &continued, status }
 }

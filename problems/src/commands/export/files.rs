@@ -19,12 +19,10 @@ pub struct OutputFile {
     pub content: Vec<u8>,
     /// What it holds, in words.
     pub what: String,
-    /// Triangles, in a file of triangles.
     pub triangles: Option<usize>,
 }
 
 impl OutputFile {
-    /// A file of text.
     pub fn text(name: &'static str, content: String, what: impl Into<String>) -> Self {
         Self { name, content: content.into_bytes(), what: what.into(), triangles: None }
     }

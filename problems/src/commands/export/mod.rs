@@ -59,13 +59,13 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
     let heights = controls::written(controls.as_slice(), problem.scene.control_points)?;
     let what = "the control heights; --controls and --start-controls take the file";
     let mut files = vec![OutputFile::text("controls.json", heights, what)];
-    if options.writes_stl() {
+    if options.stl || options.is_free() {
         files.extend(shape::triangles(&problem, controls.as_slice(), options.tolerance())?);
     }
-    if options.writes_step() {
+    if options.step || options.is_free() {
         files.extend(shape::splines(&problem, controls.as_slice())?);
     }
-    if options.writes_csv() {
+    if options.csv || options.is_free() {
         files.push(shape::table(&problem, controls.as_slice())?);
     }
     if options.friction_problem {
@@ -85,7 +85,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
         folder: path.display().to_string(),
         shape: origin,
         differences: differences.iter().map(Difference::to_string).collect(),
-        tolerance: options.writes_stl().then(|| options.tolerance()),
+        tolerance: (options.stl || options.is_free()).then(|| options.tolerance()),
         files: files.iter().map(describe).collect(),
     };
     let text = arguments.printed(result.to_string(), json(&result)?);

@@ -37,33 +37,17 @@ pub struct ExportOptions {
 }
 
 impl ExportOptions {
-    /// Whether triangles are written.
-    pub fn writes_stl(&self) -> bool {
-        self.stl || self.is_free()
-    }
-
-    /// Whether the B-spline is written.
-    pub fn writes_step(&self) -> bool {
-        self.step || self.is_free()
-    }
-
-    /// Whether the table of heights is written.
-    pub fn writes_csv(&self) -> bool {
-        self.csv || self.is_free()
-    }
-
     /// Largest distance between triangles and surface, mm.
     pub fn tolerance(&self) -> f64 {
         self.tolerance.unwrap_or(DEFAULT_TOLERANCE)
     }
 
-    /// Whether no format is named.
-    fn is_free(&self) -> bool {
+    /// Whether no format is named: triangles, splines and table are written then.
+    pub fn is_free(&self) -> bool {
         !(self.stl || self.step || self.csv || self.friction_problem)
     }
 
-    /// Refuses options that do not go together; `has_folder`, `has_controls`: whether `--out` and `--controls` are
-    /// given.
+    /// Refuses options that do not go together; `has_folder`, `has_controls`: `--out` and `--controls` are given.
     ///
     /// # Errors
     /// [`Failure::Input`] naming the option.
@@ -74,7 +58,7 @@ impl ExportOptions {
         if has_controls && self.run.is_some() {
             return refused("--controls", "without --run, which names the shape");
         }
-        if self.tolerance.is_some() && !self.writes_stl() {
+        if self.tolerance.is_some() && !(self.stl || self.is_free()) {
             return refused("--tolerance", "with --stl only, or without any format");
         }
         Ok(())

@@ -18,13 +18,14 @@ use std::path::{Path, PathBuf};
 /// A folder in which a run is kept.
 #[derive(Debug)]
 pub struct RunFolder {
-    folder: Folder,
+    /// The folder for the files of the report.
+    pub folder: Folder,
     /// What the objective depends on.
     identity: Identity,
     /// The controls that the run starts from.
-    initial_controls: Vector,
+    pub initial_controls: Vector,
     /// Whether the run continues what the folder holds.
-    resumed: bool,
+    pub resumed: bool,
     /// Whether another version of the program may continue.
     new_version: bool,
 }
@@ -217,30 +218,14 @@ impl RunFolder {
         if same { Ok(found.to_owned()) } else { expected.text() }
     }
 
-    /// Whether the run continues what the folder holds.
-    pub fn is_resumed(&self) -> bool {
-        self.resumed
-    }
-
-    /// The controls that the run starts from.
-    pub fn initial_controls(&self) -> &Vector {
-        &self.initial_controls
-    }
-
     /// Where the journal of the run, or of one of its stages, lies.
     fn place(&self, stage: Option<&str>) -> PathBuf {
         let path = self.folder.path();
         stage.map_or_else(|| path.to_owned(), |stage| path.join(stage))
     }
-
-    /// The folder for the files of the report.
-    pub fn folder(&self) -> &Folder {
-        &self.folder
-    }
 }
 
-/// Writes the scene file, without the folder: that is where the file lies, and a file that named it would send other
-/// commands there.
+/// Writes the scene file, without the folder: a file that named it would send other commands there.
 fn keep_scene(folder: &Folder, mut scene: SceneFile) -> Result<(), Failure> {
     scene.output.folder = None;
     folder.write(SCENE, scene.print()?)

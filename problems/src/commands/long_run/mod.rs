@@ -1,4 +1,5 @@
-//! Runs that can be continued: every evaluation is kept on disk, interruption ends a run orderly, a run continues bit by bit.
+//! Runs that can be continued: every evaluation is kept on disk, interruption ends a run orderly, a run continues bit
+//! by bit.
 //!
 //! ```text
 //! DIR/scene.toml, *.csv, start.json                              the run as stated                            folder.rs

@@ -35,8 +35,7 @@ struct Shown {
 }
 
 impl StatusLine {
-    /// The line of stderr, hidden if that is no terminal that can erase a line. It is drawn while any handle of it is
-    /// left.
+    /// The line of stderr, hidden if that is no terminal that erases lines. It is drawn while any handle of it is left.
     pub fn of_stderr() -> Self {
         let cannot_erase = std::env::var("TERM").is_ok_and(|name| name == "dumb");
         if !std::io::stderr().is_terminal() || cannot_erase {

@@ -11,7 +11,6 @@ use crate::commands::failure::Failure;
 use crate::commands::folder::{Folder, REPORT, continuation, json, printed_with_files};
 use crate::commands::interrupt::{STATUS, interrupted};
 use crate::commands::loaded_scene::{LoadedScene, Session};
-use crate::commands::long_run::RunFolder;
 use crate::commands::optimize::run::{OptimizationRun, optimize};
 use crate::commands::optimize::stages::Part;
 use crate::commands::optimize::summary::Ended;
@@ -21,12 +20,21 @@ use crate::commands::solved_shape::{SolvedShape, checks};
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
     let optimization = optimize(loaded, None, session)?;
     let folder = optimization.folder.as_ref();
-    let continued = folder.map(|folder| continuation(folder.folder().path(), session.arguments));
+    let continued = folder.map(|folder| continuation(folder.folder.path(), session.arguments));
     let (text, _shapes) = report(&optimization, loaded, session, continued.as_deref())?;
-    match (interruption(continued.as_deref()), optimization.failure()) {
-        (Some(reason), _) => Err(Failure::Incomplete { text, reason, status: STATUS }),
-        (None, Some(reason)) => Err(Failure::Incomplete { text, reason, status: 1 }),
-        (None, None) => Ok(text),
+    outcome(text, continued.as_deref(), optimization.failure())
+}
+
+/// The text for stdout, with what is to be said about an interruption or a failure of the run behind it.
+pub fn outcome(text: String, continued: Option<&str>, failure: Option<String>) -> Result<String, Failure> {
+    if interrupted() {
+        let kept = continued.map(|command| format!("interrupted; continue with `{command}`"));
+        let lost = || "interrupted; nothing was kept; with --out DIR a run can be continued".to_owned();
+        return Err(Failure::Incomplete { text, reason: kept.unwrap_or_else(lost), status: STATUS });
+    }
+    match failure {
+        Some(reason) => Err(Failure::Incomplete { text, reason, status: 1 }),
+        None => Ok(text),
     }
 }
 
@@ -66,7 +74,7 @@ pub fn report(
     let facts = ended.facts()?;
     let object = json(&facts)?;
     let continued = continued.filter(|_| optimization.can_continue());
-    let kept = optimization.folder.as_ref().map(|folder| export_command(folder.folder().path()));
+    let kept = optimization.folder.as_ref().map(|folder| export_command(folder.folder.path()));
     let more = [("to continue", continued), ("to export", kept.as_deref())];
     let more: String = more.iter().filter_map(|(name, command)| Some(line(name, (*command)?))).collect();
     let write = |folder: &Folder| {
@@ -83,17 +91,8 @@ pub fn report(
         // From here on the run has ended.
         folder.write(REPORT, &object)
     };
-    let folder = optimization.folder.as_ref().map(RunFolder::folder);
+    let folder = optimization.folder.as_ref().map(|folder| &folder.folder);
     let json = session.arguments.json;
     let printed = session.arguments.printed(facts.text(session.arguments.verbose) + &more, object.clone());
     Ok((printed_with_files(printed, json, folder, write)?, shapes))
-}
-
-/// The sentence about an interruption, with the command that continues the run; none if the run was not interrupted.
-pub fn interruption(continued: Option<&str>) -> Option<String> {
-    let hint = match continued {
-        Some(command) => format!("continue with `{command}`"),
-        None => "nothing was kept; with --out DIR a run can be continued".to_owned(),
-    };
-    interrupted().then(|| format!("interrupted; {hint}"))
 }

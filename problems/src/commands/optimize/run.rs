@@ -157,8 +157,8 @@ pub fn begin(
     let bytes = room(&stages(&loaded.case), kind, arguments.series.vtk_history);
     if let Some(path) = path.filter(|path| arguments.course.resume.is_some() && RunFolder::is_one(path)) {
         let folder = RunFolder::reopen(Folder::reopen(path, bytes)?, loaded, arguments.course.new_version)?;
-        shape.problem().admissible.check(folder.initial_controls())?;
-        let controls = folder.initial_controls().clone();
+        shape.problem().admissible.check(&folder.initial_controls)?;
+        let controls = folder.initial_controls.clone();
         return Ok((Some(folder), controls));
     }
     let load = || {
@@ -181,8 +181,7 @@ const FIELD_BYTES: u64 = 300;
 /// Bytes per contact node of the figures, as files and in the page (some 2500 were written at 35³).
 const REPORT_BYTES: u64 = 3000;
 
-/// Jacobians that a run may keep, with the restart data behind each: twice as many as runs of the paper's examples
-/// need.
+/// Jacobians that a run may keep, with the restart data behind each: twice what the paper's examples need.
 const JACOBIANS: u64 = 40;
 
 /// Most shapes of a series for ParaView that room is looked for: more than twice as many serious steps as runs of the

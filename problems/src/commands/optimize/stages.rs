@@ -24,8 +24,7 @@ impl Part {
         }
     }
 
-    /// Number of its random start; none for a run that begins at the start of the scene or where the one before it
-    /// ended.
+    /// Number of its random start; none at the start of the scene or where the run before it ended.
     pub fn random_start(self) -> Option<u64> {
         match self {
             Self::Start(number @ 2..) => Some(number as u64),
@@ -39,7 +38,6 @@ impl Part {
 pub struct MeshStage {
     /// What it is within the optimization.
     pub part: Part,
-    /// The case on its mesh.
     pub case: Case,
 }
 

@@ -96,7 +96,6 @@ pub struct Ended<'a> {
     pub shapes: &'a [SolvedShape; 2],
     /// What is implausible about the shape found.
     pub checks: &'a [Warning],
-    /// What was left out.
     pub left_out: Vec<&'static str>,
     /// What several processes have used.
     pub processes: Option<Usage>,
@@ -219,11 +218,8 @@ impl Ended<'_> {
     /// Solver, warnings, and what was left out.
     fn rest(&self) -> Result<Group, Failure> {
         let mut facts = solver_facts(&self.shapes[1].state)?;
-        facts.extend(warning_facts(&all_warnings(&self.last.report, self.checks))?);
-        facts.push(Fact::object("left_out", "left out", &self.left_out, self.left_out.join("; "))?.detail());
-        if let Some(usage) = &self.processes {
-            facts.push(Fact::object("processes", "processes", usage, usage.to_string())?);
-        }
+        let warnings = all_warnings(&self.last.report, self.checks);
+        facts.extend(closing_facts(&warnings, &self.left_out, self.processes.as_ref())?);
         Ok(Group::new("", facts))
     }
 }
@@ -266,10 +262,16 @@ fn certificate(certificate: Option<&Certificate>) -> Result<Group, Failure> {
     Ok(Group::new(title, facts).with_words(words))
 }
 
-/// Warnings, a line each, and as a list.
-pub fn warning_facts(warnings: &[Warning]) -> Result<Vec<Fact>, Failure> {
-    let lines = warnings.iter().map(|warning| Ok(Fact::new("", "warning", warning.to_string(), "")));
-    lines.chain([Fact::json("warnings", &warnings)]).collect()
+/// What stands last: warnings, a line each and as a list, what was left out, and what several processes have used.
+pub fn closing_facts(warnings: &[Warning], left_out: &[&str], usage: Option<&Usage>) -> Result<Vec<Fact>, Failure> {
+    let lines = warnings.iter().map(|warning| Fact::new("", "warning", warning.to_string(), ""));
+    let mut facts: Vec<Fact> = lines.collect();
+    facts.push(Fact::json("warnings", &warnings)?);
+    facts.push(Fact::object("left_out", "left out", &left_out, left_out.join("; "))?.detail());
+    if let Some(usage) = usage {
+        facts.push(Fact::object("processes", "processes", usage, usage.to_string())?);
+    }
+    Ok(facts)
 }
 
 /// The warnings of the optimizer and those about the final state.

@@ -11,11 +11,9 @@ pub const PRESSURE_ALONE: &str = "Contact pressure over the plan of the contact 
 
 pub const CUTS: &str = "The same pressures along lines through the peak of each shape.";
 
-/// The status with friction.
 pub const STATUS: &str = "Open nodes carry no pressure. Sticking nodes hold by friction, slipping nodes slide against it. Arrows show the \
     friction traction that the lower body exerts on what lies above; all are drawn on one scale.";
 
-/// The status without friction.
 pub const STATUS_WITHOUT_FRICTION: &str = "Open nodes carry no pressure, closed ones do.";
 
 pub const STRESS: &str = "Von Mises stress, averaged from brick centres to nodes, on the outside of the deformed bodies. Bodies of \
@@ -26,7 +24,6 @@ pub const STRESS: &str = "Von Mises stress, averaged from brick centres to nodes
 pub const SURFACE: &str = "The contact surface of the lower body without load, its heights counted from their mean. The note below the \
     picture says by how much heights are magnified.";
 
-/// The surface from above.
 pub const SURFACE_MAP: &str = "The same heights from above. The lines join points of equal height and carry it in mm; a ring marks the \
     highest node.";
 

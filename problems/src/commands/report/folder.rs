@@ -25,7 +25,6 @@ pub const VTK: &str = "vtk";
 /// Opens the files for ParaView with a good view.
 const VIEW: &str = include_str!("view.py");
 
-/// The folder of a report.
 pub struct ReportFolder<'a> {
     folder: &'a Folder,
     loaded: &'a LoadedScene,

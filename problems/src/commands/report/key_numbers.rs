@@ -7,7 +7,7 @@ use crate::commands::solved_shape::ContactObjective;
 use contact::deformation::Deformation;
 use contact::fields::Fields;
 
-/// Those of shapes that have fields; friction work only where there is friction.
+/// The key numbers of shapes that have fields; friction work only where there is friction.
 pub fn key_numbers(objective: &ContactObjective, shapes: &[ShownShape<'_>]) -> Group {
     let seen: Vec<(&ShownShape<'_>, &Fields)> =
         shapes.iter().filter_map(|shape| Some((shape, shape.fields.as_ref()?))).collect();

@@ -78,7 +78,7 @@ struct Counter {
 }
 
 impl Counter {
-    /// That of an objective with bodies whose largest side has this length, mm.
+    /// The counter surface of an objective with bodies whose largest side has this length, mm.
     fn of(objective: &ContactObjective, side: f64) -> Self {
         /// Drawn difference of its heights, as a share of the largest side.
         const RELIEF: f64 = 0.12;

@@ -55,15 +55,15 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
     ] {
         files.push(File { path: path.into(), what: what.into() });
     }
-    for (number, row) in (1..).zip(study.rows()) {
+    for (number, row) in (1..).zip(&study.rows) {
         if matches!(&row.outcome, Outcome::Solved(solved) if solved.optimization.is_some()) {
             let what = format!("the optimization of row {number}: {}", caption(row));
             files.push(File { path: format!("{}/report.html", row_folder(number)), what });
         }
     }
-    let failed = study.rows().iter().filter(|row| matches!(row.outcome, Outcome::Failed(_))).count();
-    let varied: Vec<&str> = study.vary().iter().map(|varied| varied.name()).collect();
-    let solved = study.rows().len() - failed;
+    let failed = study.rows.iter().filter(|row| matches!(row.outcome, Outcome::Failed(_))).count();
+    let varied: Vec<&str> = study.vary.iter().map(|varied| varied.name()).collect();
+    let solved = study.rows.len() - failed;
     if solved > MAX_SHOWN && !pictures.is_empty() {
         pictures
             .push(Block::Text(format!("Pressures and surfaces are drawn for the first {MAX_SHOWN} of {solved} rows.")));
@@ -85,7 +85,7 @@ pub fn write_study(folder: &Folder, loaded: &LoadedScene, study: &StudyJson) -> 
 
 /// How many optimizations have no proof, in a sentence; nothing where all have one.
 fn unconfirmed(study: &StudyJson) -> String {
-    let runs = study.rows().iter().filter_map(|row| Shown::of(row)?.solved.optimization.as_ref());
+    let runs = study.rows.iter().filter_map(|row| Shown::of(row)?.solved.optimization.as_ref());
     let (all, open) = runs.fold((0, 0), |(all, open), run| (all + 1, open + usize::from(!run.confirmed)));
     match open {
         0 => String::new(),
@@ -98,7 +98,7 @@ fn unconfirmed(study: &StudyJson) -> String {
 /// The table; the reason of a failed row stands in the cell after the values.
 fn table(study: &StudyJson) -> Block {
     let head = study.head();
-    let rows: Vec<Vec<String>> = study.rows().iter().map(|row| study.cells(row)).collect();
+    let rows: Vec<Vec<String>> = study.rows.iter().map(|row| study.cells(row)).collect();
     Block::table(head, rows)
 }
 
@@ -118,7 +118,7 @@ impl<'a> Shown<'a> {
 }
 
 fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'static str)>, FigureError> {
-    let shown: Vec<Shown<'_>> = study.rows().iter().filter_map(Shown::of).collect();
+    let shown: Vec<Shown<'_>> = study.rows.iter().filter_map(Shown::of).collect();
     let mut figures = Vec::new();
     for figure in curves(study, &shown) {
         figures.push((figure?, CURVES));
@@ -126,7 +126,7 @@ fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'stati
     let title = |what: &str| format!("{}: {what}", loaded.case.scene.name);
     for (number, rows) in (1..).zip(shown.chunks(PER_FIGURE)).take(MAX_SHOWN / PER_FIGURE) {
         figures.push((pressures(format!("pressures_{number}"), title("contact pressure"), rows)?, PRESSURES));
-        if study.vary().iter().any(|varied| varied.changes_shapes()) || rows[0].solved.optimization.is_some() {
+        if study.vary.iter().any(|varied| varied.changes_shapes()) || rows[0].solved.optimization.is_some() {
             figures.push((surfaces(format!("surfaces_{number}"), title("contact surface"), rows)?, SURFACES));
         }
     }
@@ -137,13 +137,13 @@ fn drawn(loaded: &LoadedScene, study: &StudyJson) -> Result<Vec<(Figure, &'stati
 /// that agree in the others.
 fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureError>> {
     let numbers = |values: &[String]| values.len() > 1 && values.iter().all(|value| value.parse::<f64>().is_ok());
-    let Some(across) = study.vary().iter().position(|varied| numbers(varied.values())) else { return vec![] };
+    let Some(across) = study.vary.iter().position(|varied| numbers(varied.values())) else { return vec![] };
     let figure = |name: &str, quantity: &str, unit: &str, value: fn(&Solved) -> f64| {
         let mut curves: Vec<Curve> = Vec::new();
         for Shown { row, solved } in shown {
             let mut others = values(row);
             let Ok(place) = others.remove(across).parse() else { continue };
-            let others = others.iter().zip(study.vary().iter().enumerate().filter(|(index, _)| *index != across));
+            let others = others.iter().zip(study.vary.iter().enumerate().filter(|(index, _)| *index != across));
             let name: Vec<String> = others.map(|(value, (_, varied))| format!("{} {value}", varied.name())).collect();
             let name = if name.is_empty() { "rows".to_owned() } else { name.join(", ") };
             let point = (place, value(solved));
@@ -153,7 +153,7 @@ fn curves(study: &StudyJson, shown: &[Shown<'_>]) -> Vec<Result<Figure, FigureEr
             }
         }
         curves.iter_mut().for_each(|curve| curve.points.sort_by(|a, b| a.0.total_cmp(&b.0)));
-        let across = study.vary()[across].name();
+        let across = study.vary[across].name();
         Lines {
             name: name.to_owned(),
             title: format!("{quantity} over {across}"),

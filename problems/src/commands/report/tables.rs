@@ -5,8 +5,7 @@ use crate::commands::solved_shape::ContactObjective;
 use contact::contact_shape::ContactState;
 use nonsmooth::Report;
 
-/// One line per contact node: place, pressure and traction, remaining gap (≥ 0 up to the accuracy of the state),
-/// status.
+/// One line per contact node: place, pressure and traction, remaining gap (≥ 0 up to accuracy), status.
 pub fn contact_nodes(objective: &ContactObjective, state: &ContactState) -> String {
     let problem = objective.solver().problem();
     let mut table = String::from("x1_mm,x2_mm,pressure_MPa,traction_1_MPa,traction_2_MPa,remaining_gap_mm,status\n");

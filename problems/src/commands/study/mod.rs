@@ -1,5 +1,4 @@
-//! `study`: a table over values of parameters. Every row is the scene with some options, evaluated at one shape or
-//! optimized.
+//! `study`: a table over values of parameters. A row is the scene with some options, evaluated or optimized.
 //!
 //! ```text
 //! DIR/scene.toml, start.json, study.json   the study as stated
@@ -61,7 +60,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
             continue;
         }
         session.status.begin(format!("row {} of {}: ", index + 1, combinations.len()));
-        let out = folder.filter(|_| plan.optimize).map(|folder| folder.folder().path().join(row_folder(index + 1)));
+        let out = folder.filter(|_| plan.optimize).map(|folder| folder.folder.path().join(row_folder(index + 1)));
         let start = plan.same_start.then_some(&controls);
         let row = match cut_short(session, loaded) {
             None => row::computed(loaded, (options, &plan.fixed), (plan.optimize, start, out.as_deref()), session)?,
@@ -76,7 +75,7 @@ pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failur
             Ok(row) => rows.push(row),
         }
         if let Some(folder) = folder {
-            folder.folder().write(ROWS, json(&rows)?)?;
+            folder.folder.write(ROWS, json(&rows)?)?;
         }
     }
     let study = StudyJson::new(&plan, rows, combinations.len());
@@ -104,7 +103,7 @@ fn started(
         folder.iter().for_each(RunFolder::abandon);
         return Err(Failure::Input("--vary mesh is allowed without --continuation, which names the meshes".into()));
     }
-    if let Some(folder) = folder.as_ref().filter(|folder| folder.is_resumed()) {
+    if let Some(folder) = folder.as_ref().filter(|folder| folder.resumed) {
         let most = rows_of(folder)?.iter().filter_map(Row::evaluations).max().unwrap_or(0);
         if optimizer.max_evaluations < most {
             let allowed = format!("at least the {most} evaluations that a row has");
@@ -113,24 +112,24 @@ fn started(
     }
     if let Some(folder) = &folder {
         folder.proceed(loaded)?;
-        folder.folder().write(STUDY, json(plan)?)?;
+        folder.folder.write(STUDY, json(plan)?)?;
     }
     Ok((folder, controls))
 }
 
 /// The rows that a study which is continued has.
 fn kept(folder: Option<&RunFolder>, combinations: &[Vec<String>]) -> Result<Vec<Row>, Failure> {
-    let Some(folder) = folder.filter(|folder| folder.is_resumed()) else { return Ok(Vec::new()) };
+    let Some(folder) = folder.filter(|folder| folder.resumed) else { return Ok(Vec::new()) };
     let rows = rows_of(folder)?;
     match rows.iter().zip(combinations).all(|(row, options)| row.options == *options) {
         true if rows.len() <= combinations.len() => Ok(rows),
-        _ => Err(file_error(&folder.folder().path().join(ROWS), format!("the rows are not those of {STUDY}")).into()),
+        _ => Err(file_error(&folder.folder.path().join(ROWS), format!("the rows are not those of {STUDY}")).into()),
     }
 }
 
 /// The rows in the folder of a study.
 fn rows_of(folder: &RunFolder) -> Result<Vec<Row>, Failure> {
-    let path = folder.folder().path().join(ROWS);
+    let path = folder.folder.path().join(ROWS);
     if path.exists() { read(&path) } else { Ok(Vec::new()) }
 }
 
@@ -157,9 +156,9 @@ fn finished(
         if cut.is_none() { folder.write(REPORT, &object) } else { Ok(()) }
     };
     let printed = session.arguments.printed(text.clone(), object.clone());
-    let text = printed_with_files(printed, session.arguments.json, folder.map(RunFolder::folder), write)?;
+    let text = printed_with_files(printed, session.arguments.json, folder.map(|folder| &folder.folder), write)?;
     if let Some(reason) = cut {
-        let continued = folder.map(|folder| continuation(folder.folder().path(), session.arguments));
+        let continued = folder.map(|folder| continuation(folder.folder.path(), session.arguments));
         let continued = continued.map_or_else(String::new, |command| format!("; continue with `{command}`"));
         let status = if interrupted() { STATUS } else { 1 };
         return Err(Failure::Incomplete { text, reason: reason + &continued, status });

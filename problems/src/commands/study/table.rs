@@ -12,7 +12,7 @@ use std::fmt;
 #[derive(Debug, Serialize)]
 pub struct StudyJson {
     /// What is varied, in the order of the options of every row; the last one changes fastest.
-    vary: Vec<Varied>,
+    pub vary: Vec<Varied>,
     /// Whether every row was optimized.
     optimize: bool,
     /// Number of rows of the whole study.
@@ -20,7 +20,7 @@ pub struct StudyJson {
     /// Number of rows without a result.
     failures: usize,
     /// The rows so far.
-    rows: Vec<Row>,
+    pub rows: Vec<Row>,
 }
 
 impl StudyJson {
@@ -33,15 +33,6 @@ impl StudyJson {
     /// Whether no row has a result.
     pub fn all_failed(&self) -> bool {
         self.failures == self.rows.len() && self.failures > 0
-    }
-
-    pub fn vary(&self) -> &[Varied] {
-        &self.vary
-    }
-
-    /// The rows so far.
-    pub fn rows(&self) -> &[Row] {
-        &self.rows
     }
 
     /// Names of the columns of the table.
@@ -154,7 +145,6 @@ fn cell(value: &Value) -> String {
     }
 }
 
-/// The folder of a row, by its number from 1.
 pub fn row_folder(number: usize) -> String {
     format!("row_{number:03}")
 }

@@ -1,5 +1,4 @@
-//! Error of the contact solvers against tolerance and seconds, with the estimate that they report beside the true
-//! error.
+//! Error of the contact solvers against tolerance and seconds, with the estimate reported beside the true error.
 
 use crate::accuracy::extent::case;
 use crate::accuracy::objective::{METHODS, norm, objective_by};

@@ -24,7 +24,7 @@ pub struct MeshRow {
     pub seconds: f64,
     /// The quantities, in N, mm, MPa.
     pub values: [f64; QUANTITIES.len()],
-    /// Their errors relative to the extrapolated limits.
+    /// Errors of the quantities relative to the extrapolated limits.
     pub errors: [f64; QUANTITIES.len()],
     /// Rates observed from the row before.
     pub rates: [Option<f64>; QUANTITIES.len()],

@@ -1,5 +1,4 @@
-//! Points where Θ is not differentiable, constructed by bisection along a line, and what the returned element does
-//! there.
+//! Points where Θ is not differentiable, constructed by bisection along a line, and the element returned there.
 //!
 //! ```text
 //! t* : the contact status changes,   Θ′(t*−) and Θ′(t*+) by one-sided differences of second order

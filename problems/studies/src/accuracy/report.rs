@@ -10,7 +10,6 @@ use serde::Serialize;
 /// The study; parts that were not asked for are empty.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct AccuracyReport {
-    /// Threads of the machine.
     pub machine_threads: usize,
     /// Seconds of the whole study.
     pub seconds: f64,

@@ -114,8 +114,7 @@ fn sample(
     Ok((Sample { state, adjoint }, found))
 }
 
-/// States to the other tolerances: cold at the first controls, warm at the second from the cold state of that
-/// tolerance.
+/// States to the other tolerances: cold at the first controls, warm at the second from that cold state.
 fn counted(solver: &AnySolver, [controls, nearby]: [&[f64]; 2], failures: &mut Vec<String>) -> Vec<Solve> {
     let mut solves = Vec::new();
     let mut record = |controls: &[f64], restart: Option<&ContactWarmStart>, tolerance: f64| {

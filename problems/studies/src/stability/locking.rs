@@ -3,8 +3,7 @@
 //! ```text
 //! u = (sin²πx₁ sin 2πx₂, −sin 2πx₁ sin²πx₂, 0)·sin πx₃,   u = 0 on the boundary,   div u = 0,   f = −μ Δu
 //! ```
-//! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, bricks of mean dilatation keep
-//! it.
+//! The error of the displacements against h for ν → ½: trilinear bricks lose their rate, mean dilatation keeps it.
 
 use crate::held_block::{TWO_POINTS, solution};
 use crate::stability::case::Case;

@@ -20,8 +20,7 @@ const RADII: [f64; 4] = [1e-8, 1e-7, 1e-6, 1e-5];
 const LARGEST_RESIDUAL: f64 = 1e-3;
 /// A side within this relative distance is active.
 const ACTIVE_SIDE: f64 = 1e-6;
-/// Length that a step has where the combination is as long as the longest gradient: short beside the sides that are not
-/// active.
+/// Length that a step has where the combination is as long as the longest gradient: short beside inactive sides.
 const SHORT: f64 = 1e-3 * ACTIVE_SIDE;
 /// Least size of a variable relative to c + |x|∞.
 const LEAST_SIZE: f64 = 1e-3;

@@ -49,12 +49,10 @@ pub enum TerminationKind {
 /// One run and what it claims.
 #[derive(Debug, Clone, Serialize)]
 pub struct TerminationRecord {
-    /// Name of the problem.
     pub problem: String,
     pub variant: Variant,
     /// Whether it is convex, and declared so.
     pub convex: bool,
-    /// The kind of the termination.
     pub kind: TerminationKind,
     /// (value − a f* − s)/a, relative to 1 + |f*|.
     pub gap: f64,
@@ -164,8 +162,7 @@ fn check(record: &mut TerminationRecord, changed: &Changed<'_>, report: &Report)
     Ok(())
 }
 
-/// Runs the variants that `take` selects by their number, on all processors; the records are in the order of the
-/// problems.
+/// Runs the variants that `take` selects by their number, on all processors; records are in the order of problems.
 ///
 /// # Errors
 /// [`InputError`] if a problem of the collection cannot be posed.

@@ -21,7 +21,6 @@ pub enum CaseOutcome {
 /// What one solver did.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Path {
-    /// Name of the solver.
     pub solver: &'static str,
     /// Newton steps or fixed point steps.
     pub steps: usize,

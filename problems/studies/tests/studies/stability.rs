@@ -20,8 +20,7 @@ fn newton(problem: &Arc<ContactProblem>) -> TotalFeti {
     TotalFeti::new(Arc::clone(problem), TornOptions::default()).unwrap()
 }
 
-/// Numbers of cases that are solved, refused, limited and broken, of the groups with these names; all must be as
-/// expected.
+/// Numbers of solved, refused, limited and broken cases of the groups with these names; all must be as expected.
 fn outcomes(groups: &[&str]) -> [usize; 4] {
     let cases = all().into_iter().filter(|case| case.quick && groups.contains(&case.group));
     let report = StabilityReport::new(cases.map(|case| case.run()).collect());

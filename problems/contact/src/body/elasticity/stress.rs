@@ -42,8 +42,7 @@ impl<'a> BrickStress<'a> {
         self.at(&sample(self.nodes, [0.0; 3]))
     }
 
-    /// Stress at the eight Gauss points and their volumes: MPa, mm³. The forces of the brick are the sums Σ V σ ∇N_a
-    /// over them.
+    /// Stress at the eight Gauss points and their volumes: MPa, mm³. Forces of the brick are Σ V σ ∇N_a over them.
     pub fn at_gauss_points(&self) -> [(SymmetricTensor, GaussPoint<f64>); 8] {
         gauss_points(self.nodes).map(|point| (self.at(&point), point))
     }

@@ -1,5 +1,4 @@
-//! Von Mises stress at the centre of a brick, with its derivatives by displacements and by heights of nodes; method.md
-//! (5.6).
+//! Von Mises stress at the centre of a brick, with derivatives by displacements and heights of nodes; method.md (5.6).
 //!
 //! ```text
 //! s = 2μ dev ε,   σ_vM = √(3/2 s:s),   P = ∂σ_vM/∂σ = 3/2 s/σ_vM,   g_a = ∇N_a at the centre

@@ -93,8 +93,7 @@ impl Grid {
         (0..self.column_count()).map(move |column| (column / rows, column % rows))
     }
 
-    /// Lumped tributary area of column (i, j) on the projected grid: h₁h₂ inside, half on edges, quarter in corners;
-    /// mm².
+    /// Tributary area of column (i, j) on the projected grid: h₁h₂ inside, half on edges, quarter in corners; mm².
     pub(crate) fn tributary_area(&self, i: usize, j: usize) -> f64 {
         let share = |index: usize, cells: usize| if index == 0 || index == cells { 0.5 } else { 1.0 };
         let cell = self.size[0] / self.cells[0] as f64 * self.size[1] / self.cells[1] as f64;

@@ -75,8 +75,7 @@ impl TornContact<'_> {
         }
         let system = AdjointSystem { contact: self, active, load, right };
         let mut iterate = system.at_start();
-        // Where equilibrium alone determines the forces, all of the right side is rigid and only rounding is left of
-        // it.
+        // Where equilibrium alone determines the forces, the right side is rigid, and only rounding is left of it.
         let size = iterate.residual.max(SMALLEST_PROJECTED_SHARE * self.norm(&system.right));
         let goal = if size < ROUNDING_SHARE * natural { TIGHTEST_ACCEPTABLE * natural } else { tolerance * size };
         let size = size.max(natural);

@@ -1,5 +1,4 @@
-//! Iterative refinement in cycles: what follows a run of a Krylov method whose products were in single or double
-//! precision.
+//! Iterative refinement in cycles: what follows a Krylov method with products in single or double precision.
 
 use crate::tfeti::dual::Precision;
 

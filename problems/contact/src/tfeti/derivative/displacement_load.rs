@@ -1,5 +1,4 @@
-//! What a function of the displacements adds to the adjoint system: its gradient l = ∂J/∂u acts on the bodies like a
-//! load.
+//! What a function of the displacements adds to the adjoint system: l = ∂J/∂u acts on the bodies like a load.
 //!
 //! ```text
 //! u of a node = mean over its copies   ⇒   every copy carries l/(number of copies);     K⁺ l,   B K⁺ l,   e_l = Rᵀ l

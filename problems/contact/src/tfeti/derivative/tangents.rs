@@ -176,8 +176,7 @@ impl<'a, D: Real, const N: usize> TangentSystem<'a, D, N> {
         points.map(|point| sum(point.start)).collect()
     }
 
-    /// One run of the Krylov method in precision E, towards residuals of `goals`, or by a factor `reduction` if that is
-    /// more.
+    /// One run of the Krylov method in precision E, towards residuals of `goals`, or by `reduction` if that is more.
     fn cycle<E: Real>(&self, iterate: &mut TangentIterate<D, N>, goals: &Row<f64, N>, reduction: f64) {
         let (rows, contact) = (&self.active.rows, self.contact);
         // Every column is brought to size one, so that no unit system leaves the range of single precision.
@@ -239,8 +238,7 @@ impl<const N: usize> TangentSystem<'_, f32, N> {
 }
 
 impl<const N: usize> TangentSystem<'_, f64, N> {
-    /// Cycles to a relative residual, each followed by products in double precision; also the largest relative
-    /// residual.
+    /// Cycles to a relative residual, each followed by products in double precision; also the largest residual.
     fn solve_in_cycles(&self, tolerance: f64) -> Result<(TangentIterate<f64, N>, f64), ContactError> {
         let mut precision = self.contact.precision;
         let mut iterate = self.at_zero();

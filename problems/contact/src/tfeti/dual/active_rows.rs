@@ -6,8 +6,7 @@
 //! Qᵀ F T y + Δ y − Qᵀ Gᵀ a = r,     Δ = (1 − β)/c on the slip rows, 0 elsewhere
 //! preconditioner:   Qᵀ (B_D S B_Dᵀ) Q + Z,   Z = (1 − β) c on the slip rows
 //! ```
-//! With the slip compliance δ = (1 − β)/(cβ) one has w = (1 + δc)^(−1/2) = √β, so Δ = w²δ, and Z is that spring in
-//! series.
+//! With the slip compliance δ = (1 − β)/(cβ) one has w = (1 + δc)^(−1/2) = √β, so Δ = w²δ, and Z is a spring in series.
 
 use crate::equilibrium::ContactBoundary;
 use crate::equilibrium::law::Linearization;
@@ -67,8 +66,7 @@ impl<'a> ActiveRows<'a> {
         self.dimension
     }
 
-    /// Calls `visit(node's first contact row, its number of rows, its first unknown, derivative)` for every closed
-    /// node.
+    /// Calls `visit(node's first contact row, its number of rows, its first unknown, derivative)` per closed node.
     fn closed_nodes(&self, mut visit: impl FnMut(usize, usize, usize, &Linearization)) {
         for ((point, linearization), &start) in self.boundary.points.iter().zip(&self.linearizations).zip(&self.starts)
         {

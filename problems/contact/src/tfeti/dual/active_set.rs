@@ -33,7 +33,7 @@ impl<'a> ActiveSet<'a> {
     /// [`ContactError::Unheld`] when the rows leave a rigid motion free.
     pub fn new(space: &'a CoarseSpace, rows: ActiveRows<'a>) -> Result<Self, ContactError> {
         let coarse = space.timed(|| {
-            space.condensed().with_contact(|add| {
+            space.condensed.with_contact(|add| {
                 rows.contact_columns(|trial, test| {
                     let (trial, test) = (space.combine(trial), space.combine(test));
                     for &(column, right) in &test {

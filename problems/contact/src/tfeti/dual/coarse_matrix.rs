@@ -18,8 +18,7 @@ use crate::linear::right_side::RightSide;
 use crate::tfeti::torn::CoarsePattern;
 use faer::Mat;
 
-/// The part of the coarse matrix that all active sets of a shape share, with the subdomains away from contact
-/// eliminated.
+/// The part of the coarse matrix that all active sets of a shape share, without the subdomains away from contact.
 #[derive(Debug)]
 pub struct CondensedCoarse {
     /// Factor of K + w I_C.
@@ -58,8 +57,7 @@ impl CondensedCoarse {
         Ok(Self { factor, schur, interior_count: pattern.interior_count() })
     }
 
-    /// Factors S + U; `add_contact` calls its argument with row, column and value of every term of U, in places within
-    /// C.
+    /// Factors S + U; `add_contact` hands over row, column and value of every term of U, in places within C.
     pub fn with_contact(&self, add_contact: impl FnOnce(&mut dyn FnMut(usize, usize, f64))) -> CoarseFactor<'_> {
         let mut matrix = self.schur.clone();
         add_contact(&mut |row, column, value| matrix[(row, column)] += value);

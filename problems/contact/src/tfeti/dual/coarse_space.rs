@@ -31,10 +31,10 @@ pub struct CoarseSpace {
     /// Motions that nothing holds.
     grounded: Vec<Vec<f64>>,
     /// G_E G_Eᵀ, and the grounded motions.
-    condensed: CondensedCoarse,
+    pub condensed: CondensedCoarse,
     equality_count: usize,
     /// Which process works on which clusters.
-    distribution: Arc<Distribution>,
+    pub distribution: Arc<Distribution>,
     /// Nanoseconds spent on it after it was built.
     spent: AtomicU64,
 }
@@ -82,11 +82,6 @@ impl CoarseSpace {
         Duration::from_nanos(self.spent.load(Ordering::Relaxed)).as_secs_f64()
     }
 
-    /// Which process works on which clusters of subdomains.
-    pub fn distribution(&self) -> &Distribution {
-        &self.distribution
-    }
-
     /// Number of rows of B of this process.
     pub fn row_count(&self) -> usize {
         self.rows.count()
@@ -97,13 +92,7 @@ impl CoarseSpace {
         &self.resultants
     }
 
-    /// The part of the coarse matrix that all active sets share.
-    pub fn condensed(&self) -> &CondensedCoarse {
-        &self.condensed
-    }
-
-    /// Σ weight·(row of Gᵀ) of a combination of contact rows, as entries (place of the amplitude within C, value) that
-    /// may repeat a place.
+    /// Σ weight·(row of Gᵀ) of combined contact rows, as entries (place within C, value) that may repeat a place.
     pub fn combine(&self, combination: &[(usize, f64)]) -> Vec<(usize, f64)> {
         let mut combined: Vec<(usize, f64)> = Vec::with_capacity(48);
         for &(row, weight) in combination {
@@ -254,7 +243,7 @@ mod tests {
             for motion in &space.grounded {
                 held.iter().for_each(|&i| held.iter().for_each(|&j| matrix[(i, j)] += motion[i] * motion[j]));
             }
-            let factor = space.condensed().with_contact(|add| {
+            let factor = space.condensed.with_contact(|add| {
                 for &row in &chosen {
                     let (trial, test) = (space.combine(&[(row, 1.0), (row + 1, 0.3)]), space.combine(&[(row, 1.0)]));
                     for &(column, right) in &test {

@@ -93,8 +93,7 @@ impl<'a> DualOperator<'a> {
         self.gather_columns(torn)
     }
 
-    /// B K⁺ (r − BᵀΛ) for torn forces r (N) in their precision; `count` columns are counted. `torn`: room for a torn
-    /// block.
+    /// B K⁺ (r − BᵀΛ) for torn forces r (N) in their precision; `count` columns are counted. `torn`: workspace.
     pub(crate) fn free_jumps<E: Real, const N: usize>(
         &self,
         forces: &[Row<E, N>],

@@ -4,8 +4,7 @@
 //! Dirichlet:  B_D S B_Dᵀ,  S = K_BB − K_BI K_II⁻¹ K_IB   (B: dofs with rows, I: the others)
 //! lumped:     B_D K_BB B_Dᵀ
 //! ```
-//! K is the boundary stiffness of a subdomain: for a nearly incompressible material, that of its compressible
-//! neighbour.
+//! K is the boundary stiffness of a subdomain: for nearly incompressible material, that of its compressible neighbour.
 
 use crate::linear::entry::vectorized;
 use crate::linear::right_side::RightSide;
@@ -51,8 +50,7 @@ impl<'a> Preconditioner<'a> {
         model.rows_times(&constraints.weighted, torn)
     }
 
-    /// S or K_BB times the boundary part. Entries of the interior come out meaningless; nothing reads them, since B_D
-    /// has no rows there.
+    /// S or K_BB times the boundary part. Entries of the interior are meaningless and not read: B_D has no rows there.
     fn apply_subdomain<V: RightSide>(&self, index: usize, factors: &SubdomainFactors, part: &mut [V]) {
         let stiffness = factors.boundary_stiffness();
         let Some(class) = self.model.interior(index) else {

@@ -1,5 +1,4 @@
-//! Gᵀ: rows of B times the rigid modes, in blocks of the six amplitudes of a cluster: of a subdomain, where none are
-//! joined.
+//! Gᵀ: rows of B times the rigid modes, in blocks of the six amplitudes of a cluster or single subdomain.
 
 use crate::equilibrium::modes::MOTIONS;
 use crate::linear::entry::{Entry, vectorized};

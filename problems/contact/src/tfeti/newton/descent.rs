@@ -23,8 +23,7 @@ use crate::tfeti::newton::stagnation::stagnates;
 const PROJECTOR_RENEWAL: f64 = 0.01;
 
 /// Resultant of a cluster, over the load, that rounding leaves where the coarse matrix is well conditioned; ordinary
-/// states stand at 1e-15. Few nodes in a corner make it ill conditioned: every direction then leaves equilibrium by
-/// more.
+/// states stand at 1e-15. Few nodes in a corner make it ill conditioned: all directions then leave equilibrium.
 const MAX_IMBALANCE: f64 = 1e-13;
 
 /// Residual reduction after which single precision images are replaced.
@@ -80,11 +79,6 @@ impl TornContact<'_> {
         Ok(residual)
     }
 
-    /// Precision of the products with directions: factors of flat or tall bricks lose all digits of single precision.
-    fn descent_precision(&self) -> Precision {
-        if self.operator.model.problem.flat_or_tall().is_some() { Precision::Double } else { self.precision }
-    }
-
     /// Products in which the residual must at least halve.
     fn patience(&self) -> usize {
         let problem = &self.operator.model.problem;
@@ -123,7 +117,10 @@ impl TornContact<'_> {
         let step = self.precondition(rows, &residual);
         add_scaled(&mut direction, 1.0, &rows.trial(&step));
         active.balance(&mut direction);
-        let image = self.operator.apply_direction(&direction, self.descent_precision());
+        // Factors of flat or tall bricks lose all digits of single precision.
+        let double = self.operator.model.problem.flat_or_tall().is_some();
+        let precision = if double { Precision::Double } else { self.precision };
+        let image = self.operator.apply_direction(&direction, precision);
         let amplitudes = balancing_amplitudes(active, &rows.unknowns_of(&direction), &image);
         let jumps = self.space.jumps(&amplitudes);
         directions.push(self, Direction { amplitudes, forces: Some((direction, image)) }, jumps);

@@ -15,8 +15,7 @@ use crate::tfeti::dual::{ActiveSet, Friction, Iterate, TornContact};
 const FIRST_CLOSED: usize = 3;
 
 impl TornContact<'_> {
-    /// The active set of given derivatives, enlarged until it holds every motion; open nodes of largest `priority` are
-    /// closed first.
+    /// The active set of given derivatives, enlarged until it holds every motion; open nodes close by `priority`.
     ///
     /// # Errors
     /// [`ContactError::Unheld`] when even all nodes closed leave a motion free.
@@ -47,7 +46,6 @@ impl TornContact<'_> {
         }
     }
 
-    /// The active set of an iterate.
     pub(crate) fn held_at(&self, iterate: &Iterate) -> Result<ActiveSet<'_>, ContactError> {
         self.held(self.linearize(iterate), || {
             let arguments = self.arguments(iterate);

@@ -166,8 +166,7 @@ impl Recycled {
     }
 }
 
-/// An iterate moved by weighted directions, known by what its residual needs: contact rows, and equality rows through
-/// their products.
+/// An iterate moved by weighted directions, known by what its residual needs: contact rows, products of equality rows.
 #[derive(Clone)]
 struct Position {
     weights: Vec<f64>,

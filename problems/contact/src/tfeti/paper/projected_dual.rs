@@ -112,7 +112,6 @@ pub struct ProjectedDual<'a> {
 }
 
 impl ProjectedDual<'_> {
-    /// The product F v.
     fn product(&self, v: &[f64]) -> Vec<f64> {
         self.coarse.whole(&self.operator.apply(&self.coarse.own(v)))
     }

@@ -5,8 +5,7 @@
 //! λ₀ = Gᵀ(GGᵀ)⁻¹ e,   C = L⁻¹G,   LLᵀ = GGᵀ,   Q = CᵀC,   P = I − Q
 //! ```
 //! The orthonormalised homogenised problem in the unshifted multipliers: P λ₀ = 0, so that the bounds stay where they
-//! are. Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ that it
-//! brings about.
+//! are. Every Tresca problem is solved only as far as its slip bound is worth: to a share of the change of Ψ.
 
 use crate::equilibrium::certificate::projection_residual;
 use crate::equilibrium::law::tangential_norm;
@@ -58,7 +57,7 @@ pub struct AugmentedLagrangianCounts {
 }
 
 impl AugmentedLagrangianCounts {
-    /// These counts in the record that all contact solvers share.
+    /// The counts in the record that all contact solvers share.
     pub fn added_to(&self, work: Work) -> Work {
         Work {
             newton_steps: 0,
@@ -169,8 +168,7 @@ impl TornContact<'_> {
         }
     }
 
-    /// The first slip bounds and multipliers: those of an iterate. Where the QP's gradient is −w, Cᵀμ is its rigid
-    /// part.
+    /// The first slip bounds and multipliers: those of an iterate. The QP's gradient is −w, its rigid part Cᵀμ.
     fn first(&self, iterate: &Iterate, coarse: &OrthonormalCoarse<'_>) -> FixedPoint {
         let multipliers = coarse.apply(&coarse.whole(&iterate.jumps)).into_iter().map(|entry| -entry).collect();
         let warm = WarmStart { x: coarse.whole(&iterate.multipliers), multipliers, ..WarmStart::default() };

@@ -45,8 +45,7 @@ struct MemberFactors {
 /// Pivot ratio of G_c G_cᵀ + N Nᵀ that counts as singular.
 const SINGULAR: f64 = 1e-12;
 
-/// Amplitudes of the six rigid motions of a cluster along the orthonormal modes of its subdomains: six orthonormal
-/// vectors.
+/// Amplitudes of the six rigid motions of a cluster along the orthonormal modes of its subdomains, orthonormal.
 fn motions(coordinates: &[Vec<[f64; 3]>], modes: &[&[Vec<f64>]]) -> Vec<Vec<f64>> {
     let whole = orthonormal_modes(&coordinates.concat());
     let amplitudes = |motion: &Vec<f64>| {
@@ -82,8 +81,7 @@ fn held(motions: &[Vec<f64>]) -> Mat<f64> {
     Mat::from_fn(size, size, |row, column| motions.iter().map(|motion| motion[row] * motion[column]).sum())
 }
 
-/// Whether the rows of a cluster leave it the six motions of a rigid body and no others; `coordinates` of the nodes of
-/// its subdomains.
+/// Whether the rows of a cluster leave it no more than the six rigid motions; `coordinates` of its nodes.
 pub fn moves_as_one_body(rows: &ClusterRows, coordinates: &[Vec<[f64; 3]>]) -> bool {
     let modes: Vec<Vec<Vec<f64>>> = coordinates.iter().map(|nodes| orthonormal_modes(nodes)).collect();
     let modes: Vec<&[Vec<f64>]> = modes.iter().map(Vec::as_slice).collect();

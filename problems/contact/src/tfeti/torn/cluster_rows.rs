@@ -1,5 +1,4 @@
-//! The rows that hold a cluster together, B_c: some gluing rows between its subdomains are kept for good, not by
-//! multipliers.
+//! The rows that hold a cluster together, B_c: some gluing rows between its subdomains, which need no multipliers.
 //!
 //! ```text
 //! B_c u = 0:   all Helmert rows of the chosen nodes whose copies all lie in the cluster;   such rows are none of B_E
@@ -12,7 +11,7 @@ use std::ops::Range;
 #[derive(Debug)]
 pub struct ClusterRows {
     pub count: usize,
-    /// Their parts by subdomain.
+    /// The parts of the rows by subdomain.
     pub members: Vec<MemberRows>,
 }
 

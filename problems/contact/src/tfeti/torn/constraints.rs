@@ -204,8 +204,7 @@ fn cluster_rows(all: &SceneRows, body: &BodyRows<'_>, subdomains: &Range<usize>,
     rows.map(|(index, rows)| ClusterRows::new(rows, dofs(index)..dofs(index + 1), size)).collect()
 }
 
-/// What this process exchanges: for a row of B_E, all processes that it touches need all of its dofs; for a contact
-/// row, its owner.
+/// What this process exchanges: all processes that a row of B_E touches need its dofs; of a contact row, the owner.
 fn interface(all: &SceneRows, owners: &[usize], distribution: &Distribution, size: usize) -> Interface {
     let (rank, subdomains) = (distribution.communication().rank(), distribution.owned());
     let owned: Range<usize> = size * subdomains.start..size * subdomains.end;

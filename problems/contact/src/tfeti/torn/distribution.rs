@@ -187,7 +187,6 @@ impl Distribution {
     }
 }
 
-/// The middle of a branch.
 fn middle(branch: &Range<usize>) -> usize {
     branch.start + branch.len() / 2
 }

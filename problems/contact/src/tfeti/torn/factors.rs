@@ -10,8 +10,7 @@
 //!
 //! Where the factor loses many digits, forces are balanced before and displacements after K⁺: (I − RRᵀ) K⁺ (I − RRᵀ) is
 //! another generalised inverse, whose displacements are no larger than the deformation. Forces out of balance would
-//! bend a thin plate over its three fixing nodes by many times of what the forces together do, and the difference would
-//! lose all digits.
+//! bend a thin plate over its three fixing nodes by many times of what the forces together do, and lose all digits.
 //!
 //! Reference: \[BrzobohatyDostalKozubekKovarMarkopoulos2011\].
 
@@ -120,8 +119,7 @@ impl SubdomainFactors {
         let interior = match interior.and_then(|class| class.symbolic.as_ref().map(|symbolic| (class, symbolic))) {
             Some((class, symbolic)) => {
                 let factored = symbolic.factorize(&class.submatrix.gather(compressible.as_ref().unwrap_or(&stiffness)));
-                // Rows may leave a motion of the interior free. Every principal submatrix of the regularised matrix is
-                // definite.
+                // Rows may leave a motion of the interior free. The regularised matrix has definite submatrices.
                 let definite = |_| symbolic.factorize(&class.submatrix.gather(&regularised));
                 Some(factored.or_else(definite)?)
             }

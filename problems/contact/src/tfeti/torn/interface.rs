@@ -39,7 +39,7 @@ pub struct InterfaceBuilder {
 }
 
 impl InterfaceBuilder {
-    /// This process needs all dofs of a row.
+    /// Registers that this process needs all dofs of a row.
     pub fn needs(&mut self, owned: &Range<usize>, dofs: impl Iterator<Item = usize>) {
         self.ghosts.extend(dofs.filter(|dof| !owned.contains(dof)));
     }

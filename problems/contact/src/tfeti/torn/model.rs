@@ -1,5 +1,4 @@
-//! The torn scene: what is fixed for a run, and the factored system of one shape. A process holds its own subdomains
-//! only.
+//! The torn scene: what is fixed for a run, and the factored system of a shape. A process holds its subdomains only.
 
 use crate::body::local_pattern::{LocalPattern, fixing_nodes};
 use crate::body::mesh::{Block, Subdomain, Tearing};
@@ -43,8 +42,7 @@ pub struct TornSubdomain {
     interior: Option<Arc<InteriorClass>>,
 }
 
-/// Everything that does not depend on the shape: tearing, rows, patterns, and the factors of bodies that keep their
-/// shape.
+/// Everything that does not depend on the shape: tearing, rows, patterns, and the factors of bodies of fixed shape.
 #[derive(Debug)]
 pub struct TornModel {
     /// The problem that was torn.
@@ -204,8 +202,7 @@ impl TornModel {
         self.distribution.agreed(factored)
     }
 
-    /// What joins the clusters of a body in this process, from its factored subdomains; nothing where every subdomain
-    /// is a cluster.
+    /// What joins the clusters of a body in this process, from its factored subdomains; nothing for single subdomains.
     fn join_body(
         &self,
         body: usize,
@@ -248,8 +245,7 @@ impl TornModel {
         TornVector(vec![0.0; self.interface.torn_count()])
     }
 
-    /// Coarse amplitudes of the motions that nothing holds: Rᵀ of their displacement on every subdomain, of unit length
-    /// together.
+    /// Coarse amplitudes of motions that nothing holds: Rᵀ of their displacement on all subdomains, of unit length.
     pub fn grounded_amplitudes(&self, system: &TornSystem, configuration: &Configuration) -> Vec<Vec<f64>> {
         let Configuration { blocks, rigid, grounded, .. } = configuration;
         let amplitudes = |motion: &Vec<f64>| {

@@ -4,8 +4,7 @@
 //! a box of clusters is halved across its longest axis, again and again;   cluster k of the lower body, k of the upper one, k + 1 …
 //! ```
 //! The subdomains of a cluster follow each other, in an order of the same kind; without clusters, every subdomain is
-//! one. The order does not depend on the number of processes. Every one of them gets a range of it: a recursive
-//! bisection.
+//! one. The order does not depend on the number of processes. Each gets a range of it by recursive bisection.
 
 use crate::body::mesh::{Subdomain, Tearing};
 use crate::lattice;

@@ -1,5 +1,4 @@
-//! Inner products of vectors over the rows of B, or over the unknowns of an active set: rows of B_E first, contact
-//! after them.
+//! Inner products of vectors over the rows of B, or over the unknowns of an active set: rows of B_E, then contact.
 //!
 //! ```text
 //! Σ over rows of B_E = Σ over subdomains of the rows that they own, by the tree of the distribution;   contact rows are everywhere

@@ -62,7 +62,6 @@ pub struct SceneRows {
     pub joined: Vec<Vec<SparseRow>>,
     /// Number of rows of B_E of every subdomain.
     pub counts: Vec<usize>,
-    /// Number of gluing rows.
     pub gluing_count: usize,
     /// All contact rows of B and B_D.
     pub contact: Vec<[SparseRow; 2]>,

@@ -1,5 +1,4 @@
-//! What every state must satisfy, whatever the mesh: balance of forces and moments, complementarity, friction cone,
-//! dissipation.
+//! What every state must satisfy, whatever the mesh: balance, complementarity, friction cone, dissipation.
 
 use super::setting::{ALL, block, load, solve, support};
 use contact::body::elasticity::Material;

@@ -1,5 +1,4 @@
-//! A bar pressed against a rough plane and pulled at its end: it slips over the length that friction needs to carry the
-//! pull.
+//! A bar pressed against a rough plane and pulled at its end: it slips as far as friction needs to carry the pull.
 //!
 //! ```text
 //! E A u″ = 𝓕 p b on (L − ℓ, L),  u = 0 before,  E A u′(L) = Q:     ℓ = Q/(𝓕 p b),   u = 𝓕 p b (x − L + ℓ)²/(2 E A)

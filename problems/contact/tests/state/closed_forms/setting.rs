@@ -20,7 +20,6 @@ pub fn load(face: Face, traction: [f64; 3]) -> Load {
     Load { face, traction }
 }
 
-/// A block of height `height` under an obstacle.
 pub fn block(size: [f64; 2], height: f64, mesh: [usize; 3], material: Material, obstacle: CounterSurface) -> Scene {
     Scene {
         name: "closed form".into(),

@@ -30,8 +30,7 @@ pub struct Workload {
     pub subdomains: f64,
     /// Products with clusters over those without; none for plain total FETI.
     pub clusters: Option<f64>,
-    /// Dofs of other ranks that a rank needs in the mean, where they are counted on the tearing; none for cubes among
-    /// cubes.
+    /// Mean number of dofs of other ranks that a rank needs, if counted on the tearing; none for cubes among cubes.
     pub ghosts: Option<f64>,
 }
 
@@ -80,8 +79,7 @@ const DUAL_VECTORS: f64 = 140.0;
 const DENSE_MATRICES: f64 = 6.0;
 /// Entries of the coarse matrix per subdomain: six columns of some fourteen neighbours.
 const COARSE_COLUMNS: f64 = 525.0;
-/// Bytes that the MPI library takes in every process: Open MPI 4.1, 37 MB resident where the same run without it has 16
-/// MB.
+/// Bytes of the MPI library in every process: Open MPI 4.1, 37 MB resident where a run without it has 16 MB.
 const LIBRARY_BYTES: f64 = 2.1e7;
 /// Bytes of a number.
 const NUMBER: f64 = 8.0;
@@ -166,14 +164,12 @@ impl Prediction {
     }
 }
 
-/// Seconds of the factors and of the solves of so many coarse units, of which `contact` unknowns lie at the contact
-/// boundary.
+/// Seconds of factors and of solves of so many coarse units, `contact` unknowns of them at the contact boundary.
 fn coarse_seconds(machine: &Machine, units: f64, contact: f64, products: f64) -> [f64; 2] {
     let values = coarse_values(units);
     let factor = 2.0 * values * values / (AMPLITUDES * units) / machine.sparse_rate;
     let dense = ACTIVE_SETS * 2.0 / 3.0 * contact.powi(3) / machine.dense_rate;
-    // Solves read their factor once; so does a product, whose two factors hold one and a half times the values of a
-    // subdomain.
+    // Solves read their factor once; so does a product, whose factors hold one and a half times those of a subdomain.
     let read = 1.5 * 268_000.0 * (machine.subdomain_dofs / 1536.0).powf(1.48) / machine.product;
     [factor + dense, products * COARSE_SOLVES * (values + contact * contact) / read]
 }

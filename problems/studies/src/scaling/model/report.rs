@@ -37,7 +37,6 @@ pub struct ModelReport {
 
 /// Ranks of growing bodies.
 const RANKS: [usize; 8] = [1, 8, 64, 128, 512, 1000, 4096, 10_000];
-/// Ranks of one case.
 const CASE_RANKS: [usize; 3] = [1, 2, 4];
 
 /// Measures this machine and predicts.

@@ -27,9 +27,9 @@ const AFAR: f64 = 8.0;
 pub enum Given {
     /// Neither convexity nor outputs are declared.
     Nothing,
-    /// That Θ is convex.
+    /// Convexity of Θ is declared.
     Convexity,
-    /// The outputs, their Jacobian and the outer function.
+    /// The outputs, their Jacobian and the outer function are given.
     Outputs,
 }
 
@@ -92,7 +92,6 @@ fn generator(kind: usize, spread: usize, number: usize) -> Random {
     Random((kind * 1_000_000 + spread * 10_000 + number) as u64)
 }
 
-/// A problem in random units.
 fn in_units(problem: Problem, spread: usize, number: usize, random: &mut Random) -> UnitCase {
     let units = units(random, problem.lower.len(), spread, number);
     UnitCase { problem, units, spread, offset: OFFSETS[number % OFFSETS.len()], number }

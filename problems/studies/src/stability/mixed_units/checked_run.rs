@@ -22,8 +22,7 @@ use std::time::{Duration, Instant};
 
 /// Evaluations of a run.
 const MAX_EVALUATIONS: usize = 1000;
-/// Time of a run, which usually takes a hundredth of a second: no run may hang, and steps without evaluations have no
-/// limit.
+/// Time of a run, usually a hundredth of a second: no run may hang; steps without evaluations have no limit.
 const LONGEST_RUN: Duration = Duration::from_secs(30);
 /// Largest excess of a confirmed end, relative to the size of Θ.
 const GAP: f64 = 1e-5;
@@ -71,11 +70,6 @@ pub struct UnitRecord {
 }
 
 impl UnitRecord {
-    /// Whether convexity was declared or outputs were given.
-    pub fn is_informed(&self) -> bool {
-        self.given != Given::Nothing
-    }
-
     /// Whether the termination is false, or the minimum is not reached, or the run does not state that it is reached.
     pub fn is_bad(&self) -> bool {
         self.false_termination.is_some() || !self.reached || !self.said

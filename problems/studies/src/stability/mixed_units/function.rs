@@ -80,16 +80,12 @@ impl Function {
         Self { offset, ..self.clone() }
     }
 
-    /// Whether offset and q belong to the residuals, because h(r + t) = h(r) + t.
-    fn shifts_residuals(&self) -> bool {
-        self.outer == Outer::Largest
-    }
-
     /// The arguments of h and their Jacobian.
     pub fn outputs(&self, x: &Vector) -> (Vector, Matrix) {
         let way = x - &self.centre;
         let (mut outputs, mut jacobian) = (&self.rows * &way - &self.right, self.rows.clone());
-        if self.shifts_residuals() {
+        // h(r + t) = h(r) + t: offset and q belong to the residuals.
+        if self.outer == Outer::Largest {
             outputs.add_scalar_mut(self.offset);
         }
         if let Some(quadratic) = &self.quadratic {

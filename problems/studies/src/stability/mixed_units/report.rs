@@ -13,7 +13,7 @@ const USUAL_SPREAD: usize = 3;
 /// A share: so many of so many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct Share {
-    /// Those that are so.
+    /// Number of runs with the property.
     pub part: usize,
     /// Number of runs considered.
     pub of: usize,
@@ -54,7 +54,8 @@ pub struct UnitReport {
 
 impl UnitReport {
     fn new(records: Vec<UnitRecord>) -> Self {
-        let reached = |informed: bool| records.iter().filter(move |r| r.reached && r.is_informed() == informed);
+        let reached =
+            |informed: bool| records.iter().filter(move |r| r.reached && (r.given != Given::Nothing) == informed);
         let usual = records.iter().filter(|r| r.spread <= USUAL_SPREAD && (r.boxed || r.given == Given::Outputs));
         Self {
             runs: records.len(),

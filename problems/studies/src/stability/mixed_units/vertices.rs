@@ -51,7 +51,6 @@ fn kink(random: &mut Random, family: &'static str, n: usize) -> Problem {
     Problem::free(family, function).boxed((lower, upper))
 }
 
-/// The problem of a family with this number.
 pub fn vertex(family: &'static str, number: usize, random: &mut Random) -> Problem {
     let n = dimension(random, number);
     match family {

@@ -1,5 +1,4 @@
-//! Random scenes: whether the default finds an equilibrium wherever any path does, never a wrong one, at a bounded
-//! cost.
+//! Random scenes: the default finds an equilibrium wherever any path does, never a wrong one, at a bounded cost.
 
 mod paths;
 mod scenes;

@@ -96,8 +96,7 @@ impl Examined {
         })
     }
 
-    /// A state with all that a path asks of its solver: sensitivities, and the contraction where there is an estimate
-    /// of it.
+    /// A state with all that a path asks of its solver: sensitivities, and the contraction where it is estimated.
     fn solved(&self, solver: &AnySolver, controls: &[f64]) -> Result<(ContactState, Option<f64>), ContactError> {
         let state = solver.solve(controls, None, TOLERANCE)?;
         let friction = self.problem.boundary.has_friction();
@@ -112,8 +111,7 @@ impl Examined {
     }
 
     /// The state by cone programs alone, however many they take. This is the last resort of direct condensation without
-    /// its limit on work, and so is its residual; the residuals of the other paths are computed by a routine of the
-    /// study.
+    /// its limit on work, and so is its residual; the study computes the residuals of the other paths.
     pub fn by_cone_programs(&self) -> PathResult {
         self.contact.as_ref().map_err(ToString::to_string)?;
         let solver = DirectSolver::new(Arc::clone(&self.problem));
@@ -140,8 +138,7 @@ impl Examined {
         points.zip(normal).map(|(point, force)| (force.max(0.0) / point.area).powi(EXPONENT)).sum()
     }
 
-    /// The residual of given forces in the problem condensed anew: equilibrium of the bodies, contact law at every
-    /// node.
+    /// The residual of given forces in the problem condensed anew: equilibrium and contact law.
     fn residual(&self, forces: &ContactForces) -> f64 {
         let Ok(contact) = &self.contact else { return f64::NAN };
         let (boundary, length) = (&self.problem.boundary, contact.unit * contact.load);

@@ -152,8 +152,7 @@ fn obstacle(text: &mut String, family: Family, sizes: &Sizes, random: &mut Rando
     let (kind, height) = (random.below(4), top + gap);
     let _ = match (family, kind) {
         (_, 0) => {
-            // A sphere over the corner (0, 0) whose height over the base varies by the range; it must reach over the
-            // base.
+            // A sphere over the corner (0, 0) that varies by the range over the base and covers it.
             let radius = ((a * a + b * b) / (2.0 * range)).max(1.01 * a.hypot(b));
             write!(text, "[counter_surface]\nform = \"sphere\"\napex = {height:e}\nradius = {radius:e}\n\n")
         }
