@@ -171,6 +171,7 @@
 //! | [`reduced`] | [`ReducedObjective`]: Θ = J∘S and its subgradient by the chain rule |
 //! | [`objective`] | [`NonsmoothObjective`], [`Request`] and [`Answer`]: what the method sees; closures as objectives |
 //! | [`constraints`] | [`Polyhedron`]: box and two-sided rows |
+//! | [`nonlinear`] | nonlinear constraints: [`ConstraintKind`], [`ConstrainedFunction`] |
 //! | [`bundle`] | [`BundleTrust`]: configuration, runs |
 //! | [`report`] | [`Report`], [`Termination`], [`Certificate`], history, observers, stopping rules |
 //! | [`verify`] | Taylor tests of any objective |

@@ -116,7 +116,7 @@ impl Evidence {
             },
             radius: radius(state, proposal, of_outputs),
             of_outputs,
-            degenerate: degenerate(state, proposal, &terms),
+            degenerate: degenerate(state, proposal),
             at_center: tangents().next().is_none()
                 && (of_outputs || proposal.cut_error == 0.0 && active().all(|cut| cut.id == state.center_id)),
         }
@@ -219,7 +219,7 @@ fn radius(state: &BundleState, proposal: &Proposal, of_outputs: bool) -> f64 {
 }
 
 /// Whether the multipliers of the nonlinear constraints are those of degenerate constraints.
-fn degenerate(state: &BundleState, proposal: &Proposal, terms: &Vector) -> bool {
+fn degenerate(state: &BundleState, proposal: &Proposal) -> bool {
     let Some(constraints) = &state.constraints else { return false };
     let mut multipliers = vec![0.0; constraints.kinds().len()];
     for (tangent, multiplier) in proposal.active_tangents() {
@@ -232,7 +232,6 @@ fn degenerate(state: &BundleState, proposal: &Proposal, terms: &Vector) -> bool 
             cuts.map(|(cut, multiplier)| multiplier * state.norm.dual_length(&cut.subgradient)).sum()
         }
     };
-    let _ = terms;
     constraints.is_degenerate(&multipliers, (slope, &state.norm), state.length_scale())
 }
 

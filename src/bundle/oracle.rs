@@ -13,7 +13,7 @@ const LARGEST: f64 = 1e150;
 
 /// What an evaluation can end with.
 pub(super) enum OracleResult {
-    Answer(Answer<()>),
+    Answer(Box<Answer<()>>),
     /// Θ = −∞.
     MinusInfinity,
     Failure(OracleError),
@@ -140,6 +140,6 @@ fn check(answer: Answer<()>, expected: usize, constraints: usize) -> OracleResul
         .or_else(|| small("subgradient", evaluation.subgradient.amax()));
     match failure {
         Some(error) => OracleResult::Failure(error),
-        None => OracleResult::Answer(answer),
+        None => OracleResult::Answer(Box::new(answer)),
     }
 }

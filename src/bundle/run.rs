@@ -98,7 +98,7 @@ impl Run<'_, '_> {
             OracleResult::MinusInfinity => return Break(Termination::UnboundedBelow.into()),
             OracleResult::Failure(OracleError::Interrupted) => return self.interrupted(),
             OracleResult::Failure(error) => self.shorten(&proposal, accuracy, &error)?,
-            OracleResult::Answer(answer) => self.accept_or_reject(&proposal, accuracy, answer),
+            OracleResult::Answer(answer) => self.accept_or_reject(&proposal, accuracy, *answer),
         }
         limits::after_evaluation(&self.state, self.method).map_break(Into::into)
     }
@@ -265,7 +265,8 @@ impl Run<'_, '_> {
         let mut event =
             Event { kind: StepKind::Refinement, value: None, failure: None, noted: Noted::Nothing, work: 0 };
         match self.evaluate(&center, accuracy, None, f64::INFINITY) {
-            OracleResult::Answer(Answer::Accurate(mut evaluation)) => {
+            OracleResult::Answer(answer) if matches!(*answer, Answer::Accurate(_)) => {
+                let mut evaluation = answer.into_evaluation();
                 let old = self.state.center_id;
                 (event.value, event.work) = (Some(evaluation.value), evaluation.work);
                 let (known, noted) = self.take_linearization(std::mem::take(&mut evaluation.linearization));

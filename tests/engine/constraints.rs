@@ -104,7 +104,7 @@ fn check(problem: &ConstrainedProblem, report: &Report) {
 /// Starts moved by up to a tenth and by up to the size of the variables.
 fn moved(start: &[f64], seed: u64) -> Vec<f64> {
     let direction = nonsmooth::verify::seeded_direction(start.len(), seed);
-    let size = if seed % 2 == 0 { 0.1 } else { 1.0 };
+    let size = if seed.is_multiple_of(2) { 0.1 } else { 1.0 };
     start.iter().zip(direction.iter()).map(|(x, d)| x + size * (x.abs() + 1.0) * d).collect()
 }
 

@@ -75,6 +75,7 @@ pub(crate) struct Constraints {
     revision: u64,
 }
 
+/// A point with the linearizations of its constraints.
 fn known(point: &Vector, objective: f64, evaluation: &ConstraintEvaluation) -> Known {
     let shared = Rc::new(point.clone());
     let row = |j: usize| Tangent {
@@ -144,6 +145,7 @@ impl Constraints {
         }
     }
 
+    /// Takes in an evaluation: units of constraints whose gradient has been zero so far, and the merit.
     fn look(&mut self, objective: f64, evaluation: &ConstraintEvaluation, norm: &ScaledNorm) {
         for j in 0..self.kinds.len() {
             if self.units[j] == 0.0 {
@@ -181,7 +183,7 @@ impl Constraints {
         }
         if self.last_step > 0.0 {
             self.former = Some(old.clone());
-            self.keep(old, norm);
+            self.keep(old);
         }
         self.prune(norm);
         self.revision += 1;
@@ -193,13 +195,13 @@ impl Constraints {
             self.caution *= 10.0;
         }
         let Some(newest) = self.newest.take() else { return };
-        self.keep(newest, norm);
+        self.keep(newest);
         self.prune(norm);
         self.revision += 1;
     }
 
     /// Keeps the linearizations of inequalities at a point other than the center.
-    fn keep(&mut self, other: Known, _norm: &ScaledNorm) {
+    fn keep(&mut self, other: Known) {
         let kept = other.tangents.into_iter().filter(|t| match self.kinds[t.constraint] {
             ConstraintKind::Nonsmooth => true,
             ConstraintKind::Smooth => t.value > 0.0,
@@ -208,6 +210,7 @@ impl Constraints {
         self.others.extend(kept);
     }
 
+    /// Drops linearizations: of nonconvex constraints those away from the center, then the oldest.
     fn prune(&mut self, norm: &ScaledNorm) {
         let center = &self.center.point;
         for t in &self.others {
@@ -226,14 +229,17 @@ impl Constraints {
         }
     }
 
+    /// Whether c_j is proved nonconvex, for every constraint.
     pub(crate) fn nonconvex(&self) -> &[bool] {
         &self.nonconvex
     }
 
+    /// Changes whenever a linearization comes or goes.
     pub(crate) fn revision(&self) -> u64 {
         self.revision
     }
 
+    /// What the constraints ask for.
     pub(crate) fn kinds(&self) -> &[ConstraintKind] {
         &self.kinds
     }
@@ -290,10 +296,12 @@ impl Constraints {
         &self.center.evaluation.values
     }
 
+    /// The constraints at the center.
     pub(crate) fn center_evaluation(&self) -> &ConstraintEvaluation {
         &self.center.evaluation
     }
 
+    /// The best point of the run: feasible and lowest, or the least infeasible one.
     pub(crate) fn best(&self) -> &Best {
         &self.best
     }
