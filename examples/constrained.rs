@@ -3,9 +3,9 @@
 //!
 //! `cargo run --release --example constrained -- [--joined] [--only NAME] [--trust RUNS]`
 //!
-//! `--joined` joins the inequalities of every problem into their maximum, which returns one subgradient. `--trust` makes so
-//! many runs from moved starts with objective and constraints multiplied by powers of ten up to 1e±6, and counts what is
-//! confirmed although it is not optimal, or called feasible although it is not.
+//! `--joined` joins the inequalities of every problem into their maximum, which returns one subgradient. `--trust`
+//! makes so many runs from moved starts with objective and constraints multiplied by powers of ten up to 1e±6, and
+//! counts what is confirmed although it is not optimal, or called feasible although it is not.
 
 use nonsmooth::composite::{Linearization, Linearized, OuterFunction};
 use nonsmooth::{
@@ -195,7 +195,8 @@ fn table(problems: &[ConstrainedProblem]) {
     println!("{solved} of {} solved; evaluations {ratio:.2} of the penalty's over {compared}", problems.len());
 }
 
-/// Whether the multipliers of the certificate prove another stationary point: what they sum to is small beside its terms.
+/// Whether the multipliers of the certificate prove another stationary point: what they sum to is small beside its
+/// terms.
 fn is_stationary(problem: &ConstrainedProblem, report: &Report) -> bool {
     let Some(certificate) = &report.certificate else { return false };
     let Ok(set) = Polyhedron::boxed(vector(&problem.lower), vector(&problem.upper)) else { return false };

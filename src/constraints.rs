@@ -17,7 +17,8 @@ pub struct Polyhedron {
     rows: Matrix,
     row_lower: Vector,
     row_upper: Vector,
-    /// Number of the last rows that are linearizations at a center: a violation of them is not taken for rounding of the center.
+    /// Number of the last rows that are linearizations at a center: a violation of them is not taken for rounding of
+    /// the center.
     tangents: usize,
 }
 

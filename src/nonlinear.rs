@@ -1,15 +1,14 @@
-//! Nonlinear constraints c_j(x) ≤ 0 beside the admissible set, and closures that return them with the objective.
+//! Nonlinear constraints c_j(x) ≤ 0 beside the admissible set.
 //!
 //! ```text
 //! minimise Θ(x)  over  x ∈ U  with  c_j(x) ≤ 0 (inequality)  or  c_j(x) = 0 (equality),   j = 1 … m
 //! ```
-//! Values and subgradients of the constraints come from the evaluation that gives Θ. A constraint may be nonsmooth: one subgradient of
-//! c_j at the point is enough, and further linearizations of c_j at the point ([`ConstraintPiece`]) make the model sharper. Points that
-//! are evaluated may violate nonlinear constraints; they never violate U.
+//! Values and subgradients of the constraints come from the evaluation that gives Θ. A constraint may be nonsmooth: one
+//! subgradient of c_j at the point is enough, and further linearizations of c_j at the point ([`ConstraintPiece`]) make
+//! the model sharper. Points that are evaluated may violate nonlinear constraints; they never violate U.
 
 use crate::checks::{check_finite, check_size};
-use crate::composite::{Linearization, Linearized, OuterFunction, OutputPiece};
-use crate::{Answer, Evaluation, InputError, Matrix, NonsmoothObjective, OracleError, Request, Vector};
+use crate::{InputError, Matrix, Vector};
 use serde::{Deserialize, Serialize};
 
 /// What a nonlinear constraint asks for, and how it may be modelled.
@@ -20,7 +19,8 @@ pub enum ConstraintKind {
     Nonsmooth,
     /// c(x) ≤ 0 with a continuously differentiable c: the evaluation returns its gradient.
     Smooth,
-    /// c(x) = 0 with a continuously differentiable c. A nonsmooth equality has no linearization that could be satisfied near a kink.
+    /// c(x) = 0 with a continuously differentiable c. A nonsmooth equality has no linearization that could be satisfied
+    /// near a kink.
     SmoothEquality,
 }
 
@@ -31,8 +31,8 @@ impl ConstraintKind {
     }
 }
 
-/// A further linearization of a constraint at the point of an evaluation: c_j(y) ≥ value + ⟨gradient, y − x⟩ up to second order for one of
-/// the pieces of which c_j is the maximum.
+/// A further linearization of a constraint at the point of an evaluation: c_j(y) ≥ value + ⟨gradient, y − x⟩ up to
+/// second order for one of the pieces of which c_j is the maximum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstraintPiece {
     /// The constraint j, counted from 0.
@@ -41,6 +41,17 @@ pub struct ConstraintPiece {
     pub value: f64,
     /// The gradient of the piece, n entries.
     pub gradient: Vector,
+}
+
+/// A piece of a constraint that is a function of the outputs c, with its gradient at these outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputPiece {
+    /// The constraint j, counted from 0.
+    pub constraint: usize,
+    /// The value of the piece.
+    pub value: f64,
+    /// The gradient by the outputs, m entries.
+    pub weights: Vector,
 }
 
 /// Values of the constraints at a point, with one subgradient of each.
@@ -60,7 +71,8 @@ impl ConstraintEvaluation {
         Self { values, jacobian, pieces: vec![] }
     }
 
-    /// The constraints whose pieces are functions of outputs; `gradient` is the gradient by the variables for weights of the outputs.
+    /// The constraints whose pieces are functions of outputs; `gradient` is the gradient by the variables for weights
+    /// of the outputs.
     pub(crate) fn of_pieces<E>(
         (count, dimension): (usize, usize),
         pieces: &[OutputPiece],
@@ -110,64 +122,5 @@ impl ConstraintEvaluation {
             check_finite("gradient of a piece of a constraint", piece.gradient.as_slice())?;
         }
         Ok(())
-    }
-}
-
-/// The identity of a single output: an objective that is an output itself.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Identity;
-
-impl OuterFunction for Identity {
-    fn value(&self, outputs: &Vector) -> f64 {
-        outputs[0]
-    }
-
-    fn subgradient(&self, _outputs: &Vector) -> Vector {
-        Vector::from_element(1, 1.0)
-    }
-
-    fn is_homogeneous(&self) -> bool {
-        true
-    }
-}
-
-/// A closure `x ↦ (Θ(x), one subgradient, constraints)` as an objective with nonlinear constraints.
-#[derive(Debug, Clone)]
-pub struct ConstrainedFunction<F> {
-    dimension: usize,
-    kinds: Vec<ConstraintKind>,
-    function: F,
-}
-
-impl<F: Fn(&Vector) -> (f64, Vector, ConstraintEvaluation)> ConstrainedFunction<F> {
-    /// An objective of `dimension` variables with one constraint per kind.
-    pub fn new(dimension: usize, kinds: Vec<ConstraintKind>, function: F) -> Self {
-        Self { dimension, kinds, function }
-    }
-}
-
-impl<F: Fn(&Vector) -> (f64, Vector, ConstraintEvaluation)> NonsmoothObjective for ConstrainedFunction<F> {
-    type WarmStart = ();
-
-    fn dimension(&self) -> usize {
-        self.dimension
-    }
-
-    fn outer(&self) -> Option<&dyn OuterFunction> {
-        Some(&Identity)
-    }
-
-    fn constraint_kinds(&self) -> &[ConstraintKind] {
-        &self.kinds
-    }
-
-    fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {
-        let (value, subgradient, constraints) = (self.function)(request.point);
-        let jacobian = Matrix::from_row_slice(1, subgradient.len(), subgradient.as_slice());
-        let outputs = Vector::from_element(1, value);
-        let linearization = Linearization { outputs, jacobian, accuracy: 0.0, inactive: None };
-        let linearization = Linearized::if_asked(request.linearization, linearization);
-        let exact = Evaluation::exact(value, subgradient, ());
-        Ok(Answer::Accurate(Evaluation { linearization, constraints: Some(constraints), ..exact }))
     }
 }

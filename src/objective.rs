@@ -46,7 +46,8 @@ pub struct Evaluation<W> {
     pub linearization: Linearized,
     /// Values and subgradients of the nonlinear constraints; none for an objective without any.
     pub constraints: Option<ConstraintEvaluation>,
-    /// Work that the evaluation took, in a unit of the oracle's own; 0 where none is counted. It goes into the records of a run.
+    /// Work that the evaluation took, in a unit of the oracle's own; 0 where none is counted. It goes into the records
+    /// of a run.
     pub work: usize,
 }
 

@@ -1,11 +1,12 @@
 //! The report at the end of a run.
 
 use super::config::Convexity;
+use super::constrained::{Constraints, Tangent};
 use super::evidence::active_cuts;
 use super::proof::Proof;
 use super::proposers::proposal::Proposal;
 use super::run::Run;
-use crate::report::{Certificate, Report, Termination};
+use crate::report::{Certificate, ConstraintCut, ConstraintProof, Report, Termination};
 
 impl Run<'_, '_> {
     /// Ends the run and returns its report; the termination is [`Termination::Unfinished`] if the run had not ended by
@@ -80,7 +81,7 @@ impl Run<'_, '_> {
         let noise = self.ask(|_, at| at.resolution().noise_level);
         let state = &self.state;
         let radius = active_cuts(state, proposal).map(|cut| cut.farthest_from(&state.center, &state.norm));
-        let constraints = state.constraints.as_deref().map(|known| known.proof(proposal));
+        let constraints = state.constraints.as_deref().map(|known| constraint_proof(known, proposal));
         let of_constraints = constraints.iter().flat_map(|proof| &proof.cuts);
         let of_constraints = of_constraints.map(|cut| cut.distance(&state.center, &state.norm)).fold(0.0, f64::max);
         let own_rows = proposal.row_multipliers.len() - proposal.tangents.as_ref().map_or(0, |tangents| tangents.len());
@@ -103,5 +104,22 @@ impl Run<'_, '_> {
             noise,
             composite: None,
         }
+    }
+}
+
+/// The constraints in the certificate that rests on a proposal.
+fn constraint_proof(known: &Constraints, proposal: &Proposal) -> ConstraintProof {
+    let cut = |(tangent, multiplier): (&Tangent, f64)| ConstraintCut {
+        constraint: tangent.constraint,
+        point: (*tangent.point).clone(),
+        value: tangent.value,
+        subgradient: (*tangent.slope).clone(),
+        multiplier: multiplier / known.unit(tangent.constraint),
+    };
+    ConstraintProof {
+        kinds: known.kinds().to_vec(),
+        values: known.at_center().clone(),
+        sizes: known.sizes(),
+        cuts: proposal.active_tangents().map(cut).collect(),
     }
 }

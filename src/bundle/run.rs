@@ -45,7 +45,8 @@ pub struct Run<'r, 'o> {
     /// The convex function of a composite objective, if its model is wanted.
     pub(super) outer: Option<&'r dyn OuterFunction>,
     pub(super) set: Polyhedron,
-    /// The set of the subproblems where there are nonlinear constraints, with the center and the linearizations that it belongs to.
+    /// The set of the subproblems where there are nonlinear constraints, with the center and the linearizations that it
+    /// belongs to.
     pub(super) working: Option<((u64, u64), Rc<WorkingSet>)>,
     pub(super) state: BundleState,
     pub(super) solver: EpigraphQpSolver,
@@ -154,8 +155,9 @@ impl Run<'_, '_> {
         }
     }
 
-    /// A trial point with the decrease of the merit that its model predicts. The penalty exceeds the multipliers of its subproblem, and
-    /// away from feasible points it lets the merit fall by at least half of what the violation promises.
+    /// A trial point with the decrease of the merit that its model predicts. The penalty exceeds the multipliers of its
+    /// subproblem, and away from feasible points it lets the merit fall by at least half of what the violation
+    /// promises.
     fn steered(&mut self, mut proposal: Proposal) -> Proposal {
         let Some(working) = self.working_set() else { return proposal };
         let Some(constraints) = &mut self.state.constraints else { return proposal };
@@ -343,7 +345,8 @@ fn working_forces(working: Option<&((u64, u64), Rc<WorkingSet>)>, proposal: &Pro
     working.is_some_and(|(_, working)| working.forces(proposal.step_length))
 }
 
-/// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another function.
+/// Ends the run if an answer of the oracle contradicts an earlier one: whatever the model has learned may be of another
+/// function.
 fn refuse_contradiction(error: &OracleError) -> ControlFlow<Ending> {
     let OracleError::Contradiction(reason) = error else { return Continue(()) };
     Break(Termination::OracleContradiction { reason: reason.to_string() }.into())

@@ -145,10 +145,9 @@ fn first_evaluation(
     let slope = norm.dual_length(&subgradient);
     let first_step = config.first_step.unwrap_or_else(|| natural_step(norm.length(&start), value, slope));
     let weight = if slope > 0.0 { slope / first_step } else { 1.0 };
-    let constraints =
-        constraints.map(|found| Box::new(Constraints::new(kinds, (&start, value), &found, (&norm, slope))));
-    let point = start.clone();
-    let seen = Seen::new(&start, value, &subgradient);
+    let known = |found| Box::new(Constraints::new(kinds, (&start, value), found, (&norm, slope)));
+    let constraints = constraints.as_ref().map(known);
+    let (point, seen) = (start.clone(), Seen::new(&start, value, &subgradient));
     let cut =
         Cut { id: 1, point, radius: 0.0, value, subgradient, error_bound, certified: false, multiplier: 0.0, idle: 0 };
     let mut state = BundleState {

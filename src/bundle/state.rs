@@ -238,7 +238,8 @@ impl BundleState {
         (self.center_id, self.next_id) = (self.next_id, self.next_id + 1);
     }
 
-    /// The decrease of the run: from the highest value at the start or in the bundle, of the merit where there are constraints.
+    /// The decrease of the run: from the highest value at the start or in the bundle, of the merit where there are
+    /// constraints.
     pub(crate) fn drop(&self) -> f64 {
         match &self.constraints {
             Some(constraints) => constraints.merit_drop(),

@@ -9,7 +9,6 @@
 //! A small aggregate error alone proves nothing, nor does a small predicted decrease: both are small for a variable
 //! whose unit hides it.
 
-use super::config::Convexity;
 use super::evidence::Evidence;
 use super::proposers::proposal::Proposal;
 use super::proposers::proposer::Position;
@@ -54,7 +53,7 @@ fn judged(at: &Position<'_>, evidence: &Evidence) -> Verdict {
         return Verdict::Open;
     }
     let resolution = at.resolution();
-    let convex = at.config.convexity == Convexity::Convex;
+    let convex = at.is_convex();
     let confirmed = || Termination::Stationary { radius: evidence.radius, gap: convex.then(|| evidence.gap()) };
     if evidence.is_exact(resolution.tolerance()) {
         return Verdict::End(match resolution.noise() {
@@ -146,7 +145,7 @@ pub(crate) fn allowed(resolution: &Resolution, convex: bool) -> f64 {
 
 /// Why a run ends whose predicted decrease stays small although the evidence does not suffice.
 pub(crate) fn unconfirmed(at: &Position<'_>, evidence: &Evidence) -> Termination {
-    let allowed = allowed(&at.resolution(), at.config.convexity == Convexity::Convex);
+    let allowed = allowed(&at.resolution(), at.is_convex());
     Termination::StationaryUnconfirmed { radius: evidence.radius, undecided: evidence.undecided(allowed) }
 }
 
@@ -167,9 +166,12 @@ pub(crate) fn too_short(at: &Position<'_>, proposal: &Proposal) -> Termination {
 
 /// Why a run ends whose admissible set is a single point: the normal cone there is everything.
 pub(crate) fn only_point(at: &Position<'_>) -> Termination {
+    if !at.state.is_feasible() {
+        return Termination::Infeasible { violation: at.state.violation() };
+    }
     let resolution = at.resolution();
     match resolution.noise() {
         Some(noise) => Termination::NoiseLimit { estimate: noise },
-        None => Termination::Stationary { radius: 0.0, gap: (at.config.convexity == Convexity::Convex).then_some(0.0) },
+        None => Termination::Stationary { radius: 0.0, gap: at.is_convex().then_some(0.0) },
     }
 }

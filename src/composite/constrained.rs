@@ -1,7 +1,8 @@
 //! Outputs that are constraints: an outer function of the first outputs, with the last ones as constraints.
 
 use super::epigraph::Epigraph;
-use super::outer::{OuterFunction, OutputPiece};
+use super::outer::OuterFunction;
+use crate::nonlinear::OutputPiece;
 use crate::{ConstraintKind, Matrix, Vector};
 
 /// h of the first outputs; the last outputs are nonlinear constraints, one per kind.

@@ -19,10 +19,11 @@ mod linearization;
 mod outer;
 mod sum;
 
+pub use crate::nonlinear::OutputPiece;
 pub use constrained::WithConstraints;
 pub use epigraph::Epigraph;
 pub use linearization::{InactiveConstraints, Linearization, LinearizationRequest, Linearized};
 pub use outer::{
-    EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, OutputPiece, PositiveParts, SumOfPowers, weighted_gram,
+    EuclideanNorm, FnOuter, GroupNorms, Maximum, OuterFunction, PositiveParts, SumOfPowers, weighted_gram,
 };
 pub use sum::SmoothPlus;

@@ -1,6 +1,7 @@
 //! Convex functions of the outputs.
 
 use super::epigraph::Epigraph;
+use crate::nonlinear::OutputPiece;
 use crate::{ConstraintKind, Matrix, Vector};
 
 /// A convex function h: Rᵐ → R with one subgradient, and its curvature where it has one.
@@ -40,17 +41,6 @@ pub trait OuterFunction {
     fn is_homogeneous(&self) -> bool {
         false
     }
-}
-
-/// A piece of a constraint that is a function of the outputs c, with its gradient at these outputs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct OutputPiece {
-    /// The constraint j, counted from 0.
-    pub constraint: usize,
-    /// The value of the piece.
-    pub value: f64,
-    /// The gradient by the outputs, m entries.
-    pub weights: Vector,
 }
 
 impl<H: OuterFunction + ?Sized> OuterFunction for &H {

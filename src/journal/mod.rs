@@ -36,7 +36,8 @@
 //! | file in the folder | what it holds |
 //! |---|---|
 //! | `journal.jsonl` | version, identity and dimension in the first line; an [`Entry`] in every other |
-//! | `warm_start_K.json` | restart data of evaluation K: the last one, the one that it was restarted from, and those behind a stored Jacobian |
+//! | `warm_start_K.json` | restart data of evaluation K: the last one, the one that it was restarted from, and those
+//! behind a stored Jacobian |
 //! | `linearization_K.bin` | outputs and Jacobian of evaluation K of a composite objective, with a checksum |
 //!
 //! Numbers are written so that they read back as the same bits; `"inf"`, `"-inf"` and `"NaN"` stand for what JSON

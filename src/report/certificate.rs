@@ -8,7 +8,7 @@
 use super::{CompositeProof, ConstraintProof};
 use crate::bundle::cut::{Cut, offset};
 use crate::bundle::norm::ScaledNorm;
-use crate::{ConstraintKind, Polyhedron, Vector, plain};
+use crate::{Polyhedron, Vector, plain};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -121,18 +121,10 @@ impl Certificate {
         }
         let mut violation = set.violation_near(&self.point, &self.point);
         if let Some(constraints) = &self.constraints {
-            for cut in &constraints.cuts {
-                if cut.constraint >= constraints.values.len() {
-                    let (expected, found) = (constraints.values.len(), cut.constraint + 1);
-                    return Err(crate::InputError::Dimension { what: "constraints", expected, found });
-                }
-                let slack = cut.slack(&self.point, constraints.values[cut.constraint]);
-                error += cut.multiplier.abs() * slack.abs();
-                aggregate += &cut.subgradient * cut.multiplier;
-                if constraints.kinds[cut.constraint] != ConstraintKind::SmoothEquality {
-                    negative = negative.max(-cut.multiplier);
-                }
-            }
+            let (slopes, slack, wrong_sign) = constraints.sums(&self.point)?;
+            aggregate += slopes;
+            error += slack;
+            negative = negative.max(wrong_sign);
             violation = violation.max(constraints.violation());
         }
         let mut open = 0.0_f64;

@@ -2,7 +2,7 @@
 
 use crate::bundle::norm::ScaledNorm;
 use crate::qp::kernels::difference_dot;
-use crate::{ConstraintKind, Vector, plain};
+use crate::{ConstraintKind, InputError, Vector, plain};
 use serde::{Deserialize, Serialize};
 
 /// What a run has found of one nonlinear constraint.
@@ -13,12 +13,13 @@ pub struct ConstraintReport {
     pub kind: ConstraintKind,
     /// c_j at the solution, in its own unit.
     pub value: f64,
-    /// The violation there (c_j⁺, or |c_j| of an equality) relative to the largest |c_j| at the centers of the run; 0 where there is none.
+    /// The violation there (c_j⁺, or |c_j| of an equality) relative to the largest |c_j| at the centers of the run; 0
+    /// where there is none.
     pub violation: f64,
     /// Whether the violation is within the tolerance: 1e-10 of that size, and rounding.
     pub satisfied: bool,
-    /// The multiplier μ_j in the certificate: by how much the objective would fall per unit of c_j that is granted, to first order. At least
-    /// 0 for an inequality; of either sign for an equality.
+    /// The multiplier μ_j in the certificate: by how much the objective would fall per unit of c_j that is granted, to
+    /// first order. At least 0 for an inequality; of either sign for an equality.
     pub multiplier: f64,
 }
 
@@ -41,8 +42,8 @@ pub struct ConstraintCut {
 }
 
 impl ConstraintCut {
-    /// −t(x̂) ≥ 0: how far the linearization lies below zero at a point where the constraint has the value given. A linearization above the
-    /// constraint shows that the constraint is not convex, and counts as far below.
+    /// −t(x̂) ≥ 0: how far the linearization lies below zero at a point where the constraint has the value given. A
+    /// linearization above the constraint shows that the constraint is not convex, and counts as far below.
     pub(crate) fn slack(&self, point: &Vector, value: f64) -> f64 {
         let linear = self.value + difference_dot(self.subgradient.as_slice(), point.as_slice(), self.point.as_slice());
         (value - linear).abs() - value
@@ -78,6 +79,26 @@ impl ConstraintProof {
             sums[cut.constraint] += cut.multiplier;
         }
         sums
+    }
+
+    /// Σ μ h, Σ |μ| slack and the largest multiplier of the wrong sign, at the point of the certificate.
+    ///
+    /// # Errors
+    /// [`InputError::Dimension`] for a linearization of a constraint that does not exist.
+    pub(crate) fn sums(&self, point: &Vector) -> Result<(Vector, f64, f64), InputError> {
+        let (mut slopes, mut error, mut wrong) = (Vector::zeros(point.len()), 0.0, 0.0_f64);
+        for cut in &self.cuts {
+            let (expected, found) = (self.values.len(), cut.constraint + 1);
+            if found > expected {
+                return Err(InputError::Dimension { what: "constraints", expected, found });
+            }
+            error += cut.multiplier.abs() * cut.slack(point, self.values[cut.constraint]).abs();
+            slopes += &cut.subgradient * cut.multiplier;
+            if self.kinds[cut.constraint] != ConstraintKind::SmoothEquality {
+                wrong = wrong.max(-cut.multiplier);
+            }
+        }
+        Ok((slopes, error, wrong))
     }
 
     /// The largest violation relative to the size of its constraint.

@@ -28,13 +28,14 @@ pub enum Termination {
         #[serde(default)]
         undecided: Option<usize>,
     },
-    /// No direction reduces the violation of the nonlinear constraints: to first order there is no feasible point nearby.
+    /// No direction reduces the violation of the nonlinear constraints: to first order there is no feasible point
+    /// nearby.
     Infeasible {
         /// The violation: the largest c_j⁺ over ‖∇c_j‖*, a length.
         violation: f64,
     },
-    /// The point is feasible and no model finds anything lower, but the gradients of the active constraints cancel or vanish: multipliers
-    /// need not exist, and nothing is proved.
+    /// The point is feasible and no model finds anything lower, but the gradients of the active constraints cancel or
+    /// vanish: multipliers need not exist, and nothing is proved.
     DegenerateConstraints {
         /// Radius of the active cuts relative to the size of the variables.
         radius: f64,

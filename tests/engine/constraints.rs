@@ -332,3 +332,27 @@ fn a_limit_of_a_state_goes_through_the_chain_rule() {
     assert!((report.value - 2.0).abs() <= 1e-6 && report.is_feasible(), "{report}");
     assert!((report.constraints[0].multiplier - 1.0).abs() <= 1e-3, "{report}");
 }
+
+#[test]
+fn a_set_of_one_infeasible_point_is_no_success() {
+    let set = Polyhedron::boxed(v(&[1.0, 1.0]), v(&[1.0, 1.0])).unwrap();
+    let theta = ConstrainedFunction::new(2, vec![ConstraintKind::Smooth], |x: &Vector| {
+        (x[0] + x[1], v(&[1.0, 1.0]), found(&[x.norm_squared() - 1.0], &[2.0 * x[0], 2.0 * x[1]]))
+    });
+    let report = minimize(&theta, set, &[1.0, 1.0]);
+    assert!(matches!(report.termination, Termination::Infeasible { .. }), "{report}");
+}
+
+#[test]
+fn a_declaration_of_convexity_bounds_nothing_under_an_equality() {
+    let theta = ConstrainedFunction::new(2, vec![ConstraintKind::SmoothEquality], |x: &Vector| {
+        let (a, b) = (x[0] - 1.0, x[1] - 2.0);
+        let c = found(&[x.norm_squared() - 1.0], &[2.0 * x[0], 2.0 * x[1]]);
+        (a.abs() + b.abs(), v(&[a.signum(), b.signum()]), c)
+    });
+    let convexity = nonsmooth::Convexity::Convex;
+    let config = BundleTrustConfig { convexity, max_evaluations: 600, ..Default::default() };
+    let report = BundleTrust::new(config).unwrap().minimize(&theta, v(&[2.0, 2.0])).unwrap();
+    assert!(!matches!(report.termination, Termination::Stationary { gap: Some(_), .. }), "{report}");
+    assert!((report.value - (3.0 - 2_f64.sqrt())).abs() <= 1e-6, "{report}");
+}

@@ -243,7 +243,9 @@ impl Proposer for Composite {
         if self.escape.is_some() {
             return;
         }
-        self.watch_kinks(outer, trial);
+        if !trial.proposal.restores {
+            self.watch_kinks(outer, trial);
+        }
         let own = trial.proposal.origin == Origin::CompositeModel;
         let correcting = std::mem::take(&mut self.correcting);
         if !own {

@@ -2,8 +2,7 @@
 
 use super::tangent::Tangent;
 use crate::bundle::norm::ScaledNorm;
-use crate::bundle::proposers::proposal::Proposal;
-use crate::report::{ConstraintCut, ConstraintProof, ConstraintReport};
+use crate::report::ConstraintReport;
 use crate::{ConstraintEvaluation, ConstraintKind, Matrix, Vector};
 use std::rc::Rc;
 
@@ -15,7 +14,8 @@ const ROUNDING: f64 = 2e-15;
 const CONVEX_SHARE: f64 = 1e-9;
 /// Gradients of active constraints that cancel, or vanish, to this share are degenerate.
 const DEGENERATE: f64 = 1e-6;
-/// A penalty weight this many times larger than the multipliers ask for is lowered: it would reject steps along curved constraints.
+/// A penalty weight this many times larger than the multipliers ask for is lowered: it would reject steps along curved
+/// constraints.
 const MAX_PENALTY_SHARE: f64 = 20.0;
 /// Tangents kept beside those of the center, for every variable and in all.
 const EXTRA_TANGENTS: usize = 50;
@@ -202,7 +202,8 @@ impl Constraints {
 
     /// Keeps the linearizations of inequalities at a point other than the center.
     fn keep(&mut self, other: Known) {
-        let kept = other.tangents.into_iter().filter(|t| match self.kinds[t.constraint] {
+        // Further pieces are worth their rows at the center only.
+        let kept = other.tangents.into_iter().take(self.kinds.len()).filter(|t| match self.kinds[t.constraint] {
             ConstraintKind::Nonsmooth => true,
             ConstraintKind::Smooth => t.value > 0.0,
             ConstraintKind::SmoothEquality => false,
@@ -259,23 +260,6 @@ impl Constraints {
         Vector::from_column_slice(&self.largest)
     }
 
-    /// The constraints in the certificate that rests on a proposal.
-    pub(crate) fn proof(&self, proposal: &Proposal) -> ConstraintProof {
-        let cut = |(tangent, multiplier): (&Tangent, f64)| ConstraintCut {
-            constraint: tangent.constraint,
-            point: (*tangent.point).clone(),
-            value: tangent.value,
-            subgradient: (*tangent.slope).clone(),
-            multiplier: multiplier / self.unit(tangent.constraint),
-        };
-        ConstraintProof {
-            kinds: self.kinds.clone(),
-            values: self.center.evaluation.values.clone(),
-            sizes: self.sizes(),
-            cuts: proposal.active_tangents().map(cut).collect(),
-        }
-    }
-
     /// What a report says of the constraints at a point, with the multipliers of its certificate.
     pub(crate) fn report(&self, values: &Vector, multipliers: Option<&Vector>) -> Vec<ConstraintReport> {
         let report = |j: usize| {
@@ -306,7 +290,8 @@ impl Constraints {
         &self.best
     }
 
-    /// Whether the best point is better than the center: feasible where the center is not, or feasible and lower by more than `small`.
+    /// Whether the best point is better than the center: feasible where the center is not, or feasible and lower by
+    /// more than `small`.
     pub(crate) fn best_is_better(&self, small: f64) -> bool {
         let (own, best) = (self.center_excess(), self.excess(&self.best.evaluation, &self.best.point));
         if own <= 1.0 { best <= 1.0 && self.best.objective < self.center.objective - small } else { best < own }
@@ -374,8 +359,8 @@ impl Constraints {
         Some(&std::iter::once(&self.center).chain(&self.newest).find(at)?.evaluation.jacobian)
     }
 
-    /// Whether constraints with multipliers μ_j are degenerate: their gradients all but cancel each other, or vanish at the center with all
-    /// that they have changed on the last step.
+    /// Whether constraints with multipliers μ_j are degenerate: their gradients all but cancel each other, or vanish at
+    /// the center with all that they have changed on the last step.
     pub(crate) fn is_degenerate(&self, multipliers: &[f64], (slope, norm): (f64, &ScaledNorm), reach: f64) -> bool {
         let length = |known: &Known, j: usize| norm.dual_length(&known.evaluation.jacobian.row(j).transpose());
         let sum: f64 = (0..multipliers.len()).map(|j| multipliers[j].abs() * length(&self.center, j)).sum();

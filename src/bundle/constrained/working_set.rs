@@ -8,12 +8,15 @@ use crate::qp::EpigraphQpSolver;
 use crate::{ConstraintKind, Matrix, Polyhedron, Vector};
 use std::rc::Rc;
 
-/// Weight κ of the relaxation, times the violation: the linearized violation falls as long as it does so by a hundredth of the length.
+/// Weight κ of the relaxation, times the violation: the linearized violation falls as long as it does so by a hundredth
+/// of the length.
 const WEIGHT: f64 = 1e-2;
 /// Tenfold decreases of κ before the violation counts as stationary.
 const MAX_DECREASES: usize = 8;
 /// Linearizations this many times steeper than those of the center drown them in rounding, and are left out.
 const MAX_RELATIVE_SLOPE: f64 = 1e5;
+/// Share of the violation by which the rows are relaxed beyond what is possible.
+const ROOM: f64 = 1e-8;
 /// The violation is stationary where its aggregate subgradient is at most this share of its terms.
 const STATIONARY: f64 = 1e-6;
 
@@ -44,7 +47,8 @@ struct Seen<'a> {
     slope: Vector,
     level: f64,
     two_sided: bool,
-    /// Whether it tells about the constraint next to the center: it was taken there, or the constraint looks convex and nonsmooth.
+    /// Whether it tells about the constraint next to the center: it was taken there, or the constraint looks convex and
+    /// nonsmooth.
     holds: bool,
 }
 
@@ -90,6 +94,8 @@ impl WorkingSet {
                 (relaxation, stationary, forced_length) = relax(set, (&seen, size), center, norm, solver);
             }
         }
+        // The rows keep a common point in the rounding of the subproblem.
+        relaxation = (relaxation + ROOM * violation).min(violation);
         let seen: Vec<Seen<'_>> = seen.into_iter().filter(|seen| seen.slope.amax() > 0.0).collect();
         let rows = Matrix::from_fn(seen.len(), center.len(), |i, k| seen[i].slope[k]);
         let at_center = &rows * center;

@@ -9,7 +9,7 @@
 
 use super::proposal::Proposal;
 use crate::Polyhedron;
-use crate::bundle::config::BundleTrustConfig;
+use crate::bundle::config::{BundleTrustConfig, Convexity};
 use crate::bundle::constrained::WorkingSet;
 use crate::bundle::proof::Ending;
 use crate::bundle::resolution::Resolution;
@@ -57,7 +57,7 @@ impl Position<'_> {
         Resolution::new(self.state, self.config)
     }
 
-    /// The same run with another set.
+    /// This run with another set.
     pub(crate) fn within<'b>(&'b mut self, working: &'b WorkingSet) -> Position<'b> {
         Position {
             state: &mut *self.state,
@@ -75,6 +75,12 @@ impl Position<'_> {
             Some(_) => Cow::Owned(self.set.with_tangents_kept(&[])),
             None => Cow::Borrowed(self.set),
         }
+    }
+
+    /// Whether cuts bound Θ from below wherever they were taken: it is declared convex, and no nonlinear constraint, which
+    /// need not be convex, restricts it.
+    pub(crate) fn is_convex(&self) -> bool {
+        self.config.convexity == Convexity::Convex && self.working.is_none()
     }
 
     /// Whether the center violates nonlinear constraints.

@@ -71,8 +71,8 @@ impl Room {
     }
 }
 
-/// Sides of the rows as seen from the center. A violation that is rounding of the center counts as zero, so that d = 0 is admissible;
-/// a row that the center violates by more is one that the step is to reach.
+/// Sides of the rows as seen from the center. A violation that is rounding of the center counts as zero, so that d = 0
+/// is admissible; a row that the center violates by more is one that the step is to reach.
 fn slack(side: &Vector, (at_center, terms): (&Vector, &Vector), own: usize, outward: fn(f64, f64) -> f64) -> Vector {
     Vector::from_fn(side.len(), |i, _| {
         let slack = side[i] - at_center[i];

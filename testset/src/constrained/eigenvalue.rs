@@ -95,8 +95,8 @@ fn problem<const M: usize>(
     ConstrainedProblem::new(name, start, smooth(linear(cost)), [Kind::Nonsmooth; M], limits)
 }
 
-/// Bound of the largest cut of Petersen's graph: Σ xᵢ with L/4 − diag(x) negative semidefinite. The largest eigenvalue at
-/// the solution has multiplicity four.
+/// Bound of the largest cut of Petersen's graph: Σ xᵢ with L/4 − diag(x) negative semidefinite. The largest eigenvalue
+/// at the solution has multiplicity four.
 fn max_cut() -> ConstrainedProblem {
     let ring = (0..5).map(|i| (i, (i + 1) % 5));
     let edges = ring.chain((0..5).map(|i| (i, i + 5))).chain((0..5).map(|i| (5 + i, 5 + (i + 2) % 5)));
@@ -124,7 +124,8 @@ fn lovasz() -> ConstrainedProblem {
     )
 }
 
-/// Smallest sum of the weights of the cube's edges with algebraic connectivity one, an eigenvalue of multiplicity three.
+/// Smallest sum of the weights of the cube's edges with algebraic connectivity one, an eigenvalue of multiplicity
+/// three.
 fn connectivity() -> ConstrainedProblem {
     let pairs = (0..8_usize).flat_map(|i| (0..3).map(move |bit| (i, i ^ (1 << bit)))).filter(|(i, j)| i < j);
     let slopes = pairs.map(|pair| edge(8, pair, -1.0)).collect();

@@ -1,5 +1,5 @@
-//! Smooth objectives with inequalities, nearly all from W. Hock, K. Schittkowski, Test Examples for Nonlinear Programming
-//! Codes (1981), and one example with kinks.
+//! Smooth objectives with inequalities, nearly all from W. Hock, K. Schittkowski, Test Examples for Nonlinear
+//! Programming Codes (1981), and one example with kinks.
 
 use super::problem::{ConstrainedProblem, Kind, smooth, squares, variables};
 use crate::composition::{Composition, Outer, Term};

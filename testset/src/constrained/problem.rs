@@ -40,8 +40,8 @@ pub struct ConstrainedProblem {
     pub other_optima: Vec<f64>,
     /// Constraints that are active at the solution and not linear, equations included.
     pub active: usize,
-    /// A weight ρ with which f + ρ max(0, cⱼ, |c_eq|) has the same minimiser: 1.5 times the sum of the multipliers, rounded
-    /// up to two digits, and at least ½.
+    /// A weight ρ with which f + ρ max(0, cⱼ, |c_eq|) has the same minimiser: 1.5 times the sum of the multipliers,
+    /// rounded up to two digits, and at least ½.
     pub penalty: f64,
     objective: Composition,
     constraints: Outputs,
@@ -116,7 +116,8 @@ impl ConstrainedProblem {
         ConstrainedValue { value, subgradient, constraints: constraints.collect() }
     }
 
-    /// Distance from `x` to the nearest kink of the objective or of a constraint, to first order; ∞ where there is none.
+    /// Distance from `x` to the nearest kink of the objective or of a constraint, to first order; ∞ where there is
+    /// none.
     ///
     /// # Panics
     /// When `x` has not the problem's dimension.
@@ -136,7 +137,8 @@ impl ConstrainedProblem {
         bounds.chain(outside).fold(0.0, f64::max)
     }
 
-    /// The objective as a convex function of smooth outputs: a maximum, a sum of magnitudes, or one smooth output itself.
+    /// The objective as a convex function of smooth outputs: a maximum, a sum of magnitudes, or one smooth output
+    /// itself.
     pub fn composition(&self) -> &Composition {
         &self.objective
     }

@@ -1,4 +1,5 @@
-//! Problems with nonlinear constraints: optimal values of other solvers, second statements of the functions, derivatives.
+//! Problems with nonlinear constraints: optimal values of other solvers, second statements of the functions,
+//! derivatives.
 
 use serde_json::Value;
 use std::collections::BTreeMap;

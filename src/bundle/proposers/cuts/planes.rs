@@ -103,7 +103,8 @@ fn propose(model: &Model, at: &mut Position<'_>) -> Result<Proposal, SubproblemE
     let solution = subproblem::solve(at.solver, at.set, &state.center, quadratic.metric(), cuts)?;
     let mut proposal = interpret(solution, (state, at.set), model);
     proposal.tangents = at.working.map(|working| Rc::clone(&working.tangents));
-    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution. Rounding of ⟨h, d⟩ aside.
+    // Every solution has −v ≥ u‖d‖²; an answer that promises less than half of this is no solution. Rounding of ⟨h, d⟩
+    // aside.
     let steepest = state.bundle.dual_lengths().fold(0.0, f64::max);
     if at.restoring() && proposal.step_length.is_finite() {
         return proposal.admissible(at.set, state);

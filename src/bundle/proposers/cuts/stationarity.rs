@@ -10,7 +10,6 @@
 
 use super::confirmation::{Confirmation, Confirmed};
 use super::planes::{CuttingPlanes, MAX_DECREASES};
-use crate::bundle::config::Convexity;
 use crate::bundle::demand;
 use crate::bundle::evidence::{Evidence, active_cuts};
 use crate::bundle::proof::Ending;
@@ -58,7 +57,7 @@ impl StationarityTest {
             if at.restoring() {
                 return Next::Trial(proposal);
             }
-            let convex = at.config.convexity == Convexity::Convex;
+            let convex = at.is_convex();
             let resolution = at.resolution();
             let limit =
                 if convex { allowed(&resolution, true).max(resolution.hidden_by_noise()) } else { resolution.small() };
@@ -148,7 +147,7 @@ fn look_closer(
     planes: &mut CuttingPlanes,
     mut proposal: Proposal,
 ) -> ControlFlow<Next, (Evidence, Proposal)> {
-    let convex = at.config.convexity == Convexity::Convex;
+    let convex = at.is_convex();
     let small = at.resolution().small();
     let (mut worthwhile, mut hidden) = (None, None);
     let mut decreases = 0;
