@@ -141,13 +141,14 @@ def test_two_sides_and_their_multipliers():
 
 def test_an_equality():
     result = nonsmooth.minimize(l1, [0.5, 0.5], constraints=disc(1, 1))
-    # The point of the circle nearest to (1, 2) in the sum of absolute values is (1, 0)/√2 + (0, 1)/√2.
+    # The point of the circle with the largest sum of coordinates, (1, 1)/√2, is the nearest to (1, 2) in the sum of absolute values.
     assert abs(result.fun - (3 - np.sqrt(2))) < 1e-6 and result.constr_violation < 1e-8
     # -1 + v * sqrt(2) = 0.
     assert abs(result.multipliers[0][0] - np.sqrt(0.5)) < 1e-3
     line = scipy.optimize.NonlinearConstraint(lambda x: x[0] + x[1], 1, 1, jac=lambda x: np.ones((1, 2)))
     squares = nonsmooth.minimize(lambda x: (x @ x, 2 * x), [3.0, 1.0], constraints=line)
-    assert squares.success and np.abs(squares.x - 0.5).max() < 1e-6
+    # The tolerance 1e-7 of the values leaves the square root of it to the point.
+    assert squares.success and np.abs(squares.x - 0.5).max() < 3e-4 and abs(squares.fun - 0.5) < 1e-7
     # 2 * 0.5 + v = 0: the sign of an equality is free.
     assert abs(squares.multipliers[0][0] + 1) < 1e-4
 
@@ -170,7 +171,7 @@ def test_sides_of_components_and_open_ones():
 @pytest.mark.parametrize(
     "constraints, bounds",
     [
-        (disc(-np.inf, -1), None),
+        (nonsmooth.NonlinearConstraint(lambda x: abs(x).sum(), -np.inf, -1, np.sign, nonsmooth=True), None),
         ([disc(-np.inf, 1), scipy.optimize.NonlinearConstraint(lambda x: x[0], 3, np.inf, jac=lambda x: [1.0, 0])], None),
         (disc(1, 1), [(2, 3), (2, 3)]),
     ],
@@ -183,22 +184,20 @@ def test_infeasible_constraints_are_no_success(constraints, bounds):
     assert result.constr_violation > 0.5
 
 
-def test_a_point_that_bounds_fix_is_no_success_if_it_violates():
-    result = nonsmooth.minimize(l1, [1.0, 1.0], bounds=[(1, 1), (1, 1)], constraints=disc(-np.inf, 1))
-    assert not result.success and result.constr_violation == 1, result.message
-
-
 def test_a_limit_is_no_success():
     result = nonsmooth.minimize(rosen_suzuki, np.zeros(4), constraints=limits(), options={"max_evaluations": 3})
     assert not result.success and result.reason == "evaluation_limit" and len(result.constr[0]) == 3
 
 
 def test_degenerate_constraints_are_no_success():
-    # The constraint x0**2 <= 0 has no multiplier at its only points x0 = 0.
-    square = scipy.optimize.NonlinearConstraint(lambda x: x[0] ** 2, -np.inf, 0, jac=lambda x: [2 * x[0], 0])
-    result = nonsmooth.minimize(lambda x: (x[0] + x[1] ** 2, np.array([1, 2 * x[1]])), [1.0, 1.0], constraints=square)
-    assert not result.success, result.message
-    assert not (result.reason == "stationary" and result.constr_violation > 1e-8)
+    # Kuhn and Tucker's example: at the end (1, 0) of the cusp, the gradients of both constraints are opposite.
+    cusp = scipy.optimize.NonlinearConstraint(
+        lambda x: [x[1] - (1 - x[0]) ** 3, -x[1]], -np.inf, 0, jac=lambda x: [[3 * (1 - x[0]) ** 2, 1], [0, -1]]
+    )
+    result = nonsmooth.minimize(lambda x: (-x[0], np.array([-1.0, 0])), [0.5, 0.5], constraints=cusp)
+    assert not result.success and result.reason == "degenerate_constraints" and result.status == 14, result.message
+    assert "write the constraints so that their gradients do not vanish" in result.message
+    assert abs(result.fun + 1) < 1e-3
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -227,6 +226,7 @@ def test_the_collection_as_in_rust(name):
     reports = json.loads(outcome.constraints)
     assert same_bits(result.multipliers[0], [report["multiplier"] for report in reports])
     assert (result.constr[0] == problem(result.x)[2]).all()
+    assert (result.jac == problem(result.x)[1]).all()
     if result.success:
         size = max(1, np.abs(result.constr[0]).max())
         assert result.constr_violation < 1e-7 * size
@@ -336,7 +336,7 @@ def from_the_third_call(first, then):
         (dict(fun=lambda x: "much"), r"what constraints\[1\].fun returns is 'much', expected real numbers"),
         (dict(jac=lambda x: np.eye(2)), r"constraints\[1\].jac returns an array of shape \(2, 2\), expected \(1, 2\)"),
         (dict(jac=lambda x: [1.0, 2.0, 3.0]), r"constraints\[1\].jac returns an array of shape \(3,\), expected \(1, 2\)"),
-        (dict(jac=lambda x: None), r"what constraints\[1\].jac returns is None, expected real numbers"),
+        (dict(jac=lambda x: None), r"constraints\[1\].jac returns an array of shape \(\), expected \(1, 2\)"),
     ],
 )
 @pytest.mark.parametrize("late", [False, True])
