@@ -43,7 +43,7 @@ impl Nonlinear {
         self.returned > 0
     }
 
-    /// All constraints at a point; `returned` are values and Jacobian that the function has returned, if it returns any.
+    /// All constraints at a point; `returned` are the values and the Jacobian that the function has returned.
     pub fn evaluation(
         &self,
         py: Python<'_>,

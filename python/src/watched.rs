@@ -1,5 +1,6 @@
 //! An objective that remembers the subgradient of its lowest value: a report holds the best point, but not what belongs
-//! to it. With nonlinear constraints the solution need not be the lowest point; the certificate then has its subgradient.
+//! to it. With nonlinear constraints, the solution need not be the lowest point; the certificate then has its
+//! subgradient.
 
 use crate::outcome::RunOutcome;
 use nonsmooth::composite::OuterFunction;

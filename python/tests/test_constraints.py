@@ -230,6 +230,8 @@ def test_the_collection_as_in_rust(name):
     if result.success:
         size = max(1, np.abs(result.constr[0]).max())
         assert result.constr_violation < 1e-7 * size
+        # The tolerance 1e-7 refers to the size of the function, which is larger than its optimal value on some problems.
+        assert min(abs(result.fun - optimum) / (1 + abs(optimum)) for optimum in problem.optima) < 1e-5
         assert result.recheck().agrees
 
 
