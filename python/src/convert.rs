@@ -48,9 +48,20 @@ pub fn matrix(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Matrix> {
     shaped_matrix(object, what, None)
 }
 
-/// As [`matrix`]; where there is one column, its entries alone are enough.
-pub fn columns(object: &Bound<'_, PyAny>, what: &str, columns: usize) -> PyResult<Matrix> {
-    shaped_matrix(object, what, (columns == 1).then_some(&[-1, 1][..]))
+/// As [`matrix`], of a shape; where there is one row or one column, its entries alone are enough. `rows` says what the
+/// rows belong to.
+pub fn jacobian(object: &Bound<'_, PyAny>, what: &str, shape: (usize, usize), rows: &str) -> PyResult<Matrix> {
+    let single = match shape {
+        (_, 1) => Some(&[-1, 1][..]),
+        (1, _) => Some(&[1, -1][..]),
+        _ => None,
+    };
+    let matrix = shaped_matrix(object, what, single)?;
+    if matrix.shape() == shape {
+        return Ok(matrix);
+    }
+    let found = matrix.shape();
+    Err(PyValueError::new_err(format!("{what} has shape {found:?}, expected {shape:?} ({rows}, variables)")))
 }
 
 fn shaped_matrix(object: &Bound<'_, PyAny>, what: &str, shape: Option<&[i32]>) -> PyResult<Matrix> {
@@ -113,13 +124,13 @@ fn refused(error: Option<PyErr>, object: &Bound<'_, PyAny>, what: &str, form: &s
     refusal
 }
 
-/// The two parts of what a function returns, as a tuple or a list; with three an error bound, where there
-/// `may_be_bound` one.
+/// The parts of what a function returns, `count` of them, as a tuple or a list; with one more an error bound, where
+/// there `may_be_bound` one.
 pub fn parts<'py>(
     answer: &Bound<'py, PyAny>,
     function: &str,
     wanted: &str,
-    may_be_bound: bool,
+    (count, may_be_bound): (usize, bool),
 ) -> PyResult<Bound<'py, PyTuple>> {
     let kind = || answer.get_type().name();
     let tuple = match (answer.cast::<PyTuple>(), answer.cast::<PyList>()) {
@@ -128,7 +139,7 @@ pub fn parts<'py>(
         _ => None,
     };
     let found = match tuple {
-        Some(tuple) if tuple.len() == 2 || (tuple.len() == 3 && may_be_bound) => return Ok(tuple),
+        Some(tuple) if tuple.len() == count || (tuple.len() == count + 1 && may_be_bound) => return Ok(tuple),
         Some(tuple) => format!("a {} of {}", kind()?, tuple.len()),
         None => kind()?.to_string(),
     };

@@ -13,6 +13,7 @@ mod contact_scene;
 mod convert;
 mod errors;
 mod failure;
+mod nonlinear;
 mod oracle;
 mod outcome;
 mod outer;
@@ -35,6 +36,9 @@ fn _engine(module: &Bound<'_, PyModule>) -> PyResult<()> {
     #[cfg(feature = "contact")]
     module.add_class::<contact_scene::ContactScene>()?;
     #[cfg(feature = "collection")]
-    module.add_class::<collection::CollectionProblem>()?;
+    {
+        module.add_class::<collection::CollectionProblem>()?;
+        module.add_class::<collection::ConstrainedProblem>()?;
+    }
     Ok(())
 }

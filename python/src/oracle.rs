@@ -3,16 +3,17 @@
 //! ```text
 //! fun(x) → (value, subgradient)               fun(x, accuracy=τ) → the same, or (value, subgradient, error bound)
 //! fun(x) → (outputs, Jacobian)                with an outer function; smooth(x) → (value, gradient) of what is added
+//! fun(x) → (…, …, constraints, Jacobian)      with nonlinear constraints of the same call, before the error bound
 //! ```
 //! `OutsideDomain` and numbers that are not finite shorten the step. All other exceptions end the run and are kept.
 
 use crate::convert;
 use crate::errors::OutsideDomain;
 use crate::failure::Failure;
+use crate::nonlinear::Nonlinear;
 use crate::outer::Outer;
-use nonsmooth::composite::{Linearization, Linearized, OuterFunction, SmoothPlus};
-use nonsmooth::{Answer, Evaluation, Matrix, NonsmoothObjective, OracleError, Request, Vector};
-use pyo3::exceptions::PyValueError;
+use nonsmooth::composite::{Linearization, Linearized, Maximum, OuterFunction, SmoothPlus};
+use nonsmooth::{Answer, ConstraintKind, Evaluation, Matrix, NonsmoothObjective, OracleError, Request, Vector};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,6 +32,8 @@ pub struct PythonOracle {
     pub takes_accuracy: bool,
     /// The convex function of the outputs, if the function returns outputs.
     pub outer: Option<Outer>,
+    /// The nonlinear constraints.
+    pub nonlinear: Nonlinear,
     /// Where an exception is kept.
     pub failure: Failure,
     /// The first `OutsideDomain`, for a start at which the function is not defined.
@@ -58,30 +61,52 @@ impl PythonOracle {
 
     /// The answer of the function; an exception where it has the wrong form.
     fn evaluation(&self, answer: &Bound<'_, PyAny>, request: &Request<'_, ()>) -> PyResult<Evaluated> {
-        let wanted = if self.outer.is_some() { "(outputs, Jacobian)" } else { "(value, subgradient)" };
-        let parts = convert::parts(answer, "fun", wanted, true)?;
+        let constrained = self.nonlinear.returned_by_function();
+        let (wanted, count) = match (&self.outer, constrained) {
+            (None, false) => ("(value, subgradient)", 2),
+            (Some(_), false) => ("(outputs, Jacobian)", 2),
+            (None, true) => ("(value, subgradient, constraints, their Jacobian)", 4),
+            (Some(_), true) => ("(outputs, Jacobian, constraints, their Jacobian)", 4),
+        };
+        let parts = convert::parts(answer, "fun", wanted, (count, true))?;
         let (first, second) = (parts.get_item(0)?, parts.get_item(1)?);
+        let returned = if constrained { Some((parts.get_item(2)?, parts.get_item(3)?)) } else { None };
         let mut evaluation = match &self.outer {
             None => {
                 let value = convert::number(&first, "the value that fun returns")?;
                 let source = if self.jac_apart { "jac" } else { "fun" };
                 let what = format!("the subgradient that {source} returns");
                 let subgradient = convert::vector(&second, &what, Some(self.dimension))?;
-                Evaluation::exact(value, subgradient, ())
+                self.plain(value, subgradient, request)
             }
             Some(outer) => match self.composite(outer, (&first, &second), request)? {
                 Ok(evaluation) => evaluation,
                 failed => return Ok(failed),
             },
         };
-        evaluation.error_bound = if parts.len() == 3 {
-            convert::number(&parts.get_item(2)?, "the error bound that fun returns")?
+        evaluation.constraints = self.nonlinear.evaluation(answer.py(), request.point, returned)?;
+        evaluation.error_bound = if parts.len() > count {
+            convert::number(&parts.get_item(count)?, "the error bound that fun returns")?
         } else if self.takes_accuracy {
             request.accuracy.tolerance() * evaluation.value.abs()
         } else {
             0.0
         };
         Ok(Ok(evaluation))
+    }
+
+    /// Value and subgradient. With nonlinear constraints, the value is an output as well, as in
+    /// [`ConstrainedFunction`](nonsmooth::ConstrainedFunction).
+    fn plain(&self, value: f64, subgradient: Vector, request: &Request<'_, ()>) -> Evaluation<()> {
+        let linearization = match request.linearization {
+            Some(_) if !self.nonlinear.kinds.is_empty() => {
+                let jacobian = Matrix::from_row_slice(1, subgradient.len(), subgradient.as_slice());
+                let outputs = Vector::from_element(1, value);
+                Linearized::Known(Linearization { outputs, jacobian, accuracy: 0.0, inactive: None })
+            }
+            _ => Linearized::NotAsked,
+        };
+        Evaluation { linearization, ..Evaluation::exact(value, subgradient, ()) }
     }
 
     fn composite(
@@ -91,13 +116,8 @@ impl PythonOracle {
         request: &Request<'_, ()>,
     ) -> PyResult<Evaluated> {
         let mut outputs = convert::vector(outputs, "the vector of outputs that fun returns", None)?;
-        let mut jacobian = convert::columns(jacobian, "the Jacobian that fun returns", self.dimension)?;
-        let (expected, found) = ((outputs.len(), self.dimension), jacobian.shape());
-        if expected != found {
-            return Err(PyValueError::new_err(format!(
-                "the Jacobian that fun returns has shape {found:?}, expected {expected:?} (outputs, variables)"
-            )));
-        }
+        let shape = (outputs.len(), self.dimension);
+        let mut jacobian = convert::jacobian(jacobian, "the Jacobian that fun returns", shape, "outputs")?;
         if let Some(smooth) = &self.smooth {
             (outputs, jacobian) = self.with_smooth(smooth, request, (&outputs, &jacobian))?;
         }
@@ -123,7 +143,7 @@ impl PythonOracle {
     ) -> PyResult<(Vector, Matrix)> {
         Python::attach(|py| {
             let answer = smooth.bind(py).call1((convert::array(py, request.point),))?;
-            let parts = convert::parts(&answer, "smooth", "(value, gradient)", false)?;
+            let parts = convert::parts(&answer, "smooth", "(value, gradient)", (2, false))?;
             let value = convert::number(&parts.get_item(0)?, "the value that smooth returns")?;
             let gradient = parts.get_item(1)?;
             let gradient = convert::vector(&gradient, "the gradient that smooth returns", Some(self.dimension))?;
@@ -151,7 +171,16 @@ impl NonsmoothObjective for PythonOracle {
     }
 
     fn outer(&self) -> Option<&dyn OuterFunction> {
-        self.outer.as_ref().map(|outer| outer as &dyn OuterFunction)
+        match &self.outer {
+            Some(outer) => Some(outer),
+            // The largest of a single output is the output itself.
+            None if !self.nonlinear.kinds.is_empty() => Some(&Maximum),
+            None => None,
+        }
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        &self.nonlinear.kinds
     }
 
     fn evaluate(&self, request: &Request<'_, ()>) -> Result<Answer<()>, OracleError> {

@@ -54,6 +54,8 @@ impl RunOutcome {
             Termination::OracleFailing { .. } => "function_failing",
             Termination::OracleContradiction { .. } => "function_contradictory",
             Termination::SubproblemFailed { .. } => "subproblem_failed",
+            Termination::Infeasible { .. } => "infeasible",
+            Termination::DegenerateConstraints { .. } => "degenerate_constraints",
             _ => "other",
         }
     }
@@ -118,6 +120,18 @@ impl RunOutcome {
     #[getter]
     fn largest_violation(&self) -> f64 {
         self.report.largest_violation
+    }
+
+    /// Nonlinear constraints at the solution, as JSON.
+    #[getter]
+    fn constraints(&self) -> PyResult<String> {
+        json(&self.report.constraints)
+    }
+
+    /// Weight of the violation in the merit that the run has ended with; none without nonlinear constraints.
+    #[getter]
+    fn penalty(&self) -> Option<f64> {
+        self.report.penalty
     }
 
     /// Wall-clock seconds of the run.

@@ -128,7 +128,7 @@ impl PythonOuter {
     fn call(&self, outputs: &Vector) -> PyResult<(f64, Vector)> {
         Python::attach(|py| {
             let answer = self.function.bind(py).call1((convert::array(py, outputs),))?;
-            let parts = convert::parts(&answer, "outer", "(value, subgradient)", false)?;
+            let parts = convert::parts(&answer, "outer", "(value, subgradient)", (2, false))?;
             let value = convert::number(&parts.get_item(0)?, "the value that outer returns")?;
             let subgradient = parts.get_item(1)?;
             let subgradient = convert::vector(&subgradient, "the subgradient that outer returns", Some(outputs.len()))?;

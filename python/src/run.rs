@@ -57,6 +57,7 @@ pub fn minimize<'py>(py: Python<'py>, setup: Setup) -> PyResult<(Option<RunOutco
         dimension: setup.x0.len(),
         takes_accuracy: setup.takes_accuracy,
         outer: outer.transpose()?,
+        nonlinear: setup.nonlinear.as_ref().map(|given| given.constraints(py)).transpose()?.unwrap_or_default(),
         failure: failure.clone(),
         outside: Failure::default(),
     };

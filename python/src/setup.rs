@@ -2,6 +2,7 @@
 
 use crate::convert;
 use crate::errors;
+use crate::nonlinear::NonlinearSetup;
 use crate::outer::OuterSetup;
 use nonsmooth::{BundleTrustConfig, Polyhedron, VariableScaling, Vector};
 use pyo3::exceptions::PyValueError;
@@ -23,6 +24,8 @@ pub struct Setup {
     pub smooth: Option<Py<PyAny>>,
     pub x0: Vec<f64>,
     pub constraints: Constraints,
+    /// Nonlinear constraints, if there are any.
+    pub nonlinear: Option<NonlinearSetup>,
     /// The fields of [`BundleTrustConfig`] that are set, as JSON, without the scaling.
     pub options: String,
     /// The scaling of the variables: none, sizes, or a matrix.

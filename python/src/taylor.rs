@@ -4,6 +4,7 @@ use crate::convert;
 use crate::convert::json;
 use crate::errors;
 use crate::failure::Failure;
+use crate::nonlinear::Nonlinear;
 use crate::oracle::PythonOracle;
 use nonsmooth::verify::{Direction, STEPS};
 use pyo3::prelude::*;
@@ -32,6 +33,7 @@ pub fn taylor_test(
         dimension: x.len(),
         takes_accuracy,
         outer: None,
+        nonlinear: Nonlinear::default(),
         failure: failure.clone(),
         outside: Failure::default(),
     };

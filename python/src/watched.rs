@@ -1,8 +1,10 @@
-//! An objective that remembers the subgradient of its lowest value: a report holds the best point alone.
+//! An objective that remembers the subgradient of its lowest value: a report holds the best point, but not what belongs
+//! to it. With nonlinear constraints, the solution need not be the lowest point; the certificate then has its
+//! subgradient.
 
 use crate::outcome::RunOutcome;
 use nonsmooth::composite::OuterFunction;
-use nonsmooth::{Answer, NonsmoothObjective, OracleError, Polyhedron, Report, Request, Vector};
+use nonsmooth::{Answer, ConstraintKind, NonsmoothObjective, OracleError, Polyhedron, Report, Request, Vector};
 use std::cell::RefCell;
 
 /// An objective with the point, the value and the subgradient of its best accurate answer.
@@ -21,7 +23,9 @@ impl<O> Watched<O> {
     pub fn outcome(&self, report: Report, set: Polyhedron) -> RunOutcome {
         let best = self.best.borrow();
         let there = best.as_ref().filter(|(at, ..)| *at == report.solution);
-        let subgradient = there.map(|(_, _, subgradient)| subgradient.clone());
+        let cuts = report.certificate.iter().flat_map(|certificate| &certificate.cuts);
+        let mut of_cuts = cuts.filter(|cut| cut.point == report.solution).map(|cut| &cut.subgradient);
+        let subgradient = there.map(|(_, _, subgradient)| subgradient).or_else(|| of_cuts.next()).cloned();
         RunOutcome { report, set, subgradient }
     }
 }
@@ -35,6 +39,10 @@ impl<O: NonsmoothObjective> NonsmoothObjective for Watched<O> {
 
     fn outer(&self) -> Option<&dyn OuterFunction> {
         self.inner.outer()
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        self.inner.constraint_kinds()
     }
 
     fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {

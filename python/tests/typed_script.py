@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import scipy.optimize
 from numpy.typing import NDArray
-from scipy.optimize import Bounds, LinearConstraint
+from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
 
 import nonsmooth
 from nonsmooth.contact import SLIP, Scene
@@ -44,6 +44,12 @@ nonsmooth.minimize(fun, np.zeros(2), bounds=np.array([[0, 1], [0, 1]]), constrai
 nonsmooth.minimize(fun, [5, -3], constraints=([[1, 1]], -np.inf, 2))
 nonsmooth.minimize(fun, [5, -3], constraints=[LinearConstraint([[1, 1]], 0, 2), Bounds(0, 1)])
 nonsmooth.minimize(fun, [5, -3], constraints=Bounds(0, 1), args=3.0)
+ring = NonlinearConstraint(lambda x: x @ x, 1, 4, jac=lambda x: 2 * x)
+kinked = nonsmooth.NonlinearConstraint(value, -np.inf, [3.0], slope, nonsmooth=True)
+nonsmooth.minimize(fun, [5, -3], constraints=ring)
+nonsmooth.minimize(fun, [5, -3], constraints=[kinked, LinearConstraint([[1, 1]], 0, 2)])
+nonsmooth.minimize(lambda x: (*fun(x), [x @ x - 4], [2 * x]), [5, -3], constraint_kinds=["smooth"])
+nonsmooth.minimize_composite("max", outputs, [1.0, 2.0], constraints=ring)
 nonsmooth.minimize(value, [5, -3], jac=slope, callback=told, options={"convex": True, "maxfev": 30})
 nonsmooth.minimize(fun, [5, -3], callback=informed, journal=Path("folder"), options=dict(tolerance=1e-5))
 options = {"convex": True, "max_evaluations": np.int64(30)}
@@ -57,6 +63,8 @@ scipy.optimize.minimize(fun, [5.0, -3.0], jac=True, method=nonsmooth.bundle_trus
 least: float = result.fun
 point: Array = result.x
 confirmed: bool = result.success
+row_multipliers: list[Array] = result.multipliers
+worst: float = result.constr_violation
 if result.certificate is not None:
     multipliers: Array = result.certificate.multipliers
 print(result.recheck().agrees, result.history[0]["value"], result.gap)

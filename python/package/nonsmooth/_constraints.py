@@ -1,16 +1,16 @@
 """Bounds and linear constraints: scipy's objects and plain arrays become arrays for the engine."""
 
 import numpy as np
-from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
+from scipy.optimize import Bounds, LinearConstraint
 
 from ._numbers import real
 
 
 def read(bounds, constraints, n):
-    """The admissible set as arrays: box, rows, sides of the rows."""
+    """The admissible set as arrays, from bounds and a list of linear constraints: box, rows, sides of the rows."""
     lower, upper = _box(bounds, n)
     rows, row_lower, row_upper = [np.zeros((0, n))], [np.zeros(0)], [np.zeros(0)]
-    for constraint in _list(constraints):
+    for constraint in constraints:
         if isinstance(constraint, Bounds):
             low, high = _box(constraint, n)
             lower, upper = np.maximum(lower, low), np.minimum(upper, high)
@@ -28,21 +28,21 @@ def read(bounds, constraints, n):
     }
 
 
-def _side(value, n, what):
+def side(value, n, what):
     """One side of n intervals; a single number stands for all."""
-    side = real(value, what)
-    if side.ndim > 1 or side.size not in (1, n):
-        raise ValueError(f"{what} has shape {side.shape}, expected one number or {n}")
-    if np.isnan(side).any():
+    given = real(value, what)
+    if given.ndim > 1 or given.size not in (1, n):
+        raise ValueError(f"{what} has shape {given.shape}, expected one number or {n}")
+    if np.isnan(given).any():
         raise ValueError(f"{what} has entries that are NaN; infinity leaves a side open")
-    return np.broadcast_to(side, (n,)).astype(float)
+    return np.broadcast_to(given, (n,)).astype(float)
 
 
 def _box(bounds, n):
     if bounds is None:
         return np.full(n, -np.inf), np.full(n, np.inf)
     if isinstance(bounds, Bounds):
-        return _side(bounds.lb, n, "bounds.lb"), _side(bounds.ub, n, "bounds.ub")
+        return side(bounds.lb, n, "bounds.lb"), side(bounds.ub, n, "bounds.ub")
     expected = f"bounds must be scipy.optimize.Bounds or {n} pairs (lower, upper), one per variable; None leaves a side open"
     if not np.iterable(bounds):
         raise TypeError(f"{expected}; found {type(bounds).__name__}")
@@ -54,10 +54,11 @@ def _box(bounds, n):
         raise ValueError(f"{expected}; found {len(pairs)} pairs")
     lower = [-np.inf if low is None else low for low, _ in pairs]
     upper = [np.inf if high is None else high for _, high in pairs]
-    return _side(lower, n, "the lower bound"), _side(upper, n, "the upper bound")
+    return side(lower, n, "the lower bound"), side(upper, n, "the upper bound")
 
 
-def _list(constraints):
+def listed(constraints):
+    """One constraint or several as a list."""
     if constraints is None:
         return []
     if isinstance(constraints, (list, tuple)):
@@ -82,16 +83,16 @@ def _rows(constraint, n):
     if matrix.ndim != 2 or matrix.shape[1] != n:
         raise ValueError(f"the matrix of a linear constraint has shape {matrix.shape}, expected {n} columns")
     m = matrix.shape[0]
-    return matrix, _side(constraint.lb, m, "constraint.lb"), _side(constraint.ub, m, "constraint.ub")
+    return matrix, side(constraint.lb, m, "constraint.lb"), side(constraint.ub, m, "constraint.ub")
 
 
 def _refused(constraint):
-    if isinstance(constraint, (NonlinearConstraint, dict)):
+    if isinstance(constraint, dict):
         return ValueError(
-            "nonlinear constraints are not supported, and a dict {'type', 'fun'} cannot be seen to be linear: pass "
-            "scipy.optimize.LinearConstraint(A, lb, ub) for A x, or add a penalty rho*max(0, g(x)) to the function"
+            "a constraint is a dict {'type', 'fun'}, which does not say what it is: pass scipy.optimize.LinearConstraint(A, lb, ub) "
+            "for A x, or scipy.optimize.NonlinearConstraint(fun, lb, ub, jac)"
         )
     return TypeError(
-        f"a constraint is {type(constraint).__name__}, expected scipy.optimize.LinearConstraint or (A, lower, upper), where A is a "
-        "list of rows, an array or a sparse matrix, not a tuple"
+        f"a constraint is {type(constraint).__name__}, expected scipy.optimize.LinearConstraint, scipy.optimize.NonlinearConstraint "
+        "or (A, lower, upper), where A is a list of rows, an array or a sparse matrix, not a tuple"
     )

@@ -8,7 +8,7 @@ import threading
 import numpy as np
 from scipy.optimize import OptimizeResult
 
-from . import _constraints, _engine, _options, _result
+from . import _constraints, _engine, _nonlinear, _options, _result
 from ._numbers import real
 
 #: Runs within runs. A function that calls itself without end must not run out of stack in the engine, which would kill the process.
@@ -31,18 +31,20 @@ def minimize(
     *,
     tol=None,
     x_scale=None,
+    constraint_kinds=(),
     journal=None,
     resume=None,
 ):
-    """Minimise a nonsmooth function with bounds and linear constraints.
+    """Minimise a nonsmooth function with bounds, linear and nonlinear constraints.
 
     Parameters
     ----------
     fun : callable
         ``fun(x, *args)`` returns ``(value, subgradient)``. One subgradient per point is enough, where the function has
         a kink that of either side; for one variable it may be a number. With ``jac`` a callable, ``fun`` returns the
-        value alone. ``fun`` is called only at points that satisfy bounds and constraints. If it takes the keyword ``accuracy``, it is told which relative
-        accuracy is enough, and may return ``(value, subgradient, error_bound)``; 0 means as accurate as it can.
+        value alone. ``fun`` is called only at points that satisfy bounds and linear constraints. If it takes the keyword
+        ``accuracy``, it is told which relative accuracy is enough, and may return ``(value, subgradient, error_bound)``; 0 means as
+        accurate as it can.
         Raise ``nonsmooth.OutsideDomain``, or return NaN, where ``fun`` is not defined: the step is shortened.
         Every other exception ends the run and is raised again, the same object; its attribute ``best`` is the
         ``Result`` so far (None if there is none).
@@ -55,8 +57,10 @@ def minimize(
         Further arguments of ``fun`` and ``jac``; anything but a tuple is one argument, as for scipy.
     bounds : scipy.optimize.Bounds or sequence of pairs, optional
         ``(lower, upper)`` for every variable; None or infinity leaves a side open.
-    constraints : scipy.optimize.LinearConstraint, (A, lower, upper), or a list of these
-        ``lower <= A x <= upper``; equal sides make an equality. A may be sparse.
+    constraints : scipy.optimize.LinearConstraint, (A, lower, upper), scipy.optimize.NonlinearConstraint, or a list of these
+        ``lower <= A x <= upper``; equal sides make an equality. A may be sparse. A nonlinear constraint needs a callable ``jac``;
+        points that are evaluated may violate it. ``nonsmooth.NonlinearConstraint(..., nonsmooth=True)`` may have kinks.
+        Where ``lb`` and ``ub`` are numbers, its ``fun`` is called once more, at x0, for the number of its values.
     options : dict, optional
         See Notes. An unknown name is refused.
     callback : callable, optional
@@ -67,6 +71,9 @@ def minimize(
     x_scale : float or array_like, optional
         Typical sizes of the variables, n numbers > 0 or one for all: the units in which lengths of steps are measured.
         Give them where variables have different units.
+    constraint_kinds : sequence of {'smooth', 'nonsmooth', 'equality'}
+        What is asked of m constraints that ``fun`` returns with its value: c <= 0, or c = 0 for an equality, which is smooth. ``fun``
+        then returns ``(value, subgradient, c, J)`` with the m × n matrix J of derivatives of c, and may add ``error_bound``.
     journal, resume : path, optional
         ``journal``: every evaluation is kept in this new folder. ``resume``: continues the run of such a folder, which
         ends as if it had never been interrupted; call it with the same arguments. Limits may be raised.
@@ -81,7 +88,7 @@ def minimize(
     ValueError, TypeError
         Input that cannot be worked with; the message names it and what is allowed.
     InfeasibleError
-        Bounds and constraints contradict each other. It is a ``ValueError``.
+        Bounds and linear constraints contradict each other. It is a ``ValueError``.
 
     Notes
     -----
@@ -125,7 +132,7 @@ def minimize(
     """
     return _run(
         _joined(fun, jac, args), fun, x0, bounds, constraints, options, callback, journal, resume,
-        tol=tol, x_scale=x_scale, jac=jac,
+        tol=tol, x_scale=x_scale, kinds=constraint_kinds, jac=jac,
     )
 
 
@@ -145,6 +152,7 @@ def minimize_composite(
     weight=1.0,
     tol=None,
     x_scale=None,
+    constraint_kinds=(),
     journal=None,
     resume=None,
 ):
@@ -173,7 +181,7 @@ def minimize_composite(
         ``smooth(x, *args)`` returns ``(value, gradient)`` of a differentiable function that is added.
     weight : float
         With ``smooth``: factor of the outer function, > 0.
-    tol, x_scale, journal, resume : optional
+    tol, x_scale, constraint_kinds, journal, resume : optional
         As for `minimize`.
 
     Returns
@@ -208,7 +216,7 @@ def minimize_composite(
     smooth = None if smooth is None else _with_args(smooth, args)
     return _run(
         _joined(fun, True, args), fun, x0, bounds, constraints, options, callback, journal, resume,
-        tol=tol, x_scale=x_scale, outer=outer, smooth=smooth,
+        tol=tol, x_scale=x_scale, kinds=constraint_kinds, outer=outer, smooth=smooth,
     )
 
 
@@ -320,13 +328,19 @@ def takes_accuracy(fun):
 
 
 def _run(
-    joined, fun, x0, bounds, constraints, options, callback, journal, resume, *, tol, x_scale, jac=True, outer=None, smooth=None
+    joined, fun, x0, bounds, constraints, options, callback, journal, resume,
+    *, tol, x_scale, kinds, jac=True, outer=None, smooth=None,
 ):
     x0 = np.atleast_1d(real(x0, "x0"))
     if x0.ndim != 1 or x0.size == 0:
         raise ValueError(f"x0 has shape {x0.shape}, expected one dimension with at least one entry")
     accepts = takes_accuracy(fun)
     config, scaling, disp = _options.read(options, x0.size, accepts, tol, x_scale)
+    places = list(enumerate(_constraints.listed(constraints)))
+    admissible = _constraints.read(bounds, [one for _, one in places if not _nonlinear.is_nonlinear(one)], x0.size)
+    apart = [(place, one) for place, one in places if _nonlinear.is_nonlinear(one)]
+    nonlinear = _nonlinear.Nonlinear(apart, kinds, np.clip(x0, admissible["lower"], admissible["upper"]))
+    name = getattr(fun, "__qualname__", type(fun).__qualname__)
     setup = {
         "fun": joined,
         "jac_apart": jac is not True,
@@ -334,17 +348,18 @@ def _run(
         "outer": outer,
         "smooth": smooth,
         "x0": x0,
-        "constraints": _constraints.read(bounds, constraints, x0.size),
+        "constraints": admissible,
+        "nonlinear": nonlinear.setup,
         "options": config,
         "scaling": scaling,
         "callback": told(callback),
         "disp": disp,
-        "journal": journal_of(journal, resume, getattr(fun, "__qualname__", type(fun).__qualname__)),
+        "journal": journal_of(journal, resume, nonlinear.identity(name)),
     }
-    return drive(_engine.minimize, setup, outer)
+    return drive(_engine.minimize, setup, outer, nonlinear)
 
 
-def drive(run, setup, outer=None):
+def drive(run, setup, outer=None, nonlinear=None):
     """Runs the engine; an exception of the user's code is raised again, with the best point."""
     depth = getattr(_depth, "runs", 0)
     if depth >= _DEEPEST:
@@ -354,7 +369,7 @@ def drive(run, setup, outer=None):
         outcome, error = run(setup)
     finally:
         _depth.runs = depth
-    result = None if outcome is None else _result.build(outcome, outer)
+    result = None if outcome is None else _result.build(outcome, outer, nonlinear)
     if error is None:
         return result
     _attach(error, result)

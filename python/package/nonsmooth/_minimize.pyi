@@ -4,8 +4,9 @@ from typing import Any, Literal, TypedDict, type_check_only
 
 from numpy import float64
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import Bounds, LinearConstraint
+from scipy.optimize import Bounds, LinearConstraint, NonlinearConstraint
 
+from ._nonlinear import Nonlinear
 from ._result import Result
 
 @type_check_only
@@ -29,7 +30,8 @@ class _Options(TypedDict, total=False):
     disp: bool
 
 _Path = str | PathLike[str]
-_Constraints = LinearConstraint | Bounds | Sequence[Any]
+_Constraints = LinearConstraint | NonlinearConstraint | Bounds | Sequence[Any]
+_Kind = Literal["smooth", "nonsmooth", "equality"]
 _Bounds = Bounds | Sequence[tuple[float | None, float | None]] | NDArray[float64]
 
 def minimize(
@@ -44,6 +46,7 @@ def minimize(
     *,
     tol: float | None = None,
     x_scale: ArrayLike | None = None,
+    constraint_kinds: Sequence[_Kind] = (),
     journal: _Path | None = None,
     resume: _Path | None = None,
 ) -> Result: ...
@@ -63,6 +66,7 @@ def minimize_composite(
     weight: float = 1.0,
     tol: float | None = None,
     x_scale: ArrayLike | None = None,
+    constraint_kinds: Sequence[_Kind] = (),
     journal: _Path | None = None,
     resume: _Path | None = None,
 ) -> Result: ...
@@ -82,6 +86,8 @@ def bundle_trust(
 def takes_accuracy(fun: Callable[..., Any]) -> bool: ...
 def told(callback: Callable[..., Any] | None) -> Callable[..., bool] | None: ...
 def journal_of(journal: _Path | None, resume: _Path | None, identity: str) -> tuple[str, str] | None: ...
-def drive(run: Callable[..., Any], setup: dict[str, Any], outer: dict[str, Any] | None = None) -> Result: ...
+def drive(
+    run: Callable[..., Any], setup: dict[str, Any], outer: dict[str, Any] | None = None, nonlinear: Nonlinear | None = None
+) -> Result: ...
 
 OUTER: tuple[str, ...]

@@ -20,6 +20,8 @@ STATUS = {
     "subproblem_failed": 10,
     "function_contradictory": 11,
     "other": 12,
+    "infeasible": 13,
+    "degenerate_constraints": 14,
 }
 
 #: What to do next; for another reason, the engine advises.
@@ -57,7 +59,7 @@ class Recheck:
     multiplier_defect : float
         The larger of ``|sum of multipliers - 1|`` and the largest negative multiplier.
     violation : float
-        Relative violation of the constraints at the point.
+        Relative violation of the constraints, nonlinear ones included, at the point.
     open_side_multiplier : float
         Largest multiplier of an infinite side; 0 in a valid certificate.
     composite_difference : float or None
@@ -99,7 +101,8 @@ class Result(OptimizeResult):
     Attributes
     ----------
     x : ndarray
-        The admissible point that ``message`` speaks about; where a limit or a failure ended the run, the lowest one evaluated.
+        The admissible point that ``message`` speaks about; where a limit or a failure ended the run, the lowest one evaluated, with
+        nonlinear constraints the lowest feasible one or the one of least violation.
     fun : float
         The value there.
     jac : ndarray or None
@@ -117,6 +120,17 @@ class Result(OptimizeResult):
     gap : float or None
         Bound of ``fun`` minus the minimum within reach, for a confirmed run with ``convex=True``: every variable reaches as far as the
         one does that lies farthest from zero or from its start.
+    constr : list of ndarray
+        Values of the nonlinear constraints at x: first those of ``constraint_kinds``, then an array for each object. A component
+        without any side is NaN.
+    constr_violation : float
+        The largest violation among these values, each in its own unit; 0 without nonlinear constraints.
+    multipliers : list of ndarray
+        Multipliers v of these values, for the Lagrangian ``fun(x) + sum(v * c(x))``, as in ``scipy``'s trust-constr: v > 0 where
+        the upper side is active, v < 0 at the lower side, either sign for an equality.
+    penalty : float or None
+        Weight of the violation in the merit that the run has ended with, in units of ``fun`` per unit of x; None without nonlinear
+        constraints.
     certificate : Certificate or None
         Cuts and multipliers of the last subproblem; None if there was none.
     history : History
@@ -160,8 +174,16 @@ def _agrees(certificate, numbers, difference):
     )
 
 
-def build(outcome, outer=None):
+#: With nonlinear constraints, a value without an outer function is the largest of one output.
+_ONE_OUTPUT = {"function": "max", "exponent": 1.0, "groups": None, "weight": None}
+
+
+def build(outcome, outer=None, nonlinear=None):
     """The result of a run of the engine."""
+    found = {"constr": [], "constr_violation": 0.0, "multipliers": []}
+    if nonlinear:
+        found = nonlinear.found(json.loads(outcome.constraints))
+        outer = outer or _ONE_OUTPUT
     counts = json.loads(outcome.counts)
     reason = outcome.reason
     history = History(json.loads(outcome.history))
@@ -177,6 +199,8 @@ def build(outcome, outer=None):
         nfev=counts["evaluations"],
         njev=counts["evaluations"],
         gap=outcome.gap,
+        **found,
+        penalty=outcome.penalty,
         certificate=outcome.certificate,
         history=history,
         counts=counts,

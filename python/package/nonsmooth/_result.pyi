@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult
 
 from ._engine import Certificate, RunOutcome
+from ._nonlinear import Nonlinear
 
 STATUS: dict[str, int]
 
@@ -34,6 +35,10 @@ class Result(OptimizeResult):
     nfev: int
     njev: int
     gap: float | None
+    constr: list[NDArray[float64]]
+    constr_violation: float
+    multipliers: list[NDArray[float64]]
+    penalty: float | None
     certificate: Certificate | None
     history: History
     counts: dict[str, Any]
@@ -44,4 +49,4 @@ class Result(OptimizeResult):
     def recheck(self) -> Recheck: ...
     def __dir__(self) -> list[str]: ...
 
-def build(outcome: RunOutcome, outer: dict[str, Any] | None = None) -> Result: ...
+def build(outcome: RunOutcome, outer: dict[str, Any] | None = None, nonlinear: Nonlinear | None = None) -> Result: ...

@@ -248,6 +248,7 @@ class Scene:
             "smooth": None,
             "x0": start,
             "constraints": unused,
+            "nonlinear": None,
             "options": config,
             "scaling": scaling,
             "callback": told(callback),
