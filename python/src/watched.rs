@@ -3,7 +3,7 @@
 
 use crate::outcome::RunOutcome;
 use nonsmooth::composite::OuterFunction;
-use nonsmooth::{Answer, NonsmoothObjective, OracleError, Polyhedron, Report, Request, Vector};
+use nonsmooth::{Answer, ConstraintKind, NonsmoothObjective, OracleError, Polyhedron, Report, Request, Vector};
 use std::cell::RefCell;
 
 /// An objective with the point, the value and the subgradient of its best accurate answer.
@@ -36,6 +36,10 @@ impl<O: NonsmoothObjective> NonsmoothObjective for Watched<O> {
 
     fn outer(&self) -> Option<&dyn OuterFunction> {
         self.inner.outer()
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        self.inner.constraint_kinds()
     }
 
     fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {

@@ -9,7 +9,7 @@ use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::{MeshStage, last_begun};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{differences, is_below};
-use contact::cost::{Measure, PressureCost};
+use contact::contact_objective::ContactCost;
 use contact::equilibrium::ContactProblem;
 use nonsmooth::{Certificate, CertificateCheck, ProofCheck};
 use scene_file::{SceneFile, read_text};
@@ -74,19 +74,17 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let Some(MeshStage { case, .. }) = last_begun(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };
-    let scene = case.scene.clone();
-    let problem = ContactProblem::new(case.scene)?;
+    let problem = ContactProblem::new(case.scene.clone())?;
+    let measure = case.measure(&problem)?;
     let foreign = |error| {
         Failure::Computation(format!("{}: the certificate is not one of this scene: {error}", folder.display()))
     };
     let check = certificate.recheck(problem.admissible.polyhedron()).map_err(foreign)?;
     // Functions of the displacements have no composite model, and their certificates no proof of this kind.
-    let proof = match (certificate.composite.as_ref(), case.objective.measure(&problem)?) {
-        (Some(proof), Measure::Pressure(measure)) => {
-            let cost = PressureCost::new(measure, &problem.boundary)?.normalised_for(&scene);
-            Some(proof.recheck(&certificate, &cost).map_err(foreign)?)
-        }
-        (Some(_), Measure::Field(_)) => {
+    let cost = ContactCost::new(measure, &problem)?;
+    let proof = match (certificate.composite.as_ref(), &cost) {
+        (Some(proof), ContactCost::Pressure(cost)) => Some(proof.recheck(&certificate, cost).map_err(foreign)?),
+        (Some(_), ContactCost::Field(_)) => {
             let reason = "the certificate has a composite proof, and the objective of the scene has no composite model";
             return Err(Failure::Computation(format!("{}: {reason}", folder.display())));
         }

@@ -45,7 +45,7 @@ pub fn wanted(case: &Case) -> Wanted {
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
     let shape = ContactShape::by(processes.solver(case.plan(wanted))?);
-    let measure = case.objective.measure(shape.problem())?;
+    let measure = case.measure(shape.problem())?;
     Ok(ContactObjective::new(shape, measure)?)
 }
 
@@ -59,7 +59,7 @@ pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result
         memory::check(&case.plan(wanted), &InProcess)?;
     }
     let problem = ContactProblem::new(case.scene.clone())?;
-    ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
+    ContactCost::new(case.measure(&problem)?, &problem).map(|_| ())
 }
 
 /// What a file of fields says of the objective.
