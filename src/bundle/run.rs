@@ -164,11 +164,14 @@ impl Run<'_, '_> {
         let slope = constraints.objective_slope;
         constraints.raise_penalty(sum * slope / (slope + proposal.aggregate_norm));
         if working.restoring() {
-            let objective = proposal.predicted_decrease;
-            if objective + 0.5 * constraints.penalty * working.reduction < 0.0 {
-                constraints.penalty = (-4.0 * objective / working.reduction).min(10.0 * constraints.penalty);
+            // Far cuts of a nonconvex objective say nothing about what the violation is worth: the center's own does.
+            let center = self.state.bundle.cut(self.state.center_id);
+            let risen = center.map_or(0.0, |cut| cut.subgradient.dot(&proposal.step));
+            if 0.5 * constraints.penalty * working.reduction < risen {
+                constraints.penalty = (4.0 * risen / working.reduction).min(10.0 * constraints.penalty);
             }
-            proposal.predicted_decrease = objective + constraints.penalty * working.reduction;
+            let (objective, gained) = (proposal.predicted_decrease, constraints.penalty * working.reduction);
+            proposal.predicted_decrease = (objective + gained).max(0.1 * gained);
             proposal.restores =
                 objective <= constraints.penalty * working.reduction && working.forces(proposal.step_length);
         }

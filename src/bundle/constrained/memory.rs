@@ -15,6 +15,8 @@ const ROUNDING: f64 = 1e-13;
 const CONVEX_SHARE: f64 = 1e-9;
 /// Gradients of active constraints that cancel, or vanish, to this share are degenerate.
 const DEGENERATE: f64 = 1e-6;
+/// A penalty weight this many times larger than the multipliers ask for is lowered: it would reject steps along curved constraints.
+const MAX_PENALTY_SHARE: f64 = 20.0;
 /// Tangents kept beside those of the center, for every variable and in all.
 const EXTRA_TANGENTS: usize = 50;
 
@@ -50,6 +52,8 @@ pub(crate) struct Constraints {
     pub sensitivity: f64,
     /// ρ.
     pub penalty: f64,
+    /// v where ρ was last lowered. Half of it lets ρ fall again, so that it cannot rise and fall for ever.
+    lowered_at: f64,
     /// How much more the length of a step counts in the relaxation, after steps that did not reduce the violation.
     pub caution: f64,
     /// ‖g‖* of the objective at the start.
@@ -109,6 +113,7 @@ impl Constraints {
             largest: vec![0.0; count],
             nonconvex: vec![false; count],
             penalty: slope,
+            lowered_at: f64::INFINITY,
             sensitivity: 0.0,
             caution: 1.0,
             objective_slope: slope,
@@ -163,6 +168,11 @@ impl Constraints {
         let old = std::mem::replace(&mut self.center, newest);
         self.measure();
         self.caution = (0.1 * self.caution).max(1.0);
+        let violation = self.center_violation();
+        if self.penalty > MAX_PENALTY_SHARE * self.sensitivity && violation <= 0.5 * self.lowered_at {
+            self.penalty = (0.1 * self.penalty).max(2.0 * self.sensitivity);
+            self.lowered_at = violation;
+        }
         if self.last_step > 0.0 {
             self.former = Some(old.clone());
             self.keep(old, norm);

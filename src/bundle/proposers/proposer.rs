@@ -17,6 +17,7 @@ use crate::bundle::state::BundleState;
 use crate::bundle::trial::Trial;
 use crate::composite::{Linearization, OuterFunction};
 use crate::qp::EpigraphQpSolver;
+use std::borrow::Cow;
 
 /// The answer of a proposer.
 pub(crate) enum Answer {
@@ -65,6 +66,14 @@ impl Position<'_> {
             config: self.config,
             solver: &mut *self.solver,
             outer: self.outer,
+        }
+    }
+
+    /// The admissible set without linearized constraints.
+    pub(crate) fn own_set(&self) -> Cow<'_, Polyhedron> {
+        match self.working {
+            Some(_) => Cow::Owned(self.set.with_tangents_kept(&[])),
+            None => Cow::Borrowed(self.set),
         }
     }
 

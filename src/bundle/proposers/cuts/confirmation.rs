@@ -169,7 +169,7 @@ impl Confirmation {
     /// The evaluation of a point, which counts as clearly lower if it brings a small decrease.
     fn trial(&mut self, at: &Position<'_>, point: Vector) -> Option<Proposal> {
         let predicted_decrease = self.resolution.small() / SERIOUS_FRACTION;
-        let proposal = self.of.moved_to(point, at.set, at.state).ok()?;
+        let proposal = self.of.moved_to(point, &at.own_set(), at.state).ok()?;
         let new = !proposal.is_too_short(&at.state.center) && !at.state.bundle.knows(&proposal.trial, f64::INFINITY);
         self.left -= usize::from(new);
         new.then_some(Proposal { origin: Origin::Confirmation, predicted_decrease, ..proposal })
