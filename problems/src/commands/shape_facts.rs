@@ -18,10 +18,13 @@ pub fn limit(shapes: &[&SolvedShape]) -> Option<Fact> {
     let words = |shape: &&SolvedShape| {
         let (limit, above) = (number(shape.peak_limit?), shape.above_limit()?);
         let kept = above == 0.0;
-        Some(if kept { format!("{limit}, kept") } else { format!("{limit}, VIOLATED by {}", number(above)) }.into())
+        Some(
+            if kept { format!("{limit} MPa, kept") } else { format!("{limit} MPa, VIOLATED by {} MPa", number(above)) }
+                .into(),
+        )
     };
     let values = shapes.iter().map(words).collect::<Option<Vec<Value>>>()?;
-    Some(Fact::row("", "limit of the peak pressure", values, "MPa"))
+    Some(Fact::row("", "limit of the peak pressure", values, ""))
 }
 
 /// Θ of the shapes, and the root of a sum of powers of pressures, a pressure that can be compared.

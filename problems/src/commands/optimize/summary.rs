@@ -162,9 +162,10 @@ impl Ended<'_> {
             "penalty": report.penalty,
         });
         let unit = raised(&objective.unit());
-        let words = match found.multiplier > 0.0 {
-            true => format!("active: one MPa more would bring {} {unit}", number(found.multiplier)),
-            false => "not active".to_owned(),
+        let words = match (found.satisfied, found.multiplier > 0.0) {
+            (false, _) => "violated".to_owned(),
+            (true, true) => format!("active: one MPa more would bring {} {unit}", number(found.multiplier)),
+            (true, false) => "not active".to_owned(),
         };
         Ok(vec![
             Fact::object("limits", "at the shape found, the limit is", &[limit], words)?,
