@@ -20,7 +20,7 @@ const DIRICHLET: Solver = Some((PreconditionerKind::Dirichlet, DualMethod::Newto
 /// with the forces.
 fn rounding(measure: &Measure) -> f64 {
     match measure {
-        Measure::Pressure(_) => 1e-13,
+        Measure::Pressure(_) | Measure::LimitedPressure(..) => 1e-13,
         Measure::Field(_) => 4e-12,
     }
 }
