@@ -299,7 +299,7 @@ impl ContactScene {
     fn objective_for(&self, wanted: Wanted) -> Result<ContactObjective, SceneError> {
         let case = &self.case;
         let shape = ContactShape::by(Processes::alone().solver(case.plan(wanted))?);
-        let measure = case.objective.measure(shape.problem())?;
+        let measure = case.measure(shape.problem())?;
         ContactObjective::new(shape, measure)
     }
 

@@ -44,6 +44,8 @@ impl RunOutcome {
         match self.report.termination {
             Termination::Stationary { .. } => "stationary",
             Termination::StationaryUnconfirmed { .. } => "stationary_unconfirmed",
+            Termination::Infeasible { .. } => "infeasible",
+            Termination::DegenerateConstraints { .. } => "degenerate_constraints",
             Termination::NoiseLimit { .. } => "noise_limit",
             Termination::StepTooShort { .. } => "step_too_short",
             Termination::EvaluationLimit => "evaluation_limit",
@@ -63,7 +65,7 @@ impl RunOutcome {
     /// Whether the solution is a stationary point and confirmed.
     #[getter]
     fn confirmed(&self) -> bool {
-        self.report.termination.is_confirmed()
+        self.report.termination.is_confirmed() && self.report.is_feasible()
     }
 
     /// Why the run ended, with numbers.
@@ -102,6 +104,12 @@ impl RunOutcome {
     #[getter]
     fn history(&self) -> PyResult<String> {
         json(&self.report.history)
+    }
+
+    /// The nonlinear constraints at the solution, as JSON.
+    #[getter]
+    fn constraints(&self) -> PyResult<String> {
+        json(&self.report.constraints)
     }
 
     /// What went wrong without ending the run.

@@ -8,8 +8,8 @@ use crate::error::SceneError;
 use crate::solvers::AnySolver;
 use nonsmooth::composite::OuterFunction;
 use nonsmooth::{
-    Answer, CompositeObjective, Cost, Evaluation, Matrix, NonsmoothObjective, OracleError, OutputJacobian,
-    ReducedObjective, Request, StateSolver, Vector,
+    Answer, CompositeObjective, ConstraintKind, Cost, Evaluation, Matrix, NonsmoothObjective, OracleError,
+    OutputJacobian, ReducedObjective, Request, StateSolver, Vector,
 };
 
 /// Least first step over the smallest edge of the body. Ten times as much costs evaluations on flat bodies.
@@ -46,6 +46,10 @@ impl ContactCost {
         Ok(match measure {
             Measure::Pressure(measure) => {
                 Self::Pressure(PressureCost::new(measure, &problem.boundary)?.normalised_for(&problem.scene))
+            }
+            Measure::LimitedPressure(measure, limit) => {
+                let cost = PressureCost::new(measure, &problem.boundary)?.normalised_for(&problem.scene);
+                Self::Pressure(cost.limited(limit)?)
             }
             Measure::Field(measure) => Self::Field(FieldCost::new(measure, problem)?),
         })
@@ -134,6 +138,14 @@ impl<S: ContactSolver> ContactObjective<S> {
         }
     }
 
+    /// The limit of the largest contact pressure, MPa, if there is one.
+    pub fn peak_limit(&self) -> Option<f64> {
+        match self {
+            Self::Pressure(objective) => objective.cost().peak_limit(),
+            Self::Field(_) => None,
+        }
+    }
+
     /// The least value that a total normal force leaves possible, unit of Θ; none for functions of the displacements.
     pub fn lower_bound(&self, total_force: f64) -> Option<f64> {
         match self {
@@ -214,6 +226,13 @@ impl<S: ContactSolver> NonsmoothObjective for ContactObjective<S> {
         match self {
             Self::Pressure(objective) => objective.outer(),
             Self::Field(objective) => objective.outer(),
+        }
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        match self {
+            Self::Pressure(objective) => objective.constraint_kinds(),
+            Self::Field(objective) => objective.constraint_kinds(),
         }
     }
 

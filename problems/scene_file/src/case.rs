@@ -2,10 +2,13 @@
 
 use crate::bodies::body;
 use crate::grid_file;
+use crate::limit::peak_limit;
 use crate::{
     AccuracyName, CounterSection, MethodName, Objective, OptimizerSection, OutputSection, SceneFile, SplineName,
     StartSection, SurfaceSection,
 };
+use contact::cost::Measure;
+use contact::equilibrium::ContactProblem;
 use contact::error::SceneError;
 use contact::scene::{CounterSurface, Scene, UpperBody};
 use contact::shape::{ShapeBounds, SplineKind};
@@ -25,6 +28,8 @@ pub struct Case {
     pub start: Option<Vec<f64>>,
     /// What is minimised.
     pub objective: Objective,
+    /// The limit of the largest contact pressure, MPa, if there is one.
+    pub peak_limit: Option<f64>,
     /// What proposes trial points.
     pub method: MethodName,
     /// The contact solver.
@@ -76,18 +81,31 @@ impl Case {
         if let Objective::Deviation(wanted) = &objective {
             wanted.at(&scene.grid())?;
         }
+        let peak_limit = peak_limit(&file.limit, &objective)?;
         let method = method(&objective, file.optimizer.method)?;
         check_accuracy(&objective, file.optimizer.accuracy)?;
         Ok(Self {
             scene,
             start,
             objective,
+            peak_limit,
             method,
             solver: file.solver.kind,
             preconditioner: file.solver.preconditioner,
             clusters: file.solver.clusters,
             optimizer: file.optimizer.clone(),
             output: file.output.clone(),
+        })
+    }
+
+    /// What is minimised under which limits, on the mesh of a problem.
+    ///
+    /// # Errors
+    /// As [`Objective::measure`].
+    pub fn measure(&self, problem: &ContactProblem) -> Result<Measure, SceneError> {
+        Ok(match (self.objective.measure(problem)?, self.peak_limit) {
+            (Measure::Pressure(measure), Some(limit)) => Measure::LimitedPressure(measure, limit),
+            (measure, _) => measure,
         })
     }
 

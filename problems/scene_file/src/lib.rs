@@ -12,6 +12,7 @@ mod case;
 mod check;
 mod formula;
 mod grid_file;
+mod limit;
 mod objective;
 mod print;
 mod schema;
@@ -26,6 +27,7 @@ pub use allowed::choices;
 pub use bodies::{BodySection, Component, LoadSection, MaterialSection, SupportSection, UpperSection};
 pub use case::{Case, default_subdomains};
 pub use grid_file::read_grid;
+pub use limit::{LimitSection, LimitedQuantity};
 pub use objective::{BodyName, MeasureName, Objective, ObjectiveSection, RegionSection, WantedSection};
 pub use schema::schema;
 pub use setting::{Setting, check_path};
@@ -76,6 +78,9 @@ pub struct SceneFile {
     /// What is minimised.
     #[serde(default)]
     pub objective: ObjectiveSection,
+    /// Bounds on what the shape leads to.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub limit: Vec<LimitSection>,
     /// How the contact problem is solved.
     #[serde(default)]
     pub solver: SolverSection,

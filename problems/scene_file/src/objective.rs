@@ -158,7 +158,7 @@ impl Objective {
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`] for a formula that is not finite at a contact node, with the place.
-    pub fn measure(&self, problem: &ContactProblem) -> Result<Measure, SceneError> {
+    pub(crate) fn measure(&self, problem: &ContactProblem) -> Result<Measure, SceneError> {
         Ok(match self {
             Self::Pressure(measure) => Measure::Pressure(measure.clone()),
             Self::Deviation(wanted) => {

@@ -13,6 +13,7 @@ use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, checks,
 use contact::contact_objective::PressureRoot;
 use contact::contact_shape::ContactState;
 use nonsmooth::Evaluation;
+use serde_json::json;
 use std::time::Instant;
 
 pub fn run(loaded: &LoadedScene, session: &Session<'_>) -> Result<String, Failure> {
@@ -66,12 +67,22 @@ fn result<W>(
     // Squares of entries above 1e154 are no doubles.
     let largest = subgradient.amax().max(f64::MIN_POSITIVE);
     let unit = if objective_root == root { objective.unit() } else { norm_unit };
+    let limits: Vec<_> = shape
+        .peak_limit
+        .iter()
+        .map(|at_most| {
+            let violation = shape.above_limit();
+            json!({ "quantity": "peak-pressure", "at_most": at_most, "end": shape.peak_pressure, "violation": violation })
+        })
+        .collect();
     let mut result = vec![
         shape_facts::peak_pressure(&[shape]),
+        Fact::json("limits", &limits)?,
         Fact::new("objective", "objective Θ", value, &raised(&unit)),
         Fact::json("objective_unit", &plain_unit(&unit))?,
         Fact::json("objective_root", &objective_root)?,
     ];
+    result.extend(shape_facts::limit(&[shape]));
     result.extend(shape_facts::objective(objective, &[shape]).into_iter().skip(1));
     result.extend(shape_facts::contact_areas(objective, &[shape]));
     let logarithm = (evaluation.value > 0.0).then(|| size.log10() + root * evaluation.value.log10());
@@ -90,8 +101,9 @@ fn lead(objective: &ContactObjective, shape: &SolvedShape) -> Vec<String> {
     let plain = || format!("objective Θ {} {}", number(shape.value), raised(&objective.unit()));
     let value = objective.pressure_root(shape.value).map_or_else(plain, value);
     let name = &objective.solver().problem().scene.name;
+    let violated = if shape.keeps_limit() { "" } else { ", above its limit" };
     vec![
-        format!("{name}: peak pressure {} MPa; {value}", number(shape.peak_pressure)),
+        format!("{name}: peak pressure {} MPa{violated}; {value}", number(shape.peak_pressure)),
         format!("contact nodes: {} open, {} stick, {} slip", counts.open, counts.stick, counts.slip),
     ]
 }

@@ -9,9 +9,9 @@ use crate::commands::loaded_scene::LoadedScene;
 use crate::commands::optimize::stages::{MeshStage, last_begun};
 use crate::commands::run_kind::RunKind;
 use crate::commands::scene_difference::{differences, is_below};
-use contact::cost::{Measure, PressureCost};
+use contact::contact_objective::ContactCost;
 use contact::equilibrium::ContactProblem;
-use nonsmooth::{Certificate, CertificateCheck, ProofCheck};
+use nonsmooth::{Certificate, CertificateCheck, CompositeProof, ConstraintKind, ProofCheck, Vector};
 use scene_file::{SceneFile, read_text};
 use serde::Serialize;
 use std::path::Path;
@@ -56,7 +56,49 @@ struct RecheckJson {
     /// Differences of the cuts from those that outputs, Jacobian and pressure measure give, where the composite model
     /// proved the point stationary.
     composite: Option<ProofCheck>,
+    /// The limit of the peak pressure, where the scene has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    limit: Option<LimitCheck>,
     agrees: bool,
+}
+
+/// The limit of the peak pressure in a certificate.
+#[derive(Debug, Serialize)]
+struct LimitCheck {
+    /// Peak pressure minus limit, MPa: recorded, and computed from the pressures behind the composite proof where there is one.
+    excess: Number,
+    multiplier: f64,
+    /// Largest difference of the linearizations at the point from rows of the Jacobian of the pressures, relative to their sizes.
+    cuts: f64,
+    agrees: bool,
+}
+
+impl LimitCheck {
+    /// The limit in the certificate; none if the certificate does not hold this one limit.
+    fn new(certificate: &Certificate, limit: f64) -> Option<Self> {
+        let proof = certificate.constraints.as_ref().filter(|proof| proof.kinds == [ConstraintKind::Nonsmooth])?;
+        let recorded = *proof.values.iter().next()?;
+        let pressures = certificate.composite.as_ref().map(|composite| &composite.outputs);
+        let recomputed = pressures.map_or(recorded, |pressures| pressures.max() - limit);
+        let excess = Number::new(recorded, recomputed, MAX_ROUNDING * limit);
+        let cuts = certificate.composite.as_ref().map_or(0.0, |composite| {
+            let at_point = proof.cuts.iter().filter(|cut| cut.point == certificate.point);
+            at_point.map(|cut| nearest_row((cut.value, &cut.subgradient), composite, limit)).fold(0.0, f64::max)
+        });
+        let agrees = excess.agrees && cuts <= MAX_ROUNDING;
+        Some(Self { excess, multiplier: proof.multipliers().sum(), cuts, agrees })
+    }
+}
+
+/// The relative difference of a linearization at the point from that of the node that is nearest to it.
+fn nearest_row((value, subgradient): (f64, &Vector), composite: &CompositeProof, limit: f64) -> f64 {
+    let size = subgradient.norm().max(f64::MIN_POSITIVE);
+    let rows = composite.outputs.iter().zip(composite.jacobian.row_iter());
+    rows.map(|(pressure, row)| {
+        let slope = (row.transpose() - subgradient).norm() / size;
+        slope.max((pressure - limit - value).abs() / limit)
+    })
+    .fold(f64::INFINITY, f64::min)
 }
 
 pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failure> {
@@ -72,19 +114,17 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let Some(MeshStage { case, .. }) = last_begun(case, folder) else {
         return Err(Failure::computation("no mesh was begun"));
     };
-    let scene = case.scene.clone();
-    let problem = ContactProblem::new(case.scene)?;
+    let problem = ContactProblem::new(case.scene.clone())?;
+    let measure = case.measure(&problem)?;
     let foreign = |error| {
         Failure::Computation(format!("{}: the certificate is not one of this scene: {error}", folder.display()))
     };
     let check = certificate.recheck(problem.admissible.polyhedron()).map_err(foreign)?;
     // Functions of the displacements have no composite model, and their certificates no proof of this kind.
-    let proof = match (certificate.composite.as_ref(), case.objective.measure(&problem)?) {
-        (Some(proof), Measure::Pressure(measure)) => {
-            let cost = PressureCost::new(measure, &problem.boundary)?.normalised_for(&scene);
-            Some(proof.recheck(&certificate, &cost).map_err(foreign)?)
-        }
-        (Some(_), Measure::Field(_)) => {
+    let cost = ContactCost::new(measure, &problem)?;
+    let proof = match (certificate.composite.as_ref(), &cost) {
+        (Some(proof), ContactCost::Pressure(cost)) => Some(proof.recheck(&certificate, cost).map_err(foreign)?),
+        (Some(_), ContactCost::Field(_)) => {
             let reason = "the certificate has a composite proof, and the objective of the scene has no composite model";
             return Err(Failure::Computation(format!("{}: {reason}", folder.display())));
         }
@@ -93,6 +133,15 @@ pub fn run(loaded: &LoadedScene, arguments: &Arguments) -> Result<String, Failur
     let mut result = RecheckJson::new(&certificate, &check, certificate.point == controls);
     result.agrees &= proof.is_none_or(|proof| proof.largest() <= MAX_ROUNDING);
     result.composite = proof;
+    if let Some(limit) = case.peak_limit {
+        let none = || {
+            let words = "the certificate does not hold the limit of the peak pressure of its scene";
+            Failure::Computation(format!("{}: {words}", folder.display()))
+        };
+        let limit = LimitCheck::new(&certificate, limit).ok_or_else(none)?;
+        result.agrees &= limit.agrees;
+        result.limit = Some(limit);
+    }
     let text = arguments.printed(result.text(), json(&result)?);
     if result.agrees {
         return Ok(text);
@@ -146,6 +195,7 @@ impl RecheckJson {
             violation: check.violation,
             point_equals_controls,
             composite: None,
+            limit: None,
         }
     }
 }
@@ -166,8 +216,9 @@ impl RecheckJson {
                 vec![recorded.into(), recomputed.into(), Value::Rough(rounding), verdict(agrees).to_owned().into()];
             Fact::row("", name, values, "")
         };
-        let numbers =
+        let mut numbers =
             vec![number("aggregate norm", &self.aggregate_norm), number("aggregate error", &self.aggregate_error)];
+        numbers.extend(self.limit.iter().map(|limit| number("peak pressure − limit, MPa", &limit.excess)));
         let columns = ["recorded", "recomputed", "rounding", ""].map(str::to_owned).into();
         let rough = |name, value| Fact::new("", name, Value::Rough(value), "");
         let mut rest = vec![
@@ -180,6 +231,10 @@ impl RecheckJson {
             rest.push(rough("composite: objective", *value));
             rest.push(rough("pressure measure", *outer));
             rest.push(rough("cuts", *cuts));
+        }
+        if let Some(LimitCheck { multiplier, cuts, .. }) = &self.limit {
+            rest.push(Fact::new("", "multiplier of the limit", *multiplier, ""));
+            rest.push(rough("linearizations of the limit", *cuts));
         }
         let numbers = Group { columns, ..Group::new("", numbers) };
         Facts { lead, groups: vec![numbers, Group::new("", rest)] }.text(true)

@@ -13,6 +13,20 @@ pub fn peak_pressure(shapes: &[&SolvedShape]) -> Fact {
     row("peak_pressure", "peak contact pressure", "MPa", shapes, &|shape| shape.peak_pressure.into())
 }
 
+/// Whether the shapes keep the limit of the peak pressure; nothing without one.
+pub fn limit(shapes: &[&SolvedShape]) -> Option<Fact> {
+    let words = |shape: &&SolvedShape| {
+        let (limit, above) = (number(shape.peak_limit?), shape.above_limit()?);
+        let kept = above == 0.0;
+        Some(
+            if kept { format!("{limit} MPa, kept") } else { format!("{limit} MPa, VIOLATED by {} MPa", number(above)) }
+                .into(),
+        )
+    };
+    let values = shapes.iter().map(words).collect::<Option<Vec<Value>>>()?;
+    Some(Fact::row("", "limit of the peak pressure", values, ""))
+}
+
 /// Θ of the shapes, and the root of a sum of powers of pressures, a pressure that can be compared.
 pub fn objective(objective: &ContactObjective, shapes: &[&SolvedShape]) -> Vec<Fact> {
     let value = row("objective", "objective Θ", &raised(&objective.unit()), shapes, &|shape| shape.value.into());
@@ -101,6 +115,14 @@ pub fn found(objective: &ContactObjective, [start, end]: [&SolvedShape; 2]) -> S
         _ => ("objective Θ".into(), [start.value, end.value], raised(&objective.unit())),
     };
     let peaks = [start.peak_pressure, end.peak_pressure];
+    if let (Some(limit), false) = (end.peak_limit, end.keeps_limit()) {
+        let peak = number(end.peak_pressure);
+        return format!("NO shape within the limit was found: peak pressure {peak} MPa, limit {} MPa", number(limit));
+    }
+    if !start.keeps_limit() {
+        let (peak, value) = (changed(peaks, "MPa"), changed(values, &of));
+        return format!("a shape within the limit was found: peak pressure {peak}; {name} {value}");
+    }
     if is_better(start.value, end.value) {
         let (peak, value) = (changed(peaks, "MPa"), changed(values, &of));
         return format!("a better shape was found: peak pressure {peak}; {name} {value}");

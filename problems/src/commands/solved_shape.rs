@@ -45,7 +45,7 @@ pub fn wanted(case: &Case) -> Wanted {
 
 fn objective_for(case: &Case, wanted: Wanted, processes: &Processes) -> Result<ContactObjective, Failure> {
     let shape = ContactShape::by(processes.solver(case.plan(wanted))?);
-    let measure = case.objective.measure(shape.problem())?;
+    let measure = case.measure(shape.problem())?;
     Ok(ContactObjective::new(shape, measure)?)
 }
 
@@ -59,7 +59,7 @@ pub fn check_ahead(case: &Case, wanted: Wanted, processes: &Processes) -> Result
         memory::check(&case.plan(wanted), &InProcess)?;
     }
     let problem = ContactProblem::new(case.scene.clone())?;
-    ContactCost::new(case.objective.measure(&problem)?, &problem).map(|_| ())
+    ContactCost::new(case.measure(&problem)?, &problem).map(|_| ())
 }
 
 /// What a file of fields says of the objective.
@@ -78,7 +78,12 @@ pub struct SolvedShape {
     pub value: f64,
     /// Largest contact pressure, MPa.
     pub peak_pressure: f64,
+    /// The limit of the largest contact pressure, MPa, if there is one.
+    pub peak_limit: Option<f64>,
 }
+
+/// Share of a limit that counts as rounding.
+const LIMIT_ROUNDING: f64 = 1e-9;
 
 impl SolvedShape {
     /// Solves the contact problem of a shape.
@@ -86,7 +91,18 @@ impl SolvedShape {
         let state = objective.solver().solve(controls, None, Accuracy::TIGHTEST)?;
         let value = objective.value(controls, &state);
         let peak_pressure = objective.pressures(&state).into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Ok(Self { controls: controls.clone(), state, value, peak_pressure })
+        Ok(Self { controls: controls.clone(), state, value, peak_pressure, peak_limit: objective.peak_limit() })
+    }
+
+    /// By how much the largest contact pressure exceeds its limit, MPa, 0 up to rounding; none without a limit.
+    pub fn above_limit(&self) -> Option<f64> {
+        let above = |limit: f64| Some(self.peak_pressure - limit).filter(|above| *above > LIMIT_ROUNDING * limit);
+        self.peak_limit.map(|limit| above(limit).unwrap_or(0.0))
+    }
+
+    /// Whether the limit, if there is one, is kept.
+    pub fn keeps_limit(&self) -> bool {
+        self.above_limit().is_none_or(|above| above == 0.0)
     }
 
     /// Displacements, stresses and contact fields; with the sensitivity of Θ to the height of every contact node, which

@@ -164,11 +164,14 @@ fn scene(text: &str, folder: &Path) -> Result<(), SceneError> {
     memory::check(&case.plan(Wanted::States), &InProcess)?;
     let nodes = (case.scene.mesh[0] + 1) * (case.scene.mesh[1] + 1);
     if nodes <= SMALL && case.scene.control_points.iter().product::<usize>() <= SMALL {
+        let problem = ContactProblem::new(case.scene.clone())?;
+        let measure = case.measure(&problem)?;
         let start =
             case.start.unwrap_or_else(|| vec![case.scene.start_height; case.scene.control_points.iter().product()]);
-        let problem = ContactProblem::new(case.scene)?;
-        match case.objective.measure(&problem)? {
-            Measure::Pressure(measure) => drop(PressureCost::new(measure, &problem.boundary)?),
+        match measure {
+            Measure::Pressure(measure) | Measure::LimitedPressure(measure, _) => {
+                drop(PressureCost::new(measure, &problem.boundary)?)
+            }
             Measure::Field(measure) if problem.scene.mesh[2] <= 40 => drop(FieldCost::new(measure, &problem)?),
             Measure::Field(_) => {}
         }

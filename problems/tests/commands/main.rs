@@ -23,6 +23,7 @@ mod facts;
 mod flat_foot;
 mod fuzz;
 mod just_touching;
+mod limits;
 mod long_runs;
 mod loosely_held;
 mod messages;

@@ -139,6 +139,9 @@ class Result(OptimizeResult):
         Steps by kind, subproblems.
     warnings : list of str
         What went wrong without ending the run, a journal that cannot be written for example.
+    limits : list of dict
+        For scenes with limits, one each: ``excess``, the limited quantity minus its limit, ``satisfied``, and ``multiplier``, by how much
+        theta would fall per unit more.
     """
 
     def recheck(self):
@@ -208,6 +211,10 @@ def build(outcome, outer=None, nonlinear=None):
         start_value=outcome.start_value,
         seconds=outcome.seconds,
         warnings=outcome.warnings,
+        limits=[
+            {"excess": found["value"], "satisfied": found["satisfied"], "multiplier": found["multiplier"]}
+            for found in json.loads(outcome.constraints)
+        ],
     )
     # No entry of the dict: it is not for users.
     object.__setattr__(result, "_outer", outer)

@@ -46,6 +46,7 @@ class Result(OptimizeResult):
     start_value: float
     seconds: float
     warnings: list[str]
+    limits: list[dict[str, Any]]
     def recheck(self) -> Recheck: ...
     def __dir__(self) -> list[str]: ...
 

@@ -18,6 +18,8 @@ pub use region::{Region, RegionBricks};
 pub enum Measure {
     /// A function of the contact pressures.
     Pressure(PressureMeasure),
+    /// A function of the contact pressures where the largest pressure is at most this limit, MPa.
+    LimitedPressure(PressureMeasure, f64),
     /// A function of the displacements.
     Field(FieldMeasure),
 }

@@ -7,8 +7,8 @@
 use crate::equilibrium::{ContactBoundary, ContactState};
 use crate::error::SceneError;
 use crate::scene::Scene;
-use nonsmooth::composite::{Maximum, OuterFunction, weighted_gram};
-use nonsmooth::{Matrix, Vector};
+use nonsmooth::composite::{Maximum, OuterFunction, OutputPiece, weighted_gram};
+use nonsmooth::{ConstraintKind, Matrix, Vector};
 use serde::Serialize;
 
 /// What a contact node counts in a pressure norm.
@@ -80,11 +80,15 @@ pub struct PressureCost {
     boundary: ContactBoundary,
     /// Areas of its nodes, mm².
     areas: Vec<f64>,
+    /// The limit of the largest pressure, MPa, if there is one: a nonlinear constraint.
+    peak_limit: Option<f64>,
 }
 
 /// Decades of a pressure norm at the typical pressure of a scene beyond which its root is taken. Squares of
 /// subgradients at pressures far above that must still be doubles, which end at 308 decades.
 const MAX_DECADES: f64 = 100.0;
+/// Pressures over the largest one from which nodes are pieces of the limited peak: a step of the optimizer may make any of them the largest.
+const NEAR_PEAK: f64 = 0.5;
 /// Largest pressure over the mean pressure, roughly: those of the paper's scenes are at 4 to 10.
 const TYPICAL_PEAK: f64 = 10.0;
 
@@ -125,7 +129,21 @@ impl PressureCost {
             PressureMeasure::Norm { weight: NodeWeight::Nodes, .. } => vec![1.0; areas.len()],
             _ => vec![],
         };
-        Ok(Self { measure, is_root: false, weights, boundary: boundary.clone(), areas })
+        Ok(Self { measure, is_root: false, weights, boundary: boundary.clone(), areas, peak_limit: None })
+    }
+
+    /// The cost with the constraint max σ ≤ `limit`, MPa.
+    ///
+    /// # Errors
+    /// [`SceneError::OutOfRange`] unless the limit is finite and > 0.
+    pub fn limited(self, limit: f64) -> Result<Self, SceneError> {
+        SceneError::require(limit > 0.0 && limit.is_finite(), "limit.at_most", limit, "a finite number > 0 (MPa)")?;
+        Ok(Self { peak_limit: Some(limit), ..self })
+    }
+
+    /// The limit of the largest pressure, MPa, if there is one.
+    pub fn peak_limit(&self) -> Option<f64> {
+        self.peak_limit
     }
 
     /// The cost in a form that can be computed for the pressures of a scene: where a pressure norm may leave the range
@@ -321,6 +339,21 @@ impl OuterFunction for PressureCost {
                 Vector::from_fn(pressures.len(), |index, _| slope(index))
             }
         }
+    }
+
+    fn constraint_kinds(&self) -> &[ConstraintKind] {
+        if self.peak_limit.is_some() { &[ConstraintKind::Nonsmooth] } else { &[] }
+    }
+
+    /// σ_i minus the limit for the nodes near the peak, MPa.
+    fn constraint_pieces(&self, pressures: &Vector) -> Vec<OutputPiece> {
+        let Some(limit) = self.peak_limit else { return vec![] };
+        let peak = Maximum.value(pressures);
+        let unit = |index: usize| Vector::from_fn(pressures.len(), |i, _| f64::from(u8::from(i == index)));
+        let near =
+            pressures.iter().enumerate().filter(|(_, pressure)| **pressure == peak || **pressure >= NEAR_PEAK * peak);
+        near.map(|(index, pressure)| OutputPiece { constraint: 0, value: pressure - limit, weights: unit(index) })
+            .collect()
     }
 
     /// Σmσ^p has the curvature p(p−1)mσ^{p−2} per node; its root N has (p−1)/N (m(σ/N)^{p−2} − g gᵀ) with g =

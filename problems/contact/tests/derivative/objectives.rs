@@ -3,10 +3,12 @@
 use contact::body::mesh::Face;
 use contact::contact_objective::ContactObjective;
 use contact::contact_shape::{ContactShape, SolverKind};
-use contact::cost::{FieldCost, FieldMeasure, Measure, PressureMeasure, Region};
+use contact::cost::{FieldCost, FieldMeasure, Measure, NodeWeight, PressureMeasure, Region};
 use contact::scene::{Load, Scene, hertz, signorini};
 use nonsmooth::verify::{Direction, seeded_direction, taylor_test};
-use nonsmooth::{Accuracy, NonsmoothObjective, ReducedObjective, Request, StateSolver, Vector};
+use nonsmooth::{
+    Accuracy, Answer, Evaluation, NonsmoothObjective, OracleError, ReducedObjective, Request, StateSolver, Vector,
+};
 
 const KINDS: [SolverKind; 2] = [SolverKind::Newton, SolverKind::Direct];
 
@@ -149,4 +151,43 @@ fn regions_without_a_brick_or_a_body_are_refused() {
     assert!(outside.contains("objective.region") && outside.contains("centre of a brick"), "{outside}");
     let upper = refused(Region { body: Some(1), ..all });
     assert!(upper.contains("objective.body = upper"), "{upper}");
+}
+
+/// The limited peak, whose subgradient comes with the evaluation, as an objective of its own.
+#[derive(Debug)]
+struct LimitedPeak(ContactObjective);
+
+impl NonsmoothObjective for LimitedPeak {
+    type WarmStart = <ContactObjective as NonsmoothObjective>::WarmStart;
+
+    fn dimension(&self) -> usize {
+        self.0.dimension()
+    }
+
+    fn evaluate(&self, request: &Request<'_, Self::WarmStart>) -> Result<Answer<Self::WarmStart>, OracleError> {
+        let evaluation = self.0.evaluate(request)?.into_evaluation();
+        let constraints = evaluation.constraints.unwrap();
+        let subgradient = constraints.jacobian.row(0).transpose();
+        Ok(Answer::Accurate(Evaluation::exact(constraints.values[0], subgradient, evaluation.warm_start)))
+    }
+}
+
+#[test]
+fn the_limited_peak_has_the_derivative_that_differences_have() {
+    for scene in scenes() {
+        let limit = 1.7 * scene.load();
+        let shape = ContactShape::new(scene, SolverKind::Direct).unwrap();
+        let at = controls(&shape, 3);
+        let height = shape.problem().scene.start_height;
+        let norm = PressureMeasure::Norm { exponent: 4.0, weight: NodeWeight::Nodes };
+        let objective = LimitedPeak(ContactObjective::new(shape, Measure::LimitedPressure(norm, limit)).unwrap());
+        let direction = Direction::Given(seeded_direction(36, 4));
+        let steps: Vec<f64> = (0..8).map(|k| height * 1e-4 * 10.0_f64.powf(-0.5 * f64::from(k))).collect();
+        let test = taylor_test(&objective, &at, &direction, &steps).unwrap();
+        assert!(test.best_derivative_error < 1e-6, "{test}");
+        let state = objective.0.solver().solve(&at, None, Accuracy::TIGHTEST).unwrap();
+        let peak = objective.0.pressures(&state).into_iter().fold(0.0, f64::max);
+        let value = objective.evaluate(&Request::tight(&at)).unwrap().into_evaluation().value;
+        assert!((value - (peak - limit)).abs() < 1e-9 * peak, "{value} {peak} {limit}");
+    }
 }

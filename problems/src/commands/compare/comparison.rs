@@ -4,7 +4,7 @@ use crate::commands::facts::{Fact, Facts, Group};
 use crate::commands::failure::Failure;
 use crate::commands::numbers::{number, raised, rounded};
 use crate::commands::optimize::mesh_run::MeshRun;
-use crate::commands::optimize::summary::ending;
+use crate::commands::optimize::summary::{ending, is_proved};
 use crate::commands::solved_shape::SolvedShape;
 use contact::solvers::Usage;
 use serde::Serialize;
@@ -77,13 +77,23 @@ impl Comparison<'_> {
             let name = format!("{name}, {}", [friction.as_str(), "no friction"][model]);
             Fact::row(key, &name, models[model].map(|shape| value(shape).into()).into(), unit)
         };
-        let shapes = vec![
+        let mut shapes = vec![
             Fact::row("shapes.shape", "", names.map(|name| name.to_owned().into()).into(), ""),
             row("shapes.peak_pressure_with_friction", "peak pressure", 0, "MPa", |shape| shape.peak_pressure),
             row("shapes.objective_with_friction", "objective Θ", 0, &unit, |shape| shape.value),
             row("shapes.peak_pressure_without_friction", "peak pressure", 1, "MPa", |shape| shape.peak_pressure),
             row("shapes.objective_without_friction", "objective Θ", 1, &unit, |shape| shape.value),
         ];
+        let above = models[0].map(|shape| shape.above_limit().into());
+        let limited = models[0].iter().all(|shape| shape.peak_limit.is_some());
+        if limited {
+            shapes.push(Fact::row(
+                "shapes.limit_violation_with_friction",
+                "peak above its limit, with friction",
+                above.into(),
+                "MPa",
+            ));
+        }
         let columns = names.map(str::to_owned).into();
         let shapes = Group { title: "Shapes in both models", columns, facts: shapes, words: String::new() };
         let lead = self.conclusion();
@@ -106,7 +116,8 @@ impl Comparison<'_> {
     /// The conclusion: sentences that the numbers decide.
     pub fn conclusion(&self) -> Vec<String> {
         let difference = self.surface_difference();
-        let mut sentences = self.loss().map_or_else(|| vec![self.vanished()], |loss| self.compared(loss));
+        let mut sentences = self.violated();
+        sentences.extend(self.loss().map_or_else(|| vec![self.vanished()], |loss| self.compared(loss)));
         sentences.push(format!(
             "The two surfaces differ by {} mm (root mean square over the contact nodes, without {} mm in the mean height); \
              the surface optimized with friction departs from flat by {} mm.",
@@ -115,7 +126,7 @@ impl Comparison<'_> {
             number(difference.variation)
         ));
         for (run, name) in self.runs.into_iter().zip(["with", "without"]) {
-            if !run.report.termination.is_confirmed() {
+            if !is_proved(&run.report) {
                 sentences.push(format!(
                     "The run {name} friction ended without a proof of optimality ({}): read the comparison as one of the best \
                      shapes found in {} evaluations.",
@@ -124,6 +135,19 @@ impl Comparison<'_> {
             }
         }
         sentences
+    }
+
+    /// A sentence for each run that found no shape within the limit.
+    fn violated(&self) -> Vec<String> {
+        let ends = [("with", &self.own[0][1]), ("without", &self.own[1][1])];
+        let violated = ends.into_iter().filter(|(_, shape)| !shape.keeps_limit());
+        let sentence = |(name, shape): (&str, &SolvedShape)| {
+            let [peak, above] = [shape.peak_pressure, shape.above_limit().unwrap_or(0.0)].map(number);
+            format!(
+                "The run {name} friction found NO shape within the limit: its peak pressure {peak} MPa is {above} MPa above."
+            )
+        };
+        violated.map(sentence).collect()
     }
 
     /// The sentence where the objective of the shape found with friction is zero up to rounding.

@@ -36,7 +36,11 @@ impl OptimizationRun {
     /// The run that the optimization is reported by: the last one, or the best one of several starts.
     pub fn chosen(&self) -> Option<&MeshRun> {
         let is_start = |run: &&MeshRun| matches!(run.part, Part::Start(_));
-        let best = self.mesh_runs.iter().filter(is_start).min_by(|a, b| a.report.value.total_cmp(&b.report.value));
+        let best = self
+            .mesh_runs
+            .iter()
+            .filter(is_start)
+            .min_by(|a, b| violation(a).total_cmp(&violation(b)).then(a.report.value.total_cmp(&b.report.value)));
         best.or(self.mesh_runs.last())
     }
 
@@ -64,6 +68,12 @@ impl OptimizationRun {
         let limited = |run: &MeshRun| limits.contains(&run.report.termination);
         self.mesh_runs.len() < self.meshes || self.mesh_runs.last().is_some_and(limited)
     }
+}
+
+/// The relative violation of the limits at the end of a run; 0 where all are kept.
+fn violation(run: &MeshRun) -> f64 {
+    let violated = run.report.constraints.iter().filter(|limit| !limit.satisfied);
+    violated.map(|limit| limit.violation).fold(0.0, f64::max)
 }
 
 /// Whether no other mesh may be begun after this run.

@@ -2,7 +2,7 @@
 
 use crate::commands::facts::{Fact, Facts, Group, Value};
 use crate::commands::failure::Failure;
-use crate::commands::numbers::exact;
+use crate::commands::numbers::{exact, number, raised};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
 use crate::commands::report::found_label;
@@ -46,13 +46,18 @@ fn stage(run: &MeshRun) -> serde_json::Value {
 /// How a run ended.
 pub fn ending(report: &Report) -> serde_json::Value {
     let termination = &report.termination;
-    json!({ "reason": termination, "text": termination.to_string(), "confirmed": termination.is_confirmed() })
+    json!({ "reason": termination, "text": termination.to_string(), "confirmed": is_proved(report) })
+}
+
+/// Whether the end of a run is proved stationary, and keeps all limits.
+pub fn is_proved(report: &Report) -> bool {
+    report.termination.is_confirmed() && report.is_feasible()
 }
 
 /// Whether the end of a run is proved, and if not, why and what to do: a line of its own.
 pub fn proof(report: &Report) -> String {
     let termination = &report.termination;
-    match termination.is_confirmed() {
+    match is_proved(report) {
         true => format!("Proved: {termination}"),
         false => format!("Not proved: {termination}; {}", termination.advice()),
     }
@@ -70,7 +75,7 @@ const ROUNDING: f64 = 1e-12;
 /// Number of different values of Θ at confirmed ends.
 fn optima(runs: &[MeshRun]) -> usize {
     let decrease = runs.iter().map(|run| run.report.start_value - run.report.value).fold(0.0, f64::max);
-    let confirmed = runs.iter().filter(|run| run.report.termination.is_confirmed());
+    let confirmed = runs.iter().filter(|run| is_proved(&run.report));
     different(confirmed.map(|run| run.report.value).collect(), decrease)
 }
 
@@ -112,6 +117,8 @@ impl Ended<'_> {
         let scene = &objective.solver().problem().scene;
         let lead = vec![format!("{}: {}", scene.name, shape_facts::found(objective, shapes)), proof(report)];
         let mut result = vec![shape_facts::peak_pressure(&shapes)];
+        result.extend(shape_facts::limit(&shapes));
+        result.extend(self.limit()?);
         result.extend(shape_facts::objective(objective, &shapes).into_iter().map(Fact::without_key));
         result.extend(shape_facts::contact_areas(objective, &shapes));
         result.extend([
@@ -133,6 +140,37 @@ impl Ended<'_> {
             self.rest()?,
         ];
         Ok(Facts { lead, groups })
+    }
+
+    /// What the limit of the peak pressure costs; nothing without one.
+    fn limit(&self) -> Result<Vec<Fact>, Failure> {
+        let MeshRun { report, objective, .. } = self.last;
+        let (Some(found), Some(at_most)) = (report.constraints.first(), objective.peak_limit()) else {
+            return Ok(vec![]);
+        };
+        let [start, end] = self.shapes;
+        let limit = json!({
+            "quantity": "peak-pressure",
+            "at_most": at_most,
+            "start": start.peak_pressure,
+            "end": end.peak_pressure,
+            "violation": end.above_limit(),
+            "satisfied": found.satisfied,
+            "active": found.multiplier > 0.0,
+            "multiplier": found.multiplier,
+            "penalty": report.penalty,
+        });
+        let unit = raised(&objective.unit());
+        let words = match (found.satisfied, found.multiplier > 0.0) {
+            (false, _) => "violated".to_owned(),
+            (true, true) => format!("active: one MPa more would bring {} {unit}", number(found.multiplier)),
+            (true, false) => "not active".to_owned(),
+        };
+        Ok(vec![
+            Fact::object("limits", "at the shape found, the limit is", &[limit], words)?,
+            Fact::new("", "penalty weight of the limit", report.penalty.map_or(Value::Missing, Value::Rough), "")
+                .detail(),
+        ])
     }
 
     /// The facts of several runs.

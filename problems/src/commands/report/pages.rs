@@ -3,7 +3,7 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::facts::{Facts, Group};
 use crate::commands::numbers::{number, rounded};
-use crate::commands::optimize::summary::Ended;
+use crate::commands::optimize::summary::{Ended, is_proved};
 use crate::commands::report::folder::Parts;
 use crate::commands::report::sections::{export_command, pictures};
 use crate::commands::shape_facts::{self, is_better};
@@ -40,7 +40,7 @@ pub fn evaluation(parts: Parts, objective: &ContactObjective, shape: &SolvedShap
 /// The report of a comparison with and without friction.
 pub fn comparison(parts: Parts, comparison: &Comparison<'_>, facts: &Facts) -> Page {
     let objective = &comparison.runs[0].objective;
-    let confirmed = comparison.runs.iter().all(|run| run.report.termination.is_confirmed());
+    let confirmed = comparison.runs.iter().all(|run| is_proved(&run.report));
     let caveat = if confirmed { "" } else { " Not both runs ended with a proof of optimality." };
     let lead = facts.lead.first().cloned().unwrap_or_default() + caveat;
     let mut table = facts.groups[0].section();

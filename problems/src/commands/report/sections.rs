@@ -1,6 +1,7 @@
 //! Sections that the report pages of several commands share.
 
 use crate::commands::folder::{SCENE, quoted};
+use crate::commands::optimize::summary::is_proved;
 use figures::page::{Block, Section};
 use nonsmooth::Report;
 use std::path::Path;
@@ -12,7 +13,7 @@ pub fn pictures(blocks: Vec<Block>) -> Section {
 
 /// What the shape that an optimization ended at is called.
 pub fn found_label(report: &Report) -> &'static str {
-    if report.termination.is_confirmed() { "optimum" } else { "best found" }
+    if is_proved(report) { "optimum" } else { "best found" }
 }
 
 /// How the shape of a run is exported for other programs, as it is typed in a shell.

@@ -7,6 +7,7 @@ use crate::commands::loaded_scene::{LoadedScene, Session};
 use crate::commands::numbers::plain_unit;
 use crate::commands::optimize::report;
 use crate::commands::optimize::run::optimize;
+use crate::commands::optimize::summary::is_proved;
 use crate::commands::shape_facts::is_better;
 use crate::commands::solved_shape::{self, ContactObjective, SolvedShape, check_ahead, checks, wanted};
 use crate::commands::study::plan::{RowOptions, options};
@@ -46,6 +47,9 @@ pub struct Solved {
     pub objective_unit: String,
     /// Largest contact pressure, MPa.
     pub peak_pressure: f64,
+    /// By how much it exceeds its limit, MPa, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit_violation: Option<f64>,
     /// Tributary area of the closed contact nodes, mm².
     pub contact_area: f64,
     /// The total normal force Σλ_N, N.
@@ -77,6 +81,9 @@ pub struct Optimized {
     pub confirmed: bool,
     /// Whether more evaluations may improve it.
     pub can_continue: bool,
+    /// Whether the start violates a limit: no other shape is worse than that.
+    #[serde(default)]
+    pub had_to_move: bool,
 }
 
 /// Contact nodes of a row for pictures.
@@ -95,7 +102,9 @@ pub struct Picture {
 impl Solved {
     /// Whether it was optimized and its shape is no better than the start.
     pub fn is_unchanged(&self) -> bool {
-        self.optimization.as_ref().is_some_and(|run| !is_better(run.objective_start, self.objective))
+        self.optimization
+            .as_ref()
+            .is_some_and(|run| !run.had_to_move && !is_better(run.objective_start, self.objective))
     }
 }
 
@@ -219,7 +228,8 @@ fn optimum(
         evaluations: evaluations().sum(),
         most_evaluations: evaluations().max().unwrap_or(0),
         termination: chosen.report.termination.to_string(),
-        confirmed: chosen.report.termination.is_confirmed(),
+        confirmed: is_proved(&chosen.report),
+        had_to_move: !first.keeps_limit(),
         can_continue: run.can_continue(),
     };
     let objective = chosen.report.value;
@@ -237,6 +247,7 @@ fn solved(objective: &ContactObjective, shape: &SolvedShape, session: &Session<'
         objective: shape.value,
         objective_unit: plain_unit(&objective.unit()),
         peak_pressure: shape.peak_pressure,
+        limit_violation: shape.above_limit(),
         contact_area: problem.boundary.closed_area(&forces.status),
         total_normal_force: forces.total_normal_force(),
         status: forces.counts(),

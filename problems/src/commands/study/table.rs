@@ -53,13 +53,20 @@ impl StudyJson {
 
     /// The columns that people read.
     fn shown(&self) -> impl Iterator<Item = &Column> {
-        COLUMNS.iter().filter(|column| !column.name.is_empty() && (self.optimize || !column.of_run))
+        self.columns().filter(|column| !column.name.is_empty() && (self.optimize || !column.of_run))
+    }
+
+    /// The columns; that of the limit only where a row has one.
+    fn columns(&self) -> impl Iterator<Item = &Column> {
+        let limited = |row: &Row| matches!(&row.outcome, Outcome::Solved(solved) if solved.limit_violation.is_some());
+        let has_limit = self.rows.iter().any(limited);
+        COLUMNS.iter().filter(move |column| has_limit || column.key != LIMIT_VIOLATION)
     }
 
     /// Comma-separated values with all digits, one line per row.
     pub fn csv(&self) -> String {
         let varied = self.vary.iter().map(|varied| varied.name().replace('-', "_"));
-        let columns: Vec<&Column> = COLUMNS.iter().filter(|column| !column.key.is_empty()).collect();
+        let columns: Vec<&Column> = self.columns().filter(|column| !column.key.is_empty()).collect();
         let keys = columns.iter().map(|column| column.key.to_owned());
         let head: Vec<String> = varied.chain(keys).chain(["seconds", "reason"].map(str::to_owned)).collect();
         let mut table = head.join(",") + "\n";
@@ -113,12 +120,16 @@ fn run<V: Into<Value>>(solved: &Solved, value: fn(&Optimized) -> V) -> Value {
     solved.optimization.as_ref().map_or(Value::Missing, |run| value(run).into())
 }
 
-const COLUMNS: [Column; 14] = [
+/// The column of the limit.
+const LIMIT_VIOLATION: &str = "limit_violation_MPa";
+
+const COLUMNS: [Column; 15] = [
     of_run("objective_start", "objective at start", |row| run(row, |run| run.objective_start)),
     of_run("peak_pressure_start_MPa", "peak at start, MPa", |row| run(row, |run| run.peak_pressure_start)),
     column("objective", "objective", |row| row.objective.into()),
     column("objective_unit", "", |row| row.objective_unit.clone().into()),
     column("peak_pressure_MPa", "peak, MPa", |row| row.peak_pressure.into()),
+    column(LIMIT_VIOLATION, "above limit, MPa", |row| row.limit_violation.into()),
     column("contact_area_mm2", "contact area, mm²", |row| row.contact_area.into()),
     column("total_normal_force_N", "", |row| row.total_normal_force.into()),
     column("open", "open", |row| row.status.open.into()),

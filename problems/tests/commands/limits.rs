@@ -1,0 +1,48 @@
+//! Limits of scenes, from the scene file to the report, on a small mesh of Example 5.2.
+
+use crate::binary;
+use serde_json::Value;
+use testset::kit::json;
+
+fn hertz3d() -> &'static str {
+    binary("hertz3d").unwrap()
+}
+
+/// Runs `hertz3d` on a small mesh with a limit of the peak pressure.
+fn limited(limit: f64, options: &[&str]) -> Value {
+    let setting = format!("limit=[{{quantity=\"peak-pressure\", at_most={limit}}}]");
+    let fixed = ["--mesh", "6", "--subdomains", "2", "--set", &setting, "--json"];
+    json(hertz3d(), &[&fixed, options].concat())
+}
+
+/// What is wrong with a limit, as `contact3d` says it.
+fn refusal(arguments: &[&str]) -> String {
+    let output = std::process::Command::new(hertz3d()).args(arguments).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn limits_that_mean_nothing_are_refused_by_their_field() {
+    let one = "{quantity=\"peak-pressure\", at_most=3400}";
+    for (arguments, words) in [
+        (vec!["--set", "limit=[{quantity=\"peak-pressure\", at_most=0}]"], "limit[0].at_most"),
+        (vec!["--set", "limit=[{quantity=\"peak-pressure\", at_most=nan}]"], "limit[0].at_most"),
+        (vec!["--set", "limit=[{quantity=\"peak-pressure\"}]"], "limit[0].at_most"),
+        (vec!["--set", "limit=[{quantity=\"volume\", at_most=1}]"], "limit[0].quantity"),
+        (vec!["--set", &format!("limit=[{one}, {one}]")], "limit[1].quantity"),
+        (vec!["--objective", "compliance", "--set", &format!("limit=[{one}]")], "limit[0].quantity"),
+    ] {
+        let refused = refusal(&[&["evaluate"], arguments.as_slice()].concat());
+        assert!(refused.contains(words), "{arguments:?}: {refused}");
+    }
+}
+
+#[test]
+fn a_shape_says_by_how_much_it_exceeds_its_limit() {
+    let found = limited(3400.0, &["evaluate"]);
+    let limit = &found["limits"][0];
+    let peak = limit["end"].as_f64().unwrap();
+    assert!((peak - 13019.175283).abs() < 1e-5 && limit["violation"].as_f64() == Some(peak - 3400.0), "{limit}");
+    assert_eq!(limited(14000.0, &["evaluate"])["limits"][0]["violation"], 0.0);
+}
