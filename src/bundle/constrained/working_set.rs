@@ -15,8 +15,8 @@ const WEIGHT: f64 = 1e-2;
 const MAX_DECREASES: usize = 8;
 /// Linearizations this many times steeper than those of the center drown them in rounding, and are left out.
 const MAX_RELATIVE_SLOPE: f64 = 1e5;
-/// Share of the violation by which the rows are relaxed beyond what is possible.
-const ROOM: f64 = 1e-8;
+/// Share of the reduction by which the rows are relaxed beyond what is possible.
+const ROOM: f64 = 1e-6;
 /// The violation is stationary where its aggregate subgradient is at most this share of its terms.
 const STATIONARY: f64 = 1e-6;
 
@@ -95,7 +95,7 @@ impl WorkingSet {
             }
         }
         // The rows keep a common point in the rounding of the subproblem.
-        relaxation = (relaxation + ROOM * violation).min(violation);
+        relaxation += ROOM * (violation - relaxation);
         let seen: Vec<Seen<'_>> = seen.into_iter().filter(|seen| seen.slope.amax() > 0.0).collect();
         let rows = Matrix::from_fn(seen.len(), center.len(), |i, k| seen[i].slope[k]);
         let at_center = &rows * center;
