@@ -56,8 +56,6 @@ impl RunOutcome {
             Termination::OracleFailing { .. } => "function_failing",
             Termination::OracleContradiction { .. } => "function_contradictory",
             Termination::SubproblemFailed { .. } => "subproblem_failed",
-            Termination::Infeasible { .. } => "infeasible",
-            Termination::DegenerateConstraints { .. } => "degenerate_constraints",
             _ => "other",
         }
     }
@@ -128,12 +126,6 @@ impl RunOutcome {
     #[getter]
     fn largest_violation(&self) -> f64 {
         self.report.largest_violation
-    }
-
-    /// Nonlinear constraints at the solution, as JSON.
-    #[getter]
-    fn constraints(&self) -> PyResult<String> {
-        json(&self.report.constraints)
     }
 
     /// Weight of the violation in the merit that the run has ended with; none without nonlinear constraints.

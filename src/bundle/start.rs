@@ -130,10 +130,7 @@ fn first_evaluation(
     start: Vector,
 ) -> Result<FirstEvaluation, OptimizeError> {
     let norm = ScaledNorm::new(&config.scaling, set)?;
-    let accuracy = match config.accuracy {
-        AccuracyPolicy::OnDemand { coarsest, .. } => Accuracy::relative(coarsest)?,
-        AccuracyPolicy::Tightest => Accuracy::TIGHTEST,
-    };
+    let accuracy = first_accuracy(config)?;
     let wanted = structured.then(|| LinearizationRequest::below(f64::INFINITY));
     let request = Request { linearization: wanted, accuracy, ..Request::tight(&start) };
     let evaluation = match evaluate(oracle, &request, kinds.len(), None) {
@@ -182,6 +179,14 @@ fn first_evaluation(
     state.bundle.push(cut, &state.norm);
     state.history.push(first_record(&state, set, slope, work));
     Ok((state, linearization))
+}
+
+/// The accuracy that the start is evaluated with.
+fn first_accuracy(config: &BundleTrustConfig) -> Result<Accuracy, InputError> {
+    match config.accuracy {
+        AccuracyPolicy::OnDemand { coarsest, .. } => Accuracy::relative(coarsest),
+        AccuracyPolicy::Tightest => Ok(Accuracy::TIGHTEST),
+    }
 }
 
 /// A first step length that follows the units of variables and values: the length of the start, or where this is zero

@@ -65,10 +65,12 @@ struct RecheckJson {
 /// The limit of the peak pressure in a certificate.
 #[derive(Debug, Serialize)]
 struct LimitCheck {
-    /// Peak pressure minus limit, MPa: recorded, and computed from the pressures behind the composite proof where there is one.
+    /// Peak pressure minus limit, MPa: recorded, and computed from the pressures behind the composite proof where there
+    /// is one.
     excess: Number,
     multiplier: f64,
-    /// Largest difference of the linearizations at the point from rows of the Jacobian of the pressures, relative to their sizes.
+    /// Largest difference of the linearizations at the point from rows of the Jacobian of the pressures, relative to
+    /// their sizes.
     cuts: f64,
     agrees: bool,
 }

@@ -12,7 +12,7 @@ fn hertz3d() -> &'static str {
 fn limited(limit: f64, options: &[&str]) -> Value {
     let setting = format!("limit=[{{quantity=\"peak-pressure\", at_most={limit}}}]");
     let fixed = ["--mesh", "6", "--subdomains", "2", "--set", &setting, "--json"];
-    json(hertz3d(), &[&fixed, options].concat())
+    json(hertz3d(), &[options, &fixed].concat())
 }
 
 /// What is wrong with a limit, as `contact3d` says it.

@@ -77,8 +77,8 @@ impl Position<'_> {
         }
     }
 
-    /// Whether cuts bound Θ from below wherever they were taken: it is declared convex, and no nonlinear constraint, which
-    /// need not be convex, restricts it.
+    /// Whether cuts bound Θ from below wherever they were taken: it is declared convex, and no nonlinear constraint,
+    /// which need not be convex, restricts it.
     pub(crate) fn is_convex(&self) -> bool {
         self.config.convexity == Convexity::Convex && self.working.is_none()
     }

@@ -87,7 +87,8 @@ pub struct PressureCost {
 /// Decades of a pressure norm at the typical pressure of a scene beyond which its root is taken. Squares of
 /// subgradients at pressures far above that must still be doubles, which end at 308 decades.
 const MAX_DECADES: f64 = 100.0;
-/// Pressures over the largest one from which nodes are pieces of the limited peak: a step of the optimizer may make any of them the largest.
+/// Pressures over the largest one from which nodes are pieces of the limited peak: a step of the optimizer may make any
+/// of them the largest.
 const NEAR_PEAK: f64 = 0.5;
 /// Largest pressure over the mean pressure, roughly: those of the paper's scenes are at 4 to 10.
 const TYPICAL_PEAK: f64 = 10.0;

@@ -3,7 +3,7 @@
 //! ```text
 //! min ½ xᵀHx − xᵀb   s.t.   C x = e,   x ∈ Ω = free entries × half-lines × discs
 //! ```
-//! [`mpgp`]: gradient projection with conjugate gradients in the face, for Ω alone. [`smalse`]: an augmented Lagrangian
+//! `mpgp`: gradient projection with conjugate gradients in the face, for Ω alone. `smalse`: an augmented Lagrangian
 //! loop around it for C x = e. With the feature `interior-point`, `ConeProgram` minimises over friction cones.
 //!
 //! References: \[Dostal2009\] (the algorithms), \[DostalKozubek2012\] (separable convex constraints),

@@ -6,7 +6,7 @@ use crate::commands::numbers::{exact, number, raised};
 use crate::commands::optimize::mesh_run::MeshRun;
 use crate::commands::optimize::stages::Part;
 use crate::commands::report::found_label;
-use crate::commands::shape_facts;
+use crate::commands::shape_facts::{self, is_proved};
 use crate::commands::solved_shape::{SolvedShape, solver_facts};
 use contact::plausibility::Warning;
 use contact::solvers::Usage;
@@ -47,11 +47,6 @@ fn stage(run: &MeshRun) -> serde_json::Value {
 pub fn ending(report: &Report) -> serde_json::Value {
     let termination = &report.termination;
     json!({ "reason": termination, "text": termination.to_string(), "confirmed": is_proved(report) })
-}
-
-/// Whether the end of a run is proved stationary, and keeps all limits.
-pub fn is_proved(report: &Report) -> bool {
-    report.termination.is_confirmed() && report.is_feasible()
 }
 
 /// Whether the end of a run is proved, and if not, why and what to do: a line of its own.

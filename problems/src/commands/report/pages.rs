@@ -3,9 +3,10 @@
 use crate::commands::compare::comparison::Comparison;
 use crate::commands::facts::{Facts, Group};
 use crate::commands::numbers::{number, rounded};
-use crate::commands::optimize::summary::{Ended, is_proved};
+use crate::commands::optimize::summary::Ended;
 use crate::commands::report::folder::Parts;
 use crate::commands::report::sections::{export_command, pictures};
+use crate::commands::shape_facts::is_proved;
 use crate::commands::shape_facts::{self, is_better};
 use crate::commands::solved_shape::{ContactObjective, SolvedShape};
 use contact::equilibrium::StageSeconds;

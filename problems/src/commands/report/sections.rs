@@ -1,7 +1,7 @@
 //! Sections that the report pages of several commands share.
 
 use crate::commands::folder::{SCENE, quoted};
-use crate::commands::optimize::summary::is_proved;
+use crate::commands::shape_facts::is_proved;
 use figures::page::{Block, Section};
 use nonsmooth::Report;
 use std::path::Path;
