@@ -101,7 +101,7 @@ impl Case {
     /// What is minimised under which limits, on the mesh of a problem.
     ///
     /// # Errors
-    /// As [`Objective::measure`].
+    /// [`SceneError::OutOfRange`] for a formula that is not finite at a contact node, with the place.
     pub fn measure(&self, problem: &ContactProblem) -> Result<Measure, SceneError> {
         Ok(match (self.objective.measure(problem)?, self.peak_limit) {
             (Measure::Pressure(measure), Some(limit)) => Measure::LimitedPressure(measure, limit),
