@@ -117,6 +117,10 @@ impl ConstraintEvaluation {
             }
         }
         for piece in &self.pieces {
+            let (what, count) = ("constraints", self.values.len());
+            if piece.constraint >= count {
+                return Err(InputError::Dimension { what, expected: count, found: piece.constraint + 1 });
+            }
             check_size("gradient of a piece of a constraint", dimension, piece.gradient.len())?;
             check_finite("value of a piece of a constraint", &[piece.value])?;
             check_finite("gradient of a piece of a constraint", piece.gradient.as_slice())?;

@@ -137,14 +137,13 @@ impl Run<'_, '_> {
 
     /// The set of the subproblems at the present center, where there are nonlinear constraints.
     fn working_set(&mut self) -> Option<Rc<WorkingSet>> {
-        self.state.constraints.as_ref()?;
-        let negligible = Resolution::new(&self.state, &self.method.config).tolerance();
-        let reach = self.state.length_scale().max(self.state.first_step);
         let constraints = self.state.constraints.as_deref()?;
         let wanted = (self.state.center_id, constraints.revision());
         match &self.working {
             Some((known, working)) if *known == wanted => Some(Rc::clone(working)),
             _ => {
+                let negligible = Resolution::new(&self.state, &self.method.config).tolerance();
+                let reach = self.state.length_scale().max(self.state.first_step);
                 let (center, norm) = (&self.state.center, &self.state.norm);
                 let working =
                     WorkingSet::new(&self.set, constraints, center, (norm, negligible, reach), &mut self.solver);

@@ -16,7 +16,8 @@ pub struct ConstraintReport {
     /// The violation there (c_j⁺, or |c_j| of an equality) relative to the largest |c_j| at the centers of the run; 0
     /// where there is none.
     pub violation: f64,
-    /// Whether the violation is within the tolerance: 1e-10 of that size, and rounding.
+    /// Whether the violation is within the tolerance: 1e-10 of the first nonzero |c_j| at a center or, where it is
+    /// smaller, of Σ_i |h_i x_i| with the subgradient h there; and rounding.
     pub satisfied: bool,
     /// The multiplier μ_j in the certificate: by how much the objective would fall per unit of c_j that is granted, to
     /// first order. At least 0 for an inequality; of either sign for an equality.

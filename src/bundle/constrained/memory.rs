@@ -17,7 +17,7 @@ const DEGENERATE: f64 = 1e-6;
 /// A penalty weight this many times larger than the multipliers ask for is lowered: it would reject steps along curved
 /// constraints.
 const MAX_PENALTY_SHARE: f64 = 20.0;
-/// Tangents kept beside those of the center, for every variable and in all.
+/// Tangents kept beside those of the center, and three for every variable.
 const EXTRA_TANGENTS: usize = 50;
 
 /// A point with all that its evaluation gave.
@@ -263,7 +263,7 @@ impl Constraints {
     /// What a report says of the constraints at a point, with the multipliers of its certificate.
     pub(crate) fn report(&self, values: &Vector, multipliers: Option<&Vector>) -> Vec<ConstraintReport> {
         let report = |j: usize| {
-            let violation = self.violated_by(j, values[j]);
+            let violation = self.kinds[j].violation(values[j]);
             ConstraintReport {
                 kind: self.kinds[j],
                 value: values[j],
@@ -304,15 +304,10 @@ impl Constraints {
         self.revision += 1;
     }
 
-    /// By how much a value violates constraint j.
-    pub(crate) fn violated_by(&self, j: usize, value: f64) -> f64 {
-        self.kinds[j].violation(value)
-    }
-
     /// v for values of the constraints.
     pub(crate) fn violation(&self, values: &Vector) -> f64 {
         let relative = |j: usize| {
-            let violation = self.violated_by(j, values[j]);
+            let violation = self.kinds[j].violation(values[j]);
             if violation > 0.0 { violation / self.unit(j) } else { 0.0 }
         };
         (0..values.len()).map(relative).fold(0.0, f64::max)
@@ -330,7 +325,7 @@ impl Constraints {
     /// The largest violation in tolerances: the point is feasible up to 1.
     pub(crate) fn excess(&self, evaluation: &ConstraintEvaluation, point: &Vector) -> f64 {
         let relative = |j: usize| {
-            let violation = self.violated_by(j, evaluation.values[j]);
+            let violation = self.kinds[j].violation(evaluation.values[j]);
             if violation > 0.0 { violation / self.tolerance(j, evaluation, point) } else { 0.0 }
         };
         (0..self.kinds.len()).map(relative).fold(0.0, f64::max)

@@ -17,7 +17,7 @@ const MAX_DECREASES: usize = 8;
 const MAX_RELATIVE_SLOPE: f64 = 1e5;
 /// Share of the reduction by which the rows are relaxed beyond what is possible.
 const ROOM: f64 = 1e-6;
-/// The violation is stationary where its aggregate subgradient is at most this share of its terms.
+/// The violation is stationary where its linearization falls by at most this share within reach.
 const STATIONARY: f64 = 1e-6;
 
 /// The set of the subproblems at a center.
